@@ -1,0 +1,175 @@
+//! Every input that can be refused, with the item and its value.
+
+use std::path::PathBuf;
+
+/// A set of spheres, edges and faces, or a file of them, that is no medial mesh.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// No sphere at all.
+    #[error("a medial mesh needs at least one sphere")]
+    Empty,
+    /// A coordinate or radius is NaN or infinite.
+    #[error("sphere {index} is not finite: center {center:?}, radius {radius}")]
+    NotFinite {
+        /// Index of the sphere.
+        index: usize,
+        /// Its centre.
+        center: [f32; 3],
+        /// Its radius.
+        radius: f32,
+    },
+    /// A radius below zero.
+    #[error("sphere {index} has negative radius {radius}")]
+    NegativeRadius {
+        /// Index of the sphere.
+        index: usize,
+        /// Its radius.
+        radius: f32,
+    },
+    /// An edge or face names a sphere that is not there.
+    #[error("{element} {index} names sphere {value}, but there are {count} spheres")]
+    IndexOutOfRange {
+        /// `"edge"` or `"face"`.
+        element: &'static str,
+        /// Index of the edge or face.
+        index: usize,
+        /// The sphere it names.
+        value: u64,
+        /// How many spheres there are.
+        count: usize,
+    },
+    /// An edge or face names the same sphere twice.
+    #[error("{element} {index} names sphere {value} twice")]
+    RepeatedIndex {
+        /// `"edge"` or `"face"`.
+        element: &'static str,
+        /// Index of the edge or face.
+        index: usize,
+        /// The sphere named twice.
+        value: u32,
+    },
+    /// All spheres are one point of radius zero.
+    #[error("the mesh has no size: all {count} spheres are the point {center:?} of radius 0")]
+    ZeroSize {
+        /// How many spheres there are.
+        count: usize,
+        /// Where they are.
+        center: [f32; 3],
+    },
+    /// A length, radius or count given to an exact constructor is out of its range.
+    #[error("{what} is {value}, must be {must}")]
+    Parameter {
+        /// Name of the parameter.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is accepted.
+        must: &'static str,
+    },
+    /// A text file that is not in the `.ma` format.
+    #[error("{path}, line {line}: {message}")]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// Line number, from 1.
+        line: usize,
+        /// What is wrong, with the offending text.
+        message: String,
+    },
+    /// A file that cannot be read or written.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: std::io::Error,
+    },
+}
+
+/// A triangle mesh, or a file of one, that no medial mesh can be built from.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// No triangle at all.
+    #[error("the mesh has no triangles ({vertices} vertices)")]
+    Empty {
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {index} is not finite: {position:?}")]
+    NotFinite {
+        /// Index of the vertex.
+        index: usize,
+        /// Its position.
+        position: [f32; 3],
+    },
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {index} names vertex {value}, but there are {count} vertices")]
+    IndexOutOfRange {
+        /// Index of the triangle.
+        index: usize,
+        /// The vertex it names.
+        value: u64,
+        /// How many vertices there are.
+        count: usize,
+    },
+    /// The triangles have no area, or the mesh no extent.
+    #[error("the mesh has no size: {message}")]
+    ZeroSize {
+        /// Which measure is zero, with its value.
+        message: String,
+    },
+    /// An option is out of its range.
+    #[error("option `{option}` is {value}, must be {must}")]
+    Option {
+        /// Name of the option.
+        option: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is accepted.
+        must: &'static str,
+    },
+    /// Nothing of the surface encloses a volume, so no ball lies inside.
+    #[error("no inside found: {message}")]
+    NoInside {
+        /// What was found instead.
+        message: String,
+    },
+    /// The progress callback asked to stop.
+    #[error("cancelled during {stage}")]
+    Cancelled {
+        /// The stage that was running.
+        stage: &'static str,
+    },
+    /// The file's ending names no known format.
+    #[error("{path}: unknown mesh format {extension:?} (known: obj, stl, ply, off)")]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+        /// Its ending.
+        extension: String,
+    },
+    /// A file that breaks off or breaks its format's rules.
+    #[error("{path}, {location}: {message}")]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// Line number or byte offset, as `line 7`.
+        location: String,
+        /// What is wrong, with the offending text.
+        message: String,
+    },
+    /// A file that cannot be read.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: std::io::Error,
+    },
+    /// The result is no medial mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}

@@ -1,0 +1,9 @@
+//! Drop-in concave colliders for the rapier physics engine that never tunnel.
+
+pub mod build;
+pub mod error;
+pub mod math;
+pub mod medial;
+pub use build::{BuildOptions, BuildReport, Progress};
+pub use error::{BuildError, MeshError};
+pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};

@@ -1,0 +1,15 @@
+//! L0: numbers and geometry that know nothing of medial meshes.
+
+pub mod lane;
+pub mod motion;
+pub mod nearest;
+pub mod tolerance;
+
+/// Position (translation and rotation), as in rapier's API.
+pub use parry3d::math::Pose;
+/// The scalar of rapier's world: `f32`, lengths in the user's unit (metres in rapier).
+pub use parry3d::math::Real;
+/// Unit quaternion, as in rapier's API.
+pub use parry3d::math::Rotation;
+/// Point or direction, as in rapier's API.
+pub use parry3d::math::Vector;

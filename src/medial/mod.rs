@@ -1,0 +1,12 @@
+//! L1: the data. Spheres joined by medial cones and slabs, their trees, mass and files.
+
+pub mod envelope;
+pub mod ma_file;
+pub mod mass;
+pub mod mesh;
+pub mod primitive;
+pub mod solids;
+pub mod tree;
+
+pub use mesh::MedialMesh;
+pub use primitive::{MedialPrimitive, MedialSphere};

@@ -1,0 +1,168 @@
+//! A static tree of bounding spheres over the primitives of a medial mesh.
+//!
+//! It lives in the body's frame and is built once: a rigid body never changes its shape, and a
+//! sphere keeps its radius under any rotation, so moving a node is moving its centre.
+
+use super::mesh::Simplex;
+use super::primitive::MedialSphere;
+use crate::math::{Real, Vector};
+
+/// A sphere around part of a medial mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Centre, in the body's frame.
+    pub center: Vector,
+    /// Encloses the whole volume of the primitives below it, rounding included.
+    pub radius: Real,
+    /// Leaf: index of its primitive. Inner: index of the first of two neighbouring children.
+    index: u32,
+    leaf: bool,
+}
+
+/// What is below a [`Node`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Below {
+    /// One primitive.
+    Primitive(u32),
+    /// Two nodes.
+    Nodes(u32, u32),
+}
+
+impl Node {
+    /// Its primitive or its children.
+    pub fn below(&self) -> Below {
+        if self.leaf {
+            Below::Primitive(self.index)
+        } else {
+            Below::Nodes(self.index, self.index + 1)
+        }
+    }
+}
+
+/// Bounding spheres over primitives; node 0 is the root.
+#[derive(Clone, Debug)]
+pub struct SphereTree {
+    nodes: Vec<Node>,
+}
+
+impl SphereTree {
+    /// Builds the tree, splitting at the median of the longest spread of the primitives' centres.
+    pub fn new(spheres: &[MedialSphere], primitives: &[Simplex]) -> Self {
+        let mut items: Vec<(Vector, u32)> = primitives
+            .iter()
+            .enumerate()
+            .map(|(i, p)| {
+                let n = Real::from(p.len);
+                let sum = (0..p.len as usize)
+                    .map(|k| spheres[p.vertices[k] as usize].center)
+                    .fold(Vector::ZERO, |a, b| a + b);
+                (sum / n, i as u32)
+            })
+            .collect();
+        let mut tree = Self {
+            nodes: Vec::with_capacity(2 * items.len()),
+        };
+        tree.nodes.push(Node {
+            center: Vector::ZERO,
+            radius: 0.0,
+            index: 0,
+            leaf: true,
+        });
+        tree.build(0, &mut items, spheres, primitives);
+        tree
+    }
+
+    /// The nodes; the root first.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    fn build(
+        &mut self,
+        node: usize,
+        items: &mut [(Vector, u32)],
+        spheres: &[MedialSphere],
+        primitives: &[Simplex],
+    ) {
+        let members = items
+            .iter()
+            .flat_map(|&(_, i)| primitives[i as usize].vertices)
+            .map(|v| spheres[v as usize]);
+        let (center, radius) = enclosing_sphere(members);
+        self.nodes[node].center = center;
+        self.nodes[node].radius = radius;
+        if let [(_, primitive)] = items {
+            self.nodes[node].index = *primitive;
+            return;
+        }
+        let (lo, hi) = items.iter().fold(
+            (Vector::splat(Real::MAX), Vector::splat(Real::MIN)),
+            |(lo, hi), (c, _)| (lo.min(*c), hi.max(*c)),
+        );
+        let spread = hi - lo;
+        let axis = if spread.x >= spread.y && spread.x >= spread.z {
+            0
+        } else if spread.y >= spread.z {
+            1
+        } else {
+            2
+        };
+        let middle = items.len() / 2;
+        items.select_nth_unstable_by(middle, |a, b| {
+            a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1))
+        });
+        let first = self.nodes.len();
+        let empty = self.nodes[node];
+        self.nodes.push(Node {
+            leaf: true,
+            ..empty
+        });
+        self.nodes.push(Node {
+            leaf: true,
+            ..empty
+        });
+        self.nodes[node].index = first as u32;
+        self.nodes[node].leaf = false;
+        let (left, right) = items.split_at_mut(middle);
+        self.build(first, left, spheres, primitives);
+        self.build(first + 1, right, spheres, primitives);
+    }
+}
+
+/// A small sphere around others: centre of their box, moved towards the farthest sphere with
+/// shrinking steps (Bădoiu and Clarkson), then the exact radius for that centre, rounded up.
+fn enclosing_sphere(members: impl Iterator<Item = MedialSphere> + Clone) -> (Vector, Real) {
+    let farthest = |c: Vector| {
+        members
+            .clone()
+            .map(|s| ((s.center - c).length() + s.radius, s))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .unwrap_or_default()
+    };
+    let (lo, hi) = members.clone().fold(
+        (Vector::splat(Real::MAX), Vector::splat(Real::MIN)),
+        |(lo, hi), s| {
+            let r = Vector::splat(s.radius);
+            (lo.min(s.center - r), hi.max(s.center + r))
+        },
+    );
+    let mut center = lo * 0.5 + hi * 0.5;
+    let mut best = (farthest(center).0, center);
+    const ROUNDS: usize = 24;
+    for round in 1..=ROUNDS {
+        let (distance, s) = farthest(center);
+        let away = s.center - center;
+        let length = away.length();
+        if length <= 0.0 {
+            break;
+        }
+        center += away * (distance / length / (round as Real + 1.0) * 0.5).min(1.0);
+        let reach = farthest(center).0;
+        if reach < best.0 {
+            best = (reach, center);
+        }
+    }
+    // The distance above is off by a few ulps of the coordinates it was computed from.
+    let size = best.0 + best.1.abs().max_element();
+    (best.1, best.0 + 8.0 * Real::EPSILON * size)
+}
