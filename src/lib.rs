@@ -1,6 +1,7 @@
 //! Drop-in concave colliders for the rapier physics engine that never tunnel.
 
 pub mod build;
+pub mod elementary;
 pub mod error;
 pub mod math;
 pub mod medial;

@@ -1,1 +1,184 @@
-//! To come.
+//! Rigid motion over one step in the pair's own frame, and how far its points leave straight paths.
+//!
+//! A point at offset `ρ` from the centre of rotation moves as
+//! `c(t) = p + v t + ρ∥ + ρ⊥ cos ωt + (a × ρ) sin ωt` with axis `a`, so its acceleration has the
+//! length `ω²|ρ⊥|` and its jerk `ω³|ρ⊥|` at all times. The chord of a path with acceleration at
+//! most `A` is never further from it than `A/8` over a step of length 1 (the sagitta).
+
+use super::lane::{Scalar, Vec3};
+use parry3d::math::Rotation;
+use parry3d::query::NonlinearRigidMotion;
+
+/// A rigid motion over a step; times are fractions of the step, in `[0, 1]`.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidMotion<S> {
+    /// Position of the centre of rotation at the start, in the pair's frame.
+    center: Vec3<S>,
+    /// Its displacement over the step.
+    displacement: Vec3<S>,
+    /// Unit axis of rotation; any unit vector when there is none.
+    axis: Vec3<S>,
+    /// Angle turned in the step, in radians, ≥ 0.
+    angle: S,
+    /// Columns of the rotation at the start.
+    columns: [Vec3<S>; 3],
+    /// Centre of rotation in the body's frame.
+    local_center: Vec3<S>,
+}
+
+/// Path of one point of a [`RigidMotion`].
+#[derive(Clone, Copy, Debug)]
+pub struct PointPath<S> {
+    base: Vec3<S>,
+    displacement: Vec3<S>,
+    across: Vec3<S>,
+    turned: Vec3<S>,
+    angle: S,
+    /// Length of the acceleration: `ω²|ρ⊥|`.
+    pub acceleration: S,
+    /// Length of the jerk: `ω³|ρ⊥|`.
+    pub jerk: S,
+}
+
+/// Position, velocity and acceleration of a point, per step.
+#[derive(Clone, Copy, Debug)]
+pub struct PointState<S> {
+    /// Position.
+    pub position: Vec3<S>,
+    /// Velocity, per step.
+    pub velocity: Vec3<S>,
+    /// Acceleration, per step squared.
+    pub acceleration: Vec3<S>,
+}
+
+impl<S: Scalar> RigidMotion<S> {
+    /// Two motions in a common frame that has its origin at the first body's and does not rotate,
+    /// and moves with the second body's linear velocity. Positions and velocities are subtracted
+    /// before anything else, so that large coordinates cost no digits.
+    pub fn pair(
+        motion1: &NonlinearRigidMotion,
+        motion2: &NonlinearRigidMotion,
+        seconds: S,
+    ) -> [Self; 2] {
+        let v = Vec3::<S>::from_vector;
+        let offset = v(motion2.start.translation) - v(motion1.start.translation);
+        let drift = (v(motion1.linvel) - v(motion2.linvel)) * seconds;
+        [
+            Self::new(motion1, Vec3::zero(), drift, seconds),
+            Self::new(motion2, offset, Vec3::zero(), seconds),
+        ]
+    }
+
+    fn new(
+        motion: &NonlinearRigidMotion,
+        origin: Vec3<S>,
+        displacement: Vec3<S>,
+        seconds: S,
+    ) -> Self {
+        let columns = rotation_columns::<S>(motion.start.rotation);
+        let local_center = Vec3::from_vector(motion.local_center);
+        let omega = Vec3::<S>::from_vector(motion.angvel) * seconds;
+        let angle = omega.length();
+        let turning = S::splat(S::TINY).lt(angle);
+        let inverse = S::one() / S::select(turning, angle, S::one());
+        let any = Vec3::new(S::one(), S::zero(), S::zero());
+        Self {
+            center: origin + rotate(&columns, local_center),
+            displacement,
+            axis: Vec3::select(turning, omega * inverse, any),
+            angle: S::select(turning, angle, S::zero()),
+            columns,
+            local_center,
+        }
+    }
+
+    /// Path of a point given in the body's frame.
+    #[inline]
+    pub fn point(&self, local: Vec3<S>) -> PointPath<S> {
+        let rho = rotate(&self.columns, local - self.local_center);
+        let along = self.axis * self.axis.dot(rho);
+        let across = rho - along;
+        let acceleration = self.angle * self.angle * across.length();
+        PointPath {
+            base: self.center + along,
+            displacement: self.displacement,
+            across,
+            turned: self.axis.cross(rho),
+            angle: self.angle,
+            acceleration,
+            jerk: acceleration * self.angle,
+        }
+    }
+
+    /// Angle turned in the step, in radians.
+    pub fn angle(&self) -> S {
+        self.angle
+    }
+
+    /// Sine and cosine of the angle turned until `t`.
+    #[inline(always)]
+    pub fn sin_cos(&self, t: S) -> (S, S) {
+        (self.angle * t).sin_cos()
+    }
+}
+
+impl<S: Scalar> PointPath<S> {
+    /// State at `t`, given the motion's [`RigidMotion::sin_cos`] at `t`.
+    #[inline(always)]
+    pub fn at(&self, t: S, (sin, cos): (S, S)) -> PointState<S> {
+        let offset = self.across * cos + self.turned * sin;
+        let swing = self.turned * cos - self.across * sin;
+        PointState {
+            position: self.base + self.displacement * t + offset,
+            velocity: self.displacement + swing * self.angle,
+            acceleration: -(offset * (self.angle * self.angle)),
+        }
+    }
+}
+
+impl<S: Scalar> PointPath<S> {
+    /// Bound of the relative speed of two points, per step.
+    pub fn speed_with(&self, other: &Self) -> S {
+        (self.displacement - other.displacement).length() + self.swing() + other.swing()
+    }
+
+    /// Largest speed that the rotation alone gives.
+    fn swing(&self) -> S {
+        self.angle * self.across.length()
+    }
+
+    /// Distance from the axis of rotation, when there is a rotation: digits lost to turning are
+    /// proportional to it.
+    pub fn arm(&self) -> S {
+        self.across.length()
+    }
+}
+
+/// Columns of a rotation matrix, from a quaternion normalised in `S`.
+fn rotation_columns<S: Scalar>(q: Rotation) -> [Vec3<S>; 3] {
+    let [x, y, z, w] = [q.x, q.y, q.z, q.w].map(S::from_real);
+    let two = S::splat(2.0) / (x * x + y * y + z * z + w * w);
+    let one = S::one();
+    [
+        Vec3::new(
+            one - two * (y * y + z * z),
+            two * (x * y + w * z),
+            two * (x * z - w * y),
+        ),
+        Vec3::new(
+            two * (x * y - w * z),
+            one - two * (x * x + z * z),
+            two * (y * z + w * x),
+        ),
+        Vec3::new(
+            two * (x * z + w * y),
+            two * (y * z - w * x),
+            one - two * (x * x + y * y),
+        ),
+    ]
+}
+
+#[inline(always)]
+fn rotate<S: Scalar>(columns: &[Vec3<S>; 3], v: Vec3<S>) -> Vec3<S> {
+    columns[0] * v.x + columns[1] * v.y + columns[2] * v.z
+}

@@ -1,0 +1,139 @@
+//! L2: the maths of one pair of primitives. Knows spheres and their motion, never meshes.
+//!
+//! Two primitives of 1, 2 or 3 interpolated spheres each are in contact exactly when one of their
+//! elementary tests is (paper §4.1): cone–cone for every two edges, sphere–slab for every sphere
+//! of one and the slab of the other. That list is complete as long as the medial triangles do not
+//! cross: over two triangles the four parameters map to three coordinates, so some direction of
+//! change leaves `y` fixed and changes the radius sum linearly, and following it reaches an edge
+//! of one of them; edge against triangle has its stationary points on its boundary unless `y = 0`,
+//! the crossing. Crossings at the start are found by [`slab_crossing`].
+//!
+//! # What the answer promises
+//! On the motion asked for (straight paths in [`first_contact()`], exact rigid motion in
+//! [`first_contact_rigid`]), with `D(t)` the signed distance (paper Eq. 2, minimised):
+//! - [`ToiStatus::Separated`]: `D > 0` in the whole step.
+//! - [`ToiStatus::Contact`]: `D > 0` before `lower`, `D(upper) ≤ tolerance`, and
+//!   `upper − lower ≤ time_tolerance`. Bodies that pass within `tolerance` may be reported.
+//! - [`ToiStatus::Overlapping`]: `D(0) < 0`; `lower = upper = 0`.
+//! - [`ToiStatus::Unresolved`]: the cap was reached; `D > 0` before `lower` still holds.
+//!
+//! Every bound that is compared with 0 first loses a rounding slack,
+//! [`crate::math::tolerance::SLACK_ULPS`]` × EPSILON × scale`; a tolerance below twice that is
+//! raised to it, and [`Toi::tolerance`] says so.
+
+pub mod alternating;
+pub mod bracket;
+pub mod certificate;
+pub mod cone_cone;
+pub mod f64;
+pub mod first_contact;
+pub mod path;
+pub mod slab_crossing;
+pub mod sphere_slab;
+pub mod test_list;
+
+pub use alternating::alternating;
+pub use first_contact::{first_contact, first_contact_rigid};
+
+use crate::math::tolerance;
+use crate::math::{Real, Vector};
+use crate::medial::MedialSphere;
+
+/// A sphere on a straight path over the step.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct MovingSphere {
+    /// Centre at the start, in world space, in the user's unit of length.
+    pub center: Vector,
+    /// Radius, ≥ 0, same unit.
+    pub radius: Real,
+    /// Change of the centre over the whole step, same unit.
+    pub displacement: Vector,
+}
+
+/// How exact an answer is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ToiOptions {
+    /// Distance at which bodies count as in contact, in the user's unit of length.
+    pub tolerance: Real,
+    /// Width at which the bracket of the contact time may stop, as a fraction of the step.
+    pub time_tolerance: Real,
+    /// Cap of the iterations of one elementary test.
+    pub max_iterations: u32,
+    /// Signed distance at which bodies count as in contact, a length. 0 for the bodies as they are;
+    /// negative lets them overlap that deep first, positive keeps them apart. The guarantee then
+    /// holds for `D − target_distance`.
+    pub target_distance: Real,
+}
+
+impl Default for ToiOptions {
+    fn default() -> Self {
+        Self {
+            tolerance: tolerance::TOLERANCE,
+            time_tolerance: tolerance::TIME_TOLERANCE,
+            max_iterations: tolerance::MAX_ITERATIONS,
+            target_distance: 0.0,
+        }
+    }
+}
+
+/// What is known of the first contact; see the module's guarantee.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ToiStatus {
+    /// No contact in the whole step.
+    Separated,
+    /// First contact bracketed by `lower` and `upper`.
+    Contact,
+    /// In contact with negative distance at the start already.
+    Overlapping,
+    /// Iteration cap reached, or bad input (then `lower = 0`).
+    Unresolved,
+}
+
+/// First contact of two primitives or meshes; times are fractions of the step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Toi {
+    /// What the numbers mean.
+    pub status: ToiStatus,
+    /// No contact before this time. 1 when separated.
+    pub lower: Real,
+    /// Contact, within the tolerance, at this time. 1 when separated or unknown.
+    pub upper: Real,
+    /// The contact distance used: as asked, or raised to twice the rounding slack.
+    pub tolerance: Real,
+    /// Iterations of the elementary test that was reported (or of all, when separated).
+    pub iterations: u32,
+    /// Unit normal from the first body to the second, world frame, at `lower`.
+    pub normal: Vector,
+    /// Nearest spheres of both bodies, world frame, at `lower`.
+    pub spheres: [MedialSphere; 2],
+    /// Nearest points on both bodies' surfaces, world frame, at `lower`.
+    pub points: [Vector; 2],
+    /// Index of the primitive of each mesh; 0 for single primitives.
+    pub primitives: [u32; 2],
+}
+
+impl Toi {
+    pub(crate) fn bad_input(options: &ToiOptions) -> Self {
+        Self {
+            status: ToiStatus::Unresolved,
+            lower: 0.0,
+            upper: 1.0,
+            ..Self::separated(options)
+        }
+    }
+
+    pub(crate) fn separated(options: &ToiOptions) -> Self {
+        Self {
+            status: ToiStatus::Separated,
+            lower: 1.0,
+            upper: 1.0,
+            tolerance: options.tolerance,
+            iterations: 0,
+            normal: Vector::ZERO,
+            spheres: [MedialSphere::default(); 2],
+            points: [Vector::ZERO; 2],
+            primitives: [0; 2],
+        }
+    }
+}
