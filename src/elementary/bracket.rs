@@ -30,6 +30,8 @@ pub struct Limits<L> {
     pub tolerance: L,
     /// Width at which the bracket stops.
     pub time_tolerance: L,
+    /// Time at which the search begins.
+    pub start: L,
     /// Contacts after this time are of no interest.
     pub horizon: L,
     /// Cap of the iterations.
@@ -51,7 +53,7 @@ pub struct Bracket<L: Lane> {
     pub tolerance: L,
     /// Rounding slack.
     pub slack: L,
-    /// Signed distance at the start.
+    /// Signed distance where the search began.
     pub start_distance: L,
     /// Nearest spheres at `lower`.
     pub nearest: Nearest<L>,
@@ -92,7 +94,7 @@ pub fn bracket<L: Lane, P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>
     let slack = path.scale() * L::splat(SLACK_ULPS * L::EPSILON);
     let tolerance = limits.tolerance.max(slack * L::splat(TOLERANCE_PER_SLACK));
     let speed = path.speed().max(L::splat(L::TINY));
-    let (mut lower, mut upper) = (zero, limits.horizon);
+    let (mut lower, mut upper) = (limits.start, limits.horizon);
     let none = L::Mask::splat(false);
     let (mut rooted, mut contact, mut separated) = (none, none, none);
     let mut active = L::Mask::splat(true);
@@ -161,7 +163,10 @@ pub fn bracket<L: Lane, P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>
         slack,
         start_distance,
         nearest: last.unwrap_or_else(|| {
-            nearest_spheres(domain, &cone_cone::family(&path.at(zero).y, path.radius()))
+            nearest_spheres(
+                domain,
+                &cone_cone::family(&path.at(limits.start).y, path.radius()),
+            )
         }),
         normal,
         iterations,

@@ -98,6 +98,7 @@ fn limits(options: &ToiOptions) -> Option<Limits<f64>> {
     finite.then_some(Limits {
         tolerance: options.tolerance.max(0.0),
         time_tolerance: options.time_tolerance.max(4.0 * f64::EPSILON),
+        start: 0.0,
         horizon: 1.0,
         max_iterations: options.max_iterations,
     })

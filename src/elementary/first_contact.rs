@@ -19,7 +19,8 @@ pub(crate) type Mover<S> = (Vec3<S>, Vec3<S>, S);
 /// The earliest contact over many elementary tests.
 #[derive(Clone, Copy, Debug)]
 pub struct Earliest<S: Scalar> {
-    limits: Limits<S>,
+    /// How far and how exact each test is followed.
+    pub limits: Limits<S>,
     /// What is known so far.
     pub status: ToiStatus,
     /// No contact before, over all tests so far.
@@ -60,7 +61,7 @@ impl<S: Scalar> Earliest<S> {
         primitives: [u32; 2],
     ) -> bool {
         let limits = Limits {
-            horizon: self.upper,
+            horizon: self.upper.min(self.limits.horizon),
             ..self.limits
         };
         let mut b = bracket(path, test.domain, &limits);
@@ -69,7 +70,7 @@ impl<S: Scalar> Earliest<S> {
         self.tolerance = self.tolerance.max(b.tolerance);
         if !b.slack.is_finite() {
             // Sizes whose squares overflow: nothing can be certified.
-            b.lower = S::zero();
+            b.lower = limits.start;
             b.contact = false;
             b.separated = false;
         }
@@ -83,14 +84,14 @@ impl<S: Scalar> Earliest<S> {
             if self.status != ToiStatus::Unresolved {
                 self.status = ToiStatus::Contact;
             }
-            if b.start_distance < -b.slack {
+            if limits.start == S::zero() && b.start_distance < -b.slack {
                 self.overlap_at_start();
             }
         } else {
             self.status = ToiStatus::Unresolved;
             self.found = self.found.or(Some((test, b, primitives)));
         }
-        S::zero() < self.upper
+        limits.start < self.upper
     }
 
     /// Notes that the bodies overlap at the start.
@@ -172,10 +173,11 @@ pub(crate) fn rigid<S: Scalar>(
     )
 }
 
-fn options_limits<S: Scalar>(options: &ToiOptions) -> Limits<S> {
+pub(crate) fn options_limits<S: Scalar>(options: &ToiOptions) -> Limits<S> {
     Limits {
         tolerance: S::from_real(options.tolerance.max(0.0)),
         time_tolerance: S::from_real(options.time_tolerance).max(S::splat(4.0 * S::EPSILON)),
+        start: S::zero(),
         horizon: S::one(),
         max_iterations: options.max_iterations,
     }

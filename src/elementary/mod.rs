@@ -28,6 +28,7 @@ pub mod cone_cone;
 pub mod f64;
 pub mod first_contact;
 pub mod path;
+pub mod penetration;
 pub mod slab_crossing;
 pub mod sphere_slab;
 pub mod test_list;

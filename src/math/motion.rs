@@ -155,7 +155,7 @@ impl<S: Scalar> PointPath<S> {
 }
 
 /// Columns of a rotation matrix, from a quaternion normalised in `S`.
-fn rotation_columns<S: Scalar>(q: Rotation) -> [Vec3<S>; 3] {
+pub(crate) fn rotation_columns<S: Scalar>(q: Rotation) -> [Vec3<S>; 3] {
     let [x, y, z, w] = [q.x, q.y, q.z, q.w].map(S::from_real);
     let two = S::splat(2.0) / (x * x + y * y + z * z + w * w);
     let one = S::one();

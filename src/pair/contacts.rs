@@ -1,0 +1,310 @@
+//! Near sphere pairs of two bodies at fixed poses: the points of contact manifolds.
+//!
+//! Each elementary test gives its nearest sphere pair, in contact along the line of centres
+//! (paper §4.5: "contact point and contact normal through the nearest sphere pair"). Where medial
+//! surfaces cross, that line is lost and the true penetration depth and normal take its place
+//! ([`crate::elementary::penetration`]). Long parallel cones get a second pair, so that they rest
+//! on a line.
+
+use super::first_contact::Counts;
+use super::volumes::Volumes;
+use crate::elementary::certificate::ActiveFace;
+use crate::elementary::test_list::{Domain, ElementaryTest, Share, edges, for_each_test};
+use crate::elementary::{cone_cone, penetration, slab_crossing, sphere_slab};
+use crate::math::lane::Vec3;
+use crate::math::nearest::{Family, Nearest, edge_minimum};
+use crate::math::{Pose, Real, Vector};
+use crate::medial::MedialSphere;
+use crate::medial::tree::Below;
+
+/// Cosine from which two directions of one primitive pair belong to one contact patch (10°).
+const SAME_PATCH: f64 = 0.985;
+
+/// Squared sine under which two cones count as parallel for a second contact point (6°).
+const PARALLEL_SINE_SQ: f64 = 0.01;
+
+/// Two contact points closer than this, in units of the radius sum, are one: a sphere shared by two
+/// cones is reported by both.
+const SAME_POINT: f64 = 1.0e-4;
+
+/// A colliding, or nearly colliding, sphere pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpherePair {
+    /// Index of the primitive of each body.
+    pub primitives: [u32; 2],
+    /// Which elementary test of the two primitives, and which point of it: stable from step to
+    /// step while the same features touch.
+    pub feature: u32,
+    /// Signed distance.
+    pub distance: Real,
+    /// Unit normal from the first body to the second, in the first body's frame.
+    pub normal: Vector,
+    /// Nearest points on the surfaces, each in its own body's frame.
+    pub points: [Vector; 2],
+}
+
+type Ball = (Vec3<f64>, f64);
+
+/// All sphere pairs within `prediction` (a length) of each other, of bodies at relative pose
+/// `pos12` (second in first). Computed in double precision; order and result depend on the input
+/// only. A pose that is not finite gives none.
+pub fn contacts(
+    body1: &impl Volumes,
+    body2: &impl Volumes,
+    pos12: &Pose,
+    prediction: Real,
+) -> (Vec<SpherePair>, Counts) {
+    let mut found = Vec::new();
+    let mut counts = Counts::default();
+    if !(pos12.is_finite() && prediction.is_finite()) {
+        return (found, counts);
+    }
+    let place = Placement::new(pos12);
+    let mut stack: Vec<[u32; 2]> = Vec::new();
+    for i in 0..body1.roots() {
+        stack.extend((0..body2.roots()).map(|j| [i, j]));
+    }
+    let margin = f64::from(prediction);
+    while let Some([i, j]) = stack.pop() {
+        counts.nodes += 1;
+        let (a, b) = (body1.bound(i), body2.bound(j));
+        let (ra, rb) = (f64::from(a.1), f64::from(b.1));
+        let y = place.point(b.0) - Vec3::from_vector(a.0);
+        let reach = ra + rb + margin;
+        // Bounds carry their own rounding; what is left is that of this subtraction.
+        if y.length_sq() > reach * reach * (1.0 + 1.0e-12) {
+            continue;
+        }
+        match (body1.below(i), body2.below(j)) {
+            (Below::Primitive(p), Below::Primitive(q)) => {
+                let pair = PrimitivePair::new(body1, body2, [p, q], &place);
+                pair.contacts(margin, &mut found, &mut counts);
+            }
+            (Below::Nodes(c, d), Below::Primitive(_)) => stack.extend([[d, j], [c, j]]),
+            (Below::Primitive(_), Below::Nodes(c, d)) => stack.extend([[i, d], [i, c]]),
+            (Below::Nodes(c, d), Below::Nodes(..)) if ra >= rb => {
+                stack.extend([[d, j], [c, j]]);
+            }
+            (_, Below::Nodes(c, d)) => stack.extend([[i, d], [i, c]]),
+        }
+    }
+    (found, counts)
+}
+
+/// A relative pose in double precision, its rotation normalised.
+struct Placement {
+    rotation: [Vec3<f64>; 3],
+    translation: Vec3<f64>,
+}
+
+impl Placement {
+    fn new(pose: &Pose) -> Self {
+        Self {
+            rotation: crate::math::motion::rotation_columns(pose.rotation),
+            translation: Vec3::from_vector(pose.translation),
+        }
+    }
+    fn point(&self, local: Vector) -> Vec3<f64> {
+        let v = Vec3::<f64>::from_vector(local);
+        let [x, y, z] = self.rotation;
+        self.translation + x * v.x + y * v.y + z * v.z
+    }
+    fn inverse_point(&self, p: Vec3<f64>) -> Vector {
+        let v = p - self.translation;
+        let [x, y, z] = self.rotation;
+        Vec3::new(x.dot(v), y.dot(v), z.dot(v)).to_vector()
+    }
+}
+
+/// Two primitives in the first body's frame.
+struct PrimitivePair<'a> {
+    indices: [u32; 2],
+    balls: [[Ball; 3]; 2],
+    shares: [Share; 2],
+    place: &'a Placement,
+}
+
+impl<'a> PrimitivePair<'a> {
+    fn new(
+        body1: &impl Volumes,
+        body2: &impl Volumes,
+        indices: [u32; 2],
+        place: &'a Placement,
+    ) -> Self {
+        let (a, share_a) = body1.primitive(indices[0]);
+        let (b, share_b) = body2.primitive(indices[1]);
+        let ball = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
+        Self {
+            indices,
+            balls: [
+                a.map(ball),
+                b.map(|s| (place.point(s.center), f64::from(s.radius))),
+            ],
+            shares: [share_a, share_b],
+            place,
+        }
+    }
+
+    fn contacts(&self, margin: f64, found: &mut Vec<SpherePair>, counts: &mut Counts) {
+        if let Some(crossing) = self.crossing() {
+            self.push_crossing(crossing, found);
+            return;
+        }
+        let mut feature = 0;
+        for_each_test(self.shares[0], self.shares[1], |test| {
+            counts.tests += 1;
+            self.test(&test, feature, margin, found);
+            feature += 1;
+            true
+        });
+    }
+
+    fn test(&self, test: &ElementaryTest, feature: u32, margin: f64, found: &mut Vec<SpherePair>) {
+        let corner = test
+            .corners
+            .map(|(i, j)| (self.balls[0][i as usize], self.balls[1][j as usize]));
+        let y = corner.map(|(a, b)| b.0 - a.0);
+        let f = cone_cone::family(&y, &corner.map(|(a, b)| a.1 + b.1));
+        let s = match test.domain {
+            Domain::Box => cone_cone::nearest_spheres(&f),
+            Domain::Triangle => sphere_slab::nearest_spheres(&f),
+        };
+        if !(s.distance <= margin) {
+            return;
+        }
+        let normal = self.direction(test.domain, &f, &s);
+        self.push(test, feature, &s, normal, found);
+        if test.domain == Domain::Box {
+            if let Some(second) = second_on_line(&f, &s, normal, margin) {
+                let normal = self.direction(test.domain, &f, &second);
+                self.push(test, feature | 1 << 16, &second, normal, found);
+            }
+        }
+    }
+
+    /// Unit direction of a nearest pair; where the centres coincide, the deepest one.
+    fn direction(&self, domain: Domain, f: &Family<f64>, s: &Nearest<f64>) -> Vec3<f64> {
+        let radius = s.length - s.distance;
+        if s.length > 1.0e-6 * radius.abs() && s.length > 0.0 {
+            return ActiveFace::new(domain, f, s, &[Vec3::zero(); 4]).direction(domain, f, s);
+        }
+        self.deepest().1
+    }
+
+    fn deepest(&self) -> (f64, Vec3<f64>) {
+        let [a, b] = &self.balls;
+        let (a, b) = (&a[..self.shares[0].spheres], &b[..self.shares[1].spheres]);
+        let middle =
+            |s: &[Ball]| s.iter().fold(Vec3::zero(), |m, b| m + b.0) * (1.0 / s.len() as f64);
+        penetration::deepest(a, b, middle(b) - middle(a))
+    }
+
+    /// A crossing of an owned edge with the other's slab.
+    fn crossing(&self) -> Option<slab_crossing::Crossing<f64>> {
+        let through = |edge_side: usize, slab_side: usize| {
+            let share = self.shares[edge_side];
+            if self.shares[slab_side].spheres != 3 {
+                return None;
+            }
+            let s = &self.balls[edge_side];
+            edges(share.spheres).iter().find_map(|e| {
+                let ends = [s[e[0] as usize], s[e[1] as usize]];
+                slab_crossing::crossing(ends, self.balls[slab_side])
+            })
+        };
+        through(0, 1).or_else(|| through(1, 0))
+    }
+
+    fn push_crossing(&self, crossing: slab_crossing::Crossing<f64>, found: &mut Vec<SpherePair>) {
+        let (gap, n) = self.deepest();
+        let half = n * (-0.5 * gap);
+        self.emit(
+            1 << 17,
+            gap,
+            n,
+            [crossing.point + half, crossing.point - half],
+            found,
+        );
+    }
+
+    fn push(
+        &self,
+        test: &ElementaryTest,
+        feature: u32,
+        s: &Nearest<f64>,
+        normal: Vec3<f64>,
+        found: &mut Vec<SpherePair>,
+    ) {
+        let (x, y) = (s.alpha, s.beta);
+        let w = match test.domain {
+            Domain::Box => [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y],
+            Domain::Triangle => [1.0 - x - y, x, y, 0.0],
+        };
+        let mut spheres = [(Vec3::zero(), 0.0); 2];
+        for ((i, j), w) in test.corners.iter().zip(w) {
+            for (side, k) in [(0, *i), (1, *j)] {
+                let ball = self.balls[side][k as usize];
+                spheres[side].0 = spheres[side].0 + ball.0 * w;
+                spheres[side].1 += ball.1 * w;
+            }
+        }
+        let [a, b] = spheres;
+        // Along the certified normal, so that the points and the normal agree with the distance.
+        let point1 = a.0 + normal * a.1;
+        let point2 = b.0 - normal * b.1;
+        let near = SAME_POINT * (a.1 + b.1);
+        let seen = found.iter().rev().any(|c| {
+            (Vec3::<f64>::from_vector(c.points[0]) - point1).length() <= near
+                && Vec3::<f64>::from_vector(c.normal).dot(normal) >= SAME_PATCH
+        });
+        if !seen {
+            self.emit(feature, s.distance, normal, [point1, point2], found);
+        }
+    }
+
+    fn emit(
+        &self,
+        feature: u32,
+        distance: f64,
+        normal: Vec3<f64>,
+        points: [Vec3<f64>; 2],
+        found: &mut Vec<SpherePair>,
+    ) {
+        found.push(SpherePair {
+            primitives: self.indices,
+            feature,
+            distance: distance as Real,
+            normal: normal.to_vector(),
+            points: [points[0].to_vector(), self.place.inverse_point(points[1])],
+        });
+    }
+}
+
+/// For nearly parallel cones: the sphere pair at the other end of the line along which they run
+/// side by side, if that is further away than the cones are thick.
+fn second_on_line(
+    f: &Family<f64>,
+    s: &Nearest<f64>,
+    normal: Vec3<f64>,
+    margin: f64,
+) -> Option<Nearest<f64>> {
+    let (uu, vv) = (f.u.length_sq(), f.v.length_sq());
+    if f.u.cross(f.v).length_sq() >= PARALLEL_SINE_SQ * uu * vv || uu == 0.0 || vv == 0.0 {
+        return None;
+    }
+    let thick = s.length - s.distance;
+    let run = |c: &Nearest<f64>| {
+        let along_first = (c.alpha - s.alpha).abs() * uu.sqrt();
+        let along_second = (c.beta - s.beta).abs() * vv.sqrt();
+        along_first.min(along_second)
+    };
+    [
+        f.at(0.0, edge_minimum(f.w, f.v, f.db)),
+        f.at(1.0, edge_minimum(f.w + f.u, f.v, f.db)),
+        f.at(edge_minimum(f.w, f.u, f.da), 0.0),
+        f.at(edge_minimum(f.w + f.v, f.u, f.da), 1.0),
+    ]
+    .into_iter()
+    .filter(|c| c.distance <= margin && run(c) > thick && c.y.dot(normal) >= SAME_PATCH * c.length)
+    .max_by(|a, b| run(a).total_cmp(&run(b)))
+}

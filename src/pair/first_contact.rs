@@ -1,0 +1,321 @@
+//! First contact of two bodies made of primitives, in exact rigid motion: best-first over their
+//! trees. The paper (§4.1) tests all pairs; this visits the few that can come first.
+//!
+//! A node's ball keeps its radius under any rotation; its centre stays within the sagitta
+//! `A/8` of its chord ([`crate::math::motion`]), so two nodes cannot meet before the balls, grown by
+//! both sagittas and moved along the chords, do: the smaller root of a quadratic. Node pairs are
+//! expanded in the order of that time, and the search ends when the next one lies after the best
+//! contact found. A fast turn is searched in pieces, so that sagittas stay small.
+
+use super::volumes::Volumes;
+use crate::elementary::bracket::Limits;
+use crate::elementary::first_contact::{Earliest, motion_is_finite, options_limits, to_toi};
+use crate::elementary::path::RigidPath;
+use crate::elementary::test_list::{edges, for_each_test};
+use crate::elementary::{Toi, ToiOptions, ToiStatus, slab_crossing};
+use crate::math::lane::Vec3;
+use crate::math::motion::RigidMotion;
+use crate::math::{Real, Vector};
+use crate::medial::MedialSphere;
+use crate::medial::tree::Below;
+use parry3d::query::NonlinearRigidMotion;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Angle in radians that a piece of the search turns at most: the sagitta is then below 3 % of the
+/// lever arm. Larger pieces cull worse, smaller ones repeat the walk down the trees.
+const PIECE_ANGLE: f64 = 0.5;
+
+/// Most pieces of one search; a body that turns further in one step is culled less well.
+const MAX_PIECES: f64 = 64.0;
+
+/// Work done by one query.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Node pairs looked at.
+    pub nodes: u32,
+    /// Elementary tests executed.
+    pub tests: u32,
+}
+
+/// First contact of two meshes whose bodies move rigidly over `seconds`.
+///
+/// Motions are in world space, velocities per second; times in the answer are fractions of the
+/// step. The guarantee is that of [`crate::elementary`], for the union of all primitives. Computed
+/// in double precision.
+pub fn first_contact(
+    mesh1: &crate::MedialMesh,
+    motion1: &NonlinearRigidMotion,
+    mesh2: &crate::MedialMesh,
+    motion2: &NonlinearRigidMotion,
+    seconds: Real,
+    options: &ToiOptions,
+) -> Toi {
+    first_contact_counted(mesh1, motion1, mesh2, motion2, seconds, options).0
+}
+
+/// As [`first_contact`] for any two bodies, with the work it took.
+pub fn first_contact_counted(
+    body1: &impl Volumes,
+    motion1: &NonlinearRigidMotion,
+    body2: &impl Volumes,
+    motion2: &NonlinearRigidMotion,
+    seconds: Real,
+    options: &ToiOptions,
+) -> (Toi, Counts) {
+    let finite = motion_is_finite(motion1) && motion_is_finite(motion2) && seconds.is_finite();
+    let bounds_finite = options.tolerance.is_finite()
+        && options.time_tolerance.is_finite()
+        && options.target_distance.is_finite();
+    if !finite || !bounds_finite {
+        return (Toi::bad_input(options), Counts::default());
+    }
+    let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
+    let mut search = Search {
+        bodies: (body1, body2),
+        motions,
+        target: options.target_distance.into(),
+        heap: BinaryHeap::new(),
+        counts: Counts::default(),
+        earliest: Earliest::new(options_limits(options)),
+    };
+    let fastest = motions[0].angle().max(motions[1].angle());
+    let pieces = (fastest / PIECE_ANGLE).ceil().clamp(1.0, MAX_PIECES);
+    for piece in 0..pieces as u32 {
+        let end = f64::from(piece + 1) / pieces;
+        if !search.piece(f64::from(piece) / pieces, end) {
+            break;
+        }
+    }
+    search.counts.tests = search.earliest.tests;
+    let found = search.earliest.found;
+    let pose = |side: usize, i: u8, t: Real| {
+        let Some((_, _, primitives)) = found else {
+            return MedialSphere::default();
+        };
+        let spheres = match side {
+            0 => body1.primitive(primitives[0]).0,
+            _ => body2.primitive(primitives[1]).0,
+        };
+        let s = spheres[i as usize];
+        let at = [motion1, motion2][side].position_at_time(t * seconds);
+        MedialSphere::new(at * s.center, s.radius)
+    };
+    (to_toi(&search.earliest, options, pose), search.counts)
+}
+
+struct Search<'a, A, B> {
+    bodies: (&'a A, &'a B),
+    motions: [RigidMotion<f64>; 2],
+    target: f64,
+    heap: BinaryHeap<Entry>,
+    counts: Counts,
+    earliest: Earliest<f64>,
+}
+
+/// Chord of a node's centre over a piece, and the radius around it that covers the node.
+#[derive(Clone, Copy)]
+struct Swept {
+    node: u32,
+    start: Vec3<f64>,
+    chord: Vec3<f64>,
+    radius: f64,
+}
+
+/// A node pair, ordered by the time at which it may first meet, then by how deep it overlaps.
+struct Entry {
+    time: f64,
+    gap: f64,
+    nodes: [Swept; 2],
+}
+
+impl Entry {
+    fn key(&self) -> (f64, f64, u32, u32) {
+        (self.time, self.gap, self.nodes[0].node, self.nodes[1].node)
+    }
+}
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Entry {}
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Entry {
+    /// Reversed: `BinaryHeap` pops the largest.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let (a, b) = (self.key(), other.key());
+        b.0.total_cmp(&a.0)
+            .then(b.1.total_cmp(&a.1))
+            .then((b.2, b.3).cmp(&(a.2, a.3)))
+    }
+}
+
+impl<A: Volumes, B: Volumes> Search<'_, A, B> {
+    /// Searches one piece of the step; returns whether the next one may still hold the answer.
+    fn piece(&mut self, start: f64, end: f64) -> bool {
+        self.earliest.limits = Limits {
+            start,
+            horizon: end,
+            ..self.earliest.limits
+        };
+        let sides = [0, 1].map(|side| Piece::new(self.motions[side], start, end));
+        self.heap.clear();
+        for i in 0..self.bodies.0.roots() {
+            let a = sides[0].sweep(i, self.bodies.0.bound(i));
+            for j in 0..self.bodies.1.roots() {
+                let b = sides[1].sweep(j, self.bodies.1.bound(j));
+                self.push([a, b], start, end);
+            }
+        }
+        while let Some(entry) = self.heap.pop() {
+            if entry.time > self.earliest.upper.min(end) {
+                break;
+            }
+            if !self.expand(&entry, &sides, start, end) {
+                return false;
+            }
+        }
+        self.earliest.status == ToiStatus::Separated
+    }
+
+    fn push(&mut self, nodes: [Swept; 2], start: f64, end: f64) {
+        self.counts.nodes += 1;
+        let y = nodes[1].start - nodes[0].start;
+        let rate = nodes[1].chord - nodes[0].chord;
+        let radius = nodes[0].radius + nodes[1].radius + self.target;
+        // Rounding of positions, chords and the root: a few ulps of the numbers in play.
+        let size = y.length() + rate.length() + radius.abs();
+        let radius = (radius + 64.0 * f64::EPSILON * size).max(0.0);
+        let (yy, yr, rr) = (y.length_sq(), y.dot(rate), rate.length_sq());
+        let c = yy - radius * radius;
+        let entry = if c <= 0.0 {
+            0.0
+        } else {
+            let discriminant = yr * yr - rr * c;
+            if yr >= 0.0 || discriminant < 0.0 {
+                return;
+            }
+            c / (discriminant.sqrt() - yr)
+        };
+        let time = start + entry * (end - start);
+        if entry > 1.0 || time > self.earliest.upper.min(end) {
+            return;
+        }
+        self.heap.push(Entry {
+            time,
+            gap: yy.sqrt() - radius,
+            nodes,
+        });
+    }
+
+    fn expand(&mut self, entry: &Entry, sides: &[Piece; 2], start: f64, end: f64) -> bool {
+        let [a, b] = entry.nodes;
+        match (self.bodies.0.below(a.node), self.bodies.1.below(b.node)) {
+            (Below::Primitive(i), Below::Primitive(j)) => return self.leaf(i, j, entry.gap, start),
+            (Below::Nodes(i, j), other) if a.radius >= b.radius || !splits(other) => {
+                for child in [i, j] {
+                    let swept = sides[0].sweep(child, self.bodies.0.bound(child));
+                    self.push([swept, b], start, end);
+                }
+            }
+            (_, Below::Nodes(i, j)) => {
+                for child in [i, j] {
+                    let swept = sides[1].sweep(child, self.bodies.1.bound(child));
+                    self.push([a, swept], start, end);
+                }
+            }
+            // The guard above takes every pair with nodes on the left and none on the right.
+            (Below::Nodes(..), Below::Primitive(_)) => {}
+        }
+        true
+    }
+
+    /// Tests two primitives; returns whether an earlier contact is still possible.
+    fn leaf(&mut self, i: u32, j: u32, gap: f64, start: f64) -> bool {
+        let (a, share_a) = self.bodies.0.primitive(i);
+        let (b, share_b) = self.bodies.1.primitive(j);
+        let local = |s: &MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
+        let (sa, sb) = (a.map(|s| local(&s)), b.map(|s| local(&s)));
+        let mut open = true;
+        for_each_test(share_a, share_b, |test| {
+            let path = RigidPath::new(&test, &self.motions, self.target, |second, k| {
+                if second {
+                    sb[k as usize]
+                } else {
+                    sa[k as usize]
+                }
+            });
+            open = self.earliest.test(test, &path, [i, j]);
+            open
+        });
+        if open && start == 0.0 && gap <= 0.0 {
+            let at_start = |side: usize, s: [(Vec3<f64>, f64); 3]| {
+                let turned = self.motions[side].sin_cos(0.0);
+                s.map(|(c, r)| (self.motions[side].point(c).at(0.0, turned).position, r))
+            };
+            let (pa, pb) = (at_start(0, sa), at_start(1, sb));
+            if crosses(&pa, share_a, &pb, share_b, self.target)
+                || crosses(&pb, share_b, &pa, share_a, self.target)
+            {
+                self.earliest.overlap_at_start();
+                self.earliest.found = None;
+                return false;
+            }
+        }
+        open
+    }
+}
+
+fn splits(below: Below) -> bool {
+    matches!(below, Below::Nodes(..))
+}
+
+/// Whether an edge that `a` owns passes through the slab `b` deeper than `target`.
+fn crosses(
+    a: &[(Vec3<f64>, f64); 3],
+    share_a: crate::elementary::test_list::Share,
+    b: &[(Vec3<f64>, f64); 3],
+    share_b: crate::elementary::test_list::Share,
+    target: f64,
+) -> bool {
+    share_b.spheres == 3
+        && edges(share_a.spheres).iter().enumerate().any(|(bit, e)| {
+            share_a.edges >> bit & 1 == 1
+                && slab_crossing::crossing([a[e[0] as usize], a[e[1] as usize]], *b)
+                    .is_some_and(|c| -c.radius < target)
+        })
+}
+
+/// One side's motion over a piece of the step.
+struct Piece {
+    motion: RigidMotion<f64>,
+    times: [f64; 2],
+    turned: [(f64, f64); 2],
+}
+
+impl Piece {
+    fn new(motion: RigidMotion<f64>, start: f64, end: f64) -> Self {
+        Self {
+            motion,
+            times: [start, end],
+            turned: [motion.sin_cos(start), motion.sin_cos(end)],
+        }
+    }
+
+    fn sweep(&self, node: u32, (center, radius): (Vector, Real)) -> Swept {
+        let path = self.motion.point(Vec3::from_vector(center));
+        let [from, to] = [0, 1].map(|k| path.at(self.times[k], self.turned[k]).position);
+        let length = self.times[1] - self.times[0];
+        Swept {
+            node,
+            start: from,
+            chord: to - from,
+            radius: f64::from(radius) + path.acceleration * (length * length) / 8.0,
+        }
+    }
+}

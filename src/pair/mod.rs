@@ -1,0 +1,12 @@
+//! L3: one medial mesh against another, or against any body given as swept spheres.
+//!
+//! Culling happens here and only here: bounding spheres decide which primitives meet, and the
+//! distance itself is always left to [`crate::elementary`].
+
+pub mod contacts;
+pub mod first_contact;
+pub mod volumes;
+
+pub use contacts::{SpherePair, contacts};
+pub use first_contact::first_contact;
+pub use volumes::{Soup, Volumes};

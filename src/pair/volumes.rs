@@ -1,0 +1,101 @@
+//! What a query walks over: a hierarchy of bounding spheres with primitives of 1 to 3 spheres at
+//! its leaves. A medial mesh is one; a handful of loose primitives (the faces of a cuboid, a
+//! capsule, the triangles of a terrain near the body) is another.
+
+use crate::elementary::test_list::Share;
+use crate::math::{Real, Vector};
+use crate::medial::mesh::Simplex;
+use crate::medial::tree::Below;
+use crate::medial::{MedialMesh, MedialSphere};
+
+/// A body made of primitives, in its own frame.
+pub trait Volumes {
+    /// How many top nodes there are: nodes `0..roots()`.
+    fn roots(&self) -> u32;
+    /// Bounding sphere of a node.
+    fn bound(&self, node: u32) -> (Vector, Real);
+    /// What is below a node.
+    fn below(&self, node: u32) -> Below;
+    /// Spheres of a primitive (unused entries repeat the last), and what it tests.
+    fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share);
+}
+
+impl Volumes for MedialMesh {
+    fn roots(&self) -> u32 {
+        1
+    }
+    fn bound(&self, node: u32) -> (Vector, Real) {
+        let n = &self.tree().nodes()[node as usize];
+        (n.center, n.radius)
+    }
+    fn below(&self, node: u32) -> Below {
+        self.tree().nodes()[node as usize].below()
+    }
+    fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share) {
+        let s: &Simplex = &self.simplices()[index as usize];
+        let spheres = s.vertices.map(|v| self.spheres()[v as usize]);
+        let share = Share {
+            spheres: s.len as usize,
+            edges: s.owns_edge,
+            vertices: s.owns_vertex,
+        };
+        (spheres, share)
+    }
+}
+
+/// Loose primitives without a hierarchy.
+#[derive(Clone, Debug, Default)]
+pub struct Soup {
+    primitives: Vec<([MedialSphere; 3], usize)>,
+    bounds: Vec<(Vector, Real)>,
+}
+
+impl Soup {
+    /// Adds a primitive of 1 to 3 spheres; others are ignored.
+    pub fn push(&mut self, spheres: &[MedialSphere]) {
+        let &[a, ..] = spheres else { return };
+        let get = |i: usize| spheres.get(i).copied();
+        let b = get(1).unwrap_or(a);
+        let c = get(2).unwrap_or(b);
+        let all = [a, b, c];
+        let center = all[..spheres.len().min(3)]
+            .iter()
+            .fold(Vector::ZERO, |sum, s| sum + s.center)
+            / spheres.len().min(3) as Real;
+        let reach = all
+            .iter()
+            .map(|s| (s.center - center).length() + s.radius)
+            .fold(0.0, Real::max);
+        // Rounding of the centre and of the distances: a few ulps of the coordinates.
+        let size = reach + center.abs().max_element();
+        self.primitives.push((all, spheres.len().min(3)));
+        self.bounds
+            .push((center, reach + 8.0 * Real::EPSILON * size));
+    }
+
+    /// How many primitives there are.
+    pub fn len(&self) -> usize {
+        self.primitives.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.primitives.is_empty()
+    }
+}
+
+impl Volumes for Soup {
+    fn roots(&self) -> u32 {
+        self.primitives.len() as u32
+    }
+    fn bound(&self, node: u32) -> (Vector, Real) {
+        self.bounds[node as usize]
+    }
+    fn below(&self, node: u32) -> Below {
+        Below::Primitive(node)
+    }
+    fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share) {
+        let (spheres, n) = self.primitives[index as usize];
+        (spheres, Share::whole(n))
+    }
+}
