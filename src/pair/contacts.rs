@@ -199,7 +199,8 @@ impl<'a> PrimitivePair<'a> {
         penetration::deepest(a, b, middle(b) - middle(a))
     }
 
-    /// A crossing of an owned edge with the other's slab.
+    /// A crossing of any edge with the other's slab, owned or not: with one the nearest spheres mean
+    /// nothing for this pair.
     fn crossing(&self) -> Option<slab_crossing::Crossing<f64>> {
         let through = |edge_side: usize, slab_side: usize| {
             let share = self.shares[edge_side];

@@ -1,0 +1,111 @@
+//! Results of the batch, looked up by exact key when rapier's narrow phase asks for them.
+//!
+//! The key is both instance ids and every bit of the relative pose: an answer is either exactly the
+//! one asked for, or not there and computed on the spot.
+
+use crate::batch::{PairJob, PairResult};
+use crate::math::{Pose, Real};
+use crate::medial::MedialMesh;
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{PoisonError, RwLock};
+
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Key {
+    ids: [u64; 2],
+    pose: [u32; 7],
+}
+
+impl Key {
+    fn new(mesh1: &MedialMesh, mesh2: &MedialMesh, pos12: &Pose) -> Self {
+        let (t, r) = (pos12.translation, pos12.rotation);
+        Self {
+            ids: [mesh1.instance_id(), mesh2.instance_id()],
+            pose: [t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(Real::to_bits),
+        }
+    }
+}
+
+/// Work counted by a dispatcher since the last [`Answers::take_counts`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counted {
+    /// Manifold requests that the batch had answered.
+    pub hits: u64,
+    /// Manifold requests computed on the spot.
+    pub misses: u64,
+    /// First-contact queries (shape casts).
+    pub casts: u64,
+    /// Node pairs of both trees looked at, outside the batch.
+    pub nodes: u64,
+    /// Elementary tests executed outside the batch.
+    pub tests: u64,
+}
+
+/// Answers of one batch, shared by a pipeline and its dispatcher.
+#[derive(Default)]
+pub struct Answers {
+    known: RwLock<HashMap<Key, (Real, PairResult)>>,
+    hits: AtomicU64,
+    misses: AtomicU64,
+    casts: AtomicU64,
+    nodes: AtomicU64,
+    tests: AtomicU64,
+}
+
+impl Answers {
+    /// Forgets the old answers and takes those of a new batch.
+    pub fn replace(&self, jobs: &[PairJob], results: Vec<PairResult>) {
+        let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
+        known.clear();
+        known.extend(jobs.iter().zip(results).map(|(job, result)| {
+            let key = Key::new(&job.mesh1, &job.mesh2, &job.pos12);
+            (key, (job.prediction, result))
+        }));
+    }
+
+    /// Calls `with` on the answer to a request, from the batch if it holds it, else computed.
+    pub fn contacts<T>(
+        &self,
+        mesh1: &MedialMesh,
+        mesh2: &MedialMesh,
+        pos12: &Pose,
+        prediction: Real,
+        with: impl FnOnce(&PairResult) -> T,
+    ) -> T {
+        let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some((reach, result)) = known.get(&Key::new(mesh1, mesh2, pos12)) {
+            if prediction <= *reach {
+                self.hits.fetch_add(1, Ordering::Relaxed);
+                return with(result);
+            }
+        }
+        drop(known);
+        let (contacts, counts) = crate::pair::contacts(mesh1, mesh2, pos12, prediction);
+        self.misses.fetch_add(1, Ordering::Relaxed);
+        self.count(counts.nodes, counts.tests);
+        with(&PairResult { contacts, counts })
+    }
+
+    /// Counts a shape cast and its work.
+    pub fn count_cast(&self, nodes: u32, tests: u32) {
+        self.casts.fetch_add(1, Ordering::Relaxed);
+        self.count(nodes, tests);
+    }
+
+    fn count(&self, nodes: u32, tests: u32) {
+        self.nodes.fetch_add(nodes.into(), Ordering::Relaxed);
+        self.tests.fetch_add(tests.into(), Ordering::Relaxed);
+    }
+
+    /// Work since the last call, and starts counting anew.
+    pub fn take_counts(&self) -> Counted {
+        let take = |counter: &AtomicU64| counter.swap(0, Ordering::Relaxed);
+        Counted {
+            hits: take(&self.hits),
+            misses: take(&self.misses),
+            casts: take(&self.casts),
+            nodes: take(&self.nodes),
+            tests: take(&self.tests),
+        }
+    }
+}

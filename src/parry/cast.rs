@@ -1,0 +1,203 @@
+//! Shape casts of medial meshes in exact rigid motion, against each other and against rapier's
+//! shapes, by the certified query.
+
+use super::foreign;
+use crate::elementary::{Toi, ToiOptions, ToiStatus};
+use crate::math::{Pose, Real, Vector};
+use crate::medial::{MedialMesh, MedialSphere};
+use crate::pair::first_contact::{Counts, first_contact_counted};
+use crate::pair::{Soup, Volumes};
+use parry3d::bounding_volume::Aabb;
+use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
+use parry3d::shape::{HalfSpace, Shape};
+
+/// Radius given to a half-space's stand-in, in units of the reach of the motion. The stand-in is a
+/// slab of radius 0 in the half-space's plane, larger than anything the body can reach.
+const PLANE_REACH: Real = 4.0;
+
+/// Longest jump of a body that is already touching, in units of its thickness: a touching pair is
+/// followed with its medial spheres shrunk by this much, so that no medial axis crosses the other
+/// shape however the rest of the body swings.
+const CORE: Real = 0.5;
+
+/// First contact of a medial mesh with another shape, both moving rigidly, from `start` to `end`
+/// seconds.
+#[derive(Clone, Copy)]
+pub struct Cast<'a> {
+    /// Motion of the mesh.
+    pub motion1: &'a NonlinearRigidMotion,
+    /// The mesh.
+    pub mesh: &'a MedialMesh,
+    /// Motion of the other shape.
+    pub motion2: &'a NonlinearRigidMotion,
+    /// The other shape, medial or not.
+    pub other: &'a dyn Shape,
+    /// Start and end in seconds.
+    pub times: [Real; 2],
+    /// Distance at which they count as in contact.
+    pub target_distance: Real,
+    /// Whether contact at the start is the answer; otherwise the next deeper one is looked for.
+    pub stop_at_penetration: bool,
+}
+
+impl Cast<'_> {
+    /// The hit, with the mesh as first shape, or `None` if there is none.
+    pub fn run(&self) -> Result<(Option<ShapeCastHit>, Counts), Unsweepable> {
+        let [start, end] = self.times;
+        let seconds = end - start;
+        if !(seconds >= 0.0 && seconds.is_finite()) {
+            return Ok((None, Counts::default()));
+        }
+        let motion1 = started(self.motion1, start);
+        let motion2 = started(self.motion2, start);
+        let options = ToiOptions {
+            target_distance: self.target_distance,
+            ..ToiOptions::default()
+        };
+        let (mut toi, mut counts) = self.query(&motion1, &motion2, seconds, &options)?;
+        let touches_at_start = toi.upper <= 0.0;
+        if touches_at_start && !self.stop_at_penetration {
+            let deeper = ToiOptions {
+                target_distance: -CORE * self.mesh.thickness(),
+                ..options
+            };
+            let (core, more) = self.query(&motion1, &motion2, seconds, &deeper)?;
+            toi = core;
+            counts.nodes += more.nodes;
+            counts.tests += more.tests;
+            if toi.upper <= 0.0 {
+                return Ok((None, counts));
+            }
+        }
+        if toi.status == ToiStatus::Separated {
+            return Ok((None, counts));
+        }
+        let time = toi.lower * seconds;
+        let (pose1, pose2) = (
+            motion1.position_at_time(time),
+            motion2.position_at_time(time),
+        );
+        let hit = ShapeCastHit {
+            time_of_impact: start + time,
+            witness1: pose1.inverse_transform_point(toi.points[0]),
+            witness2: pose2.inverse_transform_point(toi.points[1]),
+            normal1: pose1.rotation.inverse() * toi.normal,
+            normal2: pose2.rotation.inverse() * -toi.normal,
+            status: status(&toi),
+            subshape1: toi.primitives[0],
+            subshape2: toi.primitives[1],
+        };
+        Ok((Some(hit), counts))
+    }
+
+    fn query(
+        &self,
+        motion1: &NonlinearRigidMotion,
+        motion2: &NonlinearRigidMotion,
+        seconds: Real,
+        options: &ToiOptions,
+    ) -> Result<(Toi, Counts), Unsweepable> {
+        if let Some(other) = self.other.as_shape::<MedialMesh>() {
+            return Ok(first_contact_counted(
+                self.mesh, motion1, other, motion2, seconds, options,
+            ));
+        }
+        let region = swept_region(
+            self.mesh,
+            motion1,
+            motion2,
+            seconds,
+            options.target_distance,
+        );
+        let mut soup = Soup::default();
+        if let Some(plane) = self.other.as_halfspace() {
+            add_plane(&mut soup, plane, &region);
+        } else if !foreign::add_surface(&mut soup, self.other, &Pose::IDENTITY, &region) {
+            return Err(Unsweepable);
+        }
+        let (mut toi, counts) =
+            first_contact_counted(self.mesh, motion1, &soup, motion2, seconds, options);
+        if toi.upper > 0.0 && self.starts_inside(motion1, motion2, options.target_distance) {
+            toi.status = ToiStatus::Overlapping;
+            toi.lower = 0.0;
+            toi.upper = 0.0;
+        }
+        Ok((toi, counts))
+    }
+
+    /// Whether a medial sphere's centre starts inside the other, deeper than the target.
+    fn starts_inside(
+        &self,
+        motion1: &NonlinearRigidMotion,
+        motion2: &NonlinearRigidMotion,
+        target: Real,
+    ) -> bool {
+        let pos21 = motion2.start.inverse() * motion1.start;
+        self.mesh.spheres().iter().any(|s: &MedialSphere| {
+            s.radius + target >= 0.0 && foreign::holds_point(self.other, pos21 * s.center)
+        })
+    }
+}
+
+/// The other shape is neither medial nor made of swept spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unsweepable;
+
+fn status(toi: &Toi) -> ShapeCastStatus {
+    match toi.status {
+        ToiStatus::Overlapping => ShapeCastStatus::PenetratingOrWithinTargetDist,
+        ToiStatus::Contact if toi.upper <= 0.0 => ShapeCastStatus::PenetratingOrWithinTargetDist,
+        ToiStatus::Unresolved => ShapeCastStatus::OutOfIterations,
+        ToiStatus::Contact | ToiStatus::Separated => ShapeCastStatus::Converged,
+    }
+}
+
+/// The same motion, its clock set to `time`.
+fn started(motion: &NonlinearRigidMotion, time: Real) -> NonlinearRigidMotion {
+    if time == 0.0 {
+        return *motion;
+    }
+    NonlinearRigidMotion {
+        start: motion.position_at_time(time),
+        ..*motion
+    }
+}
+
+/// Box in the other's frame that holds all the mesh can reach, seen from the other.
+fn swept_region(
+    mesh: &MedialMesh,
+    motion1: &NonlinearRigidMotion,
+    motion2: &NonlinearRigidMotion,
+    seconds: Real,
+    target: Real,
+) -> Aabb {
+    let (root_center, root_radius) = mesh.bound(0);
+    let to_local = motion2.start.inverse();
+    let from = to_local * (motion1.start * root_center);
+    let slide = (motion1.linvel - motion2.linvel) * seconds;
+    let to = from + to_local.rotation * slide;
+    // Turning moves the root's centre by at most twice its lever arm, and the angle times it.
+    let swing = |angle: Real, arm: Real| angle.min(2.0) * arm;
+    let angle1 = motion1.angvel.length() * seconds;
+    let own = swing(angle1, (root_center - motion1.local_center).length());
+    // The other's turning moves the mesh around it by the largest distance it has on the way.
+    let angle2 = motion2.angvel.length() * seconds;
+    let arm2 = (from - motion2.local_center).length() + slide.length() + own;
+    let reach = root_radius + target.max(0.0) + own + swing(angle2, arm2 + root_radius);
+    // A margin for rounding: the numbers in play are the box's own coordinates.
+    let size = reach + from.abs().max_element() + to.abs().max_element();
+    let reach = Vector::splat(reach + 64.0 * Real::EPSILON * size);
+    Aabb::new(from.min(to) - reach, from.max(to) + reach)
+}
+
+/// A square of the half-space's plane that the region cannot look past, as two slabs.
+fn add_plane(soup: &mut Soup, plane: &HalfSpace, region: &Aabb) {
+    let n = plane.normal;
+    let foot = region.center() - n * n.dot(region.center());
+    let reach = PLANE_REACH * (region.half_extents().length() + n.dot(region.center()).abs());
+    let u = n.any_orthonormal_vector() * reach;
+    let v = n.cross(u);
+    let at = |x: Real, y: Real| MedialSphere::new(foot + u * x + v * y, 0.0);
+    soup.push(&[at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0)]);
+    soup.push(&[at(-1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
+}

@@ -1,0 +1,197 @@
+//! Which queries of parry are answered here. Everything else falls through to the default
+//! dispatcher, which handles a medial mesh as a composite of convex parts.
+
+use super::answers::Answers;
+use super::cast::Cast;
+use super::manifolds::{ensure_workspace, write_manifolds};
+use crate::math::{Pose, Real, Vector};
+use crate::medial::MedialMesh;
+use parry3d::query::details::ShapeCastOptions;
+use parry3d::query::{
+    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
+    NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance,
+    ShapeIntersection, Unsupported,
+};
+use parry3d::shape::Shape;
+use std::sync::Arc;
+
+/// Answers contact manifolds of two medial meshes and shape casts of one with anything. Chain it
+/// before the default: `MedialDispatcher::default().chain(DefaultQueryDispatcher)`.
+#[derive(Clone, Default)]
+pub struct MedialDispatcher {
+    answers: Arc<Answers>,
+}
+
+impl MedialDispatcher {
+    /// A dispatcher that looks answers of a batch up before computing them.
+    pub fn new(answers: Arc<Answers>) -> Self {
+        Self { answers }
+    }
+
+    fn cast(
+        &self,
+        motions: [&NonlinearRigidMotion; 2],
+        shapes: [&dyn Shape; 2],
+        times: [Real; 2],
+        target_distance: Real,
+        stop_at_penetration: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let flipped = medial(shapes[0]).is_none();
+        let [first, second] = if flipped { [1, 0] } else { [0, 1] };
+        let mesh = medial(shapes[first]).ok_or(Unsupported)?;
+        let cast = Cast {
+            motion1: motions[first],
+            mesh,
+            motion2: motions[second],
+            other: shapes[second],
+            times,
+            target_distance,
+            stop_at_penetration,
+        };
+        let (hit, counts) = cast.run().map_err(|_| Unsupported)?;
+        self.answers.count_cast(counts.nodes, counts.tests);
+        Ok(hit.map(|h| if flipped { h.swapped() } else { h }))
+    }
+}
+
+fn medial(shape: &dyn Shape) -> Option<&MedialMesh> {
+    shape.as_shape::<MedialMesh>()
+}
+
+impl QueryDispatcher for MedialDispatcher {
+    fn intersection_test(
+        &self,
+        _pos12: &Pose,
+        _g1: &dyn Shape,
+        _g2: &dyn Shape,
+    ) -> Result<ShapeIntersection, Unsupported> {
+        Err(Unsupported)
+    }
+
+    fn distance(
+        &self,
+        _pos12: &Pose,
+        _g1: &dyn Shape,
+        _g2: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
+        Err(Unsupported)
+    }
+
+    fn contact(
+        &self,
+        _pos12: &Pose,
+        _g1: &dyn Shape,
+        _g2: &dyn Shape,
+        _prediction: Real,
+    ) -> Result<Option<Contact>, Unsupported> {
+        Err(Unsupported)
+    }
+
+    fn closest_points(
+        &self,
+        _pos12: &Pose,
+        _g1: &dyn Shape,
+        _g2: &dyn Shape,
+        _max_dist: Real,
+    ) -> Result<ClosestPoints, Unsupported> {
+        Err(Unsupported)
+    }
+
+    fn cast_shapes(
+        &self,
+        pos12: &Pose,
+        local_vel12: Vector,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        options: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        if medial(g1).is_none() && medial(g2).is_none() {
+            return Err(Unsupported);
+        }
+        // An endless cast ends when the bodies have passed each other.
+        let speed = local_vel12.length();
+        let (a, b) = (g1.compute_local_aabb(), g2.compute_local_aabb());
+        let reach = |lo: Vector, hi: Vector| lo.abs().max(hi.abs()).length();
+        let apart = pos12.translation.length() + reach(a.mins, a.maxs) + reach(b.mins, b.maxs);
+        let passed = (apart + options.target_distance.max(0.0)) / speed;
+        let end = if passed.is_finite() {
+            options.max_time_of_impact.min(passed)
+        } else if speed > 0.0 {
+            // A half-space has no end.
+            return Err(Unsupported);
+        } else {
+            0.0
+        };
+        let motion1 = NonlinearRigidMotion::identity();
+        let motion2 = NonlinearRigidMotion {
+            linvel: local_vel12,
+            ..NonlinearRigidMotion::constant_position(*pos12)
+        };
+        self.cast(
+            [&motion1, &motion2],
+            [g1, g2],
+            [0.0, end],
+            options.target_distance,
+            options.stop_at_penetration,
+        )
+    }
+
+    fn cast_shapes_nonlinear(
+        &self,
+        motion1: &NonlinearRigidMotion,
+        g1: &dyn Shape,
+        motion2: &NonlinearRigidMotion,
+        g2: &dyn Shape,
+        start_time: Real,
+        end_time: Real,
+        stop_at_penetration: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        self.cast(
+            [motion1, motion2],
+            [g1, g2],
+            [start_time, end_time],
+            0.0,
+            stop_at_penetration,
+        )
+    }
+}
+
+impl<M, C> PersistentQueryDispatcher<M, C> for MedialDispatcher
+where
+    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
+            return Err(Unsupported);
+        };
+        ensure_workspace::<M, C>(mesh1, mesh2, workspace);
+        self.answers
+            .contacts(mesh1, mesh2, pos12, prediction, |found| {
+                write_manifolds(&found.contacts, pos12, prediction, manifolds);
+            });
+        Ok(())
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        _pos12: &Pose,
+        _g1: &dyn Shape,
+        _g2: &dyn Shape,
+        _constraints1: Option<&dyn parry3d::query::details::NormalConstraints>,
+        _constraints2: Option<&dyn parry3d::query::details::NormalConstraints>,
+        _prediction: Real,
+        _manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        Err(Unsupported)
+    }
+}

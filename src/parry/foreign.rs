@@ -1,0 +1,129 @@
+//! rapier's other shapes as swept spheres, so that one certified query serves them all: a ball is a
+//! sphere, a capsule a cone, a flat face a slab of radius 0, a rounded one a slab of its border
+//! radius.
+//!
+//! A closed body is then only its surface: whether the other starts inside it needs
+//! [`holds_point`] besides.
+
+use crate::math::{Pose, Real, Vector};
+use crate::medial::MedialSphere;
+use crate::pair::Soup;
+use parry3d::bounding_volume::Aabb;
+use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, TypedShape};
+
+/// Adds the surface of `shape`, placed at `pose` in the soup's frame, as far as it meets `region`
+/// (in the soup's frame). Returns `false` for a shape that has no such surface: half-spaces,
+/// cylinders, cones, custom shapes.
+pub fn add_surface(soup: &mut Soup, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
+    let point = |p: Vector| pose * p;
+    let ball = |p: Vector, radius: Real| MedialSphere::new(point(p), radius);
+    match shape.as_typed_shape() {
+        TypedShape::Ball(s) => soup.push(&[ball(Vector::ZERO, s.radius)]),
+        TypedShape::Capsule(s) => {
+            soup.push(&[ball(s.segment.a, s.radius), ball(s.segment.b, s.radius)]);
+        }
+        TypedShape::Segment(s) => soup.push(&[ball(s.a, 0.0), ball(s.b, 0.0)]),
+        TypedShape::Triangle(t) => soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0))),
+        TypedShape::RoundTriangle(t) => {
+            let i = &t.inner_shape;
+            soup.push(&[i.a, i.b, i.c].map(|p| ball(p, t.border_radius)));
+        }
+        TypedShape::Cuboid(c) => add_cuboid(soup, c, pose, 0.0),
+        TypedShape::RoundCuboid(c) => add_cuboid(soup, &c.inner_shape, pose, c.border_radius),
+        TypedShape::ConvexPolyhedron(c) => add_polyhedron(soup, c, pose, 0.0),
+        TypedShape::RoundConvexPolyhedron(c) => {
+            add_polyhedron(soup, &c.inner_shape, pose, c.border_radius);
+        }
+        TypedShape::TriMesh(m) => {
+            let local = region.transform_by(&pose.inverse());
+            for i in m.bvh().intersect_aabb(&local) {
+                let t = m.triangle(i);
+                soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
+            }
+        }
+        TypedShape::Polyline(l) => {
+            let local = region.transform_by(&pose.inverse());
+            for i in l.bvh().intersect_aabb(&local) {
+                let s = l.segment(i);
+                soup.push(&[ball(s.a, 0.0), ball(s.b, 0.0)]);
+            }
+        }
+        TypedShape::HeightField(h) => {
+            let local = region.transform_by(&pose.inverse());
+            h.map_elements_in_local_aabb(&local, &mut |_, t| {
+                soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
+            });
+        }
+        TypedShape::Voxels(v) => {
+            let local = region.transform_by(&pose.inverse());
+            let cube = Cuboid::new(v.voxel_size() * 0.5);
+            for voxel in v.voxels_intersecting_local_aabb(&local) {
+                if !voxel.state.is_empty() {
+                    let at = pose * Pose::from_translation(voxel.center);
+                    add_cuboid(soup, &cube, &at, 0.0);
+                }
+            }
+        }
+        TypedShape::Compound(c) => {
+            return c
+                .shapes()
+                .iter()
+                .all(|(child, s)| add_surface(soup, s.as_ref(), &(pose * child), region));
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// Whether a closed body holds a point (in its own frame). Triangle meshes, height fields and
+/// polylines are surfaces: they hold nothing.
+pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
+    match shape.as_typed_shape() {
+        TypedShape::TriMesh(_)
+        | TypedShape::HeightField(_)
+        | TypedShape::Polyline(_)
+        | TypedShape::Segment(_)
+        | TypedShape::Triangle(_)
+        | TypedShape::RoundTriangle(_) => false,
+        TypedShape::Compound(c) => c
+            .shapes()
+            .iter()
+            .any(|(pose, s)| holds_point(s.as_ref(), pose.inverse_transform_point(point))),
+        _ => shape.contains_local_point(point),
+    }
+}
+
+fn add_cuboid(soup: &mut Soup, cuboid: &Cuboid, pose: &Pose, border: Real) {
+    let h = cuboid.half_extents;
+    let corner = |i: usize| {
+        let sign = |bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let local = Vector::new(sign(0) * h.x, sign(1) * h.y, sign(2) * h.z);
+        MedialSphere::new(pose * local, border)
+    };
+    // Each face by its four corners: bit k of a corner is its side along axis k.
+    const FACES: [[usize; 4]; 6] = [
+        [0, 2, 6, 4],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 3, 7, 6],
+        [0, 1, 3, 2],
+        [4, 5, 7, 6],
+    ];
+    for [a, b, c, d] in FACES {
+        soup.push(&[a, b, c].map(corner));
+        soup.push(&[a, c, d].map(corner));
+    }
+}
+
+fn add_polyhedron(soup: &mut Soup, hull: &ConvexPolyhedron, pose: &Pose, border: Real) {
+    let ring = hull.vertices_adj_to_face();
+    for face in hull.faces() {
+        let first = face.first_vertex_or_edge as usize;
+        let n = face.num_vertices_or_edges as usize;
+        let at =
+            |k: usize| MedialSphere::new(pose * hull.points()[ring[first + k] as usize], border);
+        for k in 1..n.saturating_sub(1) {
+            soup.push(&[at(0), at(k), at(k + 1)]);
+        }
+    }
+}

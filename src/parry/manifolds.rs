@@ -1,0 +1,108 @@
+//! Sphere pairs → persistent contact manifolds: one manifold per primitive pair, so that each keeps
+//! its own normal (one per collider pair lets a chain of rings fall apart).
+
+use crate::math::{Pose, Real};
+use crate::medial::MedialMesh;
+use crate::pair::SpherePair;
+use parry3d::query::{
+    ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
+    TrackedContact,
+};
+use parry3d::shape::PackedFeatureId;
+
+/// Cosine under which two contacts of one primitive pair get manifolds of their own (10°): a
+/// manifold has one normal.
+const SAME_NORMAL: Real = 0.985;
+
+/// Writes the manifolds of a pair at relative pose `pos12`. Contacts further apart than `prediction`
+/// are left out; the deepest of a primitive pair gives its manifold the normal. Manifolds that were
+/// there keep their data, and points of the same features keep their impulses.
+pub fn write_manifolds<M, C>(
+    contacts: &[SpherePair],
+    pos12: &Pose,
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+) where
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    let old = std::mem::take(manifolds);
+    let mut near: Vec<&SpherePair> = contacts
+        .iter()
+        .filter(|c| c.distance <= prediction)
+        .collect();
+    near.sort_by(|a, b| {
+        a.primitives
+            .cmp(&b.primitives)
+            .then(a.distance.total_cmp(&b.distance))
+            .then(a.feature.cmp(&b.feature))
+    });
+    let inverse = pos12.rotation.inverse();
+    for c in near {
+        let [a, b] = c.primitives;
+        let same = |m: &&mut ContactManifold<M, C>| {
+            [m.subshape1, m.subshape2] == c.primitives && m.local_n1.dot(c.normal) >= SAME_NORMAL
+        };
+        // Sorted: the manifolds of this primitive pair are the last ones.
+        let manifold = match manifolds
+            .iter_mut()
+            .rev()
+            .take_while(|m| [m.subshape1, m.subshape2] == c.primitives)
+            .find(same)
+        {
+            Some(m) => m,
+            None => {
+                let previous = old.iter().find(|m| {
+                    [m.subshape1, m.subshape2] == c.primitives
+                        && m.local_n1.dot(c.normal) >= SAME_NORMAL
+                });
+                let data = previous.map(|m| m.data.clone()).unwrap_or_default();
+                let mut m = ContactManifold::with_data(a, b, data);
+                m.local_n1 = c.normal;
+                m.local_n2 = inverse * -c.normal;
+                manifolds.push(m);
+                let last = manifolds.len() - 1;
+                &mut manifolds[last]
+            }
+        };
+        let [p1, p2] = c.points;
+        let distance = (pos12 * p2 - p1).dot(manifold.local_n1);
+        let feature = PackedFeatureId::face(c.feature);
+        let mut point = TrackedContact::new(p1, p2, feature, feature, distance);
+        let previous = old
+            .iter()
+            .filter(|m| [m.subshape1, m.subshape2] == c.primitives)
+            .flat_map(|m| &m.points)
+            .find(|p| p.fid1 == feature);
+        if let Some(previous) = previous {
+            point.data = previous.data;
+        }
+        manifold.points.push(point);
+    }
+}
+
+/// Makes sure that a workspace is there. rapier reads its presence as "the list of manifolds may
+/// change", and panics when a list changes without it. An empty workspace of parry's own survives
+/// saving, one of ours would not.
+pub fn ensure_workspace<M, C>(
+    mesh1: &MedialMesh,
+    mesh2: &MedialMesh,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) where
+    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+{
+    if workspace.is_some() {
+        return;
+    }
+    // Twice the sum of both sizes: certainly out of reach, so that parry finds nothing.
+    let reach = |m: &MedialMesh| {
+        let b = m.aabb();
+        b.mins.abs().max(b.maxs.abs()).length()
+    };
+    let away = 2.0 * (reach(mesh1) + reach(mesh2));
+    let far = Pose::translation(away, 0.0, 0.0);
+    let mut none: Vec<ContactManifold<M, C>> = Vec::new();
+    let result =
+        DefaultQueryDispatcher.contact_manifolds(&far, mesh1, mesh2, 0.0, &mut none, workspace);
+    debug_assert!(result.is_ok() && workspace.is_some());
+}

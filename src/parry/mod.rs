@@ -1,0 +1,12 @@
+//! L5: the medial mesh as a parry shape: shape traits, contact manifolds, shape casts.
+
+pub mod answers;
+pub mod cast;
+pub mod dispatcher;
+pub mod foreign;
+pub mod manifolds;
+pub mod parts;
+pub mod shape;
+
+pub use answers::Answers;
+pub use dispatcher::MedialDispatcher;

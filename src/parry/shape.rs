@@ -1,0 +1,190 @@
+//! [`MedialMesh`] as a parry shape: a composite of convex parts, a custom shape to rapier.
+//!
+//! It stays `TypedShape::Custom`: rapier then asks our dispatcher for its continuous collision
+//! detection, which keeps the certificate.
+
+use super::parts::MedialPart;
+use crate::math::{Pose, Real, Vector};
+use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
+use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
+use parry3d::mass_properties::MassProperties;
+use parry3d::partitioning::Bvh;
+use parry3d::query::details::NormalConstraints;
+use parry3d::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
+use parry3d::shape::{
+    Capsule, CompositeShape, CompositeShapeRef, FeatureId, Shape, ShapeType, TypedCompositeShape,
+    TypedShape,
+};
+
+/// Relative difference of scale factors that still counts as uniform: rounding of a product.
+const UNIFORM: Real = 4.0 * Real::EPSILON;
+
+/// The factor of a uniform scaling (mirrored axes included); `None` if it is not uniform.
+pub(crate) fn uniform_factor(scale: Vector) -> Option<Real> {
+    let s = scale.abs();
+    let factor = s.x;
+    let near = |other: Real| (other - factor).abs() <= UNIFORM * factor;
+    (factor.is_finite() && factor > 0.0 && near(s.y) && near(s.z)).then_some(factor)
+}
+
+impl CompositeShape for MedialMesh {
+    fn map_part_at(
+        &self,
+        shape_id: u32,
+        f: &mut dyn FnMut(Option<&Pose>, &dyn Shape, Option<&dyn NormalConstraints>),
+    ) {
+        if shape_id as usize >= self.primitive_count() {
+            return;
+        }
+        match self.primitive(shape_id as usize) {
+            MedialPrimitive::Cone([a, b]) if a.radius == b.radius => {
+                f(None, &Capsule::new(a.center, b.center, a.radius), None);
+            }
+            primitive => f(None, &MedialPart::new(primitive), None),
+        }
+    }
+    fn bvh(&self) -> &Bvh {
+        MedialMesh::bvh(self)
+    }
+}
+
+impl TypedCompositeShape for MedialMesh {
+    type PartShape = dyn Shape;
+    type PartNormalConstraints = dyn NormalConstraints;
+
+    fn map_typed_part_at<T>(
+        &self,
+        shape_id: u32,
+        mut f: impl FnMut(Option<&Pose>, &Self::PartShape, Option<&Self::PartNormalConstraints>) -> T,
+    ) -> Option<T> {
+        let mut result = None;
+        self.map_part_at(shape_id, &mut |pose, part, normals| {
+            result = Some(f(pose, part, normals));
+        });
+        result
+    }
+
+    fn map_untyped_part_at<T>(
+        &self,
+        shape_id: u32,
+        f: impl FnMut(Option<&Pose>, &dyn Shape, Option<&dyn NormalConstraints>) -> T,
+    ) -> Option<T> {
+        self.map_typed_part_at(shape_id, f)
+    }
+}
+
+impl RayCast for MedialMesh {
+    fn cast_local_ray_and_get_normal(
+        &self,
+        ray: &Ray,
+        max_time_of_impact: Real,
+        solid: bool,
+    ) -> Option<RayIntersection> {
+        CompositeShapeRef(self)
+            .cast_local_ray_and_get_normal(ray, max_time_of_impact, solid)
+            .map(|(part, hit)| hit.with_subshape(part))
+    }
+}
+
+impl PointQuery for MedialMesh {
+    fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
+        CompositeShapeRef(self)
+            .project_local_point(point, Real::MAX, solid)
+            .map_or(PointProjection::new(false, point), |(part, p)| {
+                p.with_subshape(part)
+            })
+    }
+    fn project_local_point_and_get_feature(&self, point: Vector) -> (PointProjection, FeatureId) {
+        CompositeShapeRef(self)
+            .project_local_point_and_get_feature(point, Real::MAX)
+            .map_or(
+                (PointProjection::new(false, point), FeatureId::Unknown),
+                |(part, p, feature)| (p.with_subshape(part), feature),
+            )
+    }
+}
+
+impl Shape for MedialMesh {
+    fn compute_local_aabb(&self) -> Aabb {
+        self.aabb()
+    }
+
+    fn compute_aabb(&self, position: &Pose) -> Aabb {
+        let ball = self.compute_bounding_sphere(position);
+        let reach = Vector::splat(ball.radius());
+        let boxed = self.aabb().transform_by(position);
+        // Both hold the body; so does their intersection.
+        Aabb::new(
+            boxed.mins.max(ball.center() - reach),
+            boxed.maxs.min(ball.center() + reach),
+        )
+    }
+
+    fn compute_local_bounding_sphere(&self) -> BoundingSphere {
+        let root = &self.tree().nodes()[0];
+        BoundingSphere::new(root.center, root.radius)
+    }
+
+    /// Bounds the body on its way, not only at both ends: whatever it turns about its centre of
+    /// mass, it stays in the ball around that centre.
+    fn compute_swept_aabb(&self, start_pos: &Pose, end_pos: &Pose) -> Aabb {
+        let com = self.mass_properties(1.0).local_com;
+        let root = &self.tree().nodes()[0];
+        let reach = Vector::splat((root.center - com).length() + root.radius);
+        let (from, to) = (start_pos * com, end_pos * com);
+        let ball = Aabb::new(from.min(to) - reach, from.max(to) + reach);
+        ball.merged(&self.compute_aabb(start_pos))
+            .merged(&self.compute_aabb(end_pos))
+    }
+
+    fn clone_dyn(&self) -> Box<dyn Shape> {
+        Box::new(self.clone())
+    }
+
+    /// Exact for uniform scaling; `None` otherwise: a scaled sphere is no sphere.
+    fn scale_dyn(&self, scale: Vector, _num_subdivisions: u32) -> Option<Box<dyn Shape>> {
+        let factor = uniform_factor(scale)?;
+        let spheres = self
+            .spheres()
+            .iter()
+            .map(|s| MedialSphere::new(s.center * scale, s.radius * factor))
+            .collect();
+        let mesh = MedialMesh::new(spheres, self.edges().to_vec(), self.faces().to_vec()).ok()?;
+        Some(Box::new(mesh))
+    }
+
+    fn mass_properties(&self, density: Real) -> MassProperties {
+        MedialMesh::mass_properties(self, density)
+    }
+    fn shape_type(&self) -> ShapeType {
+        ShapeType::Custom
+    }
+    fn as_typed_shape(&self) -> TypedShape<'_> {
+        TypedShape::Custom(self)
+    }
+    fn ccd_thickness(&self) -> Real {
+        self.thickness()
+    }
+    fn ccd_angular_thickness(&self) -> Real {
+        std::f32::consts::FRAC_PI_2
+    }
+    fn is_convex(&self) -> bool {
+        false
+    }
+    fn as_composite_shape(&self) -> Option<&(dyn CompositeShape + Sync)> {
+        Some(self)
+    }
+    fn feature_normal_at_point(
+        &self,
+        subshape: u32,
+        _feature: FeatureId,
+        point: Vector,
+    ) -> Option<Vector> {
+        if subshape as usize >= self.primitive_count() {
+            return None;
+        }
+        let primitive = self.primitive(subshape as usize);
+        let s = primitive.interpolate(primitive.signed_distance(point).weights);
+        (point - s.center).try_normalize()
+    }
+}

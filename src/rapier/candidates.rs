@@ -1,0 +1,126 @@
+//! Which pairs of medial colliders may need manifolds in this step: sweep and prune over their boxes
+//! at the start of the step.
+
+use crate::batch::PairJob;
+use crate::math::{Pose, Real};
+use crate::medial::MedialMesh;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
+use std::collections::HashSet;
+
+/// Gives every medial collider an instance id of its own; colliders that share a shape would share
+/// answers. Returns how many medial colliders there are.
+pub fn make_unique(colliders: &mut ColliderSet) -> usize {
+    let mut seen = HashSet::new();
+    let mut shared = Vec::new();
+    let mut count = 0;
+    for (handle, collider) in colliders.iter_enabled() {
+        if let Some(mesh) = collider.shape().as_shape::<MedialMesh>() {
+            count += 1;
+            if !seen.insert(mesh.instance_id()) {
+                shared.push((handle, mesh.instance()));
+            }
+        }
+    }
+    for (handle, mesh) in shared {
+        if let Some(collider) = colliders.get_mut(handle) {
+            collider.set_shape(rapier3d::geometry::SharedShape::new(mesh));
+        }
+    }
+    count
+}
+
+struct Item<'a> {
+    handle: ColliderHandle,
+    collider: &'a Collider,
+    parent: Option<(RigidBodyHandle, &'a RigidBody)>,
+    mesh: &'a MedialMesh,
+    pose: Pose,
+    aabb: Aabb,
+}
+
+impl Item<'_> {
+    /// Moves by the solver, and is awake.
+    fn active(&self) -> bool {
+        self.parent
+            .is_some_and(|(_, b)| b.is_dynamic() && b.is_enabled() && !b.is_sleeping())
+    }
+}
+
+/// Jobs for all near pairs of medial colliders that the narrow phase may ask for: at least one of
+/// them dynamic and awake, not on the same body, groups compatible. The order of the two is the
+/// narrow phase's (lower collider index first).
+pub fn jobs(
+    parameters: &IntegrationParameters,
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+) -> Vec<PairJob> {
+    let prediction = parameters.prediction_distance();
+    let mut items: Vec<Item> = colliders
+        .iter_enabled()
+        .filter_map(|(handle, collider)| {
+            let mesh = collider.shape().as_shape::<MedialMesh>()?;
+            let parent = collider
+                .parent()
+                .and_then(|h| bodies.get(h).map(|body| (h, body)));
+            // What the narrow phase will see, to the bit.
+            let pose = match (parent, collider.position_wrt_parent()) {
+                (Some((_, body)), Some(offset)) => *body.position() * *offset,
+                _ => *collider.position(),
+            };
+            let margin = prediction + collider.contact_skin();
+            let aabb = parry3d::shape::Shape::compute_aabb(mesh, &pose).loosened(margin);
+            pose.is_finite().then_some(Item {
+                handle,
+                collider,
+                parent,
+                mesh,
+                pose,
+                aabb,
+            })
+        })
+        .collect();
+    items.sort_by(|a, b| a.aabb.mins.x.total_cmp(&b.aabb.mins.x));
+    let mut jobs = Vec::new();
+    for (i, a) in items.iter().enumerate() {
+        for b in &items[i + 1..] {
+            if b.aabb.mins.x > a.aabb.maxs.x {
+                break;
+            }
+            if wanted(a, b) {
+                jobs.push(job(a, b, prediction));
+            }
+        }
+    }
+    jobs
+}
+
+fn wanted(a: &Item, b: &Item) -> bool {
+    let same_body = match (a.parent, b.parent) {
+        (Some((x, _)), Some((y, _))) => x == y,
+        _ => false,
+    };
+    a.aabb.intersects(&b.aabb)
+        && (a.active() || b.active())
+        && !same_body
+        && a.collider
+            .collision_groups()
+            .test(b.collider.collision_groups())
+        && !a.collider.is_sensor()
+        && !b.collider.is_sensor()
+}
+
+fn job(a: &Item, b: &Item, prediction: Real) -> PairJob {
+    let (x, y) = if a.handle.into_raw_parts().0 < b.handle.into_raw_parts().0 {
+        (a, b)
+    } else {
+        (b, a)
+    };
+    PairJob {
+        mesh1: x.mesh.clone(),
+        mesh2: y.mesh.clone(),
+        pos12: x.pose.inv_mul(&y.pose),
+        prediction: prediction + x.collider.contact_skin() + y.collider.contact_skin(),
+    }
+}

@@ -1,0 +1,155 @@
+//! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
+
+use super::candidates;
+use super::report::StepReport;
+use crate::batch;
+use crate::math::{Real, Vector};
+use crate::parry::{Answers, MedialDispatcher};
+use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
+use rapier3d::dynamics::{
+    CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
+    RigidBodySet, SoftBodySet,
+};
+use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
+use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, PhysicsWorld};
+use std::sync::Arc;
+use web_time::Instant;
+
+/// Contact recycle distance that [`MedialPipeline::attach`] sets, in units of rapier's length unit
+/// (rapier's own default is 0.05). Above about 0.01 recycled contacts keep small round bodies awake:
+/// a chain of four links never sleeps.
+pub const RECYCLE_DISTANCE: Real = 0.01;
+
+/// How a pipeline works.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MedialOptions {}
+
+/// Steps a world whose medial colliders meet each other: finds their near pairs, computes all
+/// contacts in one batch, and hands them to rapier's narrow phase as it asks for them.
+///
+/// One pipeline per world. A world stepped without one still has contacts, through parry's own
+/// composite shapes.
+#[derive(Default)]
+pub struct MedialPipeline {
+    answers: Arc<Answers>,
+}
+
+impl MedialPipeline {
+    /// A pipeline for one world.
+    pub fn new(_options: MedialOptions) -> Self {
+        Self::default()
+    }
+
+    /// Makes the world's narrow phase ask this pipeline first, and lowers the contact recycle
+    /// distance to [`RECYCLE_DISTANCE`] if it is above. Call once, and again after the narrow phase
+    /// was replaced (a world restored from a snapshot).
+    pub fn attach(&mut self, world: &mut PhysicsWorld) {
+        self.attach_sets(&mut world.integration_parameters, &mut world.narrow_phase);
+    }
+
+    /// As [`Self::attach`], for a world kept in sets of your own.
+    pub fn attach_sets(
+        &mut self,
+        parameters: &mut IntegrationParameters,
+        narrow_phase: &mut NarrowPhase,
+    ) {
+        let dispatcher = MedialDispatcher::new(Arc::clone(&self.answers));
+        narrow_phase.set_query_dispatcher(dispatcher.chain(DefaultQueryDispatcher));
+        let distance = &mut parameters.normalized_contact_recycle_distance;
+        *distance = distance.min(RECYCLE_DISTANCE);
+    }
+
+    /// Steps the world.
+    pub fn step(&mut self, world: &mut PhysicsWorld) -> StepReport {
+        self.step_with_events(world, &(), &())
+    }
+
+    /// Steps the world with the user's hooks and events.
+    pub fn step_with_events(
+        &mut self,
+        world: &mut PhysicsWorld,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+    ) -> StepReport {
+        self.step_sets(
+            &mut world.physics_pipeline,
+            world.gravity,
+            &world.integration_parameters,
+            &mut world.islands,
+            &mut world.broad_phase,
+            &mut world.narrow_phase,
+            &mut world.bodies,
+            &mut world.colliders,
+            &mut world.impulse_joints,
+            &mut world.multibody_joints,
+            &mut world.soft_bodies,
+            &mut world.ccd_solver,
+            hooks,
+            events,
+        )
+    }
+
+    /// As [`PhysicsPipeline::step`], for a world kept in sets of your own.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the arguments of rapier's own step"
+    )]
+    pub fn step_sets(
+        &mut self,
+        pipeline: &mut PhysicsPipeline,
+        gravity: Vector,
+        parameters: &IntegrationParameters,
+        islands: &mut IslandManager,
+        broad_phase: &mut BroadPhaseBvh,
+        narrow_phase: &mut NarrowPhase,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        impulse_joints: &mut ImpulseJointSet,
+        multibody_joints: &mut MultibodyJointSet,
+        soft_bodies: &mut SoftBodySet,
+        ccd_solver: &mut CCDSolver,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+    ) -> StepReport {
+        let mut report = StepReport::default();
+        let clock = Instant::now();
+        report.medial_colliders = candidates::make_unique(colliders);
+        let jobs = candidates::jobs(parameters, bodies, colliders);
+        let results = batch::cpu::run(&jobs);
+        report.pairs = jobs.len();
+        for result in &results {
+            report.contacts += result.contacts.len();
+            report.culled_nodes += u64::from(result.counts.nodes);
+            report.elementary_tests += u64::from(result.counts.tests);
+        }
+        self.answers.replace(&jobs, results);
+        self.answers.take_counts();
+        report.batch_seconds = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        pipeline.step(
+            gravity,
+            parameters,
+            islands,
+            broad_phase,
+            narrow_phase,
+            bodies,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            soft_bodies,
+            ccd_solver,
+            hooks,
+            events,
+        );
+        report.step_seconds = clock.elapsed().as_secs_f64();
+        let counted = self.answers.take_counts();
+        report.cache_hits = counted.hits;
+        report.cache_misses = counted.misses;
+        report.continuous_queries = counted.casts;
+        report.culled_nodes += counted.nodes;
+        report.elementary_tests += counted.tests;
+        report
+    }
+}

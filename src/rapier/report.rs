@@ -1,0 +1,27 @@
+//! What a step did, counted and timed.
+
+/// Counters and timings of one [`crate::MedialPipeline`] step. Counters cover medial colliders only.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct StepReport {
+    /// Medial colliders in the world that are enabled.
+    pub medial_colliders: usize,
+    /// Pairs of medial colliders whose boxes were near at the start: the jobs of the batch.
+    pub pairs: usize,
+    /// Sphere pairs that the batch found within the prediction distance.
+    pub contacts: usize,
+    /// Manifold requests of the narrow phase that the batch had answered.
+    pub cache_hits: u64,
+    /// Manifold requests computed on the spot: new pairs, bodies changed by the user.
+    pub cache_misses: u64,
+    /// Continuous queries (first contact) executed.
+    pub continuous_queries: u64,
+    /// Node pairs of sphere trees looked at.
+    pub culled_nodes: u64,
+    /// Elementary tests (cone–cone, sphere–slab) executed.
+    pub elementary_tests: u64,
+    /// Seconds spent gathering pairs and in the batch.
+    pub batch_seconds: f64,
+    /// Seconds of rapier's own step, which includes manifolds and continuous queries.
+    pub step_seconds: f64,
+}
