@@ -22,7 +22,7 @@ pub trait Path<L: Lane> {
     const CURVED: bool;
     /// State at time `t`.
     fn at(&self, t: L) -> Corners<L>;
-    /// Radius sums of the corners, less the target distance.
+    /// Radius sums of the corners, plus the target distance.
     fn radius(&self) -> &[L; 4];
     /// Bound of `|rate|` over all corners and times.
     fn speed(&self) -> L;
@@ -54,7 +54,7 @@ impl<L: Lane> LinearPath<L> {
     ) -> Self {
         let corner = test.corners.map(|(i, j)| {
             let (a, b) = (sphere(false, i), sphere(true, j));
-            (b.0 - a.0, b.1 - a.1, a.2 + b.2 - target_distance)
+            (b.0 - a.0, b.1 - a.1, a.2 + b.2 + target_distance)
         });
         Self {
             start: corner.map(|c| c.0),
@@ -129,7 +129,7 @@ impl<S: Scalar> RigidPath<S> {
             let (a, b) = (sphere(false, i), sphere(true, j));
             (
                 [motions[0].point(a.0), motions[1].point(b.0)],
-                a.1 + b.1 - target_distance,
+                a.1 + b.1 + target_distance,
             )
         });
         Self {

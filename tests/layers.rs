@@ -1,0 +1,160 @@
+//! The import rules of the design, checked on the source text: imports go down the layers only, and
+//! each foreign library stays in its layer.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Folder of a layer, and the folders it may import from (`crate::…`).
+const LAYERS: [(&str, &[&str]); 8] = [
+    ("math", &["math"]),
+    ("medial", &["medial", "math", "error"]),
+    ("build", &["build", "medial", "math", "error"]),
+    ("elementary", &["elementary", "medial", "math"]),
+    ("pair", &["pair", "elementary", "medial", "math"]),
+    (
+        "batch",
+        &["batch", "pair", "elementary", "medial", "math", "error"],
+    ),
+    (
+        "parry",
+        &["parry", "batch", "pair", "elementary", "medial", "math"],
+    ),
+    (
+        "rapier",
+        &[
+            "rapier",
+            "parry",
+            "batch",
+            "pair",
+            "elementary",
+            "medial",
+            "math",
+        ],
+    ),
+];
+
+/// Libraries that only one folder may name, as `name::`.
+const CONFINED: [(&str, &str); 5] = [
+    ("rapier3d", "src/rapier"),
+    ("wgpu", "src/batch/gpu"),
+    ("robust", "src/build"),
+    ("nalgebra", "src/build"),
+    ("QueryDispatcher", "src/parry"),
+];
+
+/// The line count above which a file should have been split.
+const LONGEST: usize = 450;
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("a source folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+    found
+}
+
+fn code_lines(path: &Path) -> Vec<String> {
+    let text = fs::read_to_string(path).expect("a readable source");
+    text.lines()
+        .map(|l| l.split("//").next().unwrap_or("").to_owned())
+        .collect()
+}
+
+/// Root names of all `crate::…` paths on a line; `crate::{a, b}` counts each.
+fn imports(line: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    for (at, _) in line.match_indices("crate::") {
+        if line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_') {
+            continue;
+        }
+        let rest = &line[at + "crate::".len()..];
+        let inner = rest.strip_prefix('{').map_or(rest, |r| r);
+        let group = rest.starts_with('{');
+        for part in inner.split(',').take(if group { usize::MAX } else { 1 }) {
+            let name: String = part
+                .trim()
+                .chars()
+                .take_while(|c| c.is_alphanumeric() || *c == '_')
+                .collect();
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// Names re-exported at the crate's root, by the layer they live in.
+fn layer_of(name: &str) -> &str {
+    match name {
+        "MedialMesh" | "MedialPrimitive" | "MedialSphere" => "medial",
+        other => other,
+    }
+}
+
+#[test]
+fn imports_go_down_only() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut checked = 0;
+    for (layer, allowed) in LAYERS {
+        for path in sources(&src.join(layer)) {
+            for (number, line) in code_lines(&path).iter().enumerate() {
+                for name in imports(line) {
+                    checked += 1;
+                    assert!(
+                        allowed.contains(&layer_of(&name)),
+                        "{}:{}: `{layer}` imports `{name}`",
+                        path.display(),
+                        number + 1
+                    );
+                }
+            }
+        }
+    }
+    assert!(checked > 50, "the check found only {checked} imports");
+}
+
+#[test]
+fn libraries_stay_in_their_layer() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for path in sources(&root.join("src")) {
+        let relative = path.strip_prefix(root).expect("inside the crate");
+        if relative.starts_with("src/bin") {
+            continue;
+        }
+        for (number, line) in code_lines(&path).iter().enumerate() {
+            for (library, home) in CONFINED {
+                let named = line.match_indices(library).any(|(at, _)| {
+                    let rest = &line[at + library.len()..];
+                    let before = line[..at].chars().next_back();
+                    let whole = !before.is_some_and(|c| c.is_alphanumeric() || c == '_');
+                    whole
+                        && (rest.starts_with("::") || library == "QueryDispatcher")
+                        && !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_')
+                });
+                let at_home = relative.starts_with(home)
+                    || (library == "QueryDispatcher" && relative.starts_with("src/rapier"));
+                assert!(
+                    !named || at_home,
+                    "{}:{}: `{library}` belongs to {home}",
+                    relative.display(),
+                    number + 1
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn files_open_with_what_they_are_and_stay_short() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    for path in sources(&src) {
+        let text = fs::read_to_string(&path).expect("a readable source");
+        assert!(text.starts_with("//!"), "{} has no header", path.display());
+        let lines = text.lines().count();
+        assert!(lines <= LONGEST, "{} has {lines} lines", path.display());
+    }
+}

@@ -1,0 +1,99 @@
+//! Bodies and worlds that the scenes share.
+
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+
+/// Radius of a ring's centre line, in metres.
+pub const MAJOR: Real = 0.5;
+/// Radius of a ring's tube, in metres.
+pub const MINOR: Real = 0.1;
+
+/// A ring of `n` equal cones about the Y axis, with the mass properties of a true torus.
+pub fn ring(n: u32, major: Real, minor: Real) -> MedialMesh {
+    use std::f32::consts::{PI, TAU};
+    let spheres = (0..n)
+        .map(|i| {
+            let angle = i as Real / n as Real * TAU;
+            let center = Vector::new(major * angle.cos(), 0.0, major * angle.sin());
+            MedialSphere::new(center, minor)
+        })
+        .collect();
+    let edges = (0..n).map(|i| [i, (i + 1) % n]).collect();
+    let mass = 2.0 * PI * PI * major * minor * minor;
+    let about_axis = mass * (major * major + 0.75 * minor * minor);
+    let across = mass * (0.5 * major * major + 0.625 * minor * minor);
+    let inertia = Vector::new(across, about_axis, across);
+    MedialMesh::new(spheres, edges, vec![])
+        .expect("a ring is a medial mesh")
+        .with_mass_properties(MassProperties::new(Vector::ZERO, mass, inertia))
+}
+
+/// How a body is represented.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum As {
+    Medial,
+    Hull,
+}
+
+/// The collider of a ring.
+pub fn ring_collider(kind: As) -> ColliderBuilder {
+    let mesh = ring(27, MAJOR, MINOR);
+    match kind {
+        As::Medial => ColliderBuilder::medial_mesh(mesh).density(1000.0),
+        As::Hull => {
+            let around = |c: Vector| {
+                [Vector::X, Vector::Y, Vector::Z]
+                    .into_iter()
+                    .flat_map(move |axis| [c + axis * MINOR, c - axis * MINOR])
+            };
+            let points: Vec<Vector> = mesh
+                .spheres()
+                .iter()
+                .flat_map(|s| around(s.center))
+                .collect();
+            ColliderBuilder::convex_hull(&points)
+                .expect("a hull of a ring")
+                .density(1000.0)
+        }
+    }
+}
+
+/// A world on a fixed ground whose surface is the plane Y = 0.
+pub fn world_with_ground() -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    world.insert_collider(
+        ColliderBuilder::cuboid(20.0, 0.5, 20.0).translation(Vector::new(0.0, -0.5, 0.0)),
+        None,
+    );
+    world
+}
+
+/// Adds a ring at a pose.
+pub fn add_ring(world: &mut PhysicsWorld, kind: As, pose: Pose) -> RigidBodyHandle {
+    world
+        .insert(RigidBodyBuilder::dynamic().pose(pose), ring_collider(kind))
+        .0
+}
+
+/// Steps until all bodies sleep; the number of steps, or `None` after `limit`.
+pub fn steps_until_sleep(
+    world: &mut PhysicsWorld,
+    pipeline: &mut MedialPipeline,
+    limit: usize,
+) -> Option<usize> {
+    for step in 0..limit {
+        pipeline.step(world);
+        let asleep = |b: &RigidBody| !b.is_dynamic() || b.is_sleeping();
+        if world.bodies.iter().all(|(_, b)| asleep(b)) {
+            return Some(step + 1);
+        }
+    }
+    None
+}
+
+/// A world's own pipeline, attached.
+pub fn attached(world: &mut PhysicsWorld) -> MedialPipeline {
+    let mut pipeline = MedialPipeline::new(MedialOptions::default());
+    pipeline.attach(world);
+    pipeline
+}
