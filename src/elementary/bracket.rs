@@ -15,7 +15,7 @@
 //!   are lost); here a miss is proven for all sphere pairs.
 //! - Its Conditions 1 and 2 (touching at `t0` or `t1`) need no special case.
 
-use super::certificate::{ActiveFace, first_root, fixed_step, turning_step};
+use super::certificate::{ActiveFace, first_root, fixed_step, free_throughout, turning_step};
 use super::path::Path;
 use super::test_list::Domain;
 use super::{cone_cone, sphere_slab};
@@ -87,90 +87,123 @@ fn fixed_pair_root<L: Lane>(s: &Nearest<L>, y_rate: Vec3<L>) -> L {
     L::select(possible, root, L::splat(NEVER))
 }
 
-/// The certified bracket of one elementary test, in every lane.
-#[inline(always)]
-pub fn bracket<L: Lane, P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Bracket<L> {
-    let zero = L::zero();
-    let slack = path.scale() * L::splat(SLACK_ULPS * L::EPSILON);
-    let tolerance = limits.tolerance.max(slack * L::splat(TOLERANCE_PER_SLACK));
-    let speed = path.speed().max(L::splat(L::TINY));
-    let (mut lower, mut upper) = (limits.start, limits.horizon);
-    let none = L::Mask::splat(false);
-    let (mut rooted, mut contact, mut separated) = (none, none, none);
-    let mut active = L::Mask::splat(true);
-    let mut normal = Vec3::zero();
-    let mut iterations = 0;
-    let mut last: Option<Nearest<L>> = None;
-    let mut start_distance = zero;
-    while iterations < limits.max_iterations && active.any() {
-        iterations += 1;
+/// A bracket on its way, in every lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Running<L: Lane> {
+    /// What is known so far.
+    pub bracket: Bracket<L>,
+    /// Lanes that are not finished.
+    pub active: L::Mask,
+    pub(super) fresh: L::Mask,
+    pub(super) rooted: L::Mask,
+    pub(super) speed: L,
+}
+
+impl<L: Lane> Running<L> {
+    /// At the start of the search. Lanes whose motion one direction proves free are finished at
+    /// once: a fixed direction's bound is concave and piecewise linear on straight paths, so
+    /// positive at both ends is positive between them.
+    #[inline(always)]
+    pub fn new<P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Self {
+        let slack = path.scale() * L::splat(SLACK_ULPS * L::EPSILON);
+        let none = L::Mask::splat(false);
+        let zero = L::zero();
+        let mut running = Self {
+            bracket: Bracket {
+                lower: limits.start,
+                upper: limits.horizon,
+                contact: none,
+                separated: none,
+                tolerance: limits.tolerance.max(slack * L::splat(TOLERANCE_PER_SLACK)),
+                slack,
+                start_distance: zero,
+                nearest: Nearest {
+                    alpha: zero,
+                    beta: zero,
+                    distance: zero,
+                    y: Vec3::zero(),
+                    length: zero,
+                },
+                normal: Vec3::zero(),
+                iterations: 0,
+            },
+            active: L::Mask::splat(true),
+            fresh: L::Mask::splat(true),
+            rooted: none,
+            speed: path.speed().max(L::splat(L::TINY)),
+        };
+        if !P::CURVED {
+            let free = free_throughout(path, domain, slack);
+            running.bracket.separated = free;
+            running.bracket.lower = L::select(free, limits.horizon, limits.start);
+            running.active = !free;
+        }
+        running
+    }
+
+    /// One round of the loop, in the active lanes.
+    #[inline(always)]
+    pub fn advance<P: Path<L>>(&mut self, path: &P, domain: Domain, limits: &Limits<L>) {
+        let zero = L::zero();
+        let mut active = self.active;
+        let b = &mut self.bracket;
+        let (lower, slack) = (b.lower, b.slack);
         let c = path.at(lower);
         let f = cone_cone::family(&c.y, path.radius());
         let s = nearest_spheres(domain, &f);
-        if last.is_none() {
-            start_distance = s.distance;
-        }
-        last = Some(match last {
-            None => s,
-            Some(old) => select_nearest(active, s, old),
-        });
-        let touching = active & s.distance.le(tolerance);
-        contact = contact | touching;
-        upper = L::select(touching, lower, upper);
+        b.start_distance = L::select(self.fresh, s.distance, b.start_distance);
+        self.fresh = L::Mask::splat(false);
+        b.iterations += 1;
+        b.nearest = select_nearest(active, s, b.nearest);
+        let touching = active & s.distance.le(b.tolerance);
+        b.contact = b.contact | touching;
+        b.upper = L::select(touching, lower, b.upper);
         let face = ActiveFace::new(domain, &f, &s, &c.rate);
         let n = face.direction(domain, &f, &s);
-        normal = Vec3::select(active, n, normal);
+        b.normal = Vec3::select(active, n, b.normal);
         active = active & !touching;
+        self.active = active;
         if !active.any() {
-            break;
+            return;
         }
 
         let (u_rate, v_rate) = (c.rate[1] - c.rate[0], c.rate[2] - c.rate[0]);
         let y_rate = c.rate[0] + u_rate * s.alpha + v_rate * s.beta;
         if !P::CURVED {
             let root = lower + fixed_pair_root(&s, y_rate);
-            let sooner = active & root.le(upper);
-            upper = L::select(sooner, root, upper);
-            rooted = rooted | sooner;
+            let sooner = active & root.le(b.upper);
+            b.upper = L::select(sooner, root, b.upper);
+            self.rooted = self.rooted | sooner;
         }
 
-        let remaining = upper - lower;
-        let lipschitz = (s.distance - slack).max(zero) / speed;
+        let remaining = b.upper - lower;
+        let lipschitz = (s.distance - slack).max(zero) / self.speed;
         let mut step = lipschitz.max(fixed_step(path, domain, &c, n, slack, remaining));
-        if (active & (lower + step).lt(upper)).any() {
+        if (active & (lower + step).lt(b.upper)).any() {
             let m = face.turning_rate(&s, n, y_rate);
             step = step.max(turning_step(path, domain, &c, n, m, slack, remaining));
         }
-        let shorter = L::splat(1.0 - STEP_ULPS * L::EPSILON);
-        let next =
-            ((lower + step * shorter) * L::splat(1.0 - 0.5 * STEP_ULPS * L::EPSILON)).max(lower);
-        // A free step that reaches the horizon is the proof; what it loses to rounding is not.
-        let free = active & !rooted & limits.horizon.le(lower + step * shorter);
-        separated = separated | free;
-        lower = L::select(active, next.min(upper), lower);
-        lower = L::select(free, limits.horizon, lower);
+        let proven = lower + step * L::splat(1.0 - STEP_ULPS * L::EPSILON);
+        let next = (proven * L::splat(1.0 - 0.5 * STEP_ULPS * L::EPSILON)).max(lower);
+        let free = active & !self.rooted & limits.horizon.le(proven);
+        b.separated = b.separated | free;
+        b.lower = L::select(active, next.min(b.upper), lower);
+        b.lower = L::select(free, limits.horizon, b.lower);
         active = active & !free;
-        let closed = active & rooted & (upper - lower).le(limits.time_tolerance);
-        contact = contact | closed;
-        active = active & !closed;
+        let closed = active & self.rooted & (b.upper - b.lower).le(limits.time_tolerance);
+        b.contact = b.contact | closed;
+        self.active = active & !closed;
     }
-    Bracket {
-        lower,
-        upper,
-        contact,
-        separated,
-        tolerance,
-        slack,
-        start_distance,
-        nearest: last.unwrap_or_else(|| {
-            nearest_spheres(
-                domain,
-                &cone_cone::family(&path.at(limits.start).y, path.radius()),
-            )
-        }),
-        normal,
-        iterations,
+}
+
+/// The certified bracket of one elementary test, in every lane.
+#[inline(always)]
+pub fn bracket<L: Lane, P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Bracket<L> {
+    let mut running = Running::new(path, domain, limits);
+    while running.bracket.iterations < limits.max_iterations && running.active.any() {
+        running.advance(path, domain, limits);
     }
+    running.bracket
 }
 
 #[inline(always)]

@@ -27,6 +27,7 @@ pub mod certificate;
 pub mod cone_cone;
 pub mod f64;
 pub mod first_contact;
+pub mod many;
 pub mod path;
 pub mod penetration;
 pub mod slab_crossing;

@@ -78,6 +78,58 @@ pub trait Scalar: Lane<Mask = bool> + PartialOrd {
     fn to_f64(self) -> f64;
 }
 
+/// Eight lanes of `f32` whose members can be read and replaced.
+pub trait Octet: Lane {
+    /// From its members.
+    fn from_array(values: [f32; 8]) -> Self;
+    /// Its members.
+    fn to_array(self) -> [f32; 8];
+    /// Truth values as bits, lane 0 lowest.
+    fn bits(mask: Self::Mask) -> u8;
+    /// Truth values whose bit patterns are given: all bits of a lane set, or none.
+    fn mask(self) -> Self::Mask;
+    /// The bit patterns of truth values.
+    fn from_mask(mask: Self::Mask) -> Self;
+
+    /// Replaces one member.
+    #[inline(always)]
+    fn set(&mut self, lane: usize, value: f32) {
+        let mut values = self.to_array();
+        values[lane] = value;
+        *self = Self::from_array(values);
+    }
+    /// Replaces one truth value.
+    #[inline(always)]
+    fn set_mask(mask: &mut Self::Mask, lane: usize, value: bool) {
+        let mut bits = Self::from_mask(*mask);
+        bits.set(lane, if value { f32::from_bits(u32::MAX) } else { 0.0 });
+        *mask = bits.mask();
+    }
+}
+
+impl Octet for f32x8 {
+    #[inline(always)]
+    fn from_array(values: [f32; 8]) -> Self {
+        f32x8::from(values)
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; 8] {
+        f32x8::to_array(self)
+    }
+    #[inline(always)]
+    fn bits(mask: f32x8) -> u8 {
+        mask.to_bitmask() as u8
+    }
+    #[inline(always)]
+    fn mask(self) -> f32x8 {
+        self
+    }
+    #[inline(always)]
+    fn from_mask(mask: f32x8) -> Self {
+        mask
+    }
+}
+
 impl Mask for bool {
     #[inline(always)]
     fn splat(value: bool) -> Self {

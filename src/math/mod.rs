@@ -1,6 +1,8 @@
 //! L0: numbers and geometry that know nothing of medial meshes.
 
 pub mod lane;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod lane_avx;
 pub mod motion;
 pub mod nearest;
 pub mod tolerance;
