@@ -2,4 +2,5 @@
 
 mod ma_file;
 mod mass;
+mod mesh_file;
 mod oracle;
