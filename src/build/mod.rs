@@ -1,5 +1,7 @@
 //! L2: triangle mesh → [`MedialMesh`]. The pipeline: calls in order, progress, cancellation.
 
+pub mod mesh_file;
+
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;

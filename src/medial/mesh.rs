@@ -206,14 +206,22 @@ impl MedialMesh {
     pub fn mass_properties(&self, density: Real) -> MassProperties {
         let unit = match &self.data.source_mass {
             Some(source) => *source,
-            None => *self
-                .data
-                .solid_mass
-                .get_or_init(|| mass::solid_mass_properties(self)),
+            None => self.solid_mass_properties(),
         };
         let mut scaled = unit;
         scaled.set_mass(unit.mass() * density, true);
         scaled
+    }
+
+    /// Volume of the solid with overlaps counted once, in cubed units of length, whatever the mass
+    /// properties were measured on. Computed at the first call.
+    pub fn volume(&self) -> Real {
+        self.solid_mass_properties().mass()
+    }
+
+    fn solid_mass_properties(&self) -> MassProperties {
+        let solid = &self.data.solid_mass;
+        *solid.get_or_init(|| mass::solid_mass_properties(self))
     }
 
     /// What tells colliders apart in caches. Clones share it.

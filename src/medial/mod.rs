@@ -1,11 +1,13 @@
 //! L1: the data. Spheres joined by medial cones and slabs, their trees, mass and files.
 
+pub mod chord;
 pub mod envelope;
 pub mod ma_file;
 pub mod mass;
 pub mod mesh;
 pub mod primitive;
 pub mod solids;
+pub(crate) mod text;
 pub mod tree;
 
 pub use mesh::MedialMesh;

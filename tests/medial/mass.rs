@@ -1,0 +1,283 @@
+//! Mass properties against closed forms, and against stratified sampling of random solids.
+
+use crate::oracle::{Random, inside, random_mesh};
+use nalgebra::Matrix3;
+use parry3d::mass_properties::MassProperties;
+use rapier3d_medial::math::{Rotation, Vector};
+use rapier3d_medial::{MedialMesh, MedialSphere};
+use std::f64::consts::PI;
+
+fn close(found: f32, wanted: f64, relative: f64, what: &str) {
+    let error = (f64::from(found) - wanted).abs() / wanted.abs();
+    assert!(
+        error <= relative,
+        "{what}: {found}, not {wanted} ({error:.1e})"
+    );
+}
+
+fn sorted_principal(m: &MassProperties) -> [f32; 3] {
+    let p = m.principal_inertia();
+    let mut p = [p.x, p.y, p.z];
+    p.sort_by(f32::total_cmp);
+    p
+}
+
+fn moved(mesh: &MedialMesh, rotation: Rotation, shift: Vector) -> MedialMesh {
+    let spheres = mesh
+        .spheres()
+        .iter()
+        .map(|s| MedialSphere::new(rotation * s.center + shift, s.radius))
+        .collect();
+    MedialMesh::new(spheres, mesh.edges().to_vec(), mesh.faces().to_vec()).unwrap()
+}
+
+#[test]
+fn ball_has_the_closed_form() {
+    for radius in [1e-3, 0.7, 250.0f32] {
+        let m = MedialMesh::ball(radius).unwrap().mass_properties(2.0);
+        let r = f64::from(radius);
+        let mass = 2.0 * 4.0 / 3.0 * PI * r.powi(3);
+        close(m.mass(), mass, 1e-4, "mass");
+        for i in sorted_principal(&m) {
+            close(i, 0.4 * mass * r * r, 1e-4, "inertia");
+        }
+        assert!(m.local_com.length() < 1e-4 * radius);
+    }
+}
+
+#[test]
+fn capsule_has_the_closed_form() {
+    let (r, length) = (0.25f64, 1.5f64);
+    let (a, b) = (Vector::new(3.0, 1.0, -2.0), Vector::new(3.0, 2.5, -2.0));
+    let m = MedialMesh::capsule(a, b, r as f32)
+        .unwrap()
+        .mass_properties(1.0);
+    let (tube, caps) = (PI * r * r * length, 4.0 / 3.0 * PI * r.powi(3));
+    close(m.mass(), tube + caps, 1e-4, "mass");
+    assert!((m.local_com - (a + b) * 0.5).length() < 1e-4);
+    let axial = tube * r * r / 2.0 + caps * 0.4 * r * r;
+    // Each half ball about the middle: its own transverse moment moved from the centre of the
+    // ball to its centroid (3r/8) and on by half the length.
+    let across = tube * (r * r / 4.0 + length * length / 12.0)
+        + caps * (0.4 * r * r + length * length / 4.0 + 3.0 * length * r / 8.0);
+    let [low, middle, high] = sorted_principal(&m);
+    close(low, axial, 3e-4, "axial inertia");
+    close(middle, across, 3e-4, "transverse inertia");
+    close(high, across, 3e-4, "transverse inertia");
+    let axis = m.principal_inertia_local_frame.inverse() * Vector::Y;
+    let p = m.principal_inertia();
+    let about_y = p.x * axis.x.powi(2) + p.y * axis.y.powi(2) + p.z * axis.z.powi(2);
+    close(about_y, axial, 1e-3, "inertia about the capsule's axis");
+}
+
+#[test]
+fn torus_has_the_closed_form() {
+    let (major, minor, segments) = (1.0f64, 0.3f64, 256);
+    let m = MedialMesh::torus(major as f32, minor as f32, segments)
+        .unwrap()
+        .mass_properties(1.0);
+    let mass = 2.0 * PI * PI * major * minor * minor;
+    close(m.mass(), mass, 5e-4, "mass");
+    let [low, middle, high] = sorted_principal(&m);
+    let axial = mass * (major * major + 0.75 * minor * minor);
+    let across = mass * (0.5 * major * major + 0.625 * minor * minor);
+    close(low, across, 1e-3, "transverse inertia");
+    close(middle, across, 1e-3, "transverse inertia");
+    close(high, axial, 1e-3, "axial inertia");
+}
+
+/// Steiner's formula for a triangle widened by a ball: 2 r A + π r² P/2 + 4/3 π r³.
+#[test]
+fn slabs_of_one_radius_have_the_closed_form_however_thin_and_however_turned() {
+    let corners = [
+        Vector::ZERO,
+        Vector::new(1.0, 0.0, 0.0),
+        Vector::new(0.0, 1.0, 0.0),
+    ];
+    for radius in [0.3f32, 1e-2, 1e-4, 1e-6] {
+        for turn in [
+            Rotation::IDENTITY,
+            Rotation::from_rotation_x(1.0),
+            Rotation::from_rotation_y(-2.0),
+        ] {
+            let spheres = corners
+                .map(|c| MedialSphere::new(turn * c, radius))
+                .to_vec();
+            let mesh = MedialMesh::new(spheres, vec![], vec![[0, 1, 2]]).unwrap();
+            let r = f64::from(radius);
+            let perimeter = 2.0 + 2f64.sqrt();
+            let wanted = r + PI / 2.0 * r * r * perimeter + 4.0 / 3.0 * PI * r.powi(3);
+            close(
+                mesh.volume(),
+                wanted,
+                2e-3,
+                &format!("volume at radius {radius}"),
+            );
+        }
+    }
+}
+
+/// A taper's volume: the frustum between the tangent circles and the two caps they cut.
+#[test]
+fn tapered_cone_has_the_closed_form() {
+    let (r1, r2, length) = (0.5f64, 0.2f64, 1.0f64);
+    let spheres = vec![
+        MedialSphere::new(Vector::ZERO, r1 as f32),
+        MedialSphere::new(Vector::new(0.0, 0.0, length as f32), r2 as f32),
+    ];
+    let volume = MedialMesh::new(spheres, vec![[0, 1]], vec![])
+        .unwrap()
+        .volume();
+    let sin = (r1 - r2) / length;
+    let cos = (1.0 - sin * sin).sqrt();
+    let frustum = {
+        let (a, b) = (r1 * cos, r2 * cos);
+        let height = length - (r1 - r2) * sin;
+        PI * height / 3.0 * (a * a + a * b + b * b)
+    };
+    let cap = |r: f64, height: f64| PI * height * height * (3.0 * r - height) / 3.0;
+    close(
+        volume,
+        frustum + cap(r1, r1 * (1.0 + sin)) + cap(r2, r2 * (1.0 - sin)),
+        1e-4,
+        "volume",
+    );
+}
+
+#[test]
+fn overlaps_count_once_and_apart_bodies_add_up() {
+    let ball = MedialSphere::new(Vector::new(0.3, -0.2, 0.1), 0.5);
+    let inner = MedialSphere::new(ball.center, 0.2);
+    let far = MedialSphere::new(Vector::new(1e4, 0.0, 0.0), 0.5);
+    let one = 4.0 / 3.0 * PI * 0.125;
+    let volume =
+        |spheres: Vec<MedialSphere>| MedialMesh::new(spheres, vec![], vec![]).unwrap().volume();
+    close(
+        volume(vec![ball, ball, inner]),
+        one,
+        2e-4,
+        "the same ball twice, one inside",
+    );
+    close(
+        volume(vec![ball, far]),
+        2.0 * one,
+        2e-4,
+        "two balls far apart",
+    );
+}
+
+#[test]
+fn a_rigid_motion_moves_the_centre_and_keeps_the_principal_moments() {
+    for seed in 0..6 {
+        let mesh = random_mesh(seed);
+        let mut random = Random(seed + 100);
+        let rotation = Rotation::from_scaled_axis(random.vector(3.0));
+        let shift = random.vector(5.0);
+        let before = mesh.mass_properties(1.0);
+        let after = moved(&mesh, rotation, shift).mass_properties(1.0);
+        close(after.mass(), before.mass().into(), 1e-3, "mass");
+        let wanted = rotation * before.local_com + shift;
+        assert!((after.local_com - wanted).length() < 1e-3);
+        for (a, b) in sorted_principal(&after)
+            .into_iter()
+            .zip(sorted_principal(&before))
+        {
+            close(a, b.into(), 2e-3, "principal inertia");
+        }
+    }
+}
+
+/// One random point in each cell of a grid: at 110³ cells the volume is known to about 2e-4.
+#[test]
+fn random_solids_agree_with_sampling() {
+    for seed in 0..8 {
+        let mesh = random_mesh(seed);
+        let found = mesh.mass_properties(1.0);
+        let mut random = Random(seed + 1000);
+        let side = 110;
+        let aabb = mesh.aabb();
+        let (lo, size) = (aabb.mins, aabb.maxs - aabb.mins);
+        let cell =
+            f64::from(size.x) * f64::from(size.y) * f64::from(size.z) / f64::from(side).powi(3);
+        let (mut count, mut first, mut second) = (0.0, [0.0; 3], Matrix3::zeros());
+        let center = [found.local_com.x, found.local_com.y, found.local_com.z].map(f64::from);
+        for cell in 0..side * side * side {
+            let index = [cell % side, cell / side % side, cell / side / side];
+            let mut p = [0.0; 3];
+            for k in 0..3 {
+                let step = f64::from(size[k]) / f64::from(side);
+                p[k] = f64::from(lo[k]) + (f64::from(index[k]) + random.within(0.0, 1.0)) * step;
+            }
+            if inside(&mesh, p) {
+                count += 1.0;
+                for i in 0..3 {
+                    first[i] += p[i] - center[i];
+                    for j in 0..3 {
+                        second[(i, j)] += (p[i] - center[i]) * (p[j] - center[j]);
+                    }
+                }
+            }
+        }
+        close(
+            found.mass(),
+            count * cell,
+            2e-3,
+            &format!("volume, seed {seed}"),
+        );
+        let reach = f64::from(size.length());
+        for f in first {
+            assert!(
+                (f / count).abs() < 5e-4 * reach,
+                "seed {seed}: centre off by {}",
+                f / count
+            );
+        }
+        let trace: f64 = second.trace();
+        let inertia = found.reconstruct_inertia_matrix();
+        for i in 0..3 {
+            for j in 0..3 {
+                let wanted = cell * (if i == j { trace } else { 0.0 } - second[(i, j)]);
+                let off = (f64::from(inertia.col(j)[i]) - wanted).abs() / (cell * trace);
+                assert!(off < 3e-3, "seed {seed}: inertia[{i}][{j}] off by {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn no_volume_is_parrys_zero() {
+    let flat = |z: f32| MedialSphere::new(Vector::new(z, z * z, 1.0), 0.0);
+    let sheet = MedialMesh::new(
+        vec![flat(0.0), flat(1.0), flat(2.0)],
+        vec![],
+        vec![[0, 1, 2]],
+    )
+    .unwrap();
+    assert_eq!(sheet.mass_properties(3.0), MassProperties::default());
+    assert_eq!(sheet.volume(), 0.0);
+}
+
+/// Sizes from the smallest to the largest `f32`: a finite answer or zero, at once.
+#[test]
+fn absurd_sizes_end() {
+    let mut zeros = 0;
+    let mut cases = 0;
+    for radius in [1e-45f32, 1e-30, 1e-12, 1.0, 1e12, 1e30] {
+        for reach in [1e-45f32, 1e-30, 1e-12, 1.0, 1e12, 1e30, 1e38] {
+            let spheres = vec![
+                MedialSphere::new(Vector::ZERO, radius),
+                MedialSphere::new(Vector::new(reach, 0.0, reach), radius * 0.5),
+                MedialSphere::new(Vector::new(0.0, reach, reach), 0.0),
+            ];
+            let mesh = MedialMesh::new(spheres, vec![[0, 1]], vec![[0, 1, 2]]).unwrap();
+            let m = mesh.mass_properties(1.0);
+            assert!(m.mass().is_finite() && m.local_com.is_finite());
+            zeros += usize::from(m.mass() == 0.0);
+            cases += 1;
+        }
+    }
+    assert!(
+        zeros > 0 && zeros < cases,
+        "{zeros} of {cases} without mass"
+    );
+}
