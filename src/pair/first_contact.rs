@@ -122,16 +122,23 @@ struct Swept {
     radius: f64,
 }
 
-/// A node pair, ordered by the time at which it may first meet, then by how deep it overlaps.
+/// A node pair, ordered by the time at which it may first meet; of several that overlap already,
+/// the one that overlaps deepest for its size comes first.
 struct Entry {
     time: f64,
-    gap: f64,
+    /// Signed distance of the two balls at the start of the piece, in units of their radii.
+    depth: f64,
     nodes: [Swept; 2],
 }
 
 impl Entry {
     fn key(&self) -> (f64, f64, u32, u32) {
-        (self.time, self.gap, self.nodes[0].node, self.nodes[1].node)
+        (
+            self.time,
+            self.depth,
+            self.nodes[0].node,
+            self.nodes[1].node,
+        )
     }
 }
 impl PartialEq for Entry {
@@ -208,7 +215,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         }
         self.heap.push(Entry {
             time,
-            gap: yy.sqrt() - radius,
+            depth: (yy.sqrt() - radius) / radius.max(f64::MIN_POSITIVE),
             nodes,
         });
     }
@@ -216,7 +223,9 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
     fn expand(&mut self, entry: &Entry, sides: &[Piece; 2], start: f64, end: f64) -> bool {
         let [a, b] = entry.nodes;
         match (self.bodies.0.below(a.node), self.bodies.1.below(b.node)) {
-            (Below::Primitive(i), Below::Primitive(j)) => return self.leaf(i, j, entry.gap, start),
+            (Below::Primitive(i), Below::Primitive(j)) => {
+                return self.leaf([i, j], entry.depth <= 0.0, sides);
+            }
             (Below::Nodes(i, j), other) if a.radius >= b.radius || !splits(other) => {
                 for child in [i, j] {
                     let swept = sides[0].sweep(child, self.bodies.0.bound(child));
@@ -236,11 +245,20 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
     }
 
     /// Tests two primitives; returns whether an earlier contact is still possible.
-    fn leaf(&mut self, i: u32, j: u32, gap: f64, start: f64) -> bool {
+    fn leaf(&mut self, [i, j]: [u32; 2], near: bool, sides: &[Piece; 2]) -> bool {
         let (a, share_a) = self.bodies.0.primitive(i);
         let (b, share_b) = self.bodies.1.primitive(j);
         let local = |s: &MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
         let (sa, sb) = (a.map(|s| local(&s)), b.map(|s| local(&s)));
+        let [start, end] = sides[0].times;
+        let until = (self.earliest.upper.min(end) - start) / (end - start);
+        let balls = [
+            sides[0].balls(&sa[..share_a.spheres]),
+            sides[1].balls(&sb[..share_b.spheres]),
+        ];
+        if apart_until(&balls, until, self.target) {
+            return true;
+        }
         let mut open = true;
         for_each_test(share_a, share_b, |test| {
             let path = RigidPath::new(&test, &self.motions, self.target, |second, k| {
@@ -253,7 +271,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             open = self.earliest.test(test, &path, [i, j]);
             open
         });
-        if open && start == 0.0 && gap <= 0.0 {
+        if open && start == 0.0 && near {
             let at_start = |side: usize, s: [(Vec3<f64>, f64); 3]| {
                 let turned = self.motions[side].sin_cos(0.0);
                 s.map(|(c, r)| (self.motions[side].point(c).at(0.0, turned).position, r))
@@ -269,6 +287,42 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         }
         open
     }
+}
+
+/// Spheres of one primitive over a piece: position at the start, chord, and radius grown by the
+/// sagitta. The unused rest has no meaning.
+#[derive(Clone, Copy)]
+struct Balls {
+    spheres: [(Vec3<f64>, Vec3<f64>, f64); 3],
+    len: usize,
+}
+
+/// Whether one direction proves two primitives free up to the fraction `until` of the piece: along
+/// chords its bound is concave and piecewise linear in time ([`crate::elementary::certificate`]),
+/// so both ends suffice. It spares most leaf pairs their elementary tests.
+fn apart_until(balls: &[Balls; 2], until: f64, target: f64) -> bool {
+    let [a, b] = balls.each_ref().map(|side| &side.spheres[..side.len]);
+    let middle = |side: &[(Vec3<f64>, Vec3<f64>, f64)], t: f64| {
+        let sum = side.iter().fold(Vec3::zero(), |m, s| m + s.0 + s.1 * t);
+        sum * (1.0 / side.len() as f64)
+    };
+    let gap = |n: Vec3<f64>, t: f64| {
+        let near = b.iter().map(|s| n.dot(s.0 + s.1 * t) - s.2);
+        let far = a.iter().map(|s| n.dot(s.0 + s.1 * t) + s.2);
+        near.fold(f64::MAX, f64::min) - far.fold(f64::MIN, f64::max)
+    };
+    [0.0, 0.5 * until, until].into_iter().any(|t| {
+        let y = middle(b, t) - middle(a, t);
+        let length = y.length();
+        if length <= 0.0 {
+            return false;
+        }
+        let n = y * (1.0 / length);
+        // Rounding: a few ulps of the numbers in play.
+        let size = length + (b[0].1 - a[0].1).length() + a[0].2 + b[0].2;
+        let least = target + 64.0 * f64::EPSILON * size;
+        gap(n, 0.0) > least && gap(n, until) > least
+    })
 }
 
 fn splits(below: Below) -> bool {
@@ -307,15 +361,33 @@ impl Piece {
         }
     }
 
-    fn sweep(&self, node: u32, (center, radius): (Vector, Real)) -> Swept {
-        let path = self.motion.point(Vec3::from_vector(center));
+    fn balls(&self, spheres: &[(Vec3<f64>, f64)]) -> Balls {
+        let mut balls = Balls {
+            spheres: [(Vec3::zero(), Vec3::zero(), 0.0); 3],
+            len: spheres.len(),
+        };
+        for (ball, (center, radius)) in balls.spheres.iter_mut().zip(spheres) {
+            let (from, chord, sagitta) = self.chord(*center);
+            *ball = (from, chord, radius + sagitta);
+        }
+        balls
+    }
+
+    /// Position of a point at the start of the piece, the chord of its path, and the sagitta.
+    fn chord(&self, local: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>, f64) {
+        let path = self.motion.point(local);
         let [from, to] = [0, 1].map(|k| path.at(self.times[k], self.turned[k]).position);
         let length = self.times[1] - self.times[0];
+        (from, to - from, path.acceleration * (length * length) / 8.0)
+    }
+
+    fn sweep(&self, node: u32, (center, radius): (Vector, Real)) -> Swept {
+        let (start, chord, sagitta) = self.chord(Vec3::from_vector(center));
         Swept {
             node,
-            start: from,
-            chord: to - from,
-            radius: f64::from(radius) + path.acceleration * (length * length) / 8.0,
+            start,
+            chord,
+            radius: f64::from(radius) + sagitta,
         }
     }
 }
