@@ -11,7 +11,7 @@ pub mod parry;
 pub mod rapier;
 
 pub use build::{BuildOptions, BuildReport, Progress};
-pub use elementary::{Toi, ToiOptions, ToiStatus};
+pub use elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 pub use error::{BuildError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
 pub use parry::MedialDispatcher;

@@ -2,8 +2,8 @@
 //! paths (paper Eqs. 1 to 3) or in exact rigid motion.
 
 use super::bracket::{Bracket, Limits, bracket};
+use super::distance::crossing;
 use super::path::{LinearPath, Path, RigidPath};
-use super::slab_crossing;
 use super::test_list::{Domain, ElementaryTest, Share, for_each_test};
 use super::{MovingSphere, Toi, ToiOptions, ToiStatus};
 use crate::math::Real;
@@ -115,20 +115,11 @@ fn primitives_first_contact<S: Scalar, P: Path<S>>(
     for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
         earliest.test(test, &path(&test), [0, 0])
     });
-    let crossed = crosses(a, b, target_distance) || crosses(b, a, target_distance);
-    if earliest.status != ToiStatus::Overlapping && crossed {
+    let crossed = crossing(a, u8::MAX, b).or_else(|| crossing(b, u8::MAX, a));
+    if crossed.is_some_and(|c| -c.radius < target_distance) {
         earliest.overlap_at_start();
     }
     earliest
-}
-
-/// Whether an edge of `a` passes through the slab `b` deeper than the target distance.
-fn crosses<S: Scalar>(a: &[(Vec3<S>, S)], b: &[(Vec3<S>, S)], target_distance: S) -> bool {
-    let &[b0, b1, b2] = b else { return false };
-    super::test_list::edges(a.len()).iter().any(|e| {
-        slab_crossing::crossing([a[e[0] as usize], a[e[1] as usize]], [b0, b1, b2])
-            .is_some_and(|c| -c.radius < target_distance)
-    })
 }
 
 /// First contact of two primitives on straight paths, in the precision of `S`.

@@ -25,6 +25,7 @@ pub mod alternating;
 pub mod bracket;
 pub mod certificate;
 pub mod cone_cone;
+pub mod distance;
 pub mod f64;
 pub mod first_contact;
 pub mod many;
@@ -66,6 +67,22 @@ pub struct ToiOptions {
     /// negative lets them overlap that deep first, positive keeps them apart. The guarantee then
     /// holds for `D − target_distance`.
     pub target_distance: Real,
+    /// What becomes of primitives that touch at the start already. Mesh queries only.
+    pub initial_contact: InitialContact,
+}
+
+/// What a mesh query makes of primitives within the tolerance of each other at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InitialContact {
+    /// They are the answer: contact at time 0.
+    Stop,
+    /// They touch, and may go on touching, but not sink in: such a pair counts as in contact only
+    /// when its signed distance falls to `−depth`; or, if it is deeper already, below what it is by a
+    /// tenth of `depth`. Other pairs are searched as usual. A length, > 0.
+    Deepen {
+        /// How deep.
+        depth: Real,
+    },
 }
 
 impl Default for ToiOptions {
@@ -75,6 +92,7 @@ impl Default for ToiOptions {
             time_tolerance: tolerance::TIME_TOLERANCE,
             max_iterations: tolerance::MAX_ITERATIONS,
             target_distance: 0.0,
+            initial_contact: InitialContact::Stop,
         }
     }
 }

@@ -10,9 +10,8 @@
 //! Tangent to two edges `e1, e2` with radius slopes `d1, d2` means `n·e1 = d1`, `n·e2 = d2`:
 //! `n = g ± h N/|N|` with `N = e1 × e2`, as in [`crate::math::nearest`].
 
-use super::cone_cone;
-use super::sphere_slab;
-use super::test_list::{Domain, Share, edges, for_each_test};
+use super::distance::nearest_in_test;
+use super::test_list::{Share, edges, for_each_test};
 use crate::math::lane::{Scalar, Vec3};
 
 /// A sphere in a common frame: centre and radius.
@@ -57,13 +56,7 @@ pub fn deepest<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>], preferred: Vec3<S>) -> (
         });
     };
     for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
-        let y = test.corners.map(|(i, j)| b[j as usize].0 - a[i as usize].0);
-        let radius = test.corners.map(|(i, j)| a[i as usize].1 + b[j as usize].1);
-        let f = cone_cone::family(&y, &radius);
-        offer(match test.domain {
-            Domain::Box => cone_cone::nearest_spheres(&f).y,
-            Domain::Triangle => sphere_slab::nearest_spheres(&f).y,
-        });
+        offer(nearest_in_test(&test, a, b).1.y);
         true
     });
     let edge = |s: &[Ball<S>], e: &[u8; 2]| {

@@ -9,8 +9,9 @@
 use super::first_contact::Counts;
 use super::volumes::Volumes;
 use crate::elementary::certificate::ActiveFace;
-use crate::elementary::test_list::{Domain, ElementaryTest, Share, edges, for_each_test};
-use crate::elementary::{cone_cone, penetration, slab_crossing, sphere_slab};
+use crate::elementary::distance::{crossing, nearest_in_test};
+use crate::elementary::test_list::{Domain, ElementaryTest, Share, for_each_test};
+use crate::elementary::{penetration, slab_crossing};
 use crate::math::lane::Vec3;
 use crate::math::nearest::{Family, Nearest, edge_minimum};
 use crate::math::{Pose, Real, Vector};
@@ -160,15 +161,7 @@ impl<'a> PrimitivePair<'a> {
     }
 
     fn test(&self, test: &ElementaryTest, feature: u32, margin: f64, found: &mut Vec<SpherePair>) {
-        let corner = test
-            .corners
-            .map(|(i, j)| (self.balls[0][i as usize], self.balls[1][j as usize]));
-        let y = corner.map(|(a, b)| b.0 - a.0);
-        let f = cone_cone::family(&y, &corner.map(|(a, b)| a.1 + b.1));
-        let s = match test.domain {
-            Domain::Box => cone_cone::nearest_spheres(&f),
-            Domain::Triangle => sphere_slab::nearest_spheres(&f),
-        };
+        let (f, s) = nearest_in_test(test, &self.balls[0], &self.balls[1]);
         if !(s.distance <= margin) {
             return;
         }
@@ -192,8 +185,7 @@ impl<'a> PrimitivePair<'a> {
     }
 
     fn deepest(&self) -> (f64, Vec3<f64>) {
-        let [a, b] = &self.balls;
-        let (a, b) = (&a[..self.shares[0].spheres], &b[..self.shares[1].spheres]);
+        let (a, b) = self.spheres();
         let middle =
             |s: &[Ball]| s.iter().fold(Vec3::zero(), |m, b| m + b.0) * (1.0 / s.len() as f64);
         penetration::deepest(a, b, middle(b) - middle(a))
@@ -202,18 +194,14 @@ impl<'a> PrimitivePair<'a> {
     /// A crossing of any edge with the other's slab, owned or not: with one the nearest spheres mean
     /// nothing for this pair.
     fn crossing(&self) -> Option<slab_crossing::Crossing<f64>> {
-        let through = |edge_side: usize, slab_side: usize| {
-            let share = self.shares[edge_side];
-            if self.shares[slab_side].spheres != 3 {
-                return None;
-            }
-            let s = &self.balls[edge_side];
-            edges(share.spheres).iter().find_map(|e| {
-                let ends = [s[e[0] as usize], s[e[1] as usize]];
-                slab_crossing::crossing(ends, self.balls[slab_side])
-            })
-        };
-        through(0, 1).or_else(|| through(1, 0))
+        let (a, b) = self.spheres();
+        crossing(a, u8::MAX, b).or_else(|| crossing(b, u8::MAX, a))
+    }
+
+    /// The spheres that count, of both.
+    fn spheres(&self) -> (&[Ball], &[Ball]) {
+        let [a, b] = &self.balls;
+        (&a[..self.shares[0].spheres], &b[..self.shares[1].spheres])
     }
 
     fn push_crossing(&self, crossing: slab_crossing::Crossing<f64>, found: &mut Vec<SpherePair>) {

@@ -9,10 +9,11 @@
 
 use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
+use crate::elementary::distance::{crossing, signed_distance};
 use crate::elementary::first_contact::{Earliest, motion_is_finite, options_limits, to_toi};
 use crate::elementary::path::RigidPath;
-use crate::elementary::test_list::{edges, for_each_test};
-use crate::elementary::{Toi, ToiOptions, ToiStatus, slab_crossing};
+use crate::elementary::test_list::for_each_test;
+use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::{Real, Vector};
@@ -75,6 +76,7 @@ pub fn first_contact_counted(
         bodies: (body1, body2),
         motions,
         target: options.target_distance.into(),
+        initial_contact: options.initial_contact,
         heap: BinaryHeap::new(),
         counts: Counts::default(),
         earliest: Earliest::new(options_limits(options)),
@@ -108,6 +110,7 @@ struct Search<'a, A, B> {
     bodies: (&'a A, &'a B),
     motions: [RigidMotion<f64>; 2],
     target: f64,
+    initial_contact: InitialContact,
     heap: BinaryHeap<Entry>,
     counts: Counts,
     earliest: Earliest<f64>,
@@ -250,18 +253,44 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         let (b, share_b) = self.bodies.1.primitive(j);
         let local = |s: &MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
         let (sa, sb) = (a.map(|s| local(&s)), b.map(|s| local(&s)));
+        let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
         let [start, end] = sides[0].times;
         let until = (self.earliest.upper.min(end) - start) / (end - start);
-        let balls = [
-            sides[0].balls(&sa[..share_a.spheres]),
-            sides[1].balls(&sb[..share_b.spheres]),
-        ];
+        let balls = [sides[0].balls(sa), sides[1].balls(sb)];
         if apart_until(&balls, until, self.target) {
             return true;
         }
+        let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
+            let turned = self.motions[side].sin_cos(0.0);
+            let place = |c| self.motions[side].point(c).at(0.0, turned).position;
+            s.iter().map(|s| (place(s.0), s.1)).collect::<Vec<_>>()
+        };
+        let mut target = self.target;
+        match self.initial_contact {
+            InitialContact::Deepen { depth } => {
+                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
+                let distance = signed_distance(&pa, &pb);
+                let tolerance = self.earliest.limits.tolerance;
+                if distance <= self.target + tolerance {
+                    let depth = f64::from(depth);
+                    target = (self.target - depth).min(distance - 0.1 * depth - tolerance);
+                }
+            }
+            InitialContact::Stop if start == 0.0 && near => {
+                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
+                let crossed =
+                    crossing(&pa, share_a.edges, &pb).or_else(|| crossing(&pb, share_b.edges, &pa));
+                if crossed.is_some_and(|c| -c.radius < target) {
+                    self.earliest.overlap_at_start();
+                    self.earliest.found = None;
+                    return false;
+                }
+            }
+            InitialContact::Stop => {}
+        }
         let mut open = true;
         for_each_test(share_a, share_b, |test| {
-            let path = RigidPath::new(&test, &self.motions, self.target, |second, k| {
+            let path = RigidPath::new(&test, &self.motions, target, |second, k| {
                 if second {
                     sb[k as usize]
                 } else {
@@ -271,20 +300,6 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             open = self.earliest.test(test, &path, [i, j]);
             open
         });
-        if open && start == 0.0 && near {
-            let at_start = |side: usize, s: [(Vec3<f64>, f64); 3]| {
-                let turned = self.motions[side].sin_cos(0.0);
-                s.map(|(c, r)| (self.motions[side].point(c).at(0.0, turned).position, r))
-            };
-            let (pa, pb) = (at_start(0, sa), at_start(1, sb));
-            if crosses(&pa, share_a, &pb, share_b, self.target)
-                || crosses(&pb, share_b, &pa, share_a, self.target)
-            {
-                self.earliest.overlap_at_start();
-                self.earliest.found = None;
-                return false;
-            }
-        }
         open
     }
 }
@@ -327,22 +342,6 @@ fn apart_until(balls: &[Balls; 2], until: f64, target: f64) -> bool {
 
 fn splits(below: Below) -> bool {
     matches!(below, Below::Nodes(..))
-}
-
-/// Whether an edge that `a` owns passes through the slab `b` deeper than `target`.
-fn crosses(
-    a: &[(Vec3<f64>, f64); 3],
-    share_a: crate::elementary::test_list::Share,
-    b: &[(Vec3<f64>, f64); 3],
-    share_b: crate::elementary::test_list::Share,
-    target: f64,
-) -> bool {
-    share_b.spheres == 3
-        && edges(share_a.spheres).iter().enumerate().any(|(bit, e)| {
-            share_a.edges >> bit & 1 == 1
-                && slab_crossing::crossing([a[e[0] as usize], a[e[1] as usize]], *b)
-                    .is_some_and(|c| -c.radius < target)
-        })
 }
 
 /// One side's motion over a piece of the step.

@@ -2,7 +2,7 @@
 //! shapes, by the certified query.
 
 use super::foreign;
-use crate::elementary::{Toi, ToiOptions, ToiStatus};
+use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::first_contact::{Counts, first_contact_counted};
@@ -15,9 +15,8 @@ use parry3d::shape::{HalfSpace, Shape};
 /// slab of radius 0 in the half-space's plane, larger than anything the body can reach.
 const PLANE_REACH: Real = 4.0;
 
-/// Longest jump of a body that is already touching, in units of its thickness: a touching pair is
-/// followed with its medial spheres shrunk by this much, so that no medial axis crosses the other
-/// shape however the rest of the body swings.
+/// How deep a pair of primitives that touches at the start may sink in, in units of the mesh's
+/// thickness, when contact at the start is not the answer: half way to the medial axis.
 const CORE: Real = 0.5;
 
 /// First contact of a medial mesh with another shape, both moving rigidly, from `start` to `end`
@@ -52,23 +51,16 @@ impl Cast<'_> {
         let motion2 = started(self.motion2, start);
         let options = ToiOptions {
             target_distance: self.target_distance,
+            initial_contact: if self.stop_at_penetration {
+                InitialContact::Stop
+            } else {
+                InitialContact::Deepen {
+                    depth: (CORE * self.mesh.thickness()).max(Real::MIN_POSITIVE),
+                }
+            },
             ..ToiOptions::default()
         };
-        let (mut toi, mut counts) = self.query(&motion1, &motion2, seconds, &options)?;
-        let touches_at_start = toi.upper <= 0.0;
-        if touches_at_start && !self.stop_at_penetration {
-            let deeper = ToiOptions {
-                target_distance: -CORE * self.mesh.thickness(),
-                ..options
-            };
-            let (core, more) = self.query(&motion1, &motion2, seconds, &deeper)?;
-            toi = core;
-            counts.nodes += more.nodes;
-            counts.tests += more.tests;
-            if toi.upper <= 0.0 {
-                return Ok((None, counts));
-            }
-        }
+        let (toi, counts) = self.query(&motion1, &motion2, seconds, &options)?;
         if toi.status == ToiStatus::Separated {
             return Ok((None, counts));
         }
@@ -117,7 +109,9 @@ impl Cast<'_> {
         }
         let (mut toi, counts) =
             first_contact_counted(self.mesh, motion1, &soup, motion2, seconds, options);
-        if toi.upper > 0.0 && self.starts_inside(motion1, motion2, options.target_distance) {
+        let stops = options.initial_contact == InitialContact::Stop;
+        if stops && toi.upper > 0.0 && self.starts_inside(motion1, motion2, options.target_distance)
+        {
             toi.status = ToiStatus::Overlapping;
             toi.lower = 0.0;
             toi.upper = 0.0;
