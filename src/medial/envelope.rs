@@ -72,6 +72,15 @@ impl MedialMesh {
     /// one that needs more than four million triangles is widened until it does not. Exposed strips
     /// narrower than 1/8 of the spacing may be missing, and where something narrower than the
     /// spacing stands on a triangle its foot is not cut out.
+    ///
+    /// ```
+    /// use rapier3d_medial::MedialMesh;
+    /// let ball = MedialMesh::ball(2.0)?;
+    /// let (vertices, triangles) = ball.envelope(0.5);
+    /// assert!(vertices.iter().all(|v| (v.length() - 2.0).abs() < 1e-6));
+    /// assert!(triangles.len() > 100);
+    /// # Ok::<(), rapier3d_medial::MeshError>(())
+    /// ```
     pub fn envelope(&self, spacing: Real) -> (Vec<Vector>, Vec<[u32; 3]>) {
         let sheets = sheets(self);
         let mut trimmer = Trimmer::new(self);
