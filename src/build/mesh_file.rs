@@ -6,7 +6,7 @@
 //! texture index below its range; `stl_io` 0.11 names no line either and takes a binary file
 //! whose header begins with `solid` for text.
 //!
-//! Every reader ends in [`Polygons::finish`]: indices are checked, polygons are cut into triangles,
+//! Every reader ends in `Polygons::finish`: indices are checked, polygons are cut into triangles,
 //! and vertices at exactly the same place become one.
 
 mod obj;
@@ -86,6 +86,14 @@ pub fn read(path: impl AsRef<Path>) -> Result<TriangleMesh, BuildError> {
 /// breaks off or breaks the format, with [`BuildError::NotFinite`] or
 /// [`BuildError::IndexOutOfRange`] on values of a binary file, with [`BuildError::Empty`] if no
 /// triangle is left.
+///
+/// ```
+/// use rapier3d_medial::build::mesh_file::{MeshFormat, read_bytes};
+/// let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+/// let square = read_bytes(text, MeshFormat::Obj, "square.obj".as_ref())?;
+/// assert_eq!(square.indices.len(), 2);
+/// # Ok::<(), rapier3d_medial::BuildError>(())
+/// ```
 pub fn read_bytes(
     bytes: &[u8],
     format: MeshFormat,

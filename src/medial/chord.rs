@@ -18,11 +18,11 @@
 //! `−(B² − b² C)/(D (b s − B))`. The entry swaps the sign of `s`. For `D ≤ 0` one end sphere
 //! contains the other and there is no flank.
 //!
-//! **Slab plane.** The unit normal `n` of a plane tangent to the three spheres satisfies
-//! `n·u = −da`, `n·v = −db` (see `math::nearest`); it touches sphere `k` at `c_k + r_k n`, and the
-//! line meets the triangle of the three points where its barycentric coordinates are not negative.
+//! **Slab plane.** A plane tangent to the three spheres with outward normal `n` touches sphere `k`
+//! at `c_k + r_k n`; the line meets the triangle of these points where its barycentric
+//! coordinates are not negative.
 
-use super::primitive::MedialPrimitive;
+use super::exact::{Ball, tangent_normals};
 use crate::math::lane::Vec3;
 
 /// A primitive prepared for lines parallel to z.
@@ -31,15 +31,6 @@ pub struct ChordSolver {
     balls: [Ball; 3],
     flanks: [Option<Flank>; 3],
     planes: [Option<Plane>; 2],
-}
-
-/// A sphere in double precision, in any frame.
-#[derive(Clone, Copy, Debug)]
-pub struct Ball {
-    /// Centre.
-    pub center: Vec3<f64>,
-    /// Radius, ≥ 0.
-    pub radius: f64,
 }
 
 /// The flank of a cone; names as in the derivation.
@@ -59,35 +50,6 @@ struct Plane {
     e1: Vec3<f64>,
     e2: Vec3<f64>,
     det_inverse: f64,
-}
-
-/// The three spheres of a primitive (repeated as in [`MedialPrimitive::as_slab`]), exactly.
-pub fn balls(primitive: &MedialPrimitive) -> [Ball; 3] {
-    primitive.as_slab().map(|s| Ball {
-        center: Vec3::from_vector(s.center),
-        radius: s.radius.into(),
-    })
-}
-
-/// Outward unit normals of the two planes tangent to three spheres, if they exist: not when the
-/// centres lie on a line, and not when one sphere lies in the hull of the other two.
-pub fn tangent_normals(balls: &[Ball; 3]) -> Option<[Vec3<f64>; 2]> {
-    let [a, b, c] = *balls;
-    let (u, v) = (b.center - a.center, c.center - a.center);
-    let n = u.cross(v);
-    let nn = n.length_sq();
-    // Below this the direction of `n` is rounding: sin² of the angle between `u` and `v`.
-    if nn <= 1e-24 * u.length_sq() * v.length_sq() {
-        return None;
-    }
-    let in_plane = v.cross(n) * (a.radius - b.radius) + n.cross(u) * (a.radius - c.radius);
-    let g = in_plane * (1.0 / nn);
-    let height_sq = 1.0 - g.length_sq();
-    if height_sq <= 0.0 {
-        return None;
-    }
-    let up = n * (height_sq / nn).sqrt();
-    Some([g + up, g - up])
 }
 
 impl ChordSolver {

@@ -34,6 +34,14 @@ impl MedialMesh {
     }
 
     /// As [`MedialMesh::load_ma`], from a reader; `name` stands for the path in errors.
+    ///
+    /// ```
+    /// use rapier3d_medial::MedialMesh;
+    /// let text = "2 1 0\nv 0 0 0 1\nv 3 0 0 0.5\ne 0 1\n";
+    /// let taper = MedialMesh::read_ma(text.as_bytes(), "taper.ma".as_ref())?;
+    /// assert_eq!(taper.edges(), [[0, 1]]);
+    /// # Ok::<(), rapier3d_medial::MeshError>(())
+    /// ```
     pub fn read_ma(reader: impl BufRead, name: &Path) -> Result<Self, MeshError> {
         let elements = Elements::read(reader).map_err(|error| match error {
             TextError::Io(source) => file_error(name, source),

@@ -12,7 +12,8 @@
 //! An octree of inside, outside and boundary cells was the alternative: for the same error it
 //! needs as many cells as the square of the lines, and more code.
 
-use super::chord::{Ball, ChordSolver, balls};
+use super::chord::ChordSolver;
+use super::exact::{Ball, balls};
 use super::mesh::MedialMesh;
 use crate::math::lane::Vec3;
 use crate::math::{Real, Rotation, Vector};

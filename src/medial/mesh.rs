@@ -13,7 +13,8 @@ use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// A concave solid: spheres joined by medial cones and slabs, in the body's frame.
+/// A concave solid: spheres joined by medial cones and slabs, in the body's frame. Lengths are in
+/// the user's unit (metres in rapier).
 ///
 /// Cloning is cheap: clones share the data. Each clone keeps the instance id of its original;
 /// [`MedialMesh::instance`] gives one with an id of its own.
@@ -194,9 +195,9 @@ impl MedialMesh {
         self.data.aabb
     }
 
-    /// A typical small radius: the 5th percentile of the local radius, weighted by the area (length
-    /// for cones) of the medial mesh. Simplified tips have radius near 0, so the minimum would
-    /// call every motion fast.
+    /// A typical small radius, a length: the 5th percentile of the local radius, weighted by the
+    /// area of the medial mesh (a cone counts as a strip as wide as itself). Simplified tips have
+    /// radius near 0, so the minimum would call every motion fast.
     pub fn thickness(&self) -> Real {
         self.data.thickness
     }

@@ -4,8 +4,8 @@
 //! radii are interpolated linearly with the same weights. Both are convex: the convex hull of
 //! their spheres.
 
+use super::exact::{balls, nearest_to_point};
 use crate::math::lane::Vec3;
-use crate::math::nearest::{Family, nearest_in_triangle};
 use crate::math::{Real, Vector};
 use parry3d::bounding_volume::Aabb;
 
@@ -67,18 +67,7 @@ impl MedialPrimitive {
 
     /// Signed distance of `point` (body frame), computed in double precision.
     pub fn signed_distance(&self, point: Vector) -> PointDistance {
-        let [a, b, c] = self.as_slab();
-        let p = Vec3::<f64>::from_vector(point);
-        let at = |s: MedialSphere| Vec3::<f64>::from_vector(s.center);
-        let family = Family {
-            w: at(a) - p,
-            u: at(b) - at(a),
-            v: at(c) - at(a),
-            r0: a.radius as f64,
-            da: b.radius as f64 - a.radius as f64,
-            db: c.radius as f64 - a.radius as f64,
-        };
-        let nearest = nearest_in_triangle(&family);
+        let nearest = nearest_to_point(&balls(self), Vec3::from_vector(point));
         let (x, y) = (nearest.alpha as Real, nearest.beta as Real);
         let weights = match self {
             Self::Sphere(_) => [1.0, 0.0, 0.0],

@@ -41,6 +41,14 @@ impl MedialMesh {
     /// most `major_radius · (1 − cos(π/segments))`.
     ///
     /// Fails unless both radii are positive and finite and `segments` is in 3..=4096.
+    ///
+    /// ```
+    /// use rapier3d_medial::MedialMesh;
+    /// let ring = MedialMesh::torus(1.0, 0.2, 32)?;
+    /// assert_eq!(ring.primitive_count(), 32);
+    /// assert!((ring.volume() - 0.79).abs() < 0.01);
+    /// # Ok::<(), rapier3d_medial::MeshError>(())
+    /// ```
     pub fn torus(
         major_radius: Real,
         minor_radius: Real,

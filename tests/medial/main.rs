@@ -1,6 +1,10 @@
 //! The data layer: mass, files, envelope, exact solids, refusals, and the command line.
 
+#[cfg(feature = "cli")]
+mod cli;
+mod envelope;
 mod ma_file;
 mod mass;
+mod mesh;
 mod mesh_file;
 mod oracle;

@@ -1,0 +1,299 @@
+//! The command line program `medial`: builds medial meshes from triangle meshes, and describes
+//! them.
+//!
+//! Results go to standard output, progress and errors to standard error. Exit code 1 with one line
+//! on failure, 2 for arguments that make no sense.
+
+use clap::{Args, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+use rapier3d_medial::build::Hausdorff;
+use rapier3d_medial::build::mesh_file;
+use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, MedialPrimitive, MeshError};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::io::{self, ErrorKind, Write as _};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Steps of the progress bar (a count): one per mille.
+const BAR_STEPS: u64 = 1000;
+
+/// Medial meshes: concave colliders for rapier that never tunnel.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Build a medial mesh (.ma) from a triangle mesh (obj, stl, ply, off).
+    Build(BuildArguments),
+    /// Describe a medial mesh (.ma).
+    Info(InfoArguments),
+}
+
+#[derive(Args)]
+struct BuildArguments {
+    /// Triangle mesh: obj, stl, ply or off.
+    input: PathBuf,
+    /// Where to write the medial mesh.
+    #[arg(short, long, value_name = "OUT.ma")]
+    output: PathBuf,
+    /// Largest number of primitives: slabs, cones that belong to no slab, lone spheres
+    /// [default: 500, or what --max-error needs].
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    primitives: Option<u32>,
+    /// Largest two-sided Hausdorff error, as a fraction of the longest side of the mesh's box.
+    #[arg(short = 'e', long, value_name = "E", value_parser = positive)]
+    max_error: Option<f32>,
+    /// Fit the surface on both sides instead of enclosing it.
+    #[arg(long)]
+    no_enclose: bool,
+    /// Print the report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Args)]
+struct InfoArguments {
+    /// Medial mesh in the .ma format.
+    mesh: PathBuf,
+    /// Print as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Both Hausdorff distances, as fractions of the longest side of the source's box.
+#[derive(Serialize)]
+struct Errors {
+    surface_to_envelope: f32,
+    envelope_to_surface: f32,
+    uncovered: f32,
+}
+
+/// What a medial mesh is made of. Lengths in the file's unit.
+#[derive(Serialize)]
+struct Description {
+    spheres: usize,
+    primitives: usize,
+    slabs: usize,
+    cones: usize,
+    lone_spheres: usize,
+    volume: f32,
+    box_min: [f32; 3],
+    box_max: [f32; 3],
+    thickness: f32,
+}
+
+/// What a build did.
+#[derive(Serialize)]
+struct BuildSummary {
+    vertices: usize,
+    triangles: usize,
+    mesh: Description,
+    errors: Errors,
+    errors_before_enclosure: Option<Errors>,
+    longest_side: f32,
+    notes: Vec<String>,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+/// Why the program ends with exit code 1.
+#[derive(Debug, thiserror::Error)]
+enum Failure {
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error("{0} is the input: the output would replace it")]
+    OverInput(PathBuf),
+    #[error("{0}: no such directory")]
+    NoDirectory(PathBuf),
+    #[error("standard output: {0}")]
+    Output(#[from] io::Error),
+}
+
+fn main() -> ExitCode {
+    let done = match Arguments::parse().command {
+        Command::Build(arguments) => build(&arguments),
+        Command::Info(arguments) => info(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let message = failure.to_string();
+            let line: Vec<&str> = message.split_whitespace().collect();
+            eprintln!("medial: {}", line.join(" "));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn positive(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("must be a positive number".into()),
+    }
+}
+
+fn build(arguments: &BuildArguments) -> Result<(), Failure> {
+    check_output(arguments)?;
+    let source = mesh_file::read(&arguments.input)?;
+    let mut options = BuildOptions::default();
+    options.enclose = !arguments.no_enclose;
+    options.max_error = arguments.max_error;
+    if arguments.primitives.is_some() || arguments.max_error.is_some() {
+        options.primitives = arguments.primitives.map(|n| n as usize);
+    }
+    let bar = ProgressBar::new(BAR_STEPS);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg} {elapsed}") {
+        bar.set_style(style);
+    }
+    let built = MedialMesh::from_trimesh_with_progress(
+        &source.vertices,
+        &source.indices,
+        &options,
+        &mut |progress| {
+            bar.set_message(progress.stage);
+            bar.set_position((progress.fraction * BAR_STEPS as f32) as u64);
+            ControlFlow::Continue(())
+        },
+    );
+    bar.finish_and_clear();
+    let (mesh, report) = built?;
+    mesh.save_ma(&arguments.output)?;
+    let side = report.longest_side;
+    let summary = BuildSummary {
+        vertices: source.vertices.len(),
+        triangles: source.indices.len(),
+        mesh: describe(&mesh),
+        errors: relative(&report.hausdorff, side),
+        errors_before_enclosure: report
+            .hausdorff_before_enclosure
+            .map(|h| relative(&h, side)),
+        longest_side: side,
+        notes: report.notes,
+        seconds: report.seconds,
+    };
+    print(arguments.json, &summary, || summary.text(&arguments.output))
+}
+
+/// Refuses, before minutes of work, an output that cannot be or must not be written.
+fn check_output(arguments: &BuildArguments) -> Result<(), Failure> {
+    let output = &arguments.output;
+    let directory = match output.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    if !directory.is_dir() {
+        return Err(Failure::NoDirectory(directory.to_owned()));
+    }
+    let same = match (output.canonicalize(), arguments.input.canonicalize()) {
+        (Ok(output), Ok(input)) => output == input,
+        _ => false,
+    };
+    if same {
+        return Err(Failure::OverInput(output.clone()));
+    }
+    Ok(())
+}
+
+fn info(arguments: &InfoArguments) -> Result<(), Failure> {
+    let mesh = MedialMesh::load_ma(&arguments.mesh)?;
+    let description = describe(&mesh);
+    print(arguments.json, &description, || description.text())
+}
+
+fn describe(mesh: &MedialMesh) -> Description {
+    let count = |kind: fn(&MedialPrimitive) -> bool| mesh.primitives().filter(kind).count();
+    let aabb = mesh.aabb();
+    Description {
+        spheres: mesh.spheres().len(),
+        primitives: mesh.primitive_count(),
+        slabs: count(|p| matches!(p, MedialPrimitive::Slab(_))),
+        cones: count(|p| matches!(p, MedialPrimitive::Cone(_))),
+        lone_spheres: count(|p| matches!(p, MedialPrimitive::Sphere(_))),
+        volume: mesh.volume(),
+        box_min: aabb.mins.to_array(),
+        box_max: aabb.maxs.to_array(),
+        thickness: mesh.thickness(),
+    }
+}
+
+fn relative(hausdorff: &Hausdorff, longest_side: f32) -> Errors {
+    Errors {
+        surface_to_envelope: hausdorff.surface_to_envelope / longest_side,
+        envelope_to_surface: hausdorff.envelope_to_surface / longest_side,
+        uncovered: hausdorff.uncovered / longest_side,
+    }
+}
+
+impl Description {
+    fn text(&self) -> String {
+        let [lo, hi] = [self.box_min, self.box_max].map(|[x, y, z]| format!("({x}, {y}, {z})"));
+        format!(
+            "spheres     {}\nprimitives  {} ({} slabs, {} cones, {} lone spheres)\n\
+             volume      {}\nbox         {lo} to {hi}\nthickness   {}\n",
+            self.spheres,
+            self.primitives,
+            self.slabs,
+            self.cones,
+            self.lone_spheres,
+            self.volume,
+            self.thickness,
+        )
+    }
+}
+
+impl Errors {
+    fn text(&self, title: &str) -> String {
+        format!(
+            "{title} (longest side of the source's box = 1)\n\
+             \x20 surface to envelope  {:.5}\n  envelope to surface  {:.5}\n\
+             \x20 uncovered            {:.5}\n",
+            self.surface_to_envelope, self.envelope_to_surface, self.uncovered,
+        )
+    }
+}
+
+impl BuildSummary {
+    fn text(&self, output: &Path) -> String {
+        let mut text = format!(
+            "{} from {} vertices, {} triangles\n{}{}",
+            output.display(),
+            self.vertices,
+            self.triangles,
+            self.mesh.text(),
+            self.errors.text("errors"),
+        );
+        if let Some(before) = &self.errors_before_enclosure {
+            text += &before.text("errors before the enclosure");
+        }
+        for note in &self.notes {
+            text += &format!("note: {note}\n");
+        }
+        let total: f64 = self.seconds.iter().map(|(_, s)| s).sum();
+        // Writing to a string does not fail.
+        let _ = write!(text, "seconds     {total:.2}");
+        for (stage, seconds) in &self.seconds {
+            let _ = write!(text, ", {stage} {seconds:.2}");
+        }
+        text + "\n"
+    }
+}
+
+/// Prints as JSON or as text. A reader that went away, as `head` does, is no failure.
+fn print(json: bool, value: &impl Serialize, text: impl Fn() -> String) -> Result<(), Failure> {
+    let printed = if json {
+        serde_json::to_string_pretty(value).map_err(io::Error::from)? + "\n"
+    } else {
+        text()
+    };
+    match io::stdout().write_all(printed.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,72 @@
+//! A primitive's geometry in double precision: its spheres, tangent planes and distance.
+//!
+//! # Tangent planes
+//! A plane `n·x = k` touches all three spheres from outside iff `n·c_i + r_i = k` for each. With
+//! `u`, `v` the edges from the first centre and `da`, `db` the changes of radius along them,
+//! that is `n·u = −da`, `n·v = −db`, `|n| = 1`: the system of the interior point in
+//! `math::nearest`, so `n = −g ± √(1 − |g|²) N/|N|` with the same `g` and `N`.
+
+use super::primitive::MedialPrimitive;
+use crate::math::lane::Vec3;
+use crate::math::nearest::{Family, Nearest, edge_minimum, nearest_in_triangle};
+
+/// sin² of the angle between two edges (a pure number) below which the direction of their cross
+/// product is rounding: the squared `f64` rounding 2⁻⁵², and 3 digits to spare. A slab as narrow
+/// as that is its longest cone, to rounding.
+const COLLINEAR_SIN_SQ: f64 = 1e-26;
+
+/// A sphere in double precision, in any frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Ball {
+    /// Centre.
+    pub center: Vec3<f64>,
+    /// Radius, ≥ 0.
+    pub radius: f64,
+}
+
+/// The three spheres of a primitive, repeated as in [`MedialPrimitive::as_slab`]; exact.
+pub fn balls(primitive: &MedialPrimitive) -> [Ball; 3] {
+    primitive.as_slab().map(|s| Ball {
+        center: Vec3::from_vector(s.center),
+        radius: s.radius.into(),
+    })
+}
+
+/// The interpolated sphere nearest to a point; its signed distance is exact outside and a lower
+/// bound of the depth inside. `y` is the sphere's centre less the point.
+pub fn nearest_to_point(balls: &[Ball; 3], point: Vec3<f64>) -> Nearest<f64> {
+    let [a, b, c] = *balls;
+    let family = Family {
+        w: a.center - point,
+        u: b.center - a.center,
+        v: c.center - a.center,
+        r0: a.radius,
+        da: b.radius - a.radius,
+        db: c.radius - a.radius,
+    };
+    // A cone is a slab whose last two spheres are one: a single edge instead of three.
+    if family.u == family.v && family.da == family.db {
+        return family.at(edge_minimum(family.w, family.u, family.da), 0.0);
+    }
+    nearest_in_triangle(&family)
+}
+
+/// Outward unit normals of the two planes tangent to three spheres, if they exist: not when the
+/// centres lie on a line, and not when the hull of the spheres has no flat part.
+pub fn tangent_normals(balls: &[Ball; 3]) -> Option<[Vec3<f64>; 2]> {
+    let [a, b, c] = *balls;
+    let (u, v) = (b.center - a.center, c.center - a.center);
+    let n = u.cross(v);
+    let nn = n.length_sq();
+    if nn <= COLLINEAR_SIN_SQ * u.length_sq() * v.length_sq() {
+        return None;
+    }
+    let (da, db) = (b.radius - a.radius, c.radius - a.radius);
+    let g = (v.cross(n) * da + n.cross(u) * db) * (1.0 / nn);
+    let height_sq = 1.0 - g.length_sq();
+    if height_sq <= 0.0 {
+        return None;
+    }
+    let up = n * (height_sq / nn).sqrt();
+    Some([up - g, -up - g])
+}
