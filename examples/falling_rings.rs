@@ -117,12 +117,15 @@ fn table(runs: &[(&str, &Run)]) -> Table {
     let mut row = |name: &str, cell: &dyn Fn(&Run) -> String| {
         table.row(name, runs.iter().map(|(_, run)| cell(run)));
     };
+    let common = runs.iter().map(|(_, run)| run.milliseconds.len()).min();
+    let common = common.unwrap_or(0);
     let per_step = |run: &Run, count: usize| count as f64 / run.milliseconds.len() as f64;
-    row("ms per step, median", &|run| {
-        format!("{:.3}", run.quantile(0.5))
-    });
-    row("ms per step, p99", &|run| {
-        format!("{:.3}", run.quantile(0.99))
+    row(
+        &format!("ms per step, median of the first {common}"),
+        &|run| format!("{:.3}", run.quantile(common, 0.5)),
+    );
+    row(&format!("ms per step, p99 of the first {common}"), &|run| {
+        format!("{:.3}", run.quantile(common, 0.99))
     });
     row("elementary tests per step", &|run| {
         format!("{:.0}", per_step(run, run.elementary_tests as usize))

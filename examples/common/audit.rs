@@ -4,8 +4,9 @@ use super::scene::{Scene, Stage};
 use rapier3d::parry::query;
 use rapier3d::prelude::{ContactPair, Pose, Real};
 
-/// Contacts further apart on the true surfaces than this share of a ring's longest side are ghosts.
-pub const GHOST_SHARE: Real = 0.01;
+/// Bodies that touch are no further apart, on their true surfaces, than this share of a ring's
+/// longest side.
+const APART_SHARE: Real = 0.01;
 
 /// Findings over all steps of a run.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +17,8 @@ pub struct Audit {
     pub ghosts: usize,
     /// Contacts and ghosts in the last step.
     pub last: (usize, usize),
+    /// Rings that touch nothing in the end: not the ground, no other body.
+    pub floating: usize,
     /// How often the inner lines of two bodies crossed within a step: one body passed into or
     /// through another.
     pub crossings: usize,
@@ -33,6 +36,7 @@ impl Default for Audit {
             contacts: 0,
             ghosts: 0,
             last: (0, 0),
+            floating: 0,
             crossings: 0,
             deepest: 0.0,
             lowest: Real::MAX,
@@ -48,10 +52,8 @@ impl Audit {
         if !self.finite {
             return;
         }
-        for (body, pose) in after.iter().enumerate().take(scene.starts.len()) {
-            let vertices = &scene.model(body).mesh.vertices;
-            let heights = vertices.iter().map(|v| pose.transform_point(*v).y);
-            self.lowest = heights.fold(self.lowest, Real::min);
+        for (ring, pose) in after.iter().enumerate().take(scene.starts.len()) {
+            self.lowest = self.lowest.min(scene.lowest(ring, pose));
         }
         for body2 in 1..after.len() {
             for body1 in 0..body2 {
@@ -67,8 +69,6 @@ impl Audit {
 
     /// The narrow phase worked on the poses before the step.
     fn count_ghosts(&mut self, scene: &Scene, stage: &Stage, before: &[Pose]) {
-        let (low, high) = scene.ring.mesh.bounds();
-        let apart = GHOST_SHARE * (high - low).max_element();
         self.last = (0, 0);
         for pair in stage
             .world
@@ -80,13 +80,25 @@ impl Audit {
             let [Some(body1), Some(body2)] = bodies else {
                 continue;
             };
-            let [surface1, surface2] = [body1, body2].map(|b| &scene.model(b).surface);
-            let near = query::contact(&before[body1], surface1, &before[body2], surface2, apart);
+            let ghost = !scene.near(body1, &before[body1], body2, &before[body2]);
             self.last.0 += 1;
-            self.last.1 += matches!(near, Ok(None)) as usize;
+            self.last.1 += ghost as usize;
         }
         self.contacts += self.last.0;
         self.ghosts += self.last.1;
+    }
+
+    /// Counts the rings that touch nothing. To be called with the last poses.
+    pub fn count_floating(&mut self, scene: &Scene, poses: &[Pose]) {
+        let floats = |ring: &usize| {
+            let lowest = scene.lowest(*ring, &poses[*ring]);
+            let others = (0..poses.len()).filter(|other| other != ring);
+            lowest > scene.touching_distance()
+                && !others
+                    .into_iter()
+                    .any(|other| scene.near(*ring, &poses[*ring], other, &poses[other]))
+        };
+        self.floating = (0..scene.starts.len()).filter(floats).count();
     }
 
     /// The checks that failed, in words: all bodies above the ground, none through another.
@@ -98,6 +110,9 @@ impl Audit {
         if self.lowest < -0.02 {
             failures.push(format!("a ring is {} m under the ground", -self.lowest));
         }
+        if self.floating > 0 {
+            failures.push(format!("{} rings float in the air", self.floating));
+        }
         if self.crossings > 0 {
             failures.push(format!("inner lines crossed {} times", self.crossings));
         }
@@ -108,6 +123,27 @@ impl Audit {
             ));
         }
         failures
+    }
+}
+
+impl Scene {
+    /// Height of a body's lowest vertex.
+    fn lowest(&self, body: usize, pose: &Pose) -> Real {
+        let vertices = self.model(body).mesh.vertices.iter();
+        let heights = vertices.map(|v| pose.transform_point(*v).y);
+        heights.fold(Real::MAX, Real::min)
+    }
+
+    fn touching_distance(&self) -> Real {
+        let (low, high) = self.ring.mesh.bounds();
+        APART_SHARE * (high - low).max_element()
+    }
+
+    /// Whether the triangles of two bodies are near enough to touch.
+    fn near(&self, body1: usize, pose1: &Pose, body2: usize, pose2: &Pose) -> bool {
+        let [surface1, surface2] = [body1, body2].map(|b| &self.model(b).surface);
+        let contact = query::contact(pose1, surface1, pose2, surface2, self.touching_distance());
+        contact.expect("triangle meshes are supported").is_some()
     }
 }
 

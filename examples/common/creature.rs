@@ -17,7 +17,7 @@ type Limb = Vec<[Real; 4]>;
 
 /// The creature: one closed mesh, and the bones that it grew on.
 pub fn creature() -> (Mesh, Skeleton) {
-    let limbs: Vec<Vec<Bone>> = limbs().iter().map(|limb| bones_of(limb)).collect();
+    let limbs: Vec<Vec<Bone>> = limbs().iter().map(bones_of).collect();
     let skeleton = Skeleton::new(limbs.concat());
     let ends = skeleton.bones().iter().flat_map(|b| b.ends);
     let (low, high) = ends.fold((Vector::ZERO, Vector::ZERO), |(low, high), p| {

@@ -133,6 +133,8 @@ impl Scene {
             run.asleep_after = stage.all_sleep().then_some(run.milliseconds.len());
             progress();
         }
+        run.audit
+            .count_floating(self, &run.history[run.milliseconds.len()]);
         run
     }
 }
@@ -158,9 +160,9 @@ impl Stage {
 }
 
 impl Run {
-    /// The `share` quantile of the milliseconds per step.
-    pub fn quantile(&self, share: f64) -> f64 {
-        let mut sorted = self.milliseconds.clone();
+    /// The `share` quantile of the milliseconds per step, over the first `steps`.
+    pub fn quantile(&self, steps: usize, share: f64) -> f64 {
+        let mut sorted = self.milliseconds[..steps].to_vec();
         sorted.sort_by(f64::total_cmp);
         sorted[((sorted.len() - 1) as f64 * share).round() as usize]
     }

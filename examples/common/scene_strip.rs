@@ -33,7 +33,7 @@ pub fn draw(scene: &Scene, runs: &[(&str, &Run)], shown: &[usize], width: usize)
 fn picture(scene: &Scene, name: &str, run: &Run, step: usize, width: usize) -> Image {
     let camera = Camera {
         eye: Vector::new(3.4, 4.4, 7.6),
-        target: Vector::new(0.0, 1.3, 0.0),
+        target: Vector::new(0.1, 1.2, 0.1),
         field_of_view: 0.66,
     };
     let bodies = run.poses_after(step).iter().enumerate();
@@ -44,7 +44,7 @@ fn picture(scene: &Scene, name: &str, run: &Run, step: usize, width: usize) -> I
     let dot = width / 240;
     image.label(name, [6 * dot, 6 * dot], dot);
     let step = step.min(run.milliseconds.len());
-    image.label(&format!("STEP {step}"), [6 * dot, 16 * dot], dot);
+    image.label(&format!("STEP {step}"), [6 * dot, 15 * dot], dot);
     image
 }
 

@@ -32,9 +32,14 @@ pub fn tile(rows: &[Vec<Image>]) -> Image {
 }
 
 impl Image {
-    /// Writes a label, its upper left corner at `x`, `y`, each dot of the font `dot` pixels wide.
+    /// Writes a label on a bright plate, its upper left corner at `x`, `y`, each dot of the font
+    /// `dot` pixels wide.
     pub fn label(&mut self, text: &str, [x, y]: [usize; 2], dot: usize) {
         const INK: [u8; 3] = [28, 34, 44];
+        let plate = [(text.chars().count() * 6 + 1) * dot, 9 * dot];
+        for k in 0..plate[0] * plate[1] {
+            self.brighten([x + k % plate[0] - dot, y + k / plate[0] - dot]);
+        }
         for (place, character) in text.chars().enumerate() {
             for (column, bits) in glyph(character).unwrap_or_default().into_iter().enumerate() {
                 for row in (0..7).filter(|row| bits >> row & 1 == 1) {
@@ -44,6 +49,14 @@ impl Image {
                     }
                 }
             }
+        }
+    }
+
+    /// Goes most of the way to white.
+    fn brighten(&mut self, [x, y]: [usize; 2]) {
+        if x < self.width && y < self.height {
+            let pixel = &mut self.pixels[y * self.width + x];
+            *pixel = pixel.map(|c| 255 - (255 - c) / 4);
         }
     }
 
