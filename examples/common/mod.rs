@@ -13,6 +13,7 @@ pub mod progress;
 pub mod render;
 pub mod scene;
 pub mod scene_strip;
+pub mod scene_table;
 pub mod skeleton;
 pub mod strip;
 pub mod table;
