@@ -22,6 +22,7 @@ use common::scene_strip::draw;
 use common::scene_table::table;
 use common::skeleton::Skeleton;
 use rapier3d::prelude::*;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -39,7 +40,7 @@ struct Options {
 fn options() -> Result<Options, String> {
     let mut arguments = Arguments::from_env();
     let options = Options {
-        steps: arguments.value("--steps")?.unwrap_or(1500),
+        steps: arguments.value("--steps")?.map_or(1500, NonZeroUsize::get),
         out: arguments
             .value("--out")?
             .unwrap_or("target/falling_rings".into()),
