@@ -1,0 +1,19 @@
+//! What the examples share: meshes made in code, a small renderer, checks against the true shapes.
+//! Each example uses a part of it.
+#![allow(dead_code)]
+
+pub mod arguments;
+pub mod audit;
+pub mod creature;
+pub mod font;
+pub mod isosurface;
+pub mod light;
+pub mod mesh;
+pub mod progress;
+pub mod render;
+pub mod scene;
+pub mod scene_strip;
+pub mod scene_table;
+pub mod skeleton;
+pub mod strip;
+pub mod table;
