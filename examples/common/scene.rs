@@ -19,14 +19,13 @@ pub struct Model {
 }
 
 impl Model {
-    /// Pairs a mesh, which must be closed, with its skeleton.
-    pub fn new(mesh: Mesh, skeleton: Skeleton) -> Result<Self, String> {
-        mesh.check_closed()?;
-        Ok(Self {
+    /// Pairs a mesh with its skeleton.
+    pub fn new(mesh: Mesh, skeleton: Skeleton) -> Self {
+        Self {
             surface: mesh.to_parry(),
             mesh,
             skeleton,
-        })
+        }
     }
 }
 
@@ -165,6 +164,19 @@ impl Run {
         let mut sorted = self.milliseconds[..steps].to_vec();
         sorted.sort_by(f64::total_cmp);
         sorted[((sorted.len() - 1) as f64 * share).round() as usize]
+    }
+
+    /// The checks that failed, in words: all rings above the ground, none through another body, all
+    /// on something and asleep in the end.
+    pub fn failures(&self) -> Vec<String> {
+        let mut failures = self.audit.failures();
+        if self.asleep_after.is_none() {
+            failures.push(format!(
+                "not all sleep after {} steps",
+                self.milliseconds.len()
+            ));
+        }
+        failures
     }
 
     /// Poses after a step, or at the end where there were fewer.

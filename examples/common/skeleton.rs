@@ -4,6 +4,7 @@
 use rapier3d::parry::query::details::closest_points_segment_segment_with_locations_nD;
 use rapier3d::parry::shape::SegmentPointLocation;
 use rapier3d::prelude::{Pose, Real, Vector};
+use rapier3d_medial::MedialMesh;
 use std::f32::consts::TAU;
 
 /// Two spheres and all between them: a tapered capsule.
@@ -77,6 +78,20 @@ impl Skeleton {
             radii: [minor; 2],
         };
         Self::new((0..sides).map(side).collect())
+    }
+
+    /// The edges of a medial mesh where their spheres are at least `thinnest` in radius.
+    pub fn of_medial(mesh: &MedialMesh, thinnest: Real) -> Self {
+        let bone = |edge: &[u32; 2]| {
+            let [start, end] = edge.map(|i| mesh.spheres()[i as usize]);
+            Bone {
+                ends: [start.center, end.center],
+                radii: [start.radius, end.radius],
+            }
+        };
+        let bones = mesh.edges().iter().map(bone);
+        let thick = |bone: &Bone| bone.radii.iter().all(|r| *r >= thinnest);
+        Self::new(bones.filter(thick).collect())
     }
 
     /// The bones.
