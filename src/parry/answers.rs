@@ -8,7 +8,7 @@ use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{PoisonError, RwLock};
+use std::sync::{Mutex, PoisonError, RwLock};
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Key {
@@ -50,6 +50,7 @@ pub struct Answers {
     casts: AtomicU64,
     nodes: AtomicU64,
     tests: AtomicU64,
+    missed: Mutex<Vec<[u64; 2]>>,
 }
 
 impl Answers {
@@ -82,6 +83,10 @@ impl Answers {
         drop(known);
         let (contacts, counts) = crate::pair::contacts(mesh1, mesh2, pos12, prediction);
         self.misses.fetch_add(1, Ordering::Relaxed);
+        self.missed
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push([mesh1.instance_id(), mesh2.instance_id()]);
         self.count(counts.nodes, counts.tests);
         with(&PairResult { contacts, counts })
     }
@@ -95,6 +100,11 @@ impl Answers {
     fn count(&self, nodes: u32, tests: u32) {
         self.nodes.fetch_add(nodes.into(), Ordering::Relaxed);
         self.tests.fetch_add(tests.into(), Ordering::Relaxed);
+    }
+
+    /// Instance ids of the pairs that missed since the last call.
+    pub fn take_missed(&self) -> Vec<[u64; 2]> {
+        std::mem::take(&mut *self.missed.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Work since the last call, and starts counting anew.

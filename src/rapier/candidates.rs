@@ -1,6 +1,7 @@
 //! Which pairs of medial colliders may need manifolds in this step: sweep and prune over their boxes
 //! at the start of the step.
 
+use super::recycled::Recycled;
 use crate::batch::PairJob;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
@@ -48,14 +49,24 @@ impl Item<'_> {
     }
 }
 
-/// Jobs for all near pairs of medial colliders that the narrow phase may ask for: at least one of
-/// them dynamic and awake, not on the same body, groups compatible. The order of the two is the
-/// narrow phase's (lower collider index first).
-pub fn jobs(
+/// Near pairs of medial colliders, and of them those that the narrow phase will ask for.
+#[derive(Default)]
+pub struct Candidates {
+    /// How many near pairs there are.
+    pub pairs: usize,
+    /// Those whose relative pose changed too much for rapier to recycle their contacts.
+    pub jobs: Vec<PairJob>,
+}
+
+/// Finds all near pairs of medial colliders: at least one of them dynamic and awake, not on the same
+/// body, groups compatible. The order of the two is the narrow phase's (lower collider index
+/// first).
+pub fn find(
     parameters: &IntegrationParameters,
     bodies: &RigidBodySet,
     colliders: &ColliderSet,
-) -> Vec<PairJob> {
+    recycled: &mut Recycled,
+) -> Candidates {
     let prediction = parameters.prediction_distance();
     let mut items: Vec<Item> = colliders
         .iter_enabled()
@@ -82,18 +93,27 @@ pub fn jobs(
         })
         .collect();
     items.sort_by(|a, b| a.aabb.mins.x.total_cmp(&b.aabb.mins.x));
-    let mut jobs = Vec::new();
+    let mut found = Candidates::default();
+    recycled.begin(parameters);
     for (i, a) in items.iter().enumerate() {
         for b in &items[i + 1..] {
             if b.aabb.mins.x > a.aabb.maxs.x {
                 break;
             }
-            if wanted(a, b) {
-                jobs.push(job(a, b, prediction));
+            if !wanted(a, b) {
+                continue;
+            }
+            found.pairs += 1;
+            let (x, y) = in_order(a, b);
+            let job = job(x, y, prediction);
+            let hooked = !(x.collider.active_hooks() | y.collider.active_hooks()).is_empty();
+            let rotations = [x.pose.rotation, y.pose.rotation];
+            if recycled.needs_update(&job, rotations) || hooked {
+                found.jobs.push(job);
             }
         }
     }
-    jobs
+    found
 }
 
 fn wanted(a: &Item, b: &Item) -> bool {
@@ -111,12 +131,16 @@ fn wanted(a: &Item, b: &Item) -> bool {
         && !b.collider.is_sensor()
 }
 
-fn job(a: &Item, b: &Item, prediction: Real) -> PairJob {
-    let (x, y) = if a.handle.into_raw_parts().0 < b.handle.into_raw_parts().0 {
+/// In the narrow phase's order.
+fn in_order<'a, 'b>(a: &'a Item<'b>, b: &'a Item<'b>) -> (&'a Item<'b>, &'a Item<'b>) {
+    if a.handle.into_raw_parts().0 < b.handle.into_raw_parts().0 {
         (a, b)
     } else {
         (b, a)
-    };
+    }
+}
+
+fn job(x: &Item, y: &Item, prediction: Real) -> PairJob {
     PairJob {
         mesh1: x.mesh.clone(),
         mesh2: y.mesh.clone(),

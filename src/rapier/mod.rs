@@ -3,6 +3,7 @@
 pub mod candidates;
 pub mod collider;
 pub mod pipeline;
+mod recycled;
 pub mod report;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};

@@ -1,6 +1,7 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
 use super::candidates;
+use super::recycled::Recycled;
 use super::report::StepReport;
 use crate::batch;
 use crate::math::{Real, Vector};
@@ -33,6 +34,7 @@ pub struct MedialOptions {}
 #[derive(Default)]
 pub struct MedialPipeline {
     answers: Arc<Answers>,
+    recycled: Recycled,
 }
 
 impl MedialPipeline {
@@ -115,15 +117,17 @@ impl MedialPipeline {
         let mut report = StepReport::default();
         let clock = Instant::now();
         report.medial_colliders = candidates::make_unique(colliders);
-        let jobs = candidates::jobs(parameters, bodies, colliders);
-        let results = batch::cpu::run(&jobs);
-        report.pairs = jobs.len();
-        for result in &results {
+        let found = candidates::find(parameters, bodies, colliders, &mut self.recycled);
+        let results = batch::cpu::run(&found.jobs);
+        report.pairs = found.pairs;
+        report.jobs = found.jobs.len();
+        for (job, result) in found.jobs.iter().zip(&results) {
+            self.recycled.set_touching(job, !result.contacts.is_empty());
             report.contacts += result.contacts.len();
             report.culled_nodes += u64::from(result.counts.nodes);
             report.elementary_tests += u64::from(result.counts.tests);
         }
-        self.answers.replace(&jobs, results);
+        self.answers.replace(&found.jobs, results);
         self.answers.take_counts();
         report.batch_seconds = clock.elapsed().as_secs_f64();
 
@@ -144,6 +148,9 @@ impl MedialPipeline {
             events,
         );
         report.step_seconds = clock.elapsed().as_secs_f64();
+        for ids in self.answers.take_missed() {
+            self.recycled.forget(ids);
+        }
         let counted = self.answers.take_counts();
         report.cache_hits = counted.hits;
         report.cache_misses = counted.misses;

@@ -6,8 +6,11 @@
 pub struct StepReport {
     /// Medial colliders in the world that are enabled.
     pub medial_colliders: usize,
-    /// Pairs of medial colliders whose boxes were near at the start: the jobs of the batch.
+    /// Pairs of medial colliders, one of them awake, whose boxes were near at the start.
     pub pairs: usize,
+    /// Of these, the pairs whose contacts were computed in the batch; the others had moved too
+    /// little, and rapier recycles theirs.
+    pub jobs: usize,
     /// Sphere pairs that the batch found within the prediction distance.
     pub contacts: usize,
     /// Manifold requests of the narrow phase that the batch had answered.
