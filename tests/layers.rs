@@ -34,11 +34,10 @@ const LAYERS: [(&str, &[&str]); 8] = [
 ];
 
 /// Libraries that only one folder may name, as `name::`.
-const CONFINED: [(&str, &str); 5] = [
+const CONFINED: [(&str, &str); 4] = [
     ("rapier3d", "src/rapier"),
     ("wgpu", "src/batch/gpu"),
     ("robust", "src/build"),
-    ("nalgebra", "src/build"),
     ("QueryDispatcher", "src/parry"),
 ];
 
