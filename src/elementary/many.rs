@@ -2,7 +2,7 @@
 //! next query as soon as its own is finished. Without that a group of eight takes as long as its
 //! slowest member, half as long again as the mean.
 //!
-//! On x86-64 with AVX the lanes are one register ([`crate::math::lane_avx`], chosen at run time),
+//! On x86-64 with AVX the lanes are one register (`math::lane_avx`, chosen at run time),
 //! elsewhere what [`wide`] makes of them. Both, and the scalar [`super::bracket::bracket`], give the
 //! same bits.
 

@@ -93,19 +93,19 @@ pub fn contacts(
 }
 
 /// A relative pose in double precision, its rotation normalised.
-struct Placement {
+pub(super) struct Placement {
     rotation: [Vec3<f64>; 3],
     translation: Vec3<f64>,
 }
 
 impl Placement {
-    fn new(pose: &Pose) -> Self {
+    pub(super) fn new(pose: &Pose) -> Self {
         Self {
             rotation: crate::math::motion::rotation_columns(pose.rotation),
             translation: Vec3::from_vector(pose.translation),
         }
     }
-    fn point(&self, local: Vector) -> Vec3<f64> {
+    pub(super) fn point(&self, local: Vector) -> Vec3<f64> {
         let v = Vec3::<f64>::from_vector(local);
         let [x, y, z] = self.rotation;
         self.translation + x * v.x + y * v.y + z * v.z
@@ -118,7 +118,7 @@ impl Placement {
 }
 
 /// Two primitives in the first body's frame.
-struct PrimitivePair<'a> {
+pub(super) struct PrimitivePair<'a> {
     indices: [u32; 2],
     balls: [[Ball; 3]; 2],
     shares: [Share; 2],
@@ -126,7 +126,7 @@ struct PrimitivePair<'a> {
 }
 
 impl<'a> PrimitivePair<'a> {
-    fn new(
+    pub(super) fn new(
         body1: &impl Volumes,
         body2: &impl Volumes,
         indices: [u32; 2],
@@ -146,7 +146,8 @@ impl<'a> PrimitivePair<'a> {
         }
     }
 
-    fn contacts(&self, margin: f64, found: &mut Vec<SpherePair>, counts: &mut Counts) {
+    /// Adds the sphere pairs within `margin`.
+    pub(super) fn contacts(&self, margin: f64, found: &mut Vec<SpherePair>, counts: &mut Counts) {
         if let Some(crossing) = self.crossing() {
             self.push_crossing(crossing, found);
             return;

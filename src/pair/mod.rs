@@ -4,9 +4,11 @@
 //! distance itself is always left to [`crate::elementary`].
 
 pub mod contacts;
+pub mod distance;
 pub mod first_contact;
 pub mod volumes;
 
 pub use contacts::{SpherePair, contacts};
+pub use distance::nearest_spheres;
 pub use first_contact::first_contact;
 pub use volumes::{Soup, Volumes};

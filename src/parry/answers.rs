@@ -97,7 +97,8 @@ impl Answers {
         self.count(nodes, tests);
     }
 
-    fn count(&self, nodes: u32, tests: u32) {
+    /// Counts work of other queries.
+    pub fn count(&self, nodes: u32, tests: u32) {
         self.nodes.fetch_add(nodes.into(), Ordering::Relaxed);
         self.tests.fetch_add(tests.into(), Ordering::Relaxed);
     }

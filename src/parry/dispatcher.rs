@@ -6,6 +6,7 @@ use super::cast::Cast;
 use super::manifolds::{ensure_workspace, write_manifolds};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
+use crate::pair::{SpherePair, nearest_spheres};
 use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{
     ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
@@ -15,7 +16,7 @@ use parry3d::query::{
 use parry3d::shape::Shape;
 use std::sync::Arc;
 
-/// Answers contact manifolds of two medial meshes and shape casts of one with anything. Chain it
+/// Answers all queries of two medial meshes, and shape casts of one with anything. Chain it
 /// before the default: `MedialDispatcher::default().chain(DefaultQueryDispatcher)`.
 #[derive(Clone, Default)]
 pub struct MedialDispatcher {
@@ -54,6 +55,23 @@ impl MedialDispatcher {
     }
 }
 
+impl MedialDispatcher {
+    fn nearest(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        max_distance: Real,
+    ) -> Result<Option<SpherePair>, Unsupported> {
+        let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
+            return Err(Unsupported);
+        };
+        let (nearest, counts) = nearest_spheres(mesh1, mesh2, pos12, max_distance);
+        self.answers.count(counts.nodes, counts.tests);
+        Ok(nearest)
+    }
+}
+
 fn medial(shape: &dyn Shape) -> Option<&MedialMesh> {
     shape.as_shape::<MedialMesh>()
 }
@@ -61,40 +79,64 @@ fn medial(shape: &dyn Shape) -> Option<&MedialMesh> {
 impl QueryDispatcher for MedialDispatcher {
     fn intersection_test(
         &self,
-        _pos12: &Pose,
-        _g1: &dyn Shape,
-        _g2: &dyn Shape,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        Err(Unsupported)
+        let nearest = self.nearest(pos12, g1, g2, 0.0)?;
+        Ok(match nearest {
+            Some(c) => {
+                ShapeIntersection::new(true).with_subshapes(c.primitives[0], c.primitives[1])
+            }
+            None => ShapeIntersection::new(false),
+        })
     }
 
     fn distance(
         &self,
-        _pos12: &Pose,
-        _g1: &dyn Shape,
-        _g2: &dyn Shape,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        Err(Unsupported)
+        let nearest = self.nearest(pos12, g1, g2, Real::MAX)?.ok_or(Unsupported)?;
+        Ok(ShapeDistance {
+            distance: nearest.distance.max(0.0),
+            subshape1: nearest.primitives[0],
+            subshape2: nearest.primitives[1],
+        })
     }
 
     fn contact(
         &self,
-        _pos12: &Pose,
-        _g1: &dyn Shape,
-        _g2: &dyn Shape,
-        _prediction: Real,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        Err(Unsupported)
+        let nearest = self.nearest(pos12, g1, g2, prediction)?;
+        Ok(nearest.map(|c| Contact {
+            point1: c.points[0],
+            point2: c.points[1],
+            normal1: c.normal,
+            normal2: pos12.rotation.inverse() * -c.normal,
+            dist: c.distance,
+            subshape1: c.primitives[0],
+            subshape2: c.primitives[1],
+        }))
     }
 
     fn closest_points(
         &self,
-        _pos12: &Pose,
-        _g1: &dyn Shape,
-        _g2: &dyn Shape,
-        _max_dist: Real,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        Err(Unsupported)
+        Ok(match self.nearest(pos12, g1, g2, max_dist)? {
+            None => ClosestPoints::Disjoint,
+            Some(c) if c.distance <= 0.0 => ClosestPoints::Intersecting,
+            Some(c) => ClosestPoints::WithinMargin(c.points[0], c.points[1]),
+        })
     }
 
     fn cast_shapes(

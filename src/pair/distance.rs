@@ -1,0 +1,101 @@
+//! Signed distance of two bodies at fixed poses, and the sphere pair that attains it: best-first over
+//! their trees, nearest node pair first.
+//!
+//! For bodies that overlap it is the most negative distance of any primitive pair: how deep the
+//! nearest spheres are in each other, not how far the bodies must move apart.
+
+use super::contacts::{Placement, PrimitivePair, SpherePair};
+use super::first_contact::Counts;
+use super::volumes::Volumes;
+use crate::math::lane::Vec3;
+use crate::math::{Pose, Real};
+use crate::medial::tree::Below;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// The nearest sphere pair of two bodies at relative pose `pos12` (second in first), if it is within
+/// `max_distance`. Computed in double precision. `None` also for a pose that is not finite.
+pub fn nearest_spheres(
+    body1: &impl Volumes,
+    body2: &impl Volumes,
+    pos12: &Pose,
+    max_distance: Real,
+) -> (Option<SpherePair>, Counts) {
+    let mut counts = Counts::default();
+    if !pos12.is_finite() || max_distance.is_nan() {
+        return (None, counts);
+    }
+    let place = Placement::new(pos12);
+    let mut best: Option<SpherePair> = None;
+    let mut limit = f64::from(max_distance);
+    let mut heap = BinaryHeap::new();
+    let entry = |i: u32, j: u32| {
+        let (a, b) = (body1.bound(i), body2.bound(j));
+        let y = place.point(b.0) - Vec3::from_vector(a.0);
+        Entry {
+            bound: y.length() * (1.0 - 1.0e-12) - f64::from(a.1) - f64::from(b.1),
+            nodes: [i, j],
+            first_is_larger: a.1 >= b.1,
+        }
+    };
+    for i in 0..body1.roots() {
+        heap.extend((0..body2.roots()).map(|j| entry(i, j)));
+    }
+    let mut found = Vec::new();
+    while let Some(e) = heap.pop() {
+        if e.bound > limit {
+            break;
+        }
+        counts.nodes += 1;
+        let [i, j] = e.nodes;
+        match (body1.below(i), body2.below(j)) {
+            (Below::Primitive(p), Below::Primitive(q)) => {
+                found.clear();
+                let pair = PrimitivePair::new(body1, body2, [p, q], &place);
+                pair.contacts(limit, &mut found, &mut counts);
+                for c in &found {
+                    if f64::from(c.distance) <= limit {
+                        limit = c.distance.into();
+                        best = Some(*c);
+                    }
+                }
+            }
+            (Below::Nodes(c, d), other)
+                if e.first_is_larger || matches!(other, Below::Primitive(_)) =>
+            {
+                heap.extend([entry(c, j), entry(d, j)]);
+            }
+            (_, Below::Nodes(c, d)) => heap.extend([entry(i, c), entry(i, d)]),
+            // The guard above takes every pair with nodes on the left and none on the right.
+            (Below::Nodes(..), Below::Primitive(_)) => {}
+        }
+    }
+    (best, counts)
+}
+
+struct Entry {
+    bound: f64,
+    nodes: [u32; 2],
+    first_is_larger: bool,
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Entry {}
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Entry {
+    /// Reversed: `BinaryHeap` pops the largest.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other
+            .bound
+            .total_cmp(&self.bound)
+            .then(other.nodes.cmp(&self.nodes))
+    }
+}
