@@ -87,6 +87,11 @@ fn merge(sum: &mut Tallies, tallies: Tallies) {
 
 fn print_row(name: &str, subject: Subject, tally: &mut Tally) {
     let (early, width) = (tally.early(), tally.width());
+    // The paper's iteration does not tell overlap from contact.
+    let named = match subject {
+        Subject::Paper => "-".to_owned(),
+        _ => tally.misnamed.to_string(),
+    };
     let per_query = |sum: f64| sum / tally.queries.max(1) as f64;
     println!(
         "{name:17}{:7}{:>9} {:5.1} {:>7}{:>7}{:>7}{:>7}{:>7}  {:7.1e} {:7.1e}  {:7.1e} {:7.1e}  {:5.1}{:>5} {:>7.0}",
@@ -96,7 +101,7 @@ fn print_row(name: &str, subject: Subject, tally: &mut Tally) {
         tally.missed,
         tally.late,
         tally.false_hits,
-        tally.misnamed,
+        named,
         tally.unresolved,
         early[0],
         early[1],
