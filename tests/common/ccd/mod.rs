@@ -1,0 +1,11 @@
+//! The judge of continuous collision queries: an oracle that shares nothing with the crate,
+//! families of hard queries, and verdicts. Included by tests and by the example `hard_cases`.
+
+pub mod contact;
+pub mod distance;
+pub mod families;
+pub mod judge;
+pub mod motion;
+pub mod rng;
+pub mod shapes;
+pub mod subject;

@@ -1,0 +1,160 @@
+//! Hands queries to the crate under test, in each precision, and reads its answers.
+
+use super::judge::Answer;
+use super::motion::{Ball, Motion, Query, Rigid};
+use nalgebra::Vector3;
+use parry3d::query::NonlinearRigidMotion;
+use rapier3d_medial::MedialSphere;
+use rapier3d_medial::elementary::{self, MovingSphere, Toi, ToiOptions};
+use rapier3d_medial::math::{Pose, Rotation, Vector};
+use std::time::{Duration, Instant};
+
+/// What is under test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The certified query in single precision.
+    Single,
+    /// The certified query in double precision.
+    Double,
+    /// The paper's iteration in double precision; straight paths only.
+    Paper,
+}
+
+impl Subject {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Single, Self::Double, Self::Paper];
+
+    /// The tolerances it is asked for, with bodies of the given length. For the paper's iteration
+    /// it is the distance at which it stops.
+    pub fn options(self, size: f64) -> ToiOptions {
+        let (tolerance, time_tolerance) = match self {
+            Self::Single => (1.0e-4, 1.0e-6),
+            Self::Double => (1.0e-9, 1.0e-10),
+            Self::Paper => (1.0e-6, 1.0e-6),
+        };
+        let mut options = ToiOptions::default();
+        options.tolerance = (tolerance * size) as f32;
+        options.time_tolerance = time_tolerance;
+        options
+    }
+
+    /// By how much its contact time may exceed the true one: nothing where that is guaranteed.
+    pub fn late_by(self) -> f64 {
+        match self {
+            Self::Single | Self::Double => 0.0,
+            Self::Paper => 1.0e-3,
+        }
+    }
+
+    /// The answer to a query. `None` where the subject does not take such queries.
+    pub fn answer(self, query: &Query, options: &ToiOptions) -> Option<Answer> {
+        if self == Self::Single {
+            let (toi, time) = single_toi(query, options);
+            return Some(Answer {
+                status: toi.status,
+                lower: toi.lower.into(),
+                upper: toi.upper.into(),
+                tolerance: toi.tolerance.into(),
+                iterations: toi.iterations,
+                time,
+            });
+        }
+        let [a, b] = &query.balls;
+        let options = widen(options);
+        let (toi, time) = match (self, &query.motion) {
+            (Self::Paper, Motion::Rigid(..)) => return None,
+            (Self::Paper, Motion::Straight) => {
+                let (a, b) = (each(a, double), each(b, double));
+                timed(|| elementary::f64::alternating(&a, &b, &options))
+            }
+            (_, Motion::Straight) => {
+                let (a, b) = (each(a, double), each(b, double));
+                timed(|| elementary::f64::first_contact(&a, &b, &options))
+            }
+            (_, Motion::Rigid(motions, seconds)) => {
+                let (a, b) = (each(a, medial), each(b, medial));
+                let [m1, m2] = motions.each_ref().map(rigid);
+                let ask = elementary::f64::first_contact_rigid;
+                timed(|| ask(&a, &m1, &b, &m2, *seconds, &options))
+            }
+        };
+        Some(Answer {
+            status: toi.status,
+            lower: toi.lower,
+            upper: toi.upper,
+            tolerance: toi.tolerance,
+            iterations: toi.iterations,
+            time,
+        })
+    }
+}
+
+/// The full answer in single precision, and how long it took.
+pub fn single_toi(query: &Query, options: &ToiOptions) -> (Toi, Duration) {
+    let [a, b] = &query.balls;
+    match &query.motion {
+        Motion::Straight => {
+            let (a, b) = (each(a, single), each(b, single));
+            timed(|| elementary::first_contact(&a, &b, options))
+        }
+        Motion::Rigid(motions, seconds) => {
+            let (a, b) = (each(a, medial), each(b, medial));
+            let [m1, m2] = motions.each_ref().map(rigid);
+            let seconds = *seconds as f32;
+            timed(|| elementary::first_contact_rigid(&a, &m1, &b, &m2, seconds, options))
+        }
+    }
+}
+
+fn timed<T>(call: impl FnOnce() -> T) -> (T, Duration) {
+    let start = Instant::now();
+    let answer = call();
+    (answer, start.elapsed())
+}
+
+fn each<T>(balls: &[Ball], convert: impl Fn(&Ball) -> T) -> Vec<T> {
+    balls.iter().map(convert).collect()
+}
+
+fn vector(v: &Vector3<f64>) -> Vector {
+    Vector::new(v.x as f32, v.y as f32, v.z as f32)
+}
+
+fn single(ball: &Ball) -> MovingSphere {
+    MovingSphere {
+        center: vector(&ball.center),
+        radius: ball.radius as f32,
+        displacement: vector(&ball.displacement),
+    }
+}
+
+fn double(ball: &Ball) -> elementary::f64::MovingSphere {
+    elementary::f64::MovingSphere {
+        center: ball.center.into(),
+        radius: ball.radius,
+        displacement: ball.displacement.into(),
+    }
+}
+
+fn medial(ball: &Ball) -> MedialSphere {
+    MedialSphere::new(vector(&ball.center), ball.radius as f32)
+}
+
+fn rigid(motion: &Rigid) -> NonlinearRigidMotion {
+    let [x, y, z, w] = motion.rotation.map(|q| q as f32);
+    NonlinearRigidMotion::new(
+        Pose::from_parts(vector(&motion.translation), Rotation::from_xyzw(x, y, z, w)),
+        vector(&motion.local_center),
+        vector(&motion.linvel),
+        vector(&motion.angvel),
+    )
+}
+
+fn widen(options: &ToiOptions) -> elementary::f64::ToiOptions {
+    elementary::f64::ToiOptions {
+        tolerance: options.tolerance.into(),
+        time_tolerance: options.time_tolerance.into(),
+        max_iterations: options.max_iterations,
+        target_distance: options.target_distance.into(),
+    }
+}

@@ -1,0 +1,13 @@
+//! Elementary queries, judged by an independent oracle; and the oracle, judged by closed forms.
+
+#[path = "../common/ccd/mod.rs"]
+mod ccd;
+
+mod bad_input;
+mod families;
+mod first_contact;
+mod judge;
+mod oracle;
+mod penetration;
+mod regressions;
+mod witness;
