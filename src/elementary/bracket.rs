@@ -1,7 +1,8 @@
 //! The certified bracket of the first contact, for one elementary test. Source: paper §4.2–4.3 for the two half steps; the certificate is ours.
 //!
 //! # Loop, at `lower`
-//! 1. Nearest spheres at `lower` (paper §4.2, fixed `t`). `S ≤ tolerance`: contact.
+//! 1. Nearest spheres at `lower` (paper §4.2, fixed `t`). `S ≤ tolerance`, rounding included:
+//!    contact.
 //! 2. `upper` falls to the first root of that fixed pair (paper Eq. 4, root `t⁽¹⁾`): a proven
 //!    contact, since the pair is on both bodies.
 //! 3. `lower` rises by the largest of three proven steps: Lipschitz, fixed direction, turning
@@ -15,7 +16,7 @@
 //!   are lost); here a miss is proven for all sphere pairs.
 //! - Its Conditions 1 and 2 (touching at `t0` or `t1`) need no special case.
 
-use super::certificate::{ActiveFace, first_root, fixed_step, free_throughout, turning_step};
+use super::certificate::{ActiveFace, fixed_step, free_throughout, turning_step};
 use super::path::Path;
 use super::test_list::Domain;
 use super::{cone_cone, sphere_slab};
@@ -71,20 +72,24 @@ fn nearest_spheres<L: Lane>(domain: Domain, f: &Family<L>) -> Nearest<L> {
     }
 }
 
-/// First time after `s` at which the fixed sphere pair touches, moving with `y_rate`
-/// (and no acceleration): smaller root of paper Eq. (4)'s parabola. [`NEVER`] if there is none.
+/// First time after `s` at which the fixed sphere pair is in contact, moving with `y_rate` (and no
+/// acceleration): root `t⁽¹⁾` of paper Eq. (4). [`NEVER`] if there is none.
+///
+/// Not from the parabola's discriminant, whose digits are lost when the radii are below
+/// `√EPSILON` of the distance travelled, but from the point of closest approach, and only if the
+/// pair is within `reach` there: a root is a proof of contact.
 #[inline(always)]
-fn fixed_pair_root<L: Lane>(s: &Nearest<L>, y_rate: Vec3<L>) -> L {
+fn fixed_pair_root<L: Lane>(s: &Nearest<L>, y_rate: Vec3<L>, reach: L) -> L {
+    let zero = L::zero();
     let radius = s.length - s.distance;
-    // |y|² − R², without cancellation.
-    let a0 = s.distance * (s.length + radius);
-    let root = first_root(
-        a0.max(L::zero()),
-        L::splat(2.0) * s.y.dot(y_rate),
-        y_rate.length_sq(),
-    );
-    let possible = L::zero().le(radius);
-    L::select(possible, root, L::splat(NEVER))
+    let speed_sq = y_rate.length_sq().max(L::splat(L::TINY));
+    let closest = -(s.y.dot(y_rate) / speed_sq);
+    let across = (s.y + y_rate * closest).length_sq();
+    let inside = radius * radius - across;
+    let root = closest - (inside.max(zero) / speed_sq).sqrt();
+    let distance = (s.y + y_rate * root).length() - radius;
+    let exists = zero.le(radius) & zero.le(inside) & zero.le(root) & distance.le(reach);
+    L::select(exists, root, L::splat(NEVER))
 }
 
 /// A bracket on its way, in every lane.
@@ -155,7 +160,8 @@ impl<L: Lane> Running<L> {
         self.fresh = L::Mask::splat(false);
         b.iterations += 1;
         b.nearest = select_nearest(active, s, b.nearest);
-        let touching = active & s.distance.le(b.tolerance);
+        let reach = b.tolerance - slack * L::splat(0.5);
+        let touching = active & s.distance.le(reach);
         b.contact = b.contact | touching;
         b.upper = L::select(touching, lower, b.upper);
         let face = ActiveFace::new(domain, &f, &s, &c.rate);
@@ -170,7 +176,7 @@ impl<L: Lane> Running<L> {
         let (u_rate, v_rate) = (c.rate[1] - c.rate[0], c.rate[2] - c.rate[0]);
         let y_rate = c.rate[0] + u_rate * s.alpha + v_rate * s.beta;
         if !P::CURVED {
-            let root = lower + fixed_pair_root(&s, y_rate);
+            let root = lower + fixed_pair_root(&s, y_rate, reach);
             let sooner = active & root.le(b.upper);
             b.upper = L::select(sooner, root, b.upper);
             self.rooted = self.rooted | sooner;
@@ -194,6 +200,16 @@ impl<L: Lane> Running<L> {
         b.contact = b.contact | closed;
         self.active = active & !closed;
     }
+}
+
+/// Nearest spheres and certified direction at one time.
+#[inline(always)]
+pub fn witness<L: Lane, P: Path<L>>(path: &P, domain: Domain, t: L) -> (Nearest<L>, Vec3<L>) {
+    let c = path.at(t);
+    let f = cone_cone::family(&c.y, path.radius());
+    let s = nearest_spheres(domain, &f);
+    let normal = ActiveFace::new(domain, &f, &s, &c.rate).direction(domain, &f, &s);
+    (s, normal)
 }
 
 /// The certified bracket of one elementary test, in every lane.

@@ -1,7 +1,7 @@
 //! First contact of one pair of primitives: the earliest over its elementary tests, on straight
 //! paths (paper Eqs. 1 to 3) or in exact rigid motion.
 
-use super::bracket::{Bracket, Limits, bracket};
+use super::bracket::{Bracket, Limits, bracket, witness};
 use super::distance::crossing;
 use super::path::{LinearPath, Path, RigidPath};
 use super::test_list::{Domain, ElementaryTest, Share, for_each_test};
@@ -52,8 +52,8 @@ impl<S: Scalar> Earliest<S> {
         }
     }
 
-    /// Runs one more test, up to the earliest contact known. Returns whether an earlier contact is
-    /// still possible.
+    /// Runs one more test, up to the earliest contact known. Returns whether another test may
+    /// still change the answer.
     pub fn test<P: Path<S>>(
         &mut self,
         test: ElementaryTest,
@@ -79,8 +79,13 @@ impl<S: Scalar> Earliest<S> {
         }
         self.lower = self.lower.min(b.lower);
         if b.contact {
+            let deeper = self.found.is_none_or(|(_, f, _)| {
+                b.upper < self.upper || b.nearest.distance < f.nearest.distance
+            });
+            if deeper {
+                self.found = Some((test, b, primitives));
+            }
             self.upper = b.upper;
-            self.found = Some((test, b, primitives));
             if self.status != ToiStatus::Unresolved {
                 self.status = ToiStatus::Contact;
             }
@@ -91,7 +96,30 @@ impl<S: Scalar> Earliest<S> {
             self.status = ToiStatus::Unresolved;
             self.found = self.found.or(Some((test, b, primitives)));
         }
-        limits.start < self.upper
+        // After a contact at the start another test may still find that the bodies overlap.
+        self.status != ToiStatus::Overlapping
+    }
+
+    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness. A
+    /// test that is proven free until then may still be nearer than the one that was found.
+    pub fn settle<P: Path<S>>(&mut self, spheres: [usize; 2], path: impl Fn(&ElementaryTest) -> P) {
+        let Some((_, bracket, primitives)) = self.found else {
+            return;
+        };
+        let mut best: Option<(ElementaryTest, Bracket<S>)> = None;
+        let [a, b] = spheres.map(Share::whole);
+        for_each_test(a, b, |test| {
+            let (nearest, normal) = witness(&path(&test), test.domain, self.lower);
+            if best.is_none_or(|(_, old)| nearest.distance < old.nearest.distance) {
+                let mut settled: Bracket<S> = bracket;
+                settled.lower = self.lower;
+                settled.nearest = nearest;
+                settled.normal = normal;
+                best = Some((test, settled));
+            }
+            true
+        });
+        self.found = best.map(|(test, bracket)| (test, bracket, primitives));
     }
 
     /// Notes that the bodies overlap at the start.
@@ -116,9 +144,10 @@ fn primitives_first_contact<S: Scalar, P: Path<S>>(
         earliest.test(test, &path(&test), [0, 0])
     });
     let crossed = crossing(a, u8::MAX, b).or_else(|| crossing(b, u8::MAX, a));
-    if crossed.is_some_and(|c| -c.radius < target_distance) {
+    if crossed.is_some_and(|c| -c.radius <= target_distance) {
         earliest.overlap_at_start();
     }
+    earliest.settle([a.len(), b.len()], path);
     earliest
 }
 

@@ -89,6 +89,7 @@ pub fn first_contact_counted(
             break;
         }
     }
+    search.settle();
     search.counts.tests = search.earliest.tests;
     let found = search.earliest.found;
     let pose = |side: usize, i: u8, t: Real| {
@@ -280,7 +281,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                 let (pa, pb) = (at_start(0, sa), at_start(1, sb));
                 let crossed =
                     crossing(&pa, share_a.edges, &pb).or_else(|| crossing(&pb, share_b.edges, &pa));
-                if crossed.is_some_and(|c| -c.radius < target) {
+                if crossed.is_some_and(|c| -c.radius <= target) {
                     self.earliest.overlap_at_start();
                     self.earliest.found = None;
                     return false;
@@ -301,6 +302,30 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             open
         });
         open
+    }
+}
+
+impl<A: Volumes, B: Volumes> Search<'_, A, B> {
+    /// Finds the nearest sphere pair of the primitives that meet first.
+    fn settle(&mut self) {
+        let Some((_, _, [i, j])) = self.earliest.found else {
+            return;
+        };
+        let (a, share_a) = self.bodies.0.primitive(i);
+        let (b, share_b) = self.bodies.1.primitive(j);
+        let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
+        let (sa, sb) = (a.map(local), b.map(local));
+        let (motions, target) = (self.motions, self.target);
+        self.earliest
+            .settle([share_a.spheres, share_b.spheres], |test| {
+                RigidPath::new(test, &motions, target, |second, k| {
+                    if second {
+                        sb[k as usize]
+                    } else {
+                        sa[k as usize]
+                    }
+                })
+            });
     }
 }
 
