@@ -235,7 +235,7 @@ impl Description {
     fn text(&self) -> String {
         let [lo, hi] = [self.box_min, self.box_max].map(|[x, y, z]| format!("({x}, {y}, {z})"));
         format!(
-            "spheres     {}\nprimitives  {} ({} slabs, {} cones, {} lone spheres)\n\
+            "spheres     {}\nprimitives  {}: slabs {}, cones {}, lone spheres {}\n\
              volume      {}\nbox         {lo} to {hi}\nthickness   {}\n",
             self.spheres,
             self.primitives,

@@ -45,7 +45,7 @@ fn info_describes_a_mesh() {
     assert!(output.status.success());
     let lines = text(&output.stdout);
     assert!(
-        lines.contains("primitives  16 (0 slabs, 16 cones, 0 lone spheres)"),
+        lines.contains("primitives  16: slabs 0, cones 16, lone spheres 0"),
         "{lines}"
     );
 
