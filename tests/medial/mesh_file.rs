@@ -2,7 +2,6 @@
 
 use rapier3d_medial::BuildError;
 use rapier3d_medial::build::mesh_file::{MeshFormat, TriangleMesh, read, read_bytes};
-use rapier3d_medial::math::Vector;
 use std::path::Path;
 
 pub fn load(bytes: &[u8], format: MeshFormat) -> Result<TriangleMesh, BuildError> {
