@@ -1,0 +1,256 @@
+//! A tree of boxes over the source triangles, in double precision: distance and winding number.
+//!
+//! Nearest point on a triangle: Ericson, Real-Time Collision Detection (2005), §5.1.5. Winding
+//! number: Jacobson et al., "Robust Inside-Outside Segmentation using Generalized Winding
+//! Numbers" (2013), with the far field of Barill et al., "Fast Winding Numbers for Soups and
+//! Clouds" (2018): seen from afar, a group of triangles is one dipole at its centroid, whose
+//! moment is the sum of its area vectors.
+
+use super::bounds::{Bounds, Point, coordinate};
+
+/// Triangles in a leaf. 2 to 8 differ by less than a tenth in time.
+const LEAF: usize = 4;
+
+/// A group is seen as a dipole from beyond this many of its radii. The error of the winding number
+/// is then below 0.05 on the models measured, and a ball is labelled by whether it exceeds ½.
+const FAR: f64 = 2.3;
+
+struct Node {
+    bounds: Bounds,
+    /// Leaf: first triangle. Inner: first of two neighbouring children.
+    first: u32,
+    /// Leaf: number of triangles. Inner: 0.
+    count: u32,
+    dipole: Dipole,
+}
+
+#[derive(Clone, Copy)]
+struct Dipole {
+    center: Point,
+    moment: Point,
+    /// Distance from `center` to the farthest corner of the group.
+    radius: f64,
+}
+
+/// Boxes over triangles; node 0 is the root.
+pub struct TriangleTree {
+    nodes: Vec<Node>,
+    corners: Vec<[Point; 3]>,
+}
+
+impl TriangleTree {
+    /// Builds the tree by halving at the median of the longest spread of the centroids.
+    pub fn new(triangles: impl Iterator<Item = [Point; 3]>) -> Self {
+        let mut items: Vec<(Point, [Point; 3], u32)> = triangles
+            .enumerate()
+            .map(|(i, t)| ((t[0] + t[1] + t[2]) * (1.0 / 3.0), t, i as u32))
+            .collect();
+        let mut tree = Self {
+            nodes: Vec::with_capacity(items.len()),
+            corners: Vec::new(),
+        };
+        tree.nodes.push(Node::empty());
+        tree.build(0, 0, &mut items);
+        tree.corners = items.iter().map(|i| i.1).collect();
+        tree
+    }
+
+    fn build(&mut self, node: usize, first: usize, items: &mut [(Point, [Point; 3], u32)]) {
+        let bounds = Bounds::of(items.iter().flat_map(|i| i.1));
+        let dipole = Dipole::of(items);
+        let leaf = items.len() <= LEAF;
+        let children = self.nodes.len();
+        self.nodes[node] = Node {
+            bounds,
+            first: if leaf { first as u32 } else { children as u32 },
+            count: if leaf { items.len() as u32 } else { 0 },
+            dipole,
+        };
+        if leaf {
+            return;
+        }
+        let axis = Bounds::of(items.iter().map(|i| i.0)).longest_axis();
+        let middle = items.len() / 2;
+        items.select_nth_unstable_by(middle, |a, b| {
+            coordinate(a.0, axis)
+                .total_cmp(&coordinate(b.0, axis))
+                .then(a.2.cmp(&b.2))
+        });
+        self.nodes.push(Node::empty());
+        self.nodes.push(Node::empty());
+        let (left, right) = items.split_at_mut(middle);
+        self.build(children, first, left);
+        self.build(children + 1, first + middle, right);
+    }
+
+    /// Distance to the surface.
+    pub fn distance(&self, p: Point) -> f64 {
+        self.search(p, f64::INFINITY, false).sqrt()
+    }
+
+    /// Whether some triangle is within `distance`.
+    pub fn any_within(&self, p: Point, distance: f64) -> bool {
+        let limit_sq = distance * distance;
+        distance >= 0.0 && self.search(p, limit_sq, true) < f64::INFINITY
+    }
+
+    /// Squared distance to the nearest triangle within the squared distance `limit_sq`, infinite
+    /// if there is none; with `any`, to the first one found.
+    fn search(&self, p: Point, mut limit_sq: f64, any: bool) -> f64 {
+        let mut found = f64::INFINITY;
+        // Halving keeps the depth below 32, and each level leaves one node waiting.
+        let mut stack = [(0.0, 0u32); 64];
+        let mut len = 1;
+        stack[0] = (self.nodes[0].bounds.distance_sq(p), 0);
+        while len > 0 {
+            len -= 1;
+            let (bound_sq, index) = stack[len];
+            if bound_sq > limit_sq {
+                continue;
+            }
+            let node = &self.nodes[index as usize];
+            let first = node.first as usize;
+            if node.count > 0 {
+                for corners in &self.corners[first..first + node.count as usize] {
+                    let distance_sq = (closest_on_triangle(p, corners) - p).length_sq();
+                    if distance_sq <= limit_sq {
+                        limit_sq = distance_sq;
+                        found = distance_sq;
+                        if any {
+                            return found;
+                        }
+                    }
+                }
+                continue;
+            }
+            let left = (self.nodes[first].bounds.distance_sq(p), first as u32);
+            let second = first as u32 + 1;
+            let right = (self.nodes[first + 1].bounds.distance_sq(p), second);
+            let (near, far) = if left.0 <= right.0 {
+                (left, right)
+            } else {
+                (right, left)
+            };
+            stack[len] = far;
+            stack[len + 1] = near;
+            len += 2;
+        }
+        found
+    }
+
+    /// How often the surface winds round `p`: 1 inside a closed outward surface, 0 outside, about
+    /// the share of directions that hit it where it is open.
+    pub fn winding(&self, p: Point) -> f64 {
+        let mut solid_angle = 0.0;
+        let mut stack = vec![0u32];
+        while let Some(index) = stack.pop() {
+            let node = &self.nodes[index as usize];
+            let to = node.dipole.center - p;
+            let distance_sq = to.length_sq();
+            let far = FAR * node.dipole.radius;
+            if distance_sq > far * far {
+                solid_angle += to.dot(node.dipole.moment) / (distance_sq * distance_sq.sqrt());
+                continue;
+            }
+            let first = node.first as usize;
+            if node.count > 0 {
+                let leaf = &self.corners[first..first + node.count as usize];
+                solid_angle += leaf.iter().map(|t| solid_angle_of(p, t)).sum::<f64>();
+            } else {
+                stack.extend([first as u32, first as u32 + 1]);
+            }
+        }
+        solid_angle / (4.0 * std::f64::consts::PI)
+    }
+}
+
+impl Node {
+    fn empty() -> Self {
+        Self {
+            bounds: Bounds::EMPTY,
+            first: 0,
+            count: 0,
+            dipole: Dipole {
+                center: Point::zero(),
+                moment: Point::zero(),
+                radius: 0.0,
+            },
+        }
+    }
+}
+
+impl Dipole {
+    fn of(items: &[(Point, [Point; 3], u32)]) -> Self {
+        let (mut area, mut center, mut moment) = (0.0, Point::zero(), Point::zero());
+        for (centroid, [a, b, c], _) in items {
+            let n = (*b - *a).cross(*c - *a) * 0.5;
+            let weight = n.length();
+            area += weight;
+            center = center + *centroid * weight;
+            moment = moment + n;
+        }
+        let center = if area > 0.0 {
+            center * (1.0 / area)
+        } else {
+            items.first().map_or(Point::zero(), |i| i.0)
+        };
+        let radius_sq = items
+            .iter()
+            .flat_map(|i| i.1)
+            .map(|corner| (corner - center).length_sq())
+            .fold(0.0, f64::max);
+        Self {
+            center,
+            moment,
+            radius: radius_sq.sqrt(),
+        }
+    }
+}
+
+/// Signed solid angle of a triangle seen from `p`: positive from behind its normal (Van Oosterom
+/// and Strackee 1983).
+pub fn solid_angle_of(p: Point, t: &[Point; 3]) -> f64 {
+    let [a, b, c] = t.map(|v| v - p);
+    let (la, lb, lc) = (a.length(), b.length(), c.length());
+    let numerator = a.dot(b.cross(c));
+    let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    2.0 * numerator.atan2(denominator)
+}
+
+/// The point of a triangle that is nearest to `p`.
+pub fn closest_on_triangle(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return a;
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return b;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return c;
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let va = d3 * d6 - d5 * d4;
+    let (e, f) = (d4 - d3, d5 - d6);
+    if va <= 0.0 && e >= 0.0 && f >= 0.0 {
+        return b + (c - b) * (e / (e + f));
+    }
+    let sum = va + vb + vc;
+    if sum > 0.0 {
+        a + ab * (vb / sum) + ac * (vc / sum)
+    } else {
+        a
+    }
+}

@@ -1,0 +1,58 @@
+//! The certificate, by points of every source triangle against every primitive.
+
+use crate::meshes::*;
+use crate::{build, solid_distance};
+use parry3d::math::Vector;
+
+#[test]
+fn every_source_point_is_covered() {
+    let ring = torus(0.5, 0.12, 30, 12);
+    let far = torus(0.5, 0.12, 30, 12).map(|v| v * 10.0 + Vector::new(300.0, 0.0, 0.0));
+    let cases = [
+        ("ring", ring, 20),
+        ("ring far away", far, 20),
+        ("L", l_shape(), 40),
+        ("box", cuboid(Vector::new(1.0, 0.7, 0.4)), 9),
+        ("capsule", capsule(0.3, 0.2, 16, 6), 3),
+        ("card", cuboid(Vector::new(1.0, 0.6, 0.02)), 30),
+    ];
+    for (name, mesh, primitives) in cases {
+        let (medial, report) = build(&mesh, primitives, true);
+        let side = mesh.longest_side();
+        let magnitude = mesh
+            .vertices
+            .iter()
+            .map(|v| v.abs().max_element())
+            .fold(0.0, f32::max);
+        // `signed_distance` rounds its result, and the samples are rounded to `f32`.
+        let rounding = 4.0 * f32::EPSILON * (magnitude + side);
+        let mut sticking_out = 0.0f32;
+        for p in mesh.dense_points(0.01 * side) {
+            sticking_out = sticking_out.max(solid_distance(&medial, p));
+        }
+        assert!(
+            sticking_out <= rounding,
+            "{name}: {sticking_out}, allowed {rounding}"
+        );
+        assert!(report.hausdorff.uncovered <= rounding, "{name}: {report:?}");
+        let before = report
+            .hausdorff_before_enclosure
+            .expect("enclosure was asked for");
+        assert!(
+            before.uncovered > 100.0 * rounding,
+            "{name}: nothing to enclose: {before:?}"
+        );
+    }
+}
+
+#[test]
+fn without_enclosure_nothing_grows() {
+    let mesh = torus(0.5, 0.12, 30, 12);
+    let (open, report) = build(&mesh, 20, false);
+    let (closed, _) = build(&mesh, 20, true);
+    assert_eq!(report.hausdorff_before_enclosure, None);
+    assert!(report.hausdorff.uncovered > 0.0);
+    for (a, b) in open.spheres().iter().zip(closed.spheres()) {
+        assert!(a.radius <= b.radius && a.center == b.center, "{a:?} {b:?}");
+    }
+}

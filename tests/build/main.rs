@@ -1,0 +1,28 @@
+//! Triangle mesh → medial mesh, against planted shapes and independent checks.
+
+mod bad_input;
+mod delaunay;
+mod distance;
+mod enclosure;
+mod meshes;
+mod options;
+mod shapes;
+
+use meshes::Mesh;
+use rapier3d_medial::{BuildOptions, BuildReport, MedialMesh};
+
+/// Builds with a number of primitives, with enclosure or without.
+fn build(mesh: &Mesh, primitives: usize, enclose: bool) -> (MedialMesh, BuildReport) {
+    let mut options = BuildOptions::default();
+    options.primitives = Some(primitives);
+    options.enclose = enclose;
+    MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options)
+        .expect("a planted mesh builds")
+}
+
+/// Signed distance to the union of all primitives, the slow way.
+fn solid_distance(mesh: &MedialMesh, p: parry3d::math::Vector) -> f32 {
+    mesh.primitives()
+        .map(|primitive| primitive.signed_distance(p).distance)
+        .fold(f32::MAX, f32::min)
+}
