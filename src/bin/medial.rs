@@ -155,9 +155,11 @@ fn positive(text: &str) -> Result<f32, String> {
 fn build(arguments: &BuildArguments) -> Result<(), Failure> {
     check_output(arguments)?;
     let source = mesh_file::read(&arguments.input)?;
-    let mut options = BuildOptions::default();
-    options.enclose = !arguments.no_enclose;
-    options.max_error = arguments.max_error;
+    let mut options = BuildOptions {
+        enclose: !arguments.no_enclose,
+        max_error: arguments.max_error,
+        ..Default::default()
+    };
     if arguments.primitives.is_some() || arguments.max_error.is_some() {
         options.primitives = arguments.primitives.map(|n| n as usize);
     }
