@@ -102,7 +102,10 @@ pub(super) fn measure(
         hint: 0,
     };
     let mut start = 0.0f64;
-    for sample in vertex_samples(surface) {
+    for (i, sample) in vertex_samples(surface).into_iter().enumerate() {
+        if i % 512 == 0 {
+            watch.at(0.0)?;
+        }
         let look = source.look_at(sample.point, sample.normal, start, start);
         if let Look::Distance(d) = look {
             start = start.max(d);

@@ -283,7 +283,7 @@ impl Source {
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
         watch.begin("simplify")?;
-        let mut simplifier = Simplifier::new(draft, boundary_weight, &self.tree);
+        let mut simplifier = Simplifier::new(draft, boundary_weight, &self.tree, watch)?;
         let most = self.limits.primitives.unwrap_or(usize::MAX);
         simplifier.reduce_to(most, watch)?;
         let mut candidate = match self.limits.max_error {

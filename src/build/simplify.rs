@@ -78,11 +78,16 @@ pub struct Simplifier<'a> {
 
 impl<'a> Simplifier<'a> {
     /// Computes the quadrics of all balls and the costs of all edges.
-    pub fn new(draft: Draft, boundary_weight: f64, tree: &'a TriangleTree) -> Self {
+    pub fn new(
+        draft: Draft,
+        boundary_weight: f64,
+        tree: &'a TriangleTree,
+        watch: &mut Watch,
+    ) -> Result<Self, BuildError> {
         let complex = Complex::new(draft);
         let n = complex.balls.len();
         let mut simplifier = Self {
-            quadrics: quadrics(&complex, boundary_weight),
+            quadrics: quadrics(&complex, boundary_weight, watch)?,
             complex,
             versions: vec![0; n],
             heap: BinaryHeap::new(),
@@ -92,9 +97,12 @@ impl<'a> Simplifier<'a> {
             tree,
         };
         for v in 0..n as u32 {
+            if v % 512 == 0 {
+                watch.at(0.0)?;
+            }
             simplifier.push_around(v, |u| u > v);
         }
-        simplifier
+        Ok(simplifier)
     }
 
     /// Number of primitives now.
@@ -239,7 +247,11 @@ fn stability(a: &Ball, b: &Ball) -> f64 {
 
 /// Planes that each ball should go on touching: those of its slabs, and where the medial mesh ends,
 /// planes that hold its boundary.
-fn quadrics(complex: &Complex, boundary_weight: f64) -> Vec<Quadric> {
+fn quadrics(
+    complex: &Complex,
+    boundary_weight: f64,
+    watch: &mut Watch,
+) -> Result<Vec<Quadric>, BuildError> {
     let balls = &complex.balls;
     let mut quadrics = vec![Quadric::default(); balls.len()];
     for face in complex.faces() {
@@ -251,6 +263,9 @@ fn quadrics(complex: &Complex, boundary_weight: f64) -> Vec<Quadric> {
         }
     }
     for a in 0..balls.len() as u32 {
+        if a % 512 == 0 {
+            watch.at(0.0)?;
+        }
         for &b in complex.neighbors(a).iter().filter(|&&b| b > a) {
             let mut opposite = complex.opposite(a, b);
             match (opposite.next(), opposite.next()) {
@@ -260,7 +275,7 @@ fn quadrics(complex: &Complex, boundary_weight: f64) -> Vec<Quadric> {
             }
         }
     }
-    quadrics
+    Ok(quadrics)
 }
 
 /// Boundary edge `ab` of the face `abc`: a plane across the face, facing away from `c`.

@@ -10,6 +10,8 @@ type Built = Result<(MedialMesh, BuildReport), BuildError>;
 fn attempt(mesh: &Mesh) -> Built {
     let mut options = BuildOptions::default();
     options.primitives = Some(30);
+    // Enclosing an open or crowded surface is covered by the flat cards.
+    options.enclose = mesh.indices.len() <= 4;
     MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options)
 }
 
