@@ -126,8 +126,10 @@ fn users_mesh(file: &Path) -> Result<(Model, MedialMesh), String> {
 
 /// Triangle mesh in, medial mesh of so many primitives out.
 fn build(name: &'static str, mesh: &Mesh, primitives: usize) -> Result<MedialMesh, String> {
-    let mut options = BuildOptions::default();
-    options.primitives = Some(primitives);
+    let options = BuildOptions {
+        primitives: Some(primitives),
+        ..Default::default()
+    };
     let bar = bar(name, 100);
     let mut show = |progress: Progress| {
         bar.set_position((100.0 * progress.fraction) as u64);

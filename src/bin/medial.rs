@@ -6,8 +6,9 @@
 
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
-use rapier3d_medial::build::Hausdorff;
-use rapier3d_medial::build::mesh_file;
+use rapier3d_medial::build::mesh_file::{self, TriangleMesh};
+use rapier3d_medial::build::{Hausdorff, hausdorff};
+use rapier3d_medial::math::Vector;
 use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, MedialPrimitive, MeshError};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -61,6 +62,9 @@ struct BuildArguments {
 struct InfoArguments {
     /// Medial mesh in the .ma format.
     mesh: PathBuf,
+    /// Measure both Hausdorff distances to the triangle mesh that it was built from.
+    #[arg(long, value_name = "IN")]
+    against: Option<PathBuf>,
     /// Print as JSON.
     #[arg(long)]
     json: bool,
@@ -86,6 +90,15 @@ struct Description {
     box_min: [f32; 3],
     box_max: [f32; 3],
     thickness: f32,
+}
+
+/// What `info` found.
+#[derive(Serialize)]
+struct InfoSummary {
+    #[serde(flatten)]
+    mesh: Description,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    errors: Option<Errors>,
 }
 
 /// What a build did.
@@ -142,9 +155,11 @@ fn positive(text: &str) -> Result<f32, String> {
 fn build(arguments: &BuildArguments) -> Result<(), Failure> {
     check_output(arguments)?;
     let source = mesh_file::read(&arguments.input)?;
-    let mut options = BuildOptions::default();
-    options.enclose = !arguments.no_enclose;
-    options.max_error = arguments.max_error;
+    let mut options = BuildOptions {
+        enclose: !arguments.no_enclose,
+        max_error: arguments.max_error,
+        ..Default::default()
+    };
     if arguments.primitives.is_some() || arguments.max_error.is_some() {
         options.primitives = arguments.primitives.map(|n| n as usize);
     }
@@ -203,8 +218,26 @@ fn check_output(arguments: &BuildArguments) -> Result<(), Failure> {
 
 fn info(arguments: &InfoArguments) -> Result<(), Failure> {
     let mesh = MedialMesh::load_ma(&arguments.mesh)?;
-    let description = describe(&mesh);
-    print(arguments.json, &description, || description.text())
+    let errors = match &arguments.against {
+        Some(path) => Some(measure(&mesh, &mesh_file::read(path)?)?),
+        None => None,
+    };
+    let mesh = describe(&mesh);
+    let summary = InfoSummary { mesh, errors };
+    print(arguments.json, &summary, || {
+        let errors = summary.errors.as_ref();
+        summary.mesh.text() + &errors.map_or(String::new(), |e| e.text("errors"))
+    })
+}
+
+fn measure(mesh: &MedialMesh, source: &TriangleMesh) -> Result<Errors, BuildError> {
+    let measured = hausdorff::hausdorff(mesh, &source.vertices, &source.indices)?;
+    let corners = source.indices.iter().flatten();
+    let points = corners.map(|&v| source.vertices[v as usize]);
+    let (lo, hi) = points.fold((Vector::MAX, Vector::MIN), |(lo, hi), p| {
+        (lo.min(p), hi.max(p))
+    });
+    Ok(relative(&measured, (hi - lo).max_element()))
 }
 
 fn describe(mesh: &MedialMesh) -> Description {
@@ -235,7 +268,7 @@ impl Description {
     fn text(&self) -> String {
         let [lo, hi] = [self.box_min, self.box_max].map(|[x, y, z]| format!("({x}, {y}, {z})"));
         format!(
-            "spheres     {}\nprimitives  {} ({} slabs, {} cones, {} lone spheres)\n\
+            "spheres     {}\nprimitives  {}: slabs {}, cones {}, lone spheres {}\n\
              volume      {}\nbox         {lo} to {hi}\nthickness   {}\n",
             self.spheres,
             self.primitives,

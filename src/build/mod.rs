@@ -38,7 +38,6 @@ use watch::Watch;
 
 /// What to build.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct BuildOptions {
     /// Largest number of primitives (slabs, cones that belong to no slab, lone spheres).
     pub primitives: Option<usize>,

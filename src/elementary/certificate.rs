@@ -162,8 +162,8 @@ pub fn free_throughout<L: Lane, P: Path<L>>(path: &P, domain: Domain, slack: L) 
     let n = toward * (L::one() / toward.length().max(L::splat(L::TINY)));
     let mut least = L::splat(f32::MAX.into());
     for y in &ends {
-        for k in 0..corner_count(domain) {
-            least = least.min(n.dot(y[k]) - path.radius()[k]);
+        for (y, radius) in y.iter().zip(path.radius()).take(corner_count(domain)) {
+            least = least.min(n.dot(*y) - *radius);
         }
     }
     slack.lt(least)

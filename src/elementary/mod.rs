@@ -55,7 +55,6 @@ pub struct MovingSphere {
 
 /// How exact an answer is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct ToiOptions {
     /// Distance at which bodies count as in contact, in the user's unit of length.
     pub tolerance: Real,

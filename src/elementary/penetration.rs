@@ -36,7 +36,7 @@ pub fn deepest<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>], preferred: Vec3<S>) -> (
     let tie = S::splat(16.0 * S::EPSILON);
     let mut offer = |n: Vec3<S>| {
         let length = n.length();
-        if !(length > S::splat(S::TINY)) {
+        if length <= S::splat(S::TINY) || !length.is_finite() {
             return;
         }
         let n = n * (S::one() / length);

@@ -34,8 +34,9 @@ const INDEX_LIMIT: f64 = 4_503_599_627_370_496.0;
 
 /// Mass properties of the solid at density 1 (mass = volume), in the body's frame.
 ///
-/// Deterministic; 10 ms for a ball, 0.3 s for 1,250 slabs. A solid without volume (every radius 0), or one whose volume does
-/// not fit an `f32`, has parry's zero properties (mass 0, which rapier treats as immovable).
+/// Deterministic; 10 ms for a ball, 0.3 s for 1,250 slabs. A solid without volume (every radius
+/// 0), or one whose volume does not fit an `f32`, has parry's zero properties (mass 0, which
+/// rapier treats as immovable).
 pub fn solid_mass_properties(mesh: &MedialMesh) -> MassProperties {
     let moments = Moments::of(mesh);
     let volume = moments.volume;

@@ -41,6 +41,14 @@ pub(super) enum Sheet {
     },
 }
 
+/// A point of a sheet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    pub point: Vec3<f64>,
+    /// Outward, of length 1.
+    pub normal: Vec3<f64>,
+}
+
 /// Points of a sheet as parameters, and triangles between them, counter-clockwise from outside.
 pub(super) struct Grid {
     pub parameters: Vec<Vec3<f64>>,
@@ -109,31 +117,33 @@ fn flank(from: Ball, to: Ball) -> Option<Sheet> {
 }
 
 impl Sheet {
-    /// Outward unit normal.
-    pub fn normal(&self, q: Vec3<f64>) -> Vec3<f64> {
+    /// The point at a parameter.
+    pub fn spot(&self, q: Vec3<f64>) -> Spot {
         match self {
-            Self::Ball(_) => q * (1.0 / q.length()),
-            Self::Flank { frame, tilt, .. } => {
+            Self::Ball(b) => {
+                let normal = q * (1.0 / q.length());
+                let point = b.center + normal * b.radius;
+                Spot { point, normal }
+            }
+            Self::Flank {
+                from,
+                to,
+                frame,
+                tilt,
+            } => {
                 let [axis, e1, e2] = *frame;
                 let (sin, cos) = q.y.sin_cos();
-                axis * tilt[0] + (e1 * cos + e2 * sin) * tilt[1]
-            }
-            Self::Plane { normal, .. } => *normal,
-        }
-    }
-
-    /// The point at a parameter.
-    pub fn point(&self, q: Vec3<f64>) -> Vec3<f64> {
-        match self {
-            Self::Ball(b) => b.center + self.normal(q) * b.radius,
-            Self::Flank { from, to, .. } => {
+                let normal = axis * tilt[0] + (e1 * cos + e2 * sin) * tilt[1];
                 let center = from.center + (to.center - from.center) * q.x;
                 let radius = from.radius + (to.radius - from.radius) * q.x;
-                center + self.normal(q) * radius
+                let point = center + normal * radius;
+                Spot { point, normal }
             }
-            Self::Plane { corners, .. } => {
+            Self::Plane { corners, normal } => {
                 let [a, b, c] = *corners;
-                a + (b - a) * q.x + (c - a) * q.y
+                let point = a + (b - a) * q.x + (c - a) * q.y;
+                let normal = *normal;
+                Spot { point, normal }
             }
         }
     }

@@ -163,16 +163,16 @@ impl<'a> PrimitivePair<'a> {
 
     fn test(&self, test: &ElementaryTest, feature: u32, margin: f64, found: &mut Vec<SpherePair>) {
         let (f, s) = nearest_in_test(test, &self.balls[0], &self.balls[1]);
-        if !(s.distance <= margin) {
+        if s.distance > margin || s.distance.is_nan() {
             return;
         }
         let normal = self.direction(test.domain, &f, &s);
         self.push(test, feature, &s, normal, found);
-        if test.domain == Domain::Box {
-            if let Some(second) = second_on_line(&f, &s, normal, margin) {
-                let normal = self.direction(test.domain, &f, &second);
-                self.push(test, feature | 1 << 16, &second, normal, found);
-            }
+        if test.domain == Domain::Box
+            && let Some(second) = second_on_line(&f, &s, normal, margin)
+        {
+            let normal = self.direction(test.domain, &f, &second);
+            self.push(test, feature | 1 << 16, &second, normal, found);
         }
     }
 

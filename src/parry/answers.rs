@@ -74,11 +74,11 @@ impl Answers {
         with: impl FnOnce(&PairResult) -> T,
     ) -> T {
         let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
-        if let Some((reach, result)) = known.get(&Key::new(mesh1, mesh2, pos12)) {
-            if prediction <= *reach {
-                self.hits.fetch_add(1, Ordering::Relaxed);
-                return with(result);
-            }
+        if let Some((reach, result)) = known.get(&Key::new(mesh1, mesh2, pos12))
+            && prediction <= *reach
+        {
+            self.hits.fetch_add(1, Ordering::Relaxed);
+            return with(result);
         }
         drop(known);
         let (contacts, counts) = crate::pair::contacts(mesh1, mesh2, pos12, prediction);

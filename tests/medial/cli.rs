@@ -5,6 +5,8 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::Duration;
 
 fn scratch(name: &str) -> PathBuf {
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cli-{name}"));
@@ -45,7 +47,7 @@ fn info_describes_a_mesh() {
     assert!(output.status.success());
     let lines = text(&output.stdout);
     assert!(
-        lines.contains("primitives  16 (0 slabs, 16 cones, 0 lone spheres)"),
+        lines.contains("primitives  16: slabs 0, cones 16, lone spheres 0"),
         "{lines}"
     );
 
@@ -108,6 +110,89 @@ fn bad_arguments_exit_with_2() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(!output.stderr.is_empty() && output.stdout.is_empty());
     }
+}
+
+/// An L-shaped prism of volume 3: closed, concave, with concave polygons.
+const CORNER: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n\
+                      v 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n\
+                      f 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\n\
+                      f 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
+
+#[test]
+fn build_writes_a_mesh_and_info_measures_it_alike() {
+    let directory = scratch("build");
+    fs::write(directory.join("corner.obj"), CORNER).unwrap();
+    let run = [
+        "build",
+        "corner.obj",
+        "-o",
+        "out.ma",
+        "--primitives",
+        "30",
+        "--json",
+    ];
+    let output = medial(&directory, &run);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let built: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let mesh = MedialMesh::load_ma(directory.join("out.ma")).unwrap();
+    assert!(mesh.primitive_count() <= 30);
+    assert_eq!(built["mesh"]["primitives"], mesh.primitive_count());
+    assert_eq!(built["triangles"], 20);
+    assert_eq!(built["longest_side"], 2.0);
+    assert!(
+        mesh.volume() > 3.0,
+        "an enclosing mesh holds the volume 3 of the source"
+    );
+
+    let output = medial(
+        &directory,
+        &["info", "out.ma", "--against", "corner.obj", "--json"],
+    );
+    let info: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for side in ["surface_to_envelope", "envelope_to_surface"] {
+        let [built, again] = [&built, &info].map(|v| v["errors"][side].as_f64().unwrap());
+        assert!(built > 0.0 && built < 0.2, "{side}: {built}");
+        assert!(
+            (again / built - 1.0).abs() < 0.3,
+            "{side}: {built} built, {again} measured"
+        );
+    }
+    assert!(info["errors"]["uncovered"].as_f64().unwrap() < 1e-5);
+
+    let lines = medial(&directory, &["info", "out.ma", "--against", "corner.obj"]);
+    assert!(text(&lines.stdout).contains("envelope to surface"));
+    assert_fails(
+        &medial(&directory, &["info", "out.ma", "--against", "no.obj"]),
+        "no.obj",
+    );
+}
+
+/// The file is the old one or the whole new one, whenever the build is killed.
+#[test]
+fn an_interrupted_build_leaves_no_half_written_file() {
+    let directory = scratch("interrupted");
+    fs::write(directory.join("corner.obj"), CORNER).unwrap();
+    fs::write(directory.join("out.ma"), "old").unwrap();
+    let mut interrupted = 0;
+    for delay in [0, 30, 100, 300, 1000] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_medial"))
+            .args(["build", "corner.obj", "-o", "out.ma", "--primitives", "500"])
+            .current_dir(&directory)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        thread::sleep(Duration::from_millis(delay));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if fs::read_to_string(directory.join("out.ma")).unwrap() == "old" {
+            interrupted += 1;
+        } else {
+            MedialMesh::load_ma(directory.join("out.ma")).unwrap();
+            fs::write(directory.join("out.ma"), "old").unwrap();
+        }
+    }
+    assert!(interrupted > 0);
 }
 
 #[test]

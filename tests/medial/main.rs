@@ -1,5 +1,6 @@
 //! The data layer: mass, files, envelope, exact solids, refusals, and the command line.
 
+mod broken_file;
 #[cfg(feature = "cli")]
 mod cli;
 mod envelope;
@@ -8,3 +9,4 @@ mod mass;
 mod mesh;
 mod mesh_file;
 mod oracle;
+mod polygon;
