@@ -33,7 +33,7 @@ fn run_chunk(family: Family, chunk: usize) -> Tallies {
     let mut tallies = Tallies::default();
     for k in 0..CHUNK {
         let query = family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
-        let truth = Truth::new(&query);
+        let truth = Truth::new(&query, 0.0);
         for (subject, tally) in Subject::ALL.into_iter().zip(&mut tallies) {
             let options = subject.options(family.size());
             if let Some(answer) = subject.answer(&query, &options) {

@@ -8,13 +8,23 @@ use crate::ccd::judge::{Tally, Truth};
 use crate::ccd::motion::Query;
 use crate::ccd::rng::Rng;
 use crate::ccd::subject::Subject;
+use rapier3d_medial::math::Real;
 
 /// Queries per family; a multiple of 9 pairs × 2 motions.
-const QUERIES: usize = 5400;
+const QUERIES: usize = 10_800;
 
-/// Asks and judges; panics on a broken guarantee, with the query.
-fn judge(subject: Subject, family: Family, query: &Query, truth: &Truth, tally: &mut Tally) {
-    let options = subject.options(family.size());
+/// Asks for the first time at the signed distance `target` and judges; panics on a broken
+/// guarantee, with the query.
+fn judge(
+    subject: Subject,
+    family: Family,
+    query: &Query,
+    target: Real,
+    truth: &Truth,
+    tally: &mut Tally,
+) {
+    let mut options = subject.options(family.size());
+    options.target_distance = target;
     let Some(answer) = subject.answer(query, &options) else {
         return;
     };
@@ -27,7 +37,7 @@ fn judge(subject: Subject, family: Family, query: &Query, truth: &Truth, tally: 
         || verdict.wide;
     assert!(
         subject == Subject::Paper || !guilty,
-        "{family:?} {subject:?}\n{verdict:?}\n{answer:?}\n{:?}\n{query:?}",
+        "{family:?} {subject:?} {target}\n{verdict:?}\n{answer:?}\n{:?}\n{query:?}",
         truth.contact
     );
 }
@@ -49,15 +59,15 @@ fn guarantee(family: Family) -> [Tally; 3] {
     let mut tallies: [Tally; 3] = Default::default();
     for k in 0..QUERIES {
         let query = family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
-        let truth = Truth::new(&query);
+        let truth = Truth::new(&query, 0.0);
         for (subject, tally) in Subject::ALL.into_iter().zip(&mut tallies) {
-            judge(subject, family, &query, &truth, tally);
+            judge(subject, family, &query, 0.0, &truth, tally);
         }
         if k % 10 == 0 {
             let query = permuted(&query);
-            let truth = Truth::new(&query);
+            let truth = Truth::new(&query, 0.0);
             for subject in [Subject::Single, Subject::Double] {
-                judge(subject, family, &query, &truth, &mut Tally::default());
+                judge(subject, family, &query, 0.0, &truth, &mut Tally::default());
             }
         }
     }
@@ -145,4 +155,35 @@ fn what_the_paper_misses() {
         paper.missed,
         paper.hits
     );
+}
+
+/// The guarantee holds for other distances than 0: kept apart, or let sink in, up to deeper than
+/// the thinnest ends are thick.
+#[test]
+fn target_distance() {
+    let families = [
+        Family::LargeRotation,
+        Family::Overlapping,
+        Family::Parallel,
+        Family::TwoContacts,
+    ];
+    for target in [0.05, -0.01, -0.2] {
+        for family in families {
+            let mut rng = Rng::new(2000 + family as u64);
+            for k in 0..QUERIES / 3 {
+                let query = family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
+                let truth = Truth::new(&query, target.into());
+                for subject in [Subject::Single, Subject::Double] {
+                    judge(
+                        subject,
+                        family,
+                        &query,
+                        target,
+                        &truth,
+                        &mut Tally::default(),
+                    );
+                }
+            }
+        }
+    }
 }

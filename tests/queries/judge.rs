@@ -17,10 +17,8 @@ fn approach(gap: f64, speed: f64) -> Truth {
         displacement: -Vector3::x() * speed,
     };
     let balls = [vec![ball(0.0, 0.0)], vec![ball(2.0 + gap, speed)]];
-    Truth::new(&Query {
-        balls,
-        motion: Motion::Straight,
-    })
+    let motion = Motion::Straight;
+    Truth::new(&Query { balls, motion }, 0.0)
 }
 
 fn answer(status: ToiStatus, lower: f64, upper: f64) -> Answer {

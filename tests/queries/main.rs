@@ -4,6 +4,7 @@
 mod ccd;
 
 mod bad_input;
+mod distance;
 mod families;
 mod first_contact;
 mod judge;

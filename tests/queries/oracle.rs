@@ -54,20 +54,26 @@ fn assert_contact(found: FirstContact, expected: Option<f64>) {
     }
 }
 
-/// Bounds meet for every family at every time, in all its degenerate forms.
+/// Bounds meet for every family, at the start and within the step, in all degenerate forms; to
+/// less where surfaces that were made to cross nearly touch after rounding.
 #[test]
 fn bounds_of_the_distance_meet() {
     let mut rng = Rng::new(1);
-    let mut worst: f64 = 0.0;
     for family in Family::ALL {
+        let mut worst: f64 = 0.0;
         for k in 0..1800 {
             let query = family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
-            let corners = Paths::new(&query).at(rng.range(0.0, 1.0));
+            let time = [0.0, rng.range(0.0, 1.0)][k / 18 % 2];
+            let corners = Paths::new(&query).at(time);
             let found = distance(&corners, Goal::Value);
             worst = worst.max((found.upper - found.lower) / corners.scale());
         }
+        let meet = match family {
+            Family::Overlapping => 1.0e-7,
+            _ => 1.0e-11,
+        };
+        assert!(worst < meet, "{family:?}: {worst:e}");
     }
-    assert!(worst < 1.0e-11, "{worst:e}");
 }
 
 /// |c1 − c2| − r1 − r2, also for concentric and for enclosed spheres.

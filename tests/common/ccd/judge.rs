@@ -8,6 +8,11 @@ use super::motion::{Paths, Query};
 use rapier3d_medial::elementary::ToiStatus;
 use std::time::Duration;
 
+/// By how much bodies without thickness may be deemed in contact too soon, as a fraction of the
+/// step: two roundings, of 1e-13 at the positions drawn, at a closing speed of 2e-4 sizes per step.
+/// Slower ones, one in ten thousand, could be called late unjustly.
+const THIN_SOONER: f64 = 1.0e-9;
+
 /// An answer, its numbers exactly as given.
 #[derive(Clone, Copy, Debug)]
 pub struct Answer {
@@ -28,23 +33,32 @@ pub struct Answer {
 /// What the oracle knows of a query.
 pub struct Truth {
     paths: Paths,
+    target: f64,
     /// First contact.
     pub contact: FirstContact,
+    /// By how much the true contact may come after it.
+    sooner: f64,
 }
 
 impl Truth {
-    /// Asks the oracle.
-    pub fn new(query: &Query) -> Self {
+    /// Asks the oracle when the signed distance first is at most `target`.
+    pub fn new(query: &Query, target: f64) -> Self {
         let paths = Paths::new(query);
         // Bodies without any thickness touch at a distance of 0 and never below, which rounding
-        // cannot tell from apart. Their contact is proven at the smallest distance that it can.
-        let threshold = if paths.is_thin() {
-            2.0 * paths.rounding()
+        // cannot tell from apart. They are deemed in contact at the smallest distance that it can,
+        // which is sooner than they are.
+        let (least, sooner) = if paths.is_thin() {
+            (2.0 * paths.rounding(), THIN_SOONER)
         } else {
-            0.0
+            (f64::NEG_INFINITY, 0.0)
         };
-        let contact = first_contact(&paths, threshold);
-        Self { paths, contact }
+        let contact = first_contact(&paths, target.max(least));
+        Self {
+            paths,
+            target,
+            contact,
+            sooner,
+        }
     }
 
     /// Whether the bodies surely touch within the step.
@@ -55,15 +69,18 @@ impl Truth {
     /// Judges an answer whose bracket should be at most `width` wide.
     pub fn judge(&self, answer: &Answer, width: f64) -> Verdict {
         let mut verdict = Verdict::default();
-        let start = distance_at(&self.paths, 0.0);
+        // Bounds of how far the bodies are from what counts as contact.
+        let gap = |time: f64| {
+            let (lower, upper) = distance_at(&self.paths, time);
+            (lower - self.target, upper - self.target)
+        };
+        let start = gap(0.0);
         let deep_at_start = start.1 < -answer.tolerance;
         match answer.status {
             ToiStatus::Separated => verdict.missed = self.is_hit(),
             ToiStatus::Contact => {
-                let (nearest, _) = distance_at(&self.paths, answer.upper);
-                verdict.false_hit = nearest > answer.tolerance;
-                let reached = first_contact(&self.paths, answer.tolerance).free_until;
-                verdict.early = Some((reached - answer.lower).max(0.0));
+                verdict.false_hit = gap(answer.upper).0 > answer.tolerance;
+                verdict.early = Some(self.early(answer));
                 verdict.width = Some(answer.upper - answer.lower);
                 verdict.wide = answer.upper - answer.lower > width;
                 verdict.misnamed = deep_at_start;
@@ -76,9 +93,19 @@ impl Truth {
         }
         if answer.status != ToiStatus::Separated {
             let contact = self.contact.contact_at.unwrap_or(1.0);
-            verdict.late = (answer.lower - contact).max(0.0);
+            verdict.late = (answer.lower - contact - self.sooner).max(0.0);
         }
         verdict
+    }
+
+    /// By how much `lower` precedes the time at which the tolerance is reached.
+    fn early(&self, answer: &Answer) -> f64 {
+        let reached = self.target + answer.tolerance;
+        if distance_at(&self.paths, answer.lower).1 <= reached {
+            return 0.0;
+        }
+        let reached = first_contact(&self.paths, reached).free_until;
+        (reached - answer.lower).max(0.0)
     }
 }
 
