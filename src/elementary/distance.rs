@@ -24,20 +24,38 @@ pub fn nearest_in_test<S: Scalar>(
     (f, s)
 }
 
-/// A crossing of an edge of one primitive (of those in `mask`, as in [`Share::edges`]) with the slab
-/// of the other.
+/// The deepest crossing of an edge of one primitive (of those in `mask`, as in [`Share::edges`]) with
+/// the slab of the other. Two triangles cross along a segment, on which the radius sum is linear:
+/// the deepest point is one of its ends, where an edge of either passes through the other.
 pub fn crossing<S: Scalar>(
     a: &[Ball<S>],
     mask: u8,
     b: &[Ball<S>],
 ) -> Option<slab_crossing::Crossing<S>> {
     let &[b0, b1, b2] = b else { return None };
-    edges(a.len()).iter().enumerate().find_map(|(bit, e)| {
-        let owned = mask >> bit & 1 == 1;
-        owned
-            .then(|| slab_crossing::crossing([a[e[0] as usize], a[e[1] as usize]], [b0, b1, b2]))
-            .flatten()
-    })
+    edges(a.len())
+        .iter()
+        .enumerate()
+        .filter(|(bit, _)| mask >> bit & 1 == 1)
+        .filter_map(|(_, e)| {
+            slab_crossing::crossing([a[e[0] as usize], a[e[1] as usize]], [b0, b1, b2])
+        })
+        .reduce(deeper)
+}
+
+/// The crossing with the larger radius sum.
+pub fn deeper<S: Scalar>(
+    a: slab_crossing::Crossing<S>,
+    b: slab_crossing::Crossing<S>,
+) -> slab_crossing::Crossing<S> {
+    if a.radius < b.radius { b } else { a }
+}
+
+/// Smallest sum of radii of a sphere of each primitive. While the signed distance is above minus
+/// this, medial surfaces cannot cross, and the elementary tests see all of the distance.
+pub fn thinnest<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> S {
+    let least = |s: &[Ball<S>]| s.iter().map(|s| s.1).reduce(S::min).unwrap_or(S::zero());
+    least(a) + least(b)
 }
 
 /// Signed distance of two primitives of 1 to 3 spheres.

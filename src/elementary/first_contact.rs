@@ -2,7 +2,7 @@
 //! paths (paper Eqs. 1 to 3) or in exact rigid motion.
 
 use super::bracket::{Bracket, Limits, bracket, witness};
-use super::distance::crossing;
+use super::distance::{crossing, thinnest};
 use super::path::{LinearPath, Path, RigidPath};
 use super::test_list::{Domain, ElementaryTest, Share, for_each_test};
 use super::{MovingSphere, Toi, ToiOptions, ToiStatus};
@@ -137,14 +137,20 @@ fn primitives_first_contact<S: Scalar, P: Path<S>>(
     b: &[(Vec3<S>, S)],
     target_distance: S,
     limits: Limits<S>,
-    path: impl Fn(&ElementaryTest) -> P,
+    path: impl Fn(&ElementaryTest, S) -> P,
 ) -> Earliest<S> {
+    let target_distance = target_distance.max(-thinnest(a, b));
+    let path = |test: &ElementaryTest| path(test, target_distance);
     let mut earliest = Earliest::new(limits);
     for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
         earliest.test(test, &path(&test), [0, 0])
     });
-    let crossed = crossing(a, u8::MAX, b).or_else(|| crossing(b, u8::MAX, a));
-    if crossed.is_some_and(|c| -c.radius <= target_distance) {
+    let crossings = [crossing(a, u8::MAX, b), crossing(b, u8::MAX, a)];
+    if crossings
+        .iter()
+        .flatten()
+        .any(|c| -c.radius <= target_distance)
+    {
         earliest.overlap_at_start();
     }
     earliest.settle([a.len(), b.len()], path);
@@ -159,11 +165,17 @@ pub(crate) fn linear<S: Scalar>(
     limits: Limits<S>,
 ) -> Earliest<S> {
     let rest = |m: &[Mover<S>]| -> Vec<_> { m.iter().map(|m| (m.0, m.2)).collect() };
-    primitives_first_contact(&rest(a), &rest(b), target_distance, limits, |test| {
-        LinearPath::new(test, target_distance, |second, i| {
-            if second { b[i as usize] } else { a[i as usize] }
-        })
-    })
+    primitives_first_contact(
+        &rest(a),
+        &rest(b),
+        target_distance,
+        limits,
+        |test, target| {
+            LinearPath::new(test, target, |second, i| {
+                if second { b[i as usize] } else { a[i as usize] }
+            })
+        },
+    )
 }
 
 /// First contact of two primitives in exact rigid motion, in the precision of `S`.
@@ -185,8 +197,8 @@ pub(crate) fn rigid<S: Scalar>(
         &start(1, b),
         target_distance,
         limits,
-        |test| {
-            RigidPath::new(test, motions, target_distance, |second, i| {
+        |test, target| {
+            RigidPath::new(test, motions, target, |second, i| {
                 if second { b[i as usize] } else { a[i as usize] }
             })
         },

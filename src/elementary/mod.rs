@@ -64,7 +64,9 @@ pub struct ToiOptions {
     pub max_iterations: u32,
     /// Signed distance at which bodies count as in contact, a length. 0 for the bodies as they are;
     /// negative lets them overlap that deep first, positive keeps them apart. The guarantee then
-    /// holds for `D − target_distance`.
+    /// holds for `D − target_distance`. Never deeper than the two primitives are thick where they
+    /// are thinnest: beyond the smallest sum of their radii medial surfaces may cross, and a deeper
+    /// target is raised to it.
     pub target_distance: Real,
     /// What becomes of primitives that touch at the start already. Mesh queries only.
     pub initial_contact: InitialContact,

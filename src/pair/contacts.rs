@@ -9,7 +9,7 @@
 use super::first_contact::Counts;
 use super::volumes::Volumes;
 use crate::elementary::certificate::ActiveFace;
-use crate::elementary::distance::{crossing, nearest_in_test};
+use crate::elementary::distance::{crossing, deeper, nearest_in_test};
 use crate::elementary::test_list::{Domain, ElementaryTest, Share, for_each_test};
 use crate::elementary::{penetration, slab_crossing};
 use crate::math::lane::Vec3;
@@ -196,7 +196,10 @@ impl<'a> PrimitivePair<'a> {
     /// nothing for this pair.
     fn crossing(&self) -> Option<slab_crossing::Crossing<f64>> {
         let (a, b) = self.spheres();
-        crossing(a, u8::MAX, b).or_else(|| crossing(b, u8::MAX, a))
+        [crossing(a, u8::MAX, b), crossing(b, u8::MAX, a)]
+            .into_iter()
+            .flatten()
+            .reduce(deeper)
     }
 
     /// The spheres that count, of both.

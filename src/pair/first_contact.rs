@@ -9,7 +9,7 @@
 
 use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
-use crate::elementary::distance::{crossing, signed_distance};
+use crate::elementary::distance::{crossing, signed_distance, thinnest};
 use crate::elementary::first_contact::{Earliest, motion_is_finite, options_limits, to_toi};
 use crate::elementary::path::RigidPath;
 use crate::elementary::test_list::for_each_test;
@@ -266,7 +266,8 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             let place = |c| self.motions[side].point(c).at(0.0, turned).position;
             s.iter().map(|s| (place(s.0), s.1)).collect::<Vec<_>>()
         };
-        let mut target = self.target;
+        let floor = -thinnest(sa, sb);
+        let mut target = self.target.max(floor);
         match self.initial_contact {
             InitialContact::Deepen { depth } => {
                 let (pa, pb) = (at_start(0, sa), at_start(1, sb));
@@ -274,7 +275,10 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                 let tolerance = self.earliest.limits.tolerance;
                 if distance <= self.target + tolerance {
                     let depth = f64::from(depth);
-                    target = (self.target - depth).min(distance - 0.1 * depth - tolerance);
+                    let deeper = (self.target - depth).min(distance - 0.1 * depth - tolerance);
+                    // Medial surfaces must not cross; where they do already, nothing can be guarded.
+                    let guarded = floor < distance - tolerance;
+                    target = if guarded { deeper.max(floor) } else { deeper };
                 }
             }
             InitialContact::Stop if start == 0.0 && near => {
