@@ -25,6 +25,17 @@ pub enum Lanes {
     Fastest,
 }
 
+impl Lanes {
+    /// Name of the code that this choice runs on this processor.
+    pub fn path(self) -> &'static str {
+        #[cfg(target_arch = "x86_64")]
+        if self == Self::Fastest && pulp::x86::V3::is_available() {
+            return "AVX";
+        }
+        "baseline"
+    }
+}
+
 /// Brackets of many tests of one domain, in their order.
 pub fn brackets(
     paths: &[LinearPath<f32>],
@@ -37,10 +48,10 @@ pub fn brackets(
         return avx.vectorize(OnAvx(paths, domain, limits));
     }
     let _ = lanes;
-    run::<f32x8>(paths, domain, limits)
+    by_domain::<f32x8>(paths, domain, limits)
 }
 
-/// [`run`] as pulp calls it: inlined into a function compiled for AVX.
+/// [`by_domain`] as pulp calls it: inlined into a function compiled for AVX.
 #[cfg(target_arch = "x86_64")]
 struct OnAvx<'a>(&'a [LinearPath<f32>], Domain, &'a Limits<f32>);
 
@@ -49,7 +60,20 @@ impl pulp::NullaryFnOnce for OnAvx<'_> {
     type Output = Vec<Bracket<f32>>;
     #[inline(always)]
     fn call(self) -> Self::Output {
-        run::<crate::math::lane_avx::F32x8Avx>(self.0, self.1, self.2)
+        by_domain::<crate::math::lane_avx::F32x8Avx>(self.0, self.1, self.2)
+    }
+}
+
+/// [`run`], compiled once for each domain: its loops over corners then have a known length.
+#[inline(always)]
+fn by_domain<L: Octet>(
+    paths: &[LinearPath<f32>],
+    domain: Domain,
+    limits: &Limits<f32>,
+) -> Vec<Bracket<f32>> {
+    match domain {
+        Domain::Box => run::<L>(paths, Domain::Box, limits),
+        Domain::Triangle => run::<L>(paths, Domain::Triangle, limits),
     }
 }
 
