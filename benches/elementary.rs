@@ -30,7 +30,7 @@ use std::time::Instant;
 const QUERIES: usize = 12_000;
 /// Queries of one call of the batch: their results stay in the cache.
 const BATCH: usize = 1000;
-const ROUNDS: usize = 15;
+const ROUNDS: usize = 25;
 const CAP: u32 = 64;
 
 /// Where queries come from: a family, and how far its bodies are then moved apart, in sizes.
@@ -218,14 +218,16 @@ fn side_by_side(name: &str, queries: &Queries) {
         "{:<20}{:>10}{:>9}{:>9}{:>10}",
         "", "median ns", "x f64", "missed", "hash"
     );
-    let reference = median(&mut rows[0].times.clone());
+    let reference = rows[0].times.clone();
     for row in &mut rows {
+        let pairs = row.times.iter().zip(&reference);
+        let ratio = median(&mut pairs.map(|(time, f64s)| time / f64s).collect::<Vec<_>>());
         let ns = median(&mut row.times);
         let missed = sure.iter().zip(&row.answers).filter(|(a, b)| a.2 && !b.2);
         println!(
             "{:<20}{ns:>10.0}{:>9.2}{:>9}{:>10}",
             row.name,
-            ns / reference,
+            ratio,
             missed.count(),
             hash(&row.answers)
         );
