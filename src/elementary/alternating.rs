@@ -77,7 +77,7 @@ pub(crate) fn search<S: Scalar>(
 }
 
 /// One elementary test: its contact time, if it finds one, and the iterations.
-pub(crate) fn iterate<S: Scalar>(
+pub fn iterate<S: Scalar>(
     path: &LinearPath<S>,
     domain: Domain,
     tolerance: S,

@@ -215,6 +215,15 @@ pub fn witness<L: Lane, P: Path<L>>(path: &P, domain: Domain, t: L) -> (Nearest<
 /// The certified bracket of one elementary test, in every lane.
 #[inline(always)]
 pub fn bracket<L: Lane, P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Bracket<L> {
+    // Compiled once for each domain: loops over corners then have a known length.
+    match domain {
+        Domain::Box => follow(path, Domain::Box, limits),
+        Domain::Triangle => follow(path, Domain::Triangle, limits),
+    }
+}
+
+#[inline(always)]
+fn follow<L: Lane, P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Bracket<L> {
     let mut running = Running::new(path, domain, limits);
     while running.bracket.iterations < limits.max_iterations && running.active.any() {
         running.advance(path, domain, limits);

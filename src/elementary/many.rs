@@ -25,6 +25,17 @@ pub enum Lanes {
     Fastest,
 }
 
+impl Lanes {
+    /// Name of the code that this choice runs on this processor.
+    pub fn path(self) -> &'static str {
+        #[cfg(target_arch = "x86_64")]
+        if self == Self::Fastest && pulp::x86::V3::is_available() {
+            return "AVX";
+        }
+        "baseline"
+    }
+}
+
 /// Brackets of many tests of one domain, in their order.
 pub fn brackets(
     paths: &[LinearPath<f32>],
@@ -37,10 +48,10 @@ pub fn brackets(
         return avx.vectorize(OnAvx(paths, domain, limits));
     }
     let _ = lanes;
-    run::<f32x8>(paths, domain, limits)
+    by_domain::<f32x8>(paths, domain, limits)
 }
 
-/// [`run`] as pulp calls it: inlined into a function compiled for AVX.
+/// [`by_domain`] as pulp calls it: inlined into a function compiled for AVX.
 #[cfg(target_arch = "x86_64")]
 struct OnAvx<'a>(&'a [LinearPath<f32>], Domain, &'a Limits<f32>);
 
@@ -49,7 +60,20 @@ impl pulp::NullaryFnOnce for OnAvx<'_> {
     type Output = Vec<Bracket<f32>>;
     #[inline(always)]
     fn call(self) -> Self::Output {
-        run::<crate::math::lane_avx::F32x8Avx>(self.0, self.1, self.2)
+        by_domain::<crate::math::lane_avx::F32x8Avx>(self.0, self.1, self.2)
+    }
+}
+
+/// [`run`], compiled once for each domain: its loops over corners then have a known length.
+#[inline(always)]
+fn by_domain<L: Octet>(
+    paths: &[LinearPath<f32>],
+    domain: Domain,
+    limits: &Limits<f32>,
+) -> Vec<Bracket<f32>> {
+    match domain {
+        Domain::Box => run::<L>(paths, Domain::Box, limits),
+        Domain::Triangle => run::<L>(paths, Domain::Triangle, limits),
     }
 }
 
@@ -71,7 +95,7 @@ fn run<L: Octet>(
     let mut results = Vec::with_capacity(paths.len());
     let mut open: Vec<(usize, f32)> = Vec::with_capacity(paths.len());
     for group in paths.chunks(LANES) {
-        let running = Running::new(&Block::new(group).path::<L>(), domain, &wide_limits);
+        let running = Running::new(&side_by_side::<L>(group), domain, &wide_limits);
         let speeds = running.speed.to_array();
         for (lane, speed) in speeds.into_iter().enumerate().take(group.len()) {
             let bracket = lane_of(&running.bracket, lane, 0);
@@ -85,8 +109,8 @@ fn run<L: Octet>(
     let Some(first) = open.first() else {
         return results;
     };
-    let mut block = Block::new(std::slice::from_ref(&paths[first.0]));
-    let mut running = Running::new(&block.path::<L>(), domain, &wide_limits);
+    let mut path = side_by_side::<L>(std::slice::from_ref(&paths[first.0]));
+    let mut running = Running::new(&path, domain, &wide_limits);
     running.active = L::Mask::splat(false);
     let mut waiting = open.into_iter();
     let mut slots = [None; LANES];
@@ -104,78 +128,52 @@ fn run<L: Octet>(
             if let Some((index, speed)) = waiting.next() {
                 slots[lane] = Some(index);
                 rounds[lane] = 0;
-                block.set(lane, &paths[index]);
+                replace(&mut path, lane, &paths[index]);
                 restart(&mut running, &results[index], speed, lane);
             }
         }
         if L::bits(running.active) == 0 {
             return results;
         }
-        running.advance(&block.path(), domain, &wide_limits);
+        running.advance(&path, domain, &wide_limits);
         for round in &mut rounds {
             *round += 1;
         }
     }
 }
 
-/// Up to eight paths side by side, member by member.
-struct Block {
-    start: [[[f32; LANES]; 3]; 4],
-    rate: [[[f32; LANES]; 3]; 4],
-    radius: [[f32; LANES]; 4],
+/// Up to eight paths side by side, member by member; the last path fills the lanes left over.
+#[inline(always)]
+fn side_by_side<L: Octet>(group: &[LinearPath<f32>]) -> LinearPath<L> {
+    let last = group.len() - 1;
+    let lanes: [&LinearPath<f32>; LANES] = std::array::from_fn(|lane| &group[lane.min(last)]);
+    let all = |member: &dyn Fn(&LinearPath<f32>) -> f32| L::from_array(lanes.map(member));
+    let vector = |of: &dyn Fn(&LinearPath<f32>) -> Vec3<f32>| {
+        Vec3::new(
+            all(&|p| of(p).x),
+            all(&|p| of(p).y),
+            all(&|p| of(p).z),
+        )
+    };
+    LinearPath {
+        start: std::array::from_fn(|k| vector(&|p| p.start[k])),
+        rate: std::array::from_fn(|k| vector(&|p| p.rate[k])),
+        radius: std::array::from_fn(|k| all(&|p| p.radius[k])),
+    }
 }
 
-impl Block {
-    /// The last path fills the lanes left over.
-    #[inline(always)]
-    fn new(group: &[LinearPath<f32>]) -> Self {
-        let mut block = Self {
-            start: [[[0.0; LANES]; 3]; 4],
-            rate: [[[0.0; LANES]; 3]; 4],
-            radius: [[0.0; LANES]; 4],
-        };
-        for lane in 0..LANES {
-            if let Some(one) = group.get(lane).or(group.last()) {
-                block.set(lane, one);
-            }
-        }
-        block
-    }
-
-    #[inline(always)]
-    fn set(&mut self, lane: usize, one: &LinearPath<f32>) {
-        for k in 0..4 {
-            let (s, r) = (one.start[k], one.rate[k]);
-            for (i, x) in [s.x, s.y, s.z].into_iter().enumerate() {
-                self.start[k][i][lane] = x;
-            }
-            for (i, x) in [r.x, r.y, r.z].into_iter().enumerate() {
-                self.rate[k][i][lane] = x;
-            }
-            self.radius[k][lane] = one.radius[k];
-        }
-    }
-
-    #[inline(always)]
-    fn path<L: Octet>(&self) -> LinearPath<L> {
-        let vector = |v: &[[f32; LANES]; 3]| {
-            Vec3::new(
-                L::from_array(v[0]),
-                L::from_array(v[1]),
-                L::from_array(v[2]),
-            )
-        };
-        let (s, r) = (&self.start, &self.rate);
-        LinearPath {
-            start: [vector(&s[0]), vector(&s[1]), vector(&s[2]), vector(&s[3])],
-            rate: [vector(&r[0]), vector(&r[1]), vector(&r[2]), vector(&r[3])],
-            radius: [
-                L::from_array(self.radius[0]),
-                L::from_array(self.radius[1]),
-                L::from_array(self.radius[2]),
-                L::from_array(self.radius[3]),
-            ],
-        }
+/// Replaces the path of one lane.
+#[inline(always)]
+fn replace<L: Octet>(all: &mut LinearPath<L>, lane: usize, one: &LinearPath<f32>) {
+    let set = |v: &mut Vec3<L>, to: Vec3<f32>| {
+        v.x.set(lane, to.x);
+        v.y.set(lane, to.y);
+        v.z.set(lane, to.z);
+    };
+    for k in 0..4 {
+        set(&mut all.start[k], one.start[k]);
+        set(&mut all.rate[k], one.rate[k]);
+        all.radius[k].set(lane, one.radius[k]);
     }
 }
 

@@ -91,21 +91,35 @@ pub trait Octet: Lane {
     /// The bit patterns of truth values.
     fn from_mask(mask: Self::Mask) -> Self;
 
-    /// Replaces one member.
+    /// Truth of one lane alone.
+    #[inline(always)]
+    fn only(lane: usize) -> Self::Mask {
+        Self::from_array(ONLY[lane]).mask()
+    }
+    /// Replaces one member. By a blend: a member written through memory would stall the load of
+    /// all eight that follows.
     #[inline(always)]
     fn set(&mut self, lane: usize, value: f32) {
-        let mut values = self.to_array();
-        values[lane] = value;
-        *self = Self::from_array(values);
+        *self = Self::select(Self::only(lane), Self::splat(value.into()), *self);
     }
     /// Replaces one truth value.
     #[inline(always)]
     fn set_mask(mask: &mut Self::Mask, lane: usize, value: bool) {
-        let mut bits = Self::from_mask(*mask);
-        bits.set(lane, if value { f32::from_bits(u32::MAX) } else { 0.0 });
-        *mask = bits.mask();
+        let only = Self::only(lane);
+        *mask = if value { *mask | only } else { *mask & !only };
     }
 }
+
+/// Bit patterns of the masks with one lane true.
+const ONLY: [[f32; 8]; 8] = {
+    let mut only = [[0.0; 8]; 8];
+    let mut lane = 0;
+    while lane < 8 {
+        only[lane][lane] = f32::from_bits(u32::MAX);
+        lane += 1;
+    }
+    only
+};
 
 impl Octet for f32x8 {
     #[inline(always)]
