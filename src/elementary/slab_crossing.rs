@@ -26,12 +26,18 @@ pub struct Crossing<S> {
     pub point: Vec3<S>,
 }
 
-/// Crossing of an edge and a triangle of spheres `(centre, radius)`, in a common frame.
+/// Crossing of an edge and a triangle of spheres `(centre, radius)`, in a common frame. Computed in
+/// double precision whatever the input's: an edge nearly parallel to the triangle loses as many
+/// digits of `x` as its angle is small.
 pub fn crossing<S: Scalar>(
     edge: [(Vec3<S>, S); 2],
     slab: [(Vec3<S>, S); 3],
 ) -> Option<Crossing<S>> {
-    let (zero, one) = (S::zero(), S::one());
+    let wide = |(c, r): (Vec3<S>, S)| {
+        let center = Vec3::new(c.x.to_f64(), c.y.to_f64(), c.z.to_f64());
+        (center, r.to_f64())
+    };
+    let (edge, slab) = (edge.map(wide), slab.map(wide));
     let e = edge[1].0 - edge[0].0;
     let (u, v) = (slab[1].0 - slab[0].0, slab[2].0 - slab[0].0);
     let normal = u.cross(v);
@@ -39,15 +45,15 @@ pub fn crossing<S: Scalar>(
     let (height, slope) = (w.dot(normal), e.dot(normal));
     let end = height + slope;
     // Both ends strictly on one side, or all in the plane.
-    if (zero < height && zero < end) || (height < zero && end < zero) || slope == zero {
+    if (height > 0.0 && end > 0.0) || (height < 0.0 && end < 0.0) || slope == 0.0 {
         return None;
     }
-    let along = (-(height / slope)).clamp01();
+    let along = (-height / slope).clamp(0.0, 1.0);
     let foot = w + e * along;
     let area = normal.length_sq();
     let alpha = foot.dot(v.cross(normal)) / area;
     let beta = foot.dot(normal.cross(u)) / area;
-    if !(zero <= alpha && zero <= beta && alpha + beta <= one) {
+    if !(alpha >= 0.0 && beta >= 0.0 && alpha + beta <= 1.0) {
         return None;
     }
     let radius = edge[0].1
@@ -55,10 +61,13 @@ pub fn crossing<S: Scalar>(
         + slab[0].1
         + (slab[1].1 - slab[0].1) * alpha
         + (slab[2].1 - slab[0].1) * beta;
+    let point = edge[0].0 + e * along;
+    let [along, alpha, beta, radius] = [along, alpha, beta, radius].map(S::splat);
+    let [x, y, z] = [point.x, point.y, point.z].map(S::splat);
     Some(Crossing {
         along,
         weights: [alpha, beta],
         radius,
-        point: edge[0].0 + e * along,
+        point: Vec3::new(x, y, z),
     })
 }

@@ -12,7 +12,8 @@
 //! may be clamped. We enumerate: interior and all edges, keep the smallest value.
 //!
 //! **Edge.** Along `y + x e` with radius slope `d`, put `D = |e|² − d²` and
-//! `q = |y|²|e|² − (y·e)²` (the squared area spanned by `y` and `e`). Stationarity,
+//! `q = |y × e|²` (not `|y|²|e|² − (y·e)²`: its square root would keep only half of the digits where
+//! `y` and `e` are parallel, a centre on a cone's axis). Stationarity,
 //! `n·e = d` with `n = (y + x e)/|y + x e|`, gives `x = (d √(q/D) − y·e)/|e|²`. For `D ≤ 0` one
 //! end sphere contains the other and `S` is monotone: the larger sphere's end wins.
 //!
@@ -82,7 +83,7 @@ impl<L: Lane> Family<L> {
 pub fn edge_minimum<L: Lane>(y: Vec3<L>, e: Vec3<L>, d: L) -> L {
     let ee = e.length_sq();
     let ye = y.dot(e);
-    let q = (y.length_sq() * ee - ye * ye).max(L::zero());
+    let q = y.cross(e).length_sq();
     let discriminant = ee - d * d;
     let contained = discriminant.le(ee * L::splat(2.0 * L::EPSILON));
     let safe_discriminant = L::select(contained, L::one(), discriminant);
