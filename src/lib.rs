@@ -73,3 +73,8 @@ pub mod prelude {
         MedialPipeline, MedialSharedShape, MedialSphere, Progress, StepReport,
     };
 }
+
+/// The README's example, as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;
