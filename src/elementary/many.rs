@@ -149,11 +149,7 @@ fn side_by_side<L: Octet>(group: &[LinearPath<f32>]) -> LinearPath<L> {
     let lanes: [&LinearPath<f32>; LANES] = std::array::from_fn(|lane| &group[lane.min(last)]);
     let all = |member: &dyn Fn(&LinearPath<f32>) -> f32| L::from_array(lanes.map(member));
     let vector = |of: &dyn Fn(&LinearPath<f32>) -> Vec3<f32>| {
-        Vec3::new(
-            all(&|p| of(p).x),
-            all(&|p| of(p).y),
-            all(&|p| of(p).z),
-        )
+        Vec3::new(all(&|p| of(p).x), all(&|p| of(p).y), all(&|p| of(p).z))
     };
     LinearPath {
         start: std::array::from_fn(|k| vector(&|p| p.start[k])),
