@@ -4,6 +4,9 @@
 //!
 //! `cargo bench --bench mesh_pairs`. Prints medians, counts, and a hash of the results.
 
+mod common;
+
+use common::{Hash, median, processor};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::elementary::first_contact;
@@ -128,6 +131,7 @@ fn brute_force(a: &MedialMesh, b: &MedialMesh, velocity: Vector, offset: Vector)
 }
 
 fn main() {
+    println!("{}, one core", processor());
     let mesh = creature();
     assert_eq!(mesh.primitive_count(), 1236);
     let combs = [comb(60), comb(60)];
@@ -145,7 +149,8 @@ fn main() {
     for (name, distance, speed, spin) in scenes {
         let mut random = Random(11);
         let mut times = Vec::new();
-        let (mut hits, mut nodes, mut tests, mut worst, mut hash) = (0, 0u64, 0u64, 0, 0.0);
+        let (mut hits, mut nodes, mut tests, mut worst) = (0, 0u64, 0u64, 0);
+        let mut hash = Hash::new();
         const RUNS: usize = 200;
         for _ in 0..RUNS {
             let away = random.vector().normalize_or_zero() * distance;
@@ -165,14 +170,15 @@ fn main() {
             nodes += u64::from(counts.nodes);
             tests += u64::from(counts.tests);
             worst = worst.max(counts.tests);
-            hash += f64::from(toi.lower);
+            hash.add(u64::from(toi.lower.to_bits()));
+            hash.add(u64::from(toi.upper.to_bits()));
         }
-        times.sort_by(f64::total_cmp);
         println!(
-            "{name:<28}{hits:>5}/{RUNS}{:>9.1}{:>9}{:>9}{hash:>11.4}  (most tests {worst}, p99 {:.0} µs)",
-            times[RUNS / 2],
+            "{name:<28}{hits:>5}/{RUNS}{:>9.1}{:>9}{:>9}{:>11}  (most tests {worst}, p99 {:.0} µs)",
+            median(&mut times),
             nodes / RUNS as u64,
             tests / RUNS as u64,
+            hash.short(),
             times[RUNS * 99 / 100]
         );
     }
