@@ -50,3 +50,67 @@ fn what_starts_inside_is_hit_at_once_unless_it_may_leave() {
         assert!(cast(false).is_none_or(|t| t > 0.0), "{name}");
     }
 }
+
+/// What touches at the start and may go on touching: sliding and leaving are free, sinking in ends
+/// before the medial axis reaches the surface.
+#[test]
+fn what_touches_at_the_start_may_slide_but_not_sink_in() {
+    const TUBE: f32 = 0.1;
+    let mesh = MedialMesh::torus(0.3, TUBE, 8).expect("a torus");
+    // Each with its flat side or its top at height 1.
+    let upright = Pose::IDENTITY;
+    let upside_down = Pose::rotation(Vector::new(std::f32::consts::PI, 0.0, 0.0));
+    let bodies = [
+        ("cuboid", upright, SharedShape::cuboid(3.0, 1.0, 3.0)),
+        ("cylinder", upright, SharedShape::cylinder(1.0, 3.0)),
+        (
+            "round cylinder",
+            upright,
+            SharedShape::round_cylinder(0.8, 3.0, 0.2),
+        ),
+        ("cone", upside_down, SharedShape::cone(1.0, 3.0)),
+        (
+            "round cone",
+            upside_down,
+            SharedShape::round_cone(0.8, 3.0, 0.2),
+        ),
+        (
+            "compound",
+            upright,
+            SharedShape::compound(vec![
+                (upside_down, SharedShape::cone(1.0, 3.0)),
+                (Pose::translation(2.0, 0.0, 0.0), SharedShape::ball(0.5)),
+            ]),
+        ),
+    ];
+    let dispatcher = MedialDispatcher::default();
+    for (name, pose, body) in &bodies {
+        let still = NonlinearRigidMotion::constant_position(*pose);
+        let cast = |height: f32, velocity: Vector| {
+            let start = Pose::translation(0.0, 1.0 + TUBE + height, 0.0);
+            let motion = NonlinearRigidMotion {
+                linvel: velocity,
+                ..NonlinearRigidMotion::constant_position(start)
+            };
+            let hit = dispatcher.cast_shapes_nonlinear(
+                &motion,
+                &mesh,
+                &still,
+                body.as_ref(),
+                0.0,
+                1.0,
+                false,
+            );
+            hit.expect("swept").map(|h| h.time_of_impact)
+        };
+        for height in [5.0e-5, 0.0, -1.0e-3] {
+            assert_eq!(cast(height, Vector::X), None, "{name} slides from {height}");
+            assert_eq!(cast(height, Vector::Y), None, "{name} leaves from {height}");
+            let sunk = cast(height, -Vector::Y).map(|t| t - height);
+            assert!(
+                sunk.is_some_and(|d| d > 0.01 && d < TUBE),
+                "{name} sinks {sunk:?} from {height}"
+            );
+        }
+    }
+}

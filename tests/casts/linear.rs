@@ -1,6 +1,6 @@
 //! Straight casts with a target distance and no end in time: parry's `cast_shapes`.
 
-use crate::oracle::{COARSE_CUTS, CUTS, Samples, Scene};
+use crate::oracle::{COARSE_CUTS, CUTS, FINE_CUTS, Samples, Scene, stand_in};
 use crate::rng::Rng;
 use crate::rotating::{rotation, vector};
 use crate::shapes::{every_shape, ring};
@@ -16,12 +16,14 @@ const TARGET: Real = 0.1;
 fn every_shape_on_a_straight_path_without_end_is_hit_at_the_target_distance() {
     let mesh = ring();
     let samples = Samples::new(&mesh, CUTS);
+    let fine = Samples::new(&mesh, FINE_CUTS);
     let coarse = Samples::new(&mesh, COARSE_CUTS);
     let dispatcher = MedialDispatcher::default();
     let mut failures = Vec::new();
     let mut hits = 0;
     let mut cases = 0;
     for (i, (name, shape, _)) in every_shape().iter().enumerate() {
+        let measured = stand_in(shape);
         let mut rng = Rng::new(500 + i as u64);
         let mut left = CASES;
         while left > 0 {
@@ -43,7 +45,8 @@ fn every_shape_on_a_straight_path_without_end_is_hit_at_the_target_distance() {
             };
             let scene = Scene {
                 samples: &samples,
-                other: shape.as_ref(),
+                fine: &fine,
+                other: measured.as_ref(),
                 other_samples: shape.as_shape::<MedialMesh>().map(|_| &coarse),
                 motions,
                 target: TARGET,

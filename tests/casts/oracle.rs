@@ -10,7 +10,7 @@
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{NonlinearRigidMotion, PointQuery, ShapeCastHit};
-use parry3d::shape::{Cuboid, Shape, TypedShape};
+use parry3d::shape::{Shape, SharedShape, TypedShape};
 use rapier3d_medial::{MedialMesh, MedialSphere};
 
 /// Error of a projection and of the pose it is seen from, both in `f32`: coordinates are below 8, so
@@ -19,6 +19,9 @@ pub const ROUNDING: Real = 1.0e-4;
 
 /// Parts that an edge of the mesh is cut in.
 pub const CUTS: usize = 32;
+
+/// The same for the distance at a hit, measured once.
+pub const FINE_CUTS: usize = 256;
 
 /// The same for a second mesh: every sphere of one is measured with every one of the other.
 pub const COARSE_CUTS: usize = 10;
@@ -101,20 +104,29 @@ pub fn apart(shape: &dyn Shape, point: Vector) -> Real {
             .iter()
             .map(|(pose, s)| apart(s.as_ref(), pose.inverse_transform_point(point)))
             .fold(Real::MAX, Real::min),
-        TypedShape::Voxels(v) => {
-            let cube = Cuboid::new(v.voxel_size() * 0.5);
-            v.voxels()
-                .filter(|voxel| !voxel.state.is_empty())
-                .map(|voxel| cube.distance_to_local_point(point - voxel.center, true))
-                .fold(Real::MAX, Real::min)
-        }
         _ => shape.distance_to_local_point(point, true),
     }
+}
+
+/// The shape to measure in place of another: voxels, whose own projection is slow, as their cuboids.
+pub fn stand_in(shape: &SharedShape) -> SharedShape {
+    let Some(voxels) = shape.as_voxels() else {
+        return shape.clone();
+    };
+    let half = voxels.voxel_size() * 0.5;
+    let full = voxels.voxels().filter(|v| !v.state.is_empty());
+    let cube = |center| {
+        let cuboid = SharedShape::cuboid(half.x, half.y, half.z);
+        (Pose::from_translation(center), cuboid)
+    };
+    SharedShape::compound(full.map(|v| cube(v.center)).collect())
 }
 
 /// A cast as the oracle sees it.
 pub struct Scene<'a> {
     pub samples: &'a Samples,
+    /// The same mesh, for the distance at the hit.
+    pub fine: &'a Samples,
     pub other: &'a dyn Shape,
     /// The other's samples where it is a medial mesh.
     pub other_samples: Option<&'a Samples>,
@@ -133,15 +145,19 @@ impl Scene<'_> {
     }
 
     fn error(&self) -> Real {
-        self.samples.error + self.other_samples.map_or(0.0, |s| s.error)
+        self.fine.error + self.other_samples.map_or(0.0, |s| s.error)
     }
 
     /// Sampled distance less the target at a time, exact where below `limit`.
     pub fn distance(&self, time: Real, limit: Real) -> Real {
+        self.sampled(self.samples, time, limit)
+    }
+
+    fn sampled(&self, samples: &Samples, time: Real, limit: Real) -> Real {
         let [pose1, pose2] = self.motions.map(|m| m.position_at_time(time));
         let pose = pose2.inverse() * pose1;
         let far = limit + self.target;
-        self.samples.distance(&pose, far, &|p| self.apart(p)) - self.target
+        samples.distance(&pose, far, &|p| self.apart(p)) - self.target
     }
 
     /// Fails unless a hit (mesh first), or its absence, agrees with the samples. `tolerance` is the
@@ -160,7 +176,7 @@ impl Scene<'_> {
         }
         let Some(hit) = hit else { return Ok(()) };
         let most = tolerance + self.error() + ROUNDING;
-        let distance = self.distance(hit.time_of_impact, 1.0);
+        let distance = self.sampled(self.fine, hit.time_of_impact, 1.0);
         if distance > most {
             return Err(format!("{distance} apart, over {most}, at {hit:?}"));
         }
@@ -174,13 +190,13 @@ impl Scene<'_> {
         let [pose1, pose2] = self.motions.map(|m| m.position_at_time(hit.time_of_impact));
         let (n1, n2) = (pose1.rotation * hit.normal1, pose2.rotation * hit.normal2);
         let (w1, w2) = (pose1 * hit.witness1, pose2 * hit.witness2);
-        let on1 = self.samples.distance_to_point(hit.witness1);
+        let on1 = self.fine.distance_to_point(hit.witness1);
         let on2 = self.apart(hit.witness2);
         let gap = (w2 - w1).dot(n1) - self.target;
         let off = tolerance + ROUNDING;
         let sound = (n1.length() - 1.0).abs() < 1.0e-4
             && (n1 + n2).length() < 1.0e-4
-            && (-off..self.samples.error + off).contains(&on1)
+            && (-off..self.fine.error + off).contains(&on1)
             && on2.abs() < self.error() + off
             && gap.abs() < off
             && (w2 - w1).cross(n1).length() < off * 4.0;

@@ -1,6 +1,6 @@
 //! Exact rigid motion: never missed, never late, at contact distance when hit, in both orders.
 
-use crate::oracle::{COARSE_CUTS, CUTS, Samples, Scene};
+use crate::oracle::{COARSE_CUTS, CUTS, FINE_CUTS, Samples, Scene, stand_in};
 use crate::rng::Rng;
 use crate::shapes::{every_shape, ring};
 use parry3d::math::{Pose, Real, Rotation, Vector};
@@ -44,10 +44,12 @@ fn motions(rng: &mut Rng, aim: f64) -> [NonlinearRigidMotion; 2] {
 fn every_shape_in_rotation_is_hit_neither_late_nor_never() {
     let mesh = ring();
     let samples = Samples::new(&mesh, CUTS);
+    let fine = Samples::new(&mesh, FINE_CUTS);
     let coarse = Samples::new(&mesh, COARSE_CUTS);
     let dispatcher = MedialDispatcher::default();
     let mut failures = Vec::new();
     for (i, (name, shape, aim)) in every_shape().iter().enumerate() {
+        let measured = stand_in(shape);
         let mut rng = Rng::new(100 + i as u64);
         let (mut cases, mut hits) = (0, 0);
         let started = std::time::Instant::now();
@@ -56,7 +58,8 @@ fn every_shape_in_rotation_is_hit_neither_late_nor_never() {
             let [motion1, motion2] = motions(&mut rng, *aim);
             let scene = Scene {
                 samples: &samples,
-                other: shape.as_ref(),
+                fine: &fine,
+                other: measured.as_ref(),
                 other_samples,
                 motions: [&motion1, &motion2],
                 target: 0.0,
