@@ -110,6 +110,18 @@ impl<S: Scalar> RigidMotion<S> {
         }
     }
 
+    /// A direction given in the body's frame, turned until the time of [`Self::sin_cos`].
+    pub fn direction(&self, local: Vec3<S>, (sin, cos): (S, S)) -> Vec3<S> {
+        let rho = rotate(&self.columns, local);
+        let along = self.axis * self.axis.dot(rho);
+        along + (rho - along) * cos + self.axis.cross(rho) * sin
+    }
+
+    /// Angular velocity, in radians per step.
+    pub fn angular_velocity(&self) -> Vec3<S> {
+        self.axis * self.angle
+    }
+
     /// Angle turned in the step, in radians.
     pub fn angle(&self) -> S {
         self.angle

@@ -1,19 +1,16 @@
 //! Shape casts of medial meshes in exact rigid motion, against each other and against rapier's
 //! shapes, by the certified query.
 
-use super::foreign;
+use super::advance;
+use super::foreign::{self, Parts};
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
+use crate::pair::Volumes;
 use crate::pair::first_contact::{Counts, first_contact_counted};
-use crate::pair::{Soup, Volumes};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
-use parry3d::shape::{HalfSpace, Shape};
-
-/// Radius given to a half-space's stand-in, in units of the reach of the motion. The stand-in is a
-/// slab of radius 0 in the half-space's plane, larger than anything the body can reach.
-const PLANE_REACH: Real = 4.0;
+use parry3d::shape::Shape;
 
 /// How deep a pair of primitives that touches at the start may sink in, in units of the mesh's
 /// thickness, when contact at the start is not the answer: half way to the medial axis.
@@ -101,14 +98,20 @@ impl Cast<'_> {
             seconds,
             options.target_distance,
         );
-        let mut soup = Soup::default();
-        if let Some(plane) = self.other.as_halfspace() {
-            add_plane(&mut soup, plane, &region);
-        } else if !foreign::add_surface(&mut soup, self.other, &Pose::IDENTITY, &region) {
+        let mut parts = Parts::default();
+        if !foreign::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {
             return Err(Unsweepable);
         }
-        let (mut toi, counts) =
+        let Parts { soup, turned } = parts;
+        let (mut toi, mut counts) =
             first_contact_counted(self.mesh, motion1, &soup, motion2, seconds, options);
+        if !turned.is_empty() {
+            let (other, more) =
+                advance::first_contact(self.mesh, motion1, &turned, motion2, seconds, options);
+            counts.nodes += more.nodes;
+            counts.tests += more.tests;
+            toi = earlier(toi, other);
+        }
         let stops = options.initial_contact == InitialContact::Stop;
         if stops && toi.upper > 0.0 && self.starts_inside(motion1, motion2, options.target_distance)
         {
@@ -133,7 +136,23 @@ impl Cast<'_> {
     }
 }
 
-/// The other shape is neither medial nor made of swept spheres.
+/// What is known of two bodies together, of which each is known.
+fn earlier(a: Toi, b: Toi) -> Toi {
+    let overlap = |t: &Toi| t.status == ToiStatus::Overlapping;
+    let (first, second) = if overlap(&b) || (!overlap(&a) && b.lower < a.lower) {
+        (b, a)
+    } else {
+        (a, b)
+    };
+    Toi {
+        upper: first.upper.min(second.upper),
+        tolerance: first.tolerance.max(second.tolerance),
+        iterations: first.iterations.saturating_add(second.iterations),
+        ..first
+    }
+}
+
+/// The other shape is neither medial nor built in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unsweepable;
 
@@ -182,16 +201,4 @@ fn swept_region(
     let size = reach + from.abs().max_element() + to.abs().max_element();
     let reach = Vector::splat(reach + 64.0 * Real::EPSILON * size);
     Aabb::new(from.min(to) - reach, from.max(to) + reach)
-}
-
-/// A square of the half-space's plane that the region cannot look past, as two slabs.
-fn add_plane(soup: &mut Soup, plane: &HalfSpace, region: &Aabb) {
-    let n = plane.normal;
-    let foot = region.center() - n * n.dot(region.center());
-    let reach = PLANE_REACH * (region.half_extents().length() + n.dot(region.center()).abs());
-    let u = n.any_orthonormal_vector() * reach;
-    let v = n.cross(u);
-    let at = |x: Real, y: Real| MedialSphere::new(foot + u * x + v * y, 0.0);
-    soup.push(&[at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0)]);
-    soup.push(&[at(-1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
 }

@@ -72,6 +72,32 @@ impl MedialDispatcher {
     }
 }
 
+/// Time by which two shapes in straight motion have met, if they do: an endless cast ends there.
+fn passed_by(pos12: &Pose, velocity: Vector, g1: &dyn Shape, g2: &dyn Shape, target: Real) -> Real {
+    let reach = |g: &dyn Shape| {
+        let aabb = g.compute_local_aabb();
+        aabb.mins.abs().max(aabb.maxs.abs()).length()
+    };
+    let apart = pos12.translation.length() + target.max(0.0);
+    // A half-space has no end: what counts is how fast its plane is approached.
+    let plane1 = g1.as_halfspace().map(|h| -velocity.dot(h.normal));
+    let plane2 = || {
+        let plane = g2.as_halfspace()?;
+        Some(velocity.dot(pos12.rotation * plane.normal))
+    };
+    let (speed, size) = match (plane1, plane1.or_else(plane2)) {
+        (Some(approach), _) => (approach, reach(g2)),
+        (None, Some(approach)) => (approach, reach(g1)),
+        (None, None) => (velocity.length(), reach(g1) + reach(g2)),
+    };
+    if speed <= 0.0 {
+        return 0.0;
+    }
+    // Rounding must not end the cast before the last contact.
+    let passed = (apart + size) / speed * (1.0 + 16.0 * Real::EPSILON);
+    passed.min(Real::MAX)
+}
+
 fn medial(shape: &dyn Shape) -> Option<&MedialMesh> {
     shape.as_shape::<MedialMesh>()
 }
@@ -150,20 +176,13 @@ impl QueryDispatcher for MedialDispatcher {
         if medial(g1).is_none() && medial(g2).is_none() {
             return Err(Unsupported);
         }
-        // An endless cast ends when the bodies have passed each other.
-        let speed = local_vel12.length();
-        let (a, b) = (g1.compute_local_aabb(), g2.compute_local_aabb());
-        let reach = |lo: Vector, hi: Vector| lo.abs().max(hi.abs()).length();
-        let apart = pos12.translation.length() + reach(a.mins, a.maxs) + reach(b.mins, b.maxs);
-        let passed = (apart + options.target_distance.max(0.0)) / speed;
-        let end = if passed.is_finite() {
-            options.max_time_of_impact.min(passed)
-        } else if speed > 0.0 {
-            // A half-space has no end.
-            return Err(Unsupported);
-        } else {
-            0.0
-        };
+        let end = options.max_time_of_impact.min(passed_by(
+            pos12,
+            local_vel12,
+            g1,
+            g2,
+            options.target_distance,
+        ));
         let motion1 = NonlinearRigidMotion::identity();
         let motion2 = NonlinearRigidMotion {
             linvel: local_vel12,

@@ -3,18 +3,37 @@
 //! radius.
 //!
 //! A closed body is then only its surface: whether the other starts inside it needs
-//! [`holds_point`] besides.
+//! [`holds_point`] besides. Cylinders and cones have no flat faces: they are collected apart, for
+//! [`super::advance`].
 
+use super::turned::Turned;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::Soup;
 use parry3d::bounding_volume::Aabb;
-use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, TypedShape};
+use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
 
-/// Adds the surface of `shape`, placed at `pose` in the soup's frame, as far as it meets `region`
-/// (in the soup's frame). Returns `false` for a shape that has no such surface: half-spaces,
-/// cylinders, cones, custom shapes.
-pub fn add_surface(soup: &mut Soup, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
+/// Size of a half-space's stand-in, in units of the reach of the motion: slabs of radius 0 in the
+/// half-space's plane, larger than anything the body can reach.
+const PLANE_REACH: Real = 4.0;
+
+/// What a shape is made of, in the shape's frame.
+#[derive(Clone, Debug, Default)]
+pub struct Parts {
+    /// Swept spheres.
+    pub soup: Soup,
+    /// Cylinders and cones.
+    pub turned: Vec<Turned>,
+}
+
+/// Adds the surface of `shape`, placed at `pose` in the parts' frame, as far as it meets `region`
+/// (in the parts' frame). Returns `false` for a shape that has no such surface: a custom one.
+pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
+    if let Some(turned) = Turned::new(shape, pose) {
+        parts.turned.push(turned);
+        return true;
+    }
+    let soup = &mut parts.soup;
     let point = |p: Vector| pose * p;
     let ball = |p: Vector, radius: Real| MedialSphere::new(point(p), radius);
     match shape.as_typed_shape() {
@@ -64,11 +83,15 @@ pub fn add_surface(soup: &mut Soup, shape: &dyn Shape, pose: &Pose, region: &Aab
                 }
             }
         }
+        TypedShape::HalfSpace(plane) => {
+            let local = region.transform_by(&pose.inverse());
+            add_plane(soup, plane, pose, &local);
+        }
         TypedShape::Compound(c) => {
             return c
                 .shapes()
                 .iter()
-                .all(|(child, s)| add_surface(soup, s.as_ref(), &(pose * child), region));
+                .all(|(child, s)| add_surface(parts, s.as_ref(), &(pose * child), region));
         }
         _ => return false,
     }
@@ -126,4 +149,16 @@ fn add_polyhedron(soup: &mut Soup, hull: &ConvexPolyhedron, pose: &Pose, border:
             soup.push(&[at(0), at(k), at(k + 1)]);
         }
     }
+}
+
+/// A square of the half-space's plane that `region` (in its frame) cannot look past, as two slabs.
+fn add_plane(soup: &mut Soup, plane: &HalfSpace, pose: &Pose, region: &Aabb) {
+    let n = plane.normal;
+    let foot = region.center() - n * n.dot(region.center());
+    let reach = PLANE_REACH * (region.half_extents().length() + n.dot(region.center()).abs());
+    let u = n.any_orthonormal_vector() * reach;
+    let v = n.cross(u);
+    let at = |x: Real, y: Real| MedialSphere::new(pose * (foot + u * x + v * y), 0.0);
+    soup.push(&[at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0)]);
+    soup.push(&[at(-1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
 }

@@ -1,5 +1,6 @@
 //! L5: the medial mesh as a parry shape: shape traits, contact manifolds, shape casts.
 
+pub mod advance;
 pub mod answers;
 pub mod cast;
 pub mod dispatcher;
@@ -7,6 +8,7 @@ pub mod foreign;
 pub mod manifolds;
 pub mod parts;
 pub mod shape;
+pub mod turned;
 
 pub use answers::Answers;
 pub use dispatcher::MedialDispatcher;

@@ -1,0 +1,116 @@
+//! A body that starts wholly inside a closed one touches no surface: only the inside test tells.
+
+use parry3d::math::{Pose, Vector};
+use parry3d::query::{NonlinearRigidMotion, QueryDispatcher};
+use parry3d::shape::{Shape, SharedShape};
+use rapier3d_medial::{MedialDispatcher, MedialMesh};
+
+#[test]
+fn what_starts_inside_is_hit_at_once_unless_it_may_leave() {
+    let mesh = MedialMesh::torus(0.3, 0.1, 8).expect("a torus");
+    let corner = |i: u32| {
+        let side = |bit: u32| if i >> bit & 1 == 1 { 3.0 } else { -3.0 };
+        Vector::new(side(0), side(1), side(2))
+    };
+    let corners: Vec<Vector> = (0..8).map(corner).collect();
+    let bodies = [
+        ("ball", SharedShape::ball(3.0)),
+        ("capsule", SharedShape::capsule_y(2.0, 3.0)),
+        ("cuboid", SharedShape::cuboid(3.0, 3.0, 3.0)),
+        (
+            "round cuboid",
+            SharedShape::round_cuboid(3.0, 3.0, 3.0, 0.2),
+        ),
+        ("hull", SharedShape::convex_hull(&corners).expect("a hull")),
+        ("cylinder", SharedShape::cylinder(3.0, 3.0)),
+        ("round cylinder", SharedShape::round_cylinder(3.0, 3.0, 0.2)),
+        ("cone", SharedShape::cone(4.0, 4.0)),
+        ("round cone", SharedShape::round_cone(4.0, 4.0, 0.2)),
+        ("half-space", SharedShape::halfspace(Vector::Y)),
+    ];
+    let dispatcher = MedialDispatcher::default();
+    for (name, body) in &bodies {
+        let motion1 = NonlinearRigidMotion {
+            linvel: Vector::new(0.0, 12.0, 0.0),
+            angvel: Vector::new(0.5, 0.2, 1.0),
+            ..NonlinearRigidMotion::constant_position(Pose::translation(0.1, -1.0, 0.2))
+        };
+        let still = NonlinearRigidMotion::identity();
+        let (g1, g2): (&dyn Shape, _) = (&mesh, body.as_ref());
+        let cast = |stop: bool| {
+            let hit = dispatcher.cast_shapes_nonlinear(&motion1, g1, &still, g2, 0.0, 1.0, stop);
+            let swapped = dispatcher
+                .cast_shapes_nonlinear(&still, g2, &motion1, g1, 0.0, 1.0, stop)
+                .expect("swept");
+            let hit = hit.expect("swept").map(|h| h.time_of_impact);
+            assert_eq!(hit, swapped.map(|h| h.time_of_impact), "{name}");
+            hit
+        };
+        assert_eq!(cast(true), Some(0.0), "{name}");
+        assert!(cast(false).is_none_or(|t| t > 0.0), "{name}");
+    }
+}
+
+/// What touches at the start and may go on touching: sliding and leaving are free, sinking in ends
+/// before the medial axis reaches the surface.
+#[test]
+fn what_touches_at_the_start_may_slide_but_not_sink_in() {
+    const TUBE: f32 = 0.1;
+    let mesh = MedialMesh::torus(0.3, TUBE, 8).expect("a torus");
+    // Each with its flat side or its top at height 1.
+    let upright = Pose::IDENTITY;
+    let upside_down = Pose::rotation(Vector::new(std::f32::consts::PI, 0.0, 0.0));
+    let bodies = [
+        ("cuboid", upright, SharedShape::cuboid(3.0, 1.0, 3.0)),
+        ("cylinder", upright, SharedShape::cylinder(1.0, 3.0)),
+        (
+            "round cylinder",
+            upright,
+            SharedShape::round_cylinder(0.8, 3.0, 0.2),
+        ),
+        ("cone", upside_down, SharedShape::cone(1.0, 3.0)),
+        (
+            "round cone",
+            upside_down,
+            SharedShape::round_cone(0.8, 3.0, 0.2),
+        ),
+        (
+            "compound",
+            upright,
+            SharedShape::compound(vec![
+                (upside_down, SharedShape::cone(1.0, 3.0)),
+                (Pose::translation(2.0, 0.0, 0.0), SharedShape::ball(0.5)),
+            ]),
+        ),
+    ];
+    let dispatcher = MedialDispatcher::default();
+    for (name, pose, body) in &bodies {
+        let still = NonlinearRigidMotion::constant_position(*pose);
+        let cast = |height: f32, velocity: Vector| {
+            let start = Pose::translation(0.0, 1.0 + TUBE + height, 0.0);
+            let motion = NonlinearRigidMotion {
+                linvel: velocity,
+                ..NonlinearRigidMotion::constant_position(start)
+            };
+            let hit = dispatcher.cast_shapes_nonlinear(
+                &motion,
+                &mesh,
+                &still,
+                body.as_ref(),
+                0.0,
+                1.0,
+                false,
+            );
+            hit.expect("swept").map(|h| h.time_of_impact)
+        };
+        for height in [5.0e-5, 0.0, -1.0e-3] {
+            assert_eq!(cast(height, Vector::X), None, "{name} slides from {height}");
+            assert_eq!(cast(height, Vector::Y), None, "{name} leaves from {height}");
+            let sunk = cast(height, -Vector::Y).map(|t| t - height);
+            assert!(
+                sunk.is_some_and(|d| d > 0.01 && d < TUBE),
+                "{name} sinks {sunk:?} from {height}"
+            );
+        }
+    }
+}

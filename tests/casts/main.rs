@@ -1,0 +1,11 @@
+//! Shape casts of medial meshes against every built-in shape, by [`oracle`], which shares no code with
+//! them.
+
+mod inside;
+mod linear;
+mod oracle;
+#[allow(dead_code)]
+#[path = "../common/ccd/rng.rs"]
+mod rng;
+mod rotating;
+mod shapes;
