@@ -78,11 +78,11 @@ pub enum InitialContact {
     /// They are the answer: contact at time 0.
     Stop,
     /// They touch, and may go on touching, but not sink in: such a pair counts as in contact only
-    /// when its signed distance falls to `−depth`; or, if it is deeper already, below what it is by a
-    /// tenth of `depth`. Other pairs are searched as usual. A length, > 0.
+    /// when its signed distance has fallen below what it is at the start. Other pairs are searched
+    /// as usual.
     Deepen {
-        /// How deep.
-        depth: Real,
+        /// By how much, a length, > 0.
+        by: Real,
     },
 }
 

@@ -266,19 +266,17 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             let place = |c| self.motions[side].point(c).at(0.0, turned).position;
             s.iter().map(|s| (place(s.0), s.1)).collect::<Vec<_>>()
         };
-        let floor = -thinnest(sa, sb);
-        let mut target = self.target.max(floor);
+        let mut target = self.target;
+        if self.initial_contact == InitialContact::Stop {
+            target = target.max(-thinnest(sa, sb));
+        }
         match self.initial_contact {
-            InitialContact::Deepen { depth } => {
+            InitialContact::Deepen { by } => {
                 let (pa, pb) = (at_start(0, sa), at_start(1, sb));
                 let distance = signed_distance(&pa, &pb);
                 let tolerance = self.earliest.limits.tolerance;
-                if distance <= self.target + tolerance {
-                    let depth = f64::from(depth);
-                    let deeper = (self.target - depth).min(distance - 0.1 * depth - tolerance);
-                    // Medial surfaces must not cross; where they do already, nothing can be guarded.
-                    let guarded = floor < distance - tolerance;
-                    target = if guarded { deeper.max(floor) } else { deeper };
+                if distance <= target + tolerance {
+                    target = distance - f64::from(by) - tolerance;
                 }
             }
             InitialContact::Stop if start == 0.0 && near => {

@@ -201,7 +201,7 @@ impl Search<'_> {
             tolerance: self.tolerance,
             steps: CAP.saturating_mul(self.options.max_iterations),
         };
-        if let InitialContact::Deepen { depth } = self.options.initial_contact {
+        if let InitialContact::Deepen { by } = self.options.initial_contact {
             let at_start = Limits {
                 start: 0.0,
                 steps: 1,
@@ -209,9 +209,8 @@ impl Search<'_> {
             };
             let start = self.advance(body, balls, &at_start).near.distance();
             if start <= limits.target + limits.tolerance {
-                let depth = f64::from(depth);
                 limits.start = 0.0;
-                limits.target = (limits.target - depth).min(start - 0.1 * depth - limits.tolerance);
+                limits.target = start - f64::from(by) - limits.tolerance;
             }
         }
         let advance = self.advance(body, balls, &limits);

@@ -12,9 +12,13 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
 use parry3d::shape::Shape;
 
-/// How deep a pair of primitives that touches at the start may sink in, in units of the mesh's
-/// thickness, when contact at the start is not the answer: half way to the medial axis.
+/// How deep bodies that touch at the start may sink into each other, in units of the mesh's thickness,
+/// when contact at the start is not the answer: half way to the medial axis. It holds for all their
+/// primitives: a body that slides meets one facet after the other, and none of them may stop it.
 const CORE: Real = 0.5;
+
+/// How much deeper what is deeper than that already may sink in one cast, in units of that depth.
+const FURTHER: Real = 0.1;
 
 /// First contact of a medial mesh with another shape, both moving rigidly, from `start` to `end`
 /// seconds.
@@ -48,16 +52,21 @@ impl Cast<'_> {
         let motion2 = started(self.motion2, start);
         let options = ToiOptions {
             target_distance: self.target_distance,
-            initial_contact: if self.stop_at_penetration {
-                InitialContact::Stop
-            } else {
-                InitialContact::Deepen {
-                    depth: (CORE * self.mesh.thickness()).max(Real::MIN_POSITIVE),
-                }
-            },
             ..ToiOptions::default()
         };
-        let (toi, counts) = self.query(&motion1, &motion2, seconds, &options)?;
+        let (mut toi, mut counts) = self.query(&motion1, &motion2, seconds, &options)?;
+        if toi.upper <= 0.0 && !self.stop_at_penetration {
+            let core = (CORE * self.mesh.thickness()).max(Real::MIN_POSITIVE);
+            let deeper = ToiOptions {
+                target_distance: self.target_distance - core,
+                initial_contact: InitialContact::Deepen { by: FURTHER * core },
+                ..options
+            };
+            let (other, more) = self.query(&motion1, &motion2, seconds, &deeper)?;
+            toi = other;
+            counts.nodes += more.nodes;
+            counts.tests += more.tests;
+        }
         if toi.status == ToiStatus::Separated {
             return Ok((None, counts));
         }

@@ -104,10 +104,7 @@ fn what_touches_at_the_start_may_slide_but_not_sink_in() {
             hit.expect("swept").map(|h| h.time_of_impact)
         };
         for height in [5.0e-5, 0.0, -1.0e-3] {
-            // Onto the other triangle of a cuboid's face it does not slide freely: see known_issues.rs.
-            if *name != "cuboid" {
-                assert_eq!(cast(height, Vector::X), None, "{name} slides from {height}");
-            }
+            assert_eq!(cast(height, Vector::X), None, "{name} slides from {height}");
             assert_eq!(cast(height, Vector::Y), None, "{name} leaves from {height}");
             let sunk = cast(height, -Vector::Y).map(|t| t - height);
             assert!(
