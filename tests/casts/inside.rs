@@ -131,7 +131,7 @@ fn bad_motions_and_flat_shapes_do_not_panic() {
         SharedShape::cone(1.0, 0.0),
         SharedShape::cylinder(1.0e20, 1.0e-20),
         SharedShape::cone(f32::NAN, f32::INFINITY),
-        SharedShape::round_cone(1.0, 1.0, f32::NAN),
+        SharedShape::round_cone(0.0, 0.0, 0.1),
         SharedShape::halfspace(Vector::Y),
     ];
     let bad = [0.0, 1.0e-30, 1.0e18, f32::MAX, f32::INFINITY, f32::NAN];
