@@ -98,8 +98,9 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
     true
 }
 
-/// Whether a closed body holds a point (in its own frame). Triangle meshes, height fields and
-/// polylines are surfaces: they hold nothing.
+/// Whether a body given by its closed surface holds a point (in its own frame). Triangle meshes,
+/// height fields and polylines are surfaces: they hold nothing. Balls, capsules, cylinders and cones are
+/// swept as solids and need no such test, and parry's own fails where one has no size.
 pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
     match shape.as_typed_shape() {
         TypedShape::TriMesh(_)
@@ -107,7 +108,13 @@ pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
         | TypedShape::Polyline(_)
         | TypedShape::Segment(_)
         | TypedShape::Triangle(_)
-        | TypedShape::RoundTriangle(_) => false,
+        | TypedShape::RoundTriangle(_)
+        | TypedShape::Ball(_)
+        | TypedShape::Capsule(_)
+        | TypedShape::Cylinder(_)
+        | TypedShape::Cone(_)
+        | TypedShape::RoundCylinder(_)
+        | TypedShape::RoundCone(_) => false,
         TypedShape::Compound(c) => c
             .shapes()
             .iter()

@@ -4,6 +4,7 @@ pub mod advance;
 pub mod answers;
 pub mod cast;
 pub mod dispatcher;
+pub mod follow;
 pub mod foreign;
 pub mod manifolds;
 pub mod parts;

@@ -247,3 +247,9 @@ fn minimise(until: f64, size: f64, eval: impl Fn(f64) -> (NearBall, f64)) -> Nea
     };
     NearBall { direction, ..best }
 }
+
+/// The vector at length 1; 0 stays 0.
+pub fn unit(v: Vec3<f64>) -> Vec3<f64> {
+    let length = v.length();
+    if length > 0.0 { v * (1.0 / length) } else { v }
+}

@@ -1,6 +1,7 @@
 //! A body that starts wholly inside a closed one touches no surface: only the inside test tells.
 
 use parry3d::math::{Pose, Vector};
+use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{NonlinearRigidMotion, QueryDispatcher};
 use parry3d::shape::{Shape, SharedShape};
 use rapier3d_medial::{MedialDispatcher, MedialMesh};
@@ -112,5 +113,83 @@ fn what_touches_at_the_start_may_slide_but_not_sink_in() {
                 "{name} sinks {sunk:?} from {height}"
             );
         }
+    }
+}
+
+/// Bad numbers and shapes without a size are answered, whatever the answer.
+#[test]
+fn bad_motions_and_flat_shapes_do_not_panic() {
+    let mesh = MedialMesh::torus(0.3, 0.1, 8).expect("a torus");
+    let shapes = [
+        SharedShape::cylinder(0.0, 0.0),
+        SharedShape::cylinder(0.0, 1.0),
+        SharedShape::cone(0.0, 0.0),
+        SharedShape::cone(0.0, 1.0),
+        SharedShape::cone(1.0, 0.0),
+        SharedShape::cylinder(1.0e20, 1.0e-20),
+        SharedShape::cone(f32::NAN, f32::INFINITY),
+        SharedShape::round_cone(0.0, 0.0, 0.1),
+        SharedShape::halfspace(Vector::Y),
+    ];
+    let bad = [0.0, 1.0e-30, 1.0e18, f32::MAX, f32::INFINITY, f32::NAN];
+    let dispatcher = MedialDispatcher::default();
+    for shape in &shapes {
+        for value in bad {
+            for place in 0..3 {
+                let mut values = [2.0, -4.0, 1.0];
+                values[place] = value;
+                let [at, speed, turn] = values;
+                let motion = NonlinearRigidMotion {
+                    linvel: Vector::Y * speed,
+                    angvel: Vector::X * turn,
+                    ..NonlinearRigidMotion::constant_position(Pose::translation(0.0, at, 0.0))
+                };
+                let still = NonlinearRigidMotion::identity();
+                for stop in [true, false] {
+                    let _ = dispatcher.cast_shapes_nonlinear(
+                        &motion,
+                        &mesh,
+                        &still,
+                        shape.as_ref(),
+                        0.0,
+                        1.0,
+                        stop,
+                    );
+                }
+                let options = ShapeCastOptions::with_max_time_of_impact(value);
+                let _ = dispatcher.cast_shapes(
+                    &motion.start,
+                    motion.linvel,
+                    &mesh,
+                    shape.as_ref(),
+                    options,
+                );
+            }
+        }
+    }
+}
+
+/// A cylinder or cone without a size is a point, without a height a disk: both are solid enough to hit.
+#[test]
+fn a_point_and_a_disk_are_hit_where_they_are() {
+    let ball = MedialMesh::ball(0.5).expect("a ball");
+    let down = NonlinearRigidMotion {
+        linvel: -Vector::Y * 4.0,
+        ..NonlinearRigidMotion::constant_position(Pose::translation(0.0, 2.5, 0.0))
+    };
+    let still = NonlinearRigidMotion::identity();
+    for shape in [
+        SharedShape::cylinder(0.0, 0.0),
+        SharedShape::cylinder(0.0, 1.0),
+        SharedShape::cone(0.0, 0.0),
+        SharedShape::cone(0.0, 1.0),
+    ] {
+        let hit = MedialDispatcher::default()
+            .cast_shapes_nonlinear(&down, &ball, &still, shape.as_ref(), 0.0, 1.0, true)
+            .expect("swept");
+        assert!(
+            hit.is_some_and(|h| (h.time_of_impact - 0.5).abs() < 1.0e-4),
+            "{hit:?}"
+        );
     }
 }
