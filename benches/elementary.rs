@@ -27,8 +27,7 @@ use rapier3d_medial::math::lane::{Scalar, Vec3};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Enough that no branch predictor learns them by heart: with 12,000 the scalar rows took between 500
-/// and 850 ns, as other programs on the core let it.
+/// Enough that no branch predictor learns them by heart.
 const QUERIES: usize = 60_000;
 /// Queries of one call of the batch: their results stay in the cache.
 const BATCH: usize = 1000;
