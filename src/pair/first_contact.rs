@@ -12,7 +12,7 @@ use crate::elementary::bracket::Limits;
 use crate::elementary::distance::{crossing, signed_distance, thinnest};
 use crate::elementary::first_contact::{Earliest, motion_is_finite, options_limits, to_toi};
 use crate::elementary::path::RigidPath;
-use crate::elementary::test_list::for_each_test;
+use crate::elementary::test_list::{Share, for_each_test};
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
@@ -72,10 +72,15 @@ pub fn first_contact_counted(
         return (Toi::bad_input(options), Counts::default());
     }
     let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
+    let target = f64::from(options.target_distance);
     let mut search = Search {
         bodies: (body1, body2),
         motions,
-        target: options.target_distance.into(),
+        target,
+        reach: match options.initial_contact {
+            InitialContact::Stop => target.max(0.0),
+            InitialContact::Deepen { .. } => target,
+        },
         initial_contact: options.initial_contact,
         heap: BinaryHeap::new(),
         counts: Counts::default(),
@@ -111,6 +116,8 @@ struct Search<'a, A, B> {
     bodies: (&'a A, &'a B),
     motions: [RigidMotion<f64>; 2],
     target: f64,
+    /// What culling goes by: no primitive pair has a larger target, raised or not.
+    reach: f64,
     initial_contact: InitialContact,
     heap: BinaryHeap<Entry>,
     counts: Counts,
@@ -198,7 +205,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         self.counts.nodes += 1;
         let y = nodes[1].start - nodes[0].start;
         let rate = nodes[1].chord - nodes[0].chord;
-        let radius = nodes[0].radius + nodes[1].radius + self.target;
+        let radius = nodes[0].radius + nodes[1].radius + self.reach;
         // Rounding of positions, chords and the root: a few ulps of the numbers in play.
         let size = y.length() + rate.length() + radius.abs();
         let radius = (radius + 64.0 * f64::EPSILON * size).max(0.0);
@@ -258,7 +265,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         let [start, end] = sides[0].times;
         let until = (self.earliest.upper.min(end) - start) / (end - start);
         let balls = [sides[0].balls(sa), sides[1].balls(sb)];
-        if apart_until(&balls, until, self.target) {
+        if apart_until(&balls, until, self.reach) {
             return true;
         }
         let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
@@ -281,9 +288,11 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             }
             InitialContact::Stop if start == 0.0 && near => {
                 let (pa, pb) = (at_start(0, sa), at_start(1, sb));
-                let crossed =
-                    crossing(&pa, share_a.edges, &pb).or_else(|| crossing(&pb, share_b.edges, &pa));
-                if crossed.is_some_and(|c| -c.radius <= target) {
+                let crossings = [
+                    crossing(&pa, share_a.edges, &pb),
+                    crossing(&pb, share_b.edges, &pa),
+                ];
+                if crossings.iter().flatten().any(|c| -c.radius <= target) {
                     self.earliest.overlap_at_start();
                     self.earliest.found = None;
                     return false;
@@ -291,8 +300,14 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             }
             InitialContact::Stop => {}
         }
+        // A target of the pair's own leaves no test to a neighbour, whose target is another.
+        let shares = if target == self.target {
+            [share_a, share_b]
+        } else {
+            [share_a, share_b].map(|s| Share::whole(s.spheres))
+        };
         let mut open = true;
-        for_each_test(share_a, share_b, |test| {
+        for_each_test(shares[0], shares[1], |test| {
             let path = RigidPath::new(&test, &self.motions, target, |second, k| {
                 if second {
                     sb[k as usize]

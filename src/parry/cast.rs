@@ -3,6 +3,7 @@
 
 use super::advance;
 use super::foreign::{self, Parts};
+use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
@@ -45,7 +46,8 @@ impl Cast<'_> {
     pub fn run(&self) -> Result<(Option<ShapeCastHit>, Counts), Unsweepable> {
         let [start, end] = self.times;
         let seconds = end - start;
-        if !(seconds >= 0.0 && seconds.is_finite()) {
+        let finite = motion_is_finite(self.motion1) && motion_is_finite(self.motion2);
+        if !(finite && seconds >= 0.0 && seconds.is_finite()) {
             return Ok((None, Counts::default()));
         }
         let motion1 = started(self.motion1, start);

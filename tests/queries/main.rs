@@ -8,6 +8,7 @@ mod distance;
 mod families;
 mod first_contact;
 mod judge;
+mod meshes;
 mod oracle;
 mod penetration;
 mod regressions;

@@ -1,0 +1,162 @@
+//! Meshes against meshes: the search over two trees against brute force over all primitive pairs, by
+//! the elementary queries that the oracle judges.
+
+use crate::ccd::rng::Rng;
+use rapier3d::parry::query::NonlinearRigidMotion;
+use rapier3d_medial::elementary::distance::signed_distance;
+use rapier3d_medial::elementary::{ToiOptions, ToiStatus, f64 as double};
+use rapier3d_medial::math::lane::Vec3;
+use rapier3d_medial::math::{Pose, Real, Vector};
+use rapier3d_medial::pair::{contacts, first_contact, nearest_spheres};
+use rapier3d_medial::{MedialMesh, MedialSphere};
+
+fn vector(rng: &mut Rng) -> Vector {
+    Vector::from([0; 3].map(|_| rng.range(-1.0, 1.0) as Real))
+}
+
+/// Slabs in a fan, a chain of cones, and a lone sphere.
+fn mesh(rng: &mut Rng) -> MedialMesh {
+    let mut spheres = Vec::new();
+    for k in 0..14 {
+        let spread = if k < 7 { 0.4 } else { 0.8 };
+        let radius = rng.range(0.01, 0.12) as Real;
+        spheres.push(MedialSphere::new(vector(rng) * spread, radius));
+    }
+    let faces = (1..6).map(|k| [0, k, k + 1]).collect();
+    let edges = (6..12).map(|k| [k, k + 1]).collect();
+    MedialMesh::new(spheres, edges, faces).expect("a medial mesh")
+}
+
+fn motion(rng: &mut Rng, distance: Real, speed: Real, spin: Real) -> NonlinearRigidMotion {
+    let away = vector(rng).normalize_or_zero() * distance;
+    let towards = vector(rng) * 0.4 - away.normalize_or_zero();
+    let start = Pose::new(away, vector(rng) * 3.0);
+    let center = vector(rng) * 0.2;
+    NonlinearRigidMotion::new(start, center, towards * speed, vector(rng) * spin)
+}
+
+/// Earliest of all primitive pairs, and whether any overlaps at the start.
+fn brute_force(
+    meshes: [&MedialMesh; 2],
+    motions: [&NonlinearRigidMotion; 2],
+    options: &double::ToiOptions,
+) -> (f64, bool) {
+    let (mut first, mut overlaps) = (1.0, false);
+    for p in meshes[0].primitives() {
+        for q in meshes[1].primitives() {
+            let (p, q) = (p.spheres(), q.spheres());
+            let toi = double::first_contact_rigid(p, motions[0], q, motions[1], 1.0, options);
+            assert_ne!(toi.status, ToiStatus::Unresolved);
+            overlaps |= toi.status == ToiStatus::Overlapping;
+            first = f64::min(first, toi.upper);
+        }
+    }
+    (first, overlaps)
+}
+
+/// Slow and fast, in contact early, late and never; kept apart and let sink in.
+#[test]
+fn first_contact_is_that_of_brute_force() {
+    let mut rng = Rng::new(77);
+    let mut counts = [0; 3];
+    for k in 0..300 {
+        let (a, b) = (mesh(&mut rng), mesh(&mut rng));
+        let still = motion(&mut rng, 0.0, 0.0, (k % 4) as Real);
+        let moving = motion(&mut rng, 0.6 + (k % 7) as Real * 0.4, 2.0, (k % 5) as Real);
+        let target = [0.0, 0.0, 0.05, -0.05][k % 4];
+        let options = ToiOptions {
+            tolerance: 1.0e-7,
+            target_distance: target,
+            ..Default::default()
+        };
+        let exact = double::ToiOptions {
+            target_distance: target.into(),
+            tolerance: options.tolerance.into(),
+            time_tolerance: options.time_tolerance.into(),
+            ..Default::default()
+        };
+        let toi = first_contact(&a, &still, &b, &moving, 1.0, &options);
+        let (first, overlaps) = brute_force([&a, &b], [&still, &moving], &exact);
+        let found = match toi.status {
+            ToiStatus::Separated => 1.0,
+            _ => f64::from(toi.upper),
+        };
+        // Both brackets are this wide, and each ends where the distance is between the tolerance and
+        // 0: later by the tolerance over the speed of approach, here above 0.02 a step.
+        let close = 2.0 * f64::from(options.time_tolerance) + 50.0 * f64::from(options.tolerance);
+        assert!((found - first).abs() <= close, "{k}: {toi:?}, not {first}");
+        assert_eq!(
+            toi.status == ToiStatus::Overlapping,
+            overlaps,
+            "{k}: {toi:?}"
+        );
+        counts[match toi.status {
+            ToiStatus::Separated => 0,
+            ToiStatus::Contact => 1,
+            _ => 2,
+        }] += 1;
+    }
+    assert!(counts.iter().all(|&n| n > 30), "{counts:?}");
+}
+
+/// Distance and contacts at a fixed pose.
+#[test]
+fn distance_and_contacts_are_those_of_brute_force() {
+    let mut rng = Rng::new(78);
+    let (mut near, mut found_any) = (0, 0);
+    for k in 0..300 {
+        let (a, b) = (mesh(&mut rng), mesh(&mut rng));
+        let pose = Pose::new(
+            vector(&mut rng) * (0.3 + 0.004 * k as Real),
+            vector(&mut rng) * 3.0,
+        );
+        let balls = |m: &MedialMesh, pose: &Pose| -> Vec<Vec<(Vec3<f64>, f64)>> {
+            let place =
+                |s: &MedialSphere| (Vec3::from_vector(*pose * s.center), f64::from(s.radius));
+            m.primitives()
+                .map(|p| p.spheres().iter().map(place).collect())
+                .collect()
+        };
+        let (pa, pb) = (balls(&a, &Pose::IDENTITY), balls(&b, &pose));
+        // Positions rounded to f32 here, not there: a few ulps of what is below 4.
+        let close = 16.0 * f64::from(f32::EPSILON);
+        let margin = 0.1;
+        let (all, _) = contacts(&a, &b, &pose, margin);
+        let mut least = f64::MAX;
+        for (i, p) in pa.iter().enumerate() {
+            for (j, q) in pb.iter().enumerate() {
+                let distance = signed_distance(p, q);
+                least = least.min(distance);
+                // What an owner reports stands for its neighbours: some contact is as near.
+                if distance < f64::from(margin) - close {
+                    let nearest = all.iter().map(|c| f64::from(c.distance));
+                    let nearest = nearest.fold(f64::MAX, f64::min);
+                    assert!(
+                        nearest <= distance + close,
+                        "{k}: {i} {j} {nearest} {distance}"
+                    );
+                    near += 1;
+                }
+            }
+        }
+        found_any += usize::from(!all.is_empty());
+        let nearest = nearest_spheres(&a, &b, &pose, Real::MAX)
+            .0
+            .expect("a nearest pair");
+        // Where slabs cross, the nearest is the penetration depth, at least as deep.
+        assert!(
+            f64::from(nearest.distance) <= least + close,
+            "{k}: {nearest:?}, not {least}"
+        );
+        if least > 0.0 {
+            assert!((f64::from(nearest.distance) - least).abs() <= close);
+            let [p, q] = nearest.points;
+            let gap = f64::from((pose * q - p).length());
+            assert!(
+                (gap - least).abs() <= close,
+                "{k}: points {gap} apart, not {least}"
+            );
+        }
+    }
+    assert!(near > 1000 && found_any > 100, "{near} {found_any}");
+}
