@@ -16,7 +16,7 @@
 //!
 //! # Rounding
 //! Positions are sums of at most 16 rounded terms no larger than `scale`, the sum of all lengths in
-//! play, so that [`ULPS`] ulps of it cover the bound. A tolerance below [`TOLERANCE_PER_SLACK`] times
+//! play, so that `ULPS` ulps of it cover the bound. A tolerance below [`TOLERANCE_PER_SLACK`] times
 //! that slack is raised to it.
 
 use super::turned::{Ball, NearBall, Place, Turned, unit};
