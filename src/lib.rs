@@ -58,7 +58,7 @@ pub mod parry;
 pub mod rapier;
 
 pub use build::{BuildOptions, BuildReport, Progress};
-pub use elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
+pub use elementary::{AlternatingStart, InitialContact, Toi, ToiOptions, ToiStatus};
 pub use error::{BuildError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
 pub use parry::MedialDispatcher;

@@ -12,7 +12,7 @@
 use super::first_contact::Mover;
 use super::path::{LinearPath, Path};
 use super::test_list::{Domain, Share, for_each_test};
-use super::{MovingSphere, Toi, ToiOptions, ToiStatus, cone_cone, sphere_slab};
+use super::{AlternatingStart, MovingSphere, Toi, ToiOptions, ToiStatus, cone_cone, sphere_slab};
 use crate::math::lane::{Scalar, Vec3};
 use crate::math::nearest::Nearest;
 
@@ -38,12 +38,12 @@ pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions)
         (center, Vec3::from_vector(s.displacement), s.radius)
     };
     let sides = [a, b].map(|side| side.iter().map(mover).collect::<Vec<_>>());
-    let (time, iterations) = search(
-        &sides[0],
-        &sides[1],
-        options.tolerance,
-        options.max_iterations,
-    );
+    let limits = Limits {
+        tolerance: options.tolerance,
+        max_iterations: options.max_iterations,
+        start: options.alternating_start,
+    };
+    let (time, iterations) = search(&sides[0], &sides[1], &limits);
     let mut toi = Toi::separated(options);
     toi.iterations = iterations;
     if let Some(t) = time {
@@ -54,19 +54,29 @@ pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions)
     toi
 }
 
+/// How far and from where the iteration runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits<S> {
+    /// Distance at which a sphere pair counts as in contact, a length.
+    pub tolerance: S,
+    /// Cap of the iterations of one elementary test.
+    pub max_iterations: u32,
+    /// Time of the first nearest pair.
+    pub start: AlternatingStart,
+}
+
 /// Earliest contact time by the paper's iteration, and the iterations spent.
 pub(crate) fn search<S: Scalar>(
     a: &[Mover<S>],
     b: &[Mover<S>],
-    tolerance: S,
-    max_iterations: u32,
+    limits: &Limits<S>,
 ) -> (Option<S>, u32) {
     let (mut first, mut iterations) = (None, 0);
     for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
         let path = LinearPath::new(&test, S::zero(), |second, i| {
             if second { b[i as usize] } else { a[i as usize] }
         });
-        let (time, count) = iterate(&path, test.domain, tolerance, max_iterations);
+        let (time, count) = iterate(&path, test.domain, limits);
         iterations += count;
         if let Some(t) = time {
             first = Some(first.map_or(t, |f: S| f.min(t)));
@@ -80,9 +90,13 @@ pub(crate) fn search<S: Scalar>(
 pub fn iterate<S: Scalar>(
     path: &LinearPath<S>,
     domain: Domain,
-    tolerance: S,
-    max_iterations: u32,
+    limits: &Limits<S>,
 ) -> (Option<S>, u32) {
+    let &Limits {
+        tolerance,
+        max_iterations,
+        start,
+    } = limits;
     let (zero, one) = (S::zero(), S::one());
     let same_time = S::splat(16.0 * S::EPSILON);
     let solve = |t: S| {
@@ -92,7 +106,10 @@ pub fn iterate<S: Scalar>(
             Domain::Triangle => sphere_slab::nearest_spheres(&f),
         }
     };
-    let mut t = one;
+    let mut t = match start {
+        AlternatingStart::Start => zero,
+        AlternatingStart::End => one,
+    };
     let mut pair = solve(t);
     for iteration in 1..=max_iterations {
         let touches = pair.distance <= tolerance;

@@ -4,7 +4,7 @@
 
 use super::bracket::Limits;
 use super::first_contact::{Earliest, Mover, linear, motion_is_finite, rigid};
-use super::{ToiStatus, alternating as baseline};
+use super::{AlternatingStart, ToiStatus, alternating as baseline};
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::tolerance;
@@ -32,6 +32,8 @@ pub struct ToiOptions {
     pub max_iterations: u32,
     /// Signed distance at which bodies count as in contact.
     pub target_distance: f64,
+    /// Where the paper's iteration begins. [`alternating`] only.
+    pub alternating_start: AlternatingStart,
 }
 
 impl Default for ToiOptions {
@@ -41,6 +43,7 @@ impl Default for ToiOptions {
             time_tolerance: tolerance::TIME_TOLERANCE.into(),
             max_iterations: tolerance::MAX_ITERATIONS,
             target_distance: 0.0,
+            alternating_start: AlternatingStart::End,
         }
     }
 }
@@ -169,7 +172,12 @@ pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions)
     let (Some(a), Some(b)) = (movers(a, origin), movers(b, origin)) else {
         return Toi::bad_input(options);
     };
-    let (time, iterations) = baseline::search(&a, &b, options.tolerance, options.max_iterations);
+    let limits = baseline::Limits {
+        tolerance: options.tolerance,
+        max_iterations: options.max_iterations,
+        start: options.alternating_start,
+    };
+    let (time, iterations) = baseline::search(&a, &b, &limits);
     Toi {
         status: time.map_or(ToiStatus::Separated, |_| ToiStatus::Contact),
         lower: time.unwrap_or(1.0),

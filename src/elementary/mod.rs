@@ -70,6 +70,18 @@ pub struct ToiOptions {
     pub target_distance: Real,
     /// What becomes of primitives that touch at the start already. Mesh queries only.
     pub initial_contact: InitialContact,
+    /// Where the paper's iteration begins. [`alternating()`] only.
+    pub alternating_start: AlternatingStart,
+}
+
+/// Time at which the paper's iteration looks for its first nearest sphere pair (§4.3, Figure 3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AlternatingStart {
+    /// `t0`: ends at once where that pair only moves apart, as in Figure 3.
+    Start,
+    /// `t1`, the paper's choice.
+    #[default]
+    End,
 }
 
 /// What a mesh query makes of primitives within the tolerance of each other at the start.
@@ -94,6 +106,7 @@ impl Default for ToiOptions {
             max_iterations: tolerance::MAX_ITERATIONS,
             target_distance: 0.0,
             initial_contact: InitialContact::Stop,
+            alternating_start: AlternatingStart::End,
         }
     }
 }

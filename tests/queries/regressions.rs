@@ -166,3 +166,30 @@ fn no_target_is_deeper_than_the_thinnest_place() {
     let toi = first_contact(&cone, &table, &options);
     assert!((toi.lower - 0.25).abs() <= 1.0e-4, "{toi:?}");
 }
+
+/// The paper's Figure 3: two crossed rods whose ends nearest at the start only move apart, while
+/// their middles come into contact. Started at the end, the iteration finds it; started at the
+/// beginning it settles on the first pair.
+#[test]
+fn the_papers_figure_3() {
+    // The rod dips at one end and rises at the other: its first nearest sphere rises.
+    let a = [
+        sphere([-1.0, 0.0, 0.0], 0.1, [0.0; 3]),
+        sphere([1.0, 0.0, 0.0], 0.1, [0.0; 3]),
+    ];
+    let b = [
+        sphere([-0.9, 0.0, 0.5], 0.1, [0.0, 0.0, 2.0]),
+        sphere([0.9, 0.0, 0.6], 0.1, [0.0, 0.0, -2.0]),
+    ];
+    let mut options = ToiOptions::default();
+    let truth = first_contact(&a, &b, &options);
+    assert_eq!(truth.status, ToiStatus::Contact, "{truth:?}");
+    let found = elementary::alternating(&a, &b, &options);
+    assert!(
+        (found.upper - truth.upper).abs() < 1.0e-3,
+        "{found:?}, not {truth:?}"
+    );
+    options.alternating_start = elementary::AlternatingStart::Start;
+    let lost = elementary::alternating(&a, &b, &options);
+    assert_eq!(lost.status, ToiStatus::Separated, "{lost:?}");
+}

@@ -156,5 +156,6 @@ fn widen(options: &ToiOptions) -> elementary::f64::ToiOptions {
         time_tolerance: options.time_tolerance.into(),
         max_iterations: options.max_iterations,
         target_distance: options.target_distance.into(),
+        alternating_start: options.alternating_start,
     }
 }
