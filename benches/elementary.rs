@@ -18,7 +18,8 @@ use ccd::families::Family;
 use ccd::motion::Query;
 use ccd::rng::Rng;
 use common::{Hash, median, processor};
-use rapier3d_medial::elementary::alternating::iterate;
+use rapier3d_medial::elementary::AlternatingStart;
+use rapier3d_medial::elementary::alternating::{self, iterate};
 use rapier3d_medial::elementary::bracket::{Bracket, Limits, bracket};
 use rapier3d_medial::elementary::many::{Lanes, brackets};
 use rapier3d_medial::elementary::path::LinearPath;
@@ -132,9 +133,13 @@ fn batched(queries: &Queries, tolerance: f64, lanes: Lanes) -> Vec<Answer> {
 }
 
 fn paper<S: Scalar>(paths: &[LinearPath<S>], domain: Domain, tolerance: f64) -> Vec<Answer> {
-    let tolerance = S::splat(tolerance);
+    let limits = alternating::Limits {
+        tolerance: S::splat(tolerance),
+        max_iterations: CAP,
+        start: AlternatingStart::End,
+    };
     let one = |path| {
-        let found = iterate(black_box(path), domain, tolerance, CAP).0;
+        let found = iterate(black_box(path), domain, &limits).0;
         let time = found.map_or(1.0, S::to_f64);
         (time, time, found.is_some())
     };
