@@ -1,10 +1,9 @@
 //! Nodes and primitives swept over a piece of the step: chords of their centres with radii that cover
 //! the sagitta, and the order in which the search of [`super::first_contact`] takes them.
 
-use crate::math::Real;
-use crate::math::Vector;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
+use crate::math::{Real, Vector};
 use std::cmp::Ordering;
 
 /// Chord of a node's centre over a piece, and the radius around it that covers the node.
