@@ -8,6 +8,7 @@ mod distance;
 mod families;
 mod first_contact;
 mod judge;
+mod lanes;
 mod meshes;
 mod oracle;
 mod penetration;
