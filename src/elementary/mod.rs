@@ -66,7 +66,7 @@ pub struct ToiOptions {
     /// negative lets them overlap that deep first, positive keeps them apart. The guarantee then
     /// holds for `D − target_distance`. Never deeper than the two primitives are thick where they
     /// are thinnest: beyond the smallest sum of their radii medial surfaces may cross, and a deeper
-    /// target is raised to it.
+    /// target is raised to it (with [`InitialContact::Stop`]; under `Deepen` thin tips are not guarded).
     pub target_distance: Real,
     /// What becomes of primitives that touch at the start already. Mesh queries only.
     pub initial_contact: InitialContact,
@@ -135,7 +135,7 @@ pub struct Toi {
     pub upper: Real,
     /// The contact distance used: as asked, or raised to twice the rounding slack.
     pub tolerance: Real,
-    /// Iterations of the elementary test that was reported (or of all, when separated).
+    /// Iterations, summed over all elementary tests that were run.
     pub iterations: u32,
     /// Unit normal from the first body to the second, world frame, at `lower`.
     pub normal: Vector,
