@@ -179,7 +179,7 @@ impl<'a> PrimitivePair<'a> {
     /// Unit direction of a nearest pair; where the centres coincide, the deepest one.
     fn direction(&self, domain: Domain, f: &Family<f64>, s: &Nearest<f64>) -> Vec3<f64> {
         let radius = s.length - s.distance;
-        if s.length > 1.0e-6 * radius.abs() && s.length > 0.0 {
+        if s.length > penetration::LOST * radius.abs() && s.length > 0.0 {
             return ActiveFace::new(domain, f, s, &[Vec3::zero(); 4]).direction(domain, f, s);
         }
         self.deepest().1
@@ -189,7 +189,7 @@ impl<'a> PrimitivePair<'a> {
         let (a, b) = self.spheres();
         let middle =
             |s: &[Ball]| s.iter().fold(Vec3::zero(), |m, b| m + b.0) * (1.0 / s.len() as f64);
-        penetration::deepest(a, b, middle(b) - middle(a))
+        penetration::deepest(a, b, middle(b) - middle(a), 0.0)
     }
 
     /// A crossing of any edge with the other's slab, owned or not: with one the nearest spheres mean
