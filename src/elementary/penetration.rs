@@ -18,10 +18,9 @@ use crate::math::lane::{Scalar, Vec3};
 /// rounded terms, with a margin of 2. Less, and equal directions are told apart by rounding.
 const TIE_ULPS: f64 = 32.0;
 
-/// Cosine from which a direction is on the side of another (60°): more than bodies turn in a step,
-/// less than the angle between the sides of a plate. Only which of nearly equal normals is kept
-/// depends on it.
-const SAME_SIDE: f64 = 0.5;
+/// Cosine from which a direction is another one turned (10°, that of one contact patch). Wider, and a
+/// normal that is only rounding's is followed; narrower, and one that turns with its body is not.
+const TURNED: f64 = 0.985;
 
 /// Distance of two centres, in units of the sum of their radii, below which it has no direction of its
 /// own: `f32` poses leave no digit of it. Larger, and normals jump where surfaces begin to cross;
@@ -78,10 +77,10 @@ pub fn deepest<S: Scalar>(
     let nearest = |found: &mut dyn Iterator<Item = &(S, Vec3<S>)>| {
         found.filter(|c| c.0 >= least).copied().reduce(closer)
     };
-    // A loose direction is where `preferred` was and does not follow the bodies: it only serves
-    // where nothing else is on its side.
+    // A loose direction is where `preferred` was and does not turn with the bodies: it only serves
+    // where nothing else is there.
     nearest(&mut steady.iter())
-        .filter(|c| c.1.dot(preferred) >= S::splat(SAME_SIDE))
+        .filter(|c| c.1.dot(preferred) >= S::splat(TURNED))
         .or_else(|| nearest(&mut all()))
         .unwrap_or((most, preferred))
 }

@@ -238,7 +238,13 @@ where
         ensure_workspace::<M, C>(mesh1, mesh2, workspace);
         self.answers
             .contacts(mesh1, mesh2, pos12, prediction, |found| {
-                write_manifolds(&found.contacts, pos12, prediction, manifolds);
+                write_manifolds(
+                    [mesh1, mesh2],
+                    &found.contacts,
+                    pos12,
+                    prediction,
+                    manifolds,
+                );
             });
         Ok(())
     }

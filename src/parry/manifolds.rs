@@ -1,9 +1,10 @@
 //! Sphere pairs → persistent contact manifolds: one manifold per primitive pair, so that each keeps
 //! its own normal (one per collider pair lets a chain of rings fall apart).
 
-use crate::math::{Pose, Real};
+use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
+use crate::pair::contacts::along_old_normal;
 use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     TrackedContact,
@@ -14,10 +15,12 @@ use parry3d::shape::PackedFeatureId;
 /// manifold has one normal.
 const SAME_NORMAL: Real = 0.985;
 
-/// Writes the manifolds of a pair at relative pose `pos12`. Contacts further apart than `prediction`
+/// Writes the manifolds of two meshes at relative pose `pos12`. Contacts further apart than `prediction`
 /// are left out; the deepest of a primitive pair gives its manifold the normal. Manifolds that were
-/// there keep their data, and points of the same features keep their impulses.
+/// there keep their data, and points of the same features keep their impulses. Where a deep contact's
+/// normal would turn over, it stays that of the old manifold while that is hardly deeper.
 pub fn write_manifolds<M, C>(
+    meshes: [&MedialMesh; 2],
     contacts: &[SpherePair],
     pos12: &Pose,
     prediction: Real,
@@ -38,7 +41,15 @@ pub fn write_manifolds<M, C>(
             .then(a.feature.cmp(&b.feature))
     });
     let inverse = pos12.rotation.inverse();
-    for c in near {
+    let groups = near.chunk_by(|a, b| a.primitives == b.primitives);
+    let settled: Vec<SpherePair> = groups
+        .flat_map(|group| {
+            let kept = kept_normal(meshes, pos12, group, &old);
+            let rest = if kept.is_some() { &[] } else { group };
+            kept.into_iter().chain(rest.iter().map(|c| **c))
+        })
+        .collect();
+    for c in &settled {
         let [a, b] = c.primitives;
         let same = |m: &&mut ContactManifold<M, C>| {
             [m.subshape1, m.subshape2] == c.primitives && m.local_n1.dot(c.normal) >= SAME_NORMAL
@@ -72,6 +83,8 @@ pub fn write_manifolds<M, C>(
         let previous = old
             .iter()
             .filter(|m| [m.subshape1, m.subshape2] == c.primitives)
+            // An impulse along a normal that turned over would pull.
+            .filter(|m| m.local_n1.dot(c.normal) > 0.0)
             .flat_map(|m| &m.points)
             .find(|p| p.fid1 == feature);
         if let Some(previous) = previous {
@@ -79,6 +92,28 @@ pub fn write_manifolds<M, C>(
         }
         manifold.points.push(point);
     }
+}
+
+/// What takes the place of all contacts of a primitive pair, deepest first, where the deepest has none
+/// of the old normals but one of them still serves.
+fn kept_normal<M, C>(
+    [mesh1, mesh2]: [&MedialMesh; 2],
+    pos12: &Pose,
+    group: &[&SpherePair],
+    old: &[ContactManifold<M, C>],
+) -> Option<SpherePair> {
+    let deepest = group.first().filter(|c| c.distance < 0.0)?;
+    let mut before = old
+        .iter()
+        .filter(|m| [m.subshape1, m.subshape2] == deepest.primitives)
+        .map(|m| m.local_n1);
+    let same = |n: &Vector| n.dot(deepest.normal) >= SAME_NORMAL;
+    let first = before.next().filter(|n| !same(n))?;
+    if before.any(|n| same(&n)) {
+        return None;
+    }
+    let kept = along_old_normal(mesh1, mesh2, pos12, deepest, first);
+    (!same(&kept.normal)).then_some(kept)
 }
 
 /// Makes sure that a workspace is there. rapier reads its presence as "the list of manifolds may

@@ -4,6 +4,7 @@
 mod ccd;
 
 mod bad_input;
+mod coherence;
 mod distance;
 mod families;
 mod first_contact;

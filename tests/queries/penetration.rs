@@ -27,7 +27,7 @@ fn lattice(k: usize) -> Vector3<f64> {
 /// A lower bound of the largest gap over all unit directions, sharp unless a narrow peak hides
 /// between the directions looked at. `finest`: the change of direction, in radians, at which the
 /// search ends.
-fn largest_gap(corners: &Corners, finest: f64, rng: &mut Rng) -> f64 {
+pub fn largest_gap(corners: &Corners, finest: f64, rng: &mut Rng) -> f64 {
     let mut found: Vec<_> = (0..DIRECTIONS)
         .map(|k| (corners.support(&lattice(k)), lattice(k)))
         .collect();
