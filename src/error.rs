@@ -67,6 +67,14 @@ pub enum MeshError {
         /// What is accepted.
         must: &'static str,
     },
+    /// A polygon that crosses, touches or folds back onto itself.
+    #[error("edges {edge} and {other} of the polygon meet")]
+    PolygonEdgesMeet {
+        /// First corner of one edge.
+        edge: usize,
+        /// First corner of the other.
+        other: usize,
+    },
     /// A text file that is not in the `.ma` format.
     #[error("{path}, line {line}: {message}")]
     Syntax {

@@ -1,5 +1,6 @@
 //! L1: the data. Spheres joined by medial cones and slabs, their trees, mass and files.
 
+pub mod boxes;
 pub mod chord;
 mod cover;
 pub mod envelope;
@@ -7,6 +8,7 @@ pub mod exact;
 pub mod ma_file;
 pub mod mass;
 pub mod mesh;
+pub mod polygon;
 pub mod primitive;
 mod sheet;
 pub mod solids;

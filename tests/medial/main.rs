@@ -10,3 +10,4 @@ mod mesh;
 mod mesh_file;
 mod oracle;
 mod polygon;
+mod solids;
