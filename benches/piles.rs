@@ -146,6 +146,16 @@ impl Pile {
         self.milliseconds.push(1e3 * seconds / STEPS as f64);
     }
 
+    /// What the solver works on: manifolds with contacts, and contacts.
+    fn solved(&self) -> [usize; 2] {
+        let pairs = self.world.narrow_phase.contact_pairs();
+        let manifolds = pairs.flat_map(|pair| pair.solver_manifolds());
+        let contacts = manifolds.map(|m| m.data.solver_contacts.len());
+        contacts
+            .filter(|&n| n > 0)
+            .fold([0, 0], |[m, c], n| [m + 1, c + n])
+    }
+
     /// Mean height of the rings, and a hash of all poses.
     fn state(&self) -> (Real, String) {
         let mut hash = Hash::new();
@@ -165,8 +175,8 @@ impl Pile {
 fn piles(rings: usize) {
     println!("\n{rings} rings, {TURNS} turns of {STEPS} steps, after {SETTLE}");
     println!(
-        "{:<24}{:>9}{:>9}{:>16}{:>13}  hash",
-        "", "ms/step", "ratio", "spread", "mean height"
+        "{:<24}{:>9}{:>9}{:>16}{:>11}{:>10}{:>13}  hash",
+        "", "ms/step", "ratio", "spread", "manifolds", "contacts", "mean height"
     );
     let kinds = Kind::ALL
         .into_iter()
@@ -183,8 +193,9 @@ fn piles(rings: usize) {
         let ratio = median(&mut ratios);
         let spread = format!("{:.2} to {:.2}", ratios[0], ratios[TURNS - 1]);
         let (height, hash) = pile.state();
+        let [manifolds, contacts] = pile.solved();
         println!(
-            "{:<24}{:>9.2}{ratio:>9.2}{spread:>16}{height:>13.2}  {hash}",
+            "{:<24}{:>9.2}{ratio:>9.2}{spread:>16}{manifolds:>11}{contacts:>10}{height:>13.2}  {hash}",
             pile.kind.name(),
             median(&mut pile.milliseconds.clone()),
         );
