@@ -1,9 +1,54 @@
 //! What a batch is asked and what it answers, whatever computes it.
 
+use crate::elementary::{InitialContact, Toi, ToiOptions};
+use crate::math::tolerance::MAX_ITERATIONS;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
 use crate::pair::first_contact::Counts;
+use parry3d::query::NonlinearRigidMotion;
+
+/// One question of a batch. Answers depend on the job alone, never on the batch it is in.
+pub trait Job: Sync {
+    /// What comes back.
+    type Answer: Send;
+    /// Fewest jobs worth handing to another thread, whose waking takes some microseconds.
+    const PER_THREAD: usize;
+    /// Answers this job on the CPU.
+    fn answer(&self) -> Self::Answer;
+    /// What a device may be asked about it; `None` leaves it to the CPU.
+    fn sweep(&self) -> Option<Sweep<'_>>;
+    /// The answer where nothing comes within the sweep's reach: that of [`Self::answer`], but for
+    /// the work it took.
+    fn free(&self) -> Self::Answer;
+}
+
+impl<J: Job> Job for &J {
+    type Answer = J::Answer;
+    const PER_THREAD: usize = J::PER_THREAD;
+    fn answer(&self) -> Self::Answer {
+        J::answer(self)
+    }
+    fn sweep(&self) -> Option<Sweep<'_>> {
+        J::sweep(self)
+    }
+    fn free(&self) -> Self::Answer {
+        J::free(self)
+    }
+}
+
+/// A question of the kind: do these come within `reach` of each other in the step?
+#[derive(Clone, Copy, Debug)]
+pub struct Sweep<'a> {
+    /// The two meshes.
+    pub meshes: [&'a MedialMesh; 2],
+    /// Their motions, world space, velocities per second.
+    pub motions: [NonlinearRigidMotion; 2],
+    /// Length of the step in seconds; 0 for bodies at rest.
+    pub seconds: Real,
+    /// Distance that counts as contact, a length; negative lets them overlap that deep.
+    pub reach: f64,
+}
 
 /// Asks for the sphere pairs of two meshes at fixed poses.
 #[derive(Clone, Debug)]
@@ -25,4 +70,90 @@ pub struct PairResult {
     pub contacts: Vec<SpherePair>,
     /// Work it took.
     pub counts: Counts,
+}
+
+impl Job for PairJob {
+    type Answer = PairResult;
+    const PER_THREAD: usize = 8;
+    fn answer(&self) -> PairResult {
+        let (contacts, counts) =
+            crate::pair::contacts(&self.mesh1, &self.mesh2, &self.pos12, self.prediction);
+        PairResult { contacts, counts }
+    }
+    fn sweep(&self) -> Option<Sweep<'_>> {
+        Some(Sweep {
+            meshes: [&self.mesh1, &self.mesh2],
+            motions: [Pose::IDENTITY, self.pos12].map(NonlinearRigidMotion::constant_position),
+            seconds: 0.0,
+            reach: self.prediction.into(),
+        })
+    }
+    fn free(&self) -> PairResult {
+        PairResult::default()
+    }
+}
+
+/// Asks for the first contact of two meshes that move rigidly.
+#[derive(Clone, Debug)]
+pub struct ToiJob {
+    /// First mesh.
+    pub mesh1: MedialMesh,
+    /// Its motion, world space, velocities per second.
+    pub motion1: NonlinearRigidMotion,
+    /// Second mesh.
+    pub mesh2: MedialMesh,
+    /// Its motion, world space, velocities per second.
+    pub motion2: NonlinearRigidMotion,
+    /// Length of the step in seconds.
+    pub seconds: Real,
+    /// How exact the answer has to be.
+    pub options: ToiOptions,
+}
+
+/// Answer to a [`ToiJob`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToiResult {
+    /// First contact, with the guarantee of [`crate::pair::first_contact()`].
+    pub toi: Toi,
+    /// Work it took.
+    pub counts: Counts,
+}
+
+impl Job for ToiJob {
+    type Answer = ToiResult;
+    /// A query takes from below a microsecond to some hundreds; small groups spread the long ones.
+    const PER_THREAD: usize = 4;
+    fn answer(&self) -> ToiResult {
+        let (toi, counts) = crate::pair::first_contact::first_contact_counted(
+            &self.mesh1,
+            &self.motion1,
+            &self.mesh2,
+            &self.motion2,
+            self.seconds,
+            &self.options,
+        );
+        ToiResult { toi, counts }
+    }
+    fn sweep(&self) -> Option<Sweep<'_>> {
+        let options = &self.options;
+        // Under a lower cap a miss may stay unresolved.
+        let sure = options.max_iterations >= MAX_ITERATIONS && options.time_tolerance.is_finite();
+        let target = match options.initial_contact {
+            InitialContact::Stop => options.target_distance.max(0.0),
+            InitialContact::Deepen { .. } => options.target_distance,
+        };
+        let finite = options.target_distance.is_finite();
+        (sure && finite).then(|| Sweep {
+            meshes: [&self.mesh1, &self.mesh2],
+            motions: [self.motion1, self.motion2],
+            seconds: self.seconds,
+            reach: f64::from(target) + f64::from(options.tolerance),
+        })
+    }
+    fn free(&self) -> ToiResult {
+        ToiResult {
+            toi: Toi::separated(&self.options),
+            counts: Counts::default(),
+        }
+    }
 }

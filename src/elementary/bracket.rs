@@ -20,7 +20,7 @@ use super::certificate::{ActiveFace, fixed_step, free_throughout, turning_step};
 use super::path::Path;
 use super::test_list::Domain;
 use super::{cone_cone, sphere_slab};
-use crate::math::lane::{Lane, Mask, Vec3};
+use crate::math::lane::{Lane, Mask, Scalar, Vec3};
 use crate::math::nearest::{Family, Nearest};
 use crate::math::tolerance::{NEVER, SLACK_ULPS, STEP_ULPS, TOLERANCE_PER_SLACK};
 
@@ -62,6 +62,31 @@ pub struct Bracket<L: Lane> {
     pub normal: Vec3<L>,
     /// Iterations, of the slowest lane.
     pub iterations: u32,
+}
+
+impl<S: Scalar> Bracket<S> {
+    /// Of a test that something else has proven free: no nearest spheres.
+    pub(crate) fn free(limits: &Limits<S>) -> Self {
+        let zero = S::zero();
+        Self {
+            lower: limits.horizon,
+            upper: limits.horizon,
+            contact: S::Mask::splat(false),
+            separated: S::Mask::splat(true),
+            tolerance: limits.tolerance,
+            slack: zero,
+            start_distance: zero,
+            nearest: Nearest {
+                alpha: zero,
+                beta: zero,
+                distance: zero,
+                y: Vec3::zero(),
+                length: zero,
+            },
+            normal: Vec3::zero(),
+            iterations: 0,
+        }
+    }
 }
 
 #[inline(always)]
