@@ -53,9 +53,6 @@ impl Balls {
     }
 }
 
-/// Most directions that [`free_until`] tries one after another. More cost as much as they save.
-const ROUNDS: usize = 3;
-
 /// Fraction of the piece, from `from` to `until`, up to which directions prove two primitives free.
 /// Along chords a direction's bound is concave and piecewise linear in time
 /// ([`crate::elementary::certificate`]): its first root follows from those of all sphere pairs.
@@ -69,33 +66,24 @@ pub(super) fn free_until(balls: [&Balls; 2], from: f64, until: f64, target: f64)
     };
     let least = target + 64.0 * f64::EPSILON * (size(a) + size(b));
     let mut free = from;
-    for _ in 0..ROUNDS {
-        let mut next = free;
-        let mut attempt = |n: Vec3<f64>| {
-            let length = n.length();
-            if length > 0.0 {
-                next = next.max(holds(balls, n * (1.0 / length), free, least));
-            }
-            next >= until
-        };
-        let y = b.middle(free) - a.middle(free);
-        let later = |t: f64| b.middle(t) - a.middle(t);
-        if attempt(y)
-            || attempt(later(0.5 * (free + until)))
-            || attempt(later(until))
-            || across(a.edges(free), b.edges(free), y)
-                .into_iter()
-                .flatten()
-                .any(&mut attempt)
-        {
-            return until;
+    let enough = from + 0.1 * (until - from);
+    let mut attempt = |n: Vec3<f64>| {
+        let length = n.length();
+        if length > 0.0 {
+            free = free.max(holds(balls, n * (1.0 / length), from, least));
         }
-        if next <= free {
-            break;
-        }
-        free = next;
-    }
-    free
+        free >= enough
+    };
+    let toward = |t: f64| b.middle(t) - a.middle(t);
+    let y = toward(from);
+    let _ = attempt(y)
+        || attempt(toward(0.5 * (from + until)))
+        || attempt(toward(until))
+        || across(a.edges(from), b.edges(from), y)
+            .into_iter()
+            .flatten()
+            .any(attempt);
+    free.min(until)
 }
 
 /// Directions near `y` that the shapes themselves suggest: across the edges of either, across one

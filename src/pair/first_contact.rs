@@ -11,8 +11,8 @@ use super::apart::{Balls, free_until};
 use super::queue::{Candidate, Entry, Open};
 use super::swept::Side;
 use super::volumes::Volumes;
-use crate::elementary::bracket::Limits;
-use crate::elementary::distance::{crossing, signed_distance, thinnest};
+use crate::elementary::bracket::{Limits, witness};
+use crate::elementary::distance::{crossing, nearest_in_test, signed_distance, thinnest};
 use crate::elementary::first_contact::{Earliest, motion_is_finite, options_limits, to_toi};
 use crate::elementary::path::RigidPath;
 use crate::elementary::resumed::bracket_until;
@@ -29,6 +29,9 @@ use std::collections::BinaryHeap;
 /// Angle in radians that a piece of the search turns at most: the sagitta is then below 3 % of the
 /// lever arm. Larger pieces cull worse, smaller ones repeat the walk down the trees.
 const PIECE_ANGLE: f64 = 0.5;
+
+/// Fraction of a piece by which a direction must put off two primitives.
+const WORTH_WAITING: f64 = 1.0e-3;
 
 /// Most pieces of one search; a body that turns further in one step is culled less well.
 const MAX_PIECES: f64 = 64.0;
@@ -87,6 +90,7 @@ pub fn first_contact_counted(
         },
         initial_contact: options.initial_contact,
         heap: BinaryHeap::new(),
+        first: None,
         open: Vec::new(),
         counts: Counts::default(),
         earliest: Earliest::new(options_limits(options)),
@@ -129,6 +133,8 @@ struct Search<'a, A, B> {
     reach: f64,
     initial_contact: InitialContact,
     heap: BinaryHeap<Entry>,
+    /// One candidate that is not in the heap.
+    first: Option<Entry>,
     /// Elementary tests that are not settled.
     open: Vec<Open>,
     counts: Counts,
@@ -147,19 +153,19 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         self.sides.0.begin(start, end);
         self.sides.1.begin(start, end);
         self.heap.clear();
+        self.first = None;
         self.open.clear();
         for i in 0..self.sides.0.body.roots() {
             for j in 0..self.sides.1.body.roots() {
                 self.push([i, j]);
             }
         }
-        while let Some(entry) = self.heap.pop() {
+        while let Some(entry) = self.next() {
             if entry.time > self.earliest.upper.min(end) {
                 break;
             }
             let open = match entry.candidate {
                 Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
-                Candidate::Leaves(leaves) => self.list_tests(leaves, entry.time),
                 Candidate::Test(index) => self.advance(index, entry.time),
             };
             if !open {
@@ -167,6 +173,29 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             }
         }
         self.earliest.status == ToiStatus::Separated
+    }
+
+    /// The first candidate. Of two nodes just split one is often the first again: it waits in
+    /// `self.first`, which spares it the way through the heap.
+    fn next(&mut self) -> Option<Entry> {
+        let Some(entry) = self.first.take() else {
+            return self.heap.pop();
+        };
+        match self.heap.peek_mut() {
+            Some(mut top) if *top > entry => Some(std::mem::replace(&mut *top, entry)),
+            _ => Some(entry),
+        }
+    }
+
+    fn queue(&mut self, entry: Entry) {
+        match &mut self.first {
+            None => self.first = Some(entry),
+            Some(first) if *first < entry => {
+                let later = std::mem::replace(first, entry);
+                self.heap.push(later);
+            }
+            Some(_) => self.heap.push(entry),
+        }
     }
 
     /// Queues two swept nodes at the time at which their balls meet, if they do in this piece.
@@ -196,7 +225,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             time += entry * (self.times[1] - self.times[0]);
         }
         if time <= self.earliest.upper.min(self.times[1]) {
-            self.heap.push(Entry {
+            self.queue(Entry {
                 time,
                 depth,
                 candidate: Candidate::Nodes(nodes),
@@ -212,13 +241,19 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
             let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])];
             return match self.free_until(balls, time) {
-                Some(free) if free == time => self.list_tests([i, j], time),
+                None => true,
+                Some(free) if free < time + WORTH_WAITING * (self.times[1] - self.times[0]) => {
+                    self.list_tests([i, j], free)
+                }
                 Some(free) => {
-                    let leaves = Candidate::Leaves([i, j]);
-                    self.heap.push(Entry::at(free, leaves));
+                    let leaves = Candidate::Nodes([i, j]);
+                    self.queue(Entry {
+                        time: free,
+                        depth: 0.0,
+                        candidate: leaves,
+                    });
                     true
                 }
-                None => true,
             };
         }
         let first_larger = a.radius >= b.radius;
@@ -234,13 +269,6 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             children.into_iter().for_each(|c| self.push([i, c]));
         }
         true
-    }
-
-    fn spheres(&self, [i, j]: [u32; 2]) -> [(Spheres, Share); 2] {
-        let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-        let (a, share_a) = self.sides.0.body.primitive(i);
-        let (b, share_b) = self.sides.1.body.primitive(j);
-        [(a.map(local), share_a), (b.map(local), share_b)]
     }
 
     /// Until when directions prove two primitives free from `time` on; `None` if as long as the
@@ -267,7 +295,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             return true;
         };
         let pair = [p, q];
-        let [(sa, share_a), (sb, share_b)] = self.spheres(pair);
+        let [(sa, share_a), (sb, share_b)] = spheres(&self.sides, pair);
         let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
         let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
             let turned = self.motions[side].sin_cos(0.0);
@@ -323,7 +351,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                     spent: 0,
                 };
                 let place = Candidate::Test(self.open.len() as u32);
-                self.heap.push(Entry::at(free, place));
+                self.queue(Entry::at(free, place));
                 self.open.push(open);
             }
             true
@@ -357,25 +385,53 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         self.earliest.iterations += bracket.iterations;
         self.earliest.tolerance = self.earliest.tolerance.max(bracket.tolerance);
         self.open[place as usize] = open;
-        (self.heap).push(Entry::at(bracket.lower, Candidate::Test(place)));
+        self.queue(Entry::at(bracket.lower, Candidate::Test(place)));
         true
     }
 
     fn path(&self, test: &ElementaryTest, pair: [u32; 2], target: f64) -> RigidPath<f64> {
-        let [(a, _), (b, _)] = self.spheres(pair);
+        let [(a, _), (b, _)] = spheres(&self.sides, pair);
         RigidPath::new(test, &self.motions, target, |second, k| {
             if second { b[k as usize] } else { a[k as usize] }
         })
     }
 
-    /// Finds the nearest sphere pair of the primitives that meet first.
+    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness:
+    /// a test that is proven free until then may be nearer than the one that was found.
     fn settle(&mut self) {
-        let Some((_, _, pair)) = self.earliest.found else {
+        let Some((test, bracket, pair)) = &mut self.earliest.found else {
             return;
         };
-        let counts = self.spheres(pair).map(|(_, share)| share.spheres);
-        let mut earliest = self.earliest;
-        earliest.settle(counts, |test| self.path(test, pair, self.target));
-        self.earliest = earliest;
+        let lower = self.earliest.lower;
+        let [(a, share_a), (b, share_b)] = spheres(&self.sides, *pair);
+        let then = |side: usize, spheres: Spheres| {
+            let turned = self.motions[side].sin_cos(lower);
+            spheres.map(|(c, r)| (self.motions[side].point(c).at(lower, turned).position, r))
+        };
+        let (pa, pb) = (then(0, a), then(1, b));
+        let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
+        let mut least = f64::INFINITY;
+        for_each_test(shares[0], shares[1], |other| {
+            let distance = nearest_in_test(&other, &pa, &pb).1.distance;
+            if distance < least {
+                (*test, least) = (other, distance);
+            }
+            true
+        });
+        let path = RigidPath::new(test, &self.motions, self.target, |second, k| {
+            if second { b[k as usize] } else { a[k as usize] }
+        });
+        bracket.lower = lower;
+        (bracket.nearest, bracket.normal) = witness(&path, test.domain, lower);
     }
+}
+
+fn spheres<A: Volumes, B: Volumes>(
+    sides: &(Side<'_, A>, Side<'_, B>),
+    [i, j]: [u32; 2],
+) -> [(Spheres, Share); 2] {
+    let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
+    let (a, share_a) = sides.0.body.primitive(i);
+    let (b, share_b) = sides.1.body.primitive(j);
+    [(a.map(local), share_a), (b.map(local), share_b)]
 }

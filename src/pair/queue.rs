@@ -9,8 +9,6 @@ use std::cmp::Ordering;
 pub(super) enum Candidate {
     /// Two swept nodes, whose balls meet then.
     Nodes([u32; 2]),
-    /// The primitives of two swept leaves, free until then by directions that their spheres give.
-    Leaves([u32; 2]),
     /// An elementary test: its place in the list of those not settled.
     Test(u32),
 }
