@@ -6,8 +6,8 @@ mod ccd;
 mod creature;
 
 mod bad_input;
-mod coherence;
 mod batch;
+mod coherence;
 mod distance;
 mod effort;
 mod families;
