@@ -30,14 +30,19 @@ const INSIDE: f64 = 0.5;
 /// dozen, and exact predicates then cost twenty times more; the shift is far below any error.
 const JITTER: f64 = 1e-7;
 
-/// Delaunay tetrahedra of the samples.
-pub fn tetrahedra(samples: &[Sample], watch: &mut Watch) -> Result<Delaunay, BuildError> {
+/// The samples' points, each shifted a little; the same in every call.
+fn shifted(samples: &[Sample]) -> Vec<Point> {
     let mut random = Random::new(4);
     let mut shift = || JITTER * (random.unit() - 0.5);
-    let points: Vec<Point> = samples
+    samples
         .iter()
         .map(|s| s.point + Point::new(shift(), shift(), shift()))
-        .collect();
+        .collect()
+}
+
+/// Delaunay tetrahedra of the samples.
+pub fn tetrahedra(samples: &[Sample], watch: &mut Watch) -> Result<Delaunay, BuildError> {
+    let points = shifted(samples);
     Delaunay::with_tick(&points, |done| watch.at(done as f64 / points.len() as f64))
 }
 
@@ -48,6 +53,7 @@ pub fn inner_balls(
     tree: &TriangleTree,
     watch: &mut Watch,
 ) -> Result<Draft, BuildError> {
+    let points = shifted(samples);
     let bounds = Bounds::of(samples.iter().map(|s| s.point));
     let mut draft = Draft::default();
     let mut ball_of = vec![NONE; delaunay.tetrahedra.len()];
@@ -55,8 +61,11 @@ pub fn inner_balls(
         if t % 4096 == 0 {
             watch.at(t as f64 / delaunay.tetrahedra.len() as f64)?;
         }
+        // Of the points that the tetrahedra are of: on a flat triangle the samples themselves lie in
+        // a plane, and their sphere would be any.
+        let ball = circumsphere(corners.map(|v| points[v as usize]));
         let corners = corners.map(|v| samples[v as usize]);
-        let Some(ball) = circumsphere(corners.map(|s| s.point)) else {
+        let Some(ball) = ball else {
             continue;
         };
         if bounds.distance_sq(ball.center) == 0.0 && is_inside(&ball, corners, tree) {

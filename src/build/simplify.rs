@@ -30,6 +30,9 @@ const STABILITY_FLOOR: f64 = 0.3;
 /// nearly singular there and says nothing.
 const REACH: f64 = 3.0;
 
+/// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
+const BULGE: f64 = 0.2;
+
 /// Weight of the planes that hold the medial mesh's boundary, for a solid and for thin sheets,
 /// whose boundary is the surface's own.
 pub const BOUNDARY_WEIGHT_SOLID: f64 = 0.1;
@@ -153,7 +156,14 @@ impl<'a> Simplifier<'a> {
             self.blocked.push(candidate);
             return;
         }
-        let (_, ball) = self.merge(a, b);
+        let (_, mut ball) = self.merge(a, b);
+        // On round bodies all planes agree on many balls, of which some reach far out of the solid.
+        if self
+            .tree
+            .any_within(ball.center, ball.radius * (1.0 - BULGE))
+        {
+            (_, ball) = self.cheapest(a, b, None);
+        }
         self.quadrics[a as usize] = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
         self.complex.collapse(a, b, ball);
         self.versions[a as usize] += 1;
@@ -216,22 +226,33 @@ impl<'a> Simplifier<'a> {
     fn merge(&self, a: u32, b: u32) -> (f64, Ball) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
         let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let middle = Ball {
-            center: (ball_a.center + ball_b.center) * 0.5,
-            radius: 0.5 * (ball_a.radius + ball_b.radius),
-        };
+        let middle = middle(&ball_a, &ball_b);
         let length = (ball_b.center - ball_a.center).length();
         let near = |m: &Ball| (m.center - middle.center).length() <= REACH * length;
         let minimiser = quadric.minimiser(&middle);
-        let minimiser = minimiser.filter(|m| m.radius > 0.0 && near(m));
-        let (error, ball) = [ball_a, ball_b, middle]
+        self.cheapest(a, b, minimiser.filter(|m| m.radius > 0.0 && near(m)))
+    }
+
+    /// The cheapest of two balls, their middle and a fourth to merge the two into, and its cost.
+    fn cheapest(&self, a: u32, b: u32, minimiser: Option<Ball>) -> (f64, Ball) {
+        let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
+        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
+        let (error, ball) = [ball_a, ball_b, middle(&ball_a, &ball_b)]
             .into_iter()
             .chain(minimiser)
             .map(|ball| (quadric.error(&ball), ball))
             .min_by(|x, y| x.0.total_cmp(&y.0))
-            .unwrap_or((0.0, middle));
+            .unwrap_or((0.0, ball_a));
         let stability = stability(&ball_a, &ball_b).max(STABILITY_FLOOR);
         ((error + FLAT_COST) * stability * stability, ball)
+    }
+}
+
+/// The ball halfway between two.
+fn middle(a: &Ball, b: &Ball) -> Ball {
+    Ball {
+        center: (a.center + b.center) * 0.5,
+        radius: 0.5 * (a.radius + b.radius),
     }
 }
 
