@@ -7,13 +7,15 @@
 //! expanded in the order of that time, and the search ends when the next one lies after the best
 //! contact found. A fast turn is searched in pieces, so that sagittas stay small.
 
-use super::swept::{Entry, Piece, Swept, apart_until};
+use super::queue::{Candidate, Entry, Open};
+use super::swept::{Balls, Piece, Swept, free_until};
 use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
 use crate::elementary::distance::{crossing, signed_distance, thinnest};
 use crate::elementary::first_contact::{Earliest, motion_is_finite, options_limits, to_toi};
 use crate::elementary::path::RigidPath;
-use crate::elementary::test_list::{Share, for_each_test};
+use crate::elementary::resumed::bracket_until;
+use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::Real;
 use crate::math::lane::Vec3;
@@ -112,6 +114,8 @@ pub fn first_contact_counted(
     (to_toi(&search.earliest, options, pose), search.counts)
 }
 
+type Spheres = [(Vec3<f64>, f64); 3];
+
 struct Search<'a, A, B> {
     bodies: (&'a A, &'a B),
     motions: [RigidMotion<f64>; 2],
@@ -145,7 +149,12 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             if entry.time > self.earliest.upper.min(end) {
                 break;
             }
-            if !self.expand(&entry, &sides, start, end) {
+            let open = match entry.candidate {
+                Candidate::Nodes(nodes) => self.expand(nodes, entry.time, &sides),
+                Candidate::Primitives(pair) => self.list_tests(pair, entry.time, &sides),
+                Candidate::Test(open) => self.advance(open, entry.time),
+            };
+            if !open {
                 return false;
             }
         }
@@ -175,18 +184,26 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         if entry > 1.0 || time > self.earliest.upper.min(end) {
             return;
         }
-        self.heap.push(Entry {
-            time,
-            depth: (yy.sqrt() - radius) / radius.max(f64::MIN_POSITIVE),
-            nodes,
-        });
+        let depth = (yy.sqrt() - radius) / radius.max(f64::MIN_POSITIVE);
+        self.heap.push(Entry::nodes(time, depth, nodes));
     }
 
-    fn expand(&mut self, entry: &Entry, sides: &[Piece; 2], start: f64, end: f64) -> bool {
-        let [a, b] = entry.nodes;
+    /// Replaces two nodes by what is below the larger; two primitives wait until directions no
+    /// longer keep them apart. Returns whether an earlier contact is still possible.
+    fn expand(&mut self, [a, b]: [Swept; 2], time: f64, sides: &[Piece; 2]) -> bool {
+        let [start, end] = sides[0].times;
         match (self.bodies.0.below(a.node), self.bodies.1.below(b.node)) {
             (Below::Primitive(i), Below::Primitive(j)) => {
-                return self.leaf([i, j], entry.depth <= 0.0, sides);
+                let balls = self.balls([i, j], sides);
+                let free = self.free_until(&balls, time, sides);
+                return match free {
+                    Some(free) if free == time => self.list_tests([i, j], time, sides),
+                    Some(free) => {
+                        self.heap.push(Entry::primitives(free, [i, j]));
+                        true
+                    }
+                    None => true,
+                };
             }
             (Below::Nodes(i, j), other) if a.radius >= b.radius || !splits(other) => {
                 for child in [i, j] {
@@ -206,19 +223,40 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         true
     }
 
-    /// Tests two primitives; returns whether an earlier contact is still possible.
-    fn leaf(&mut self, [i, j]: [u32; 2], near: bool, sides: &[Piece; 2]) -> bool {
+    fn spheres(&self, [i, j]: [u32; 2]) -> [(Spheres, Share); 2] {
+        let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
         let (a, share_a) = self.bodies.0.primitive(i);
         let (b, share_b) = self.bodies.1.primitive(j);
-        let local = |s: &MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-        let (sa, sb) = (a.map(|s| local(&s)), b.map(|s| local(&s)));
-        let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
+        [(a.map(local), share_a), (b.map(local), share_b)]
+    }
+
+    fn balls(&self, pair: [u32; 2], sides: &[Piece; 2]) -> [Balls; 2] {
+        let [(a, share_a), (b, share_b)] = self.spheres(pair);
+        [
+            sides[0].balls(&a[..share_a.spheres]),
+            sides[1].balls(&b[..share_b.spheres]),
+        ]
+    }
+
+    /// Until when directions prove two primitives free from `time` on; `None` if as long as the
+    /// search asks.
+    fn free_until(&self, balls: &[Balls; 2], time: f64, sides: &[Piece; 2]) -> Option<f64> {
         let [start, end] = sides[0].times;
-        let until = (self.earliest.upper.min(end) - start) / (end - start);
-        let balls = [sides[0].balls(sa), sides[1].balls(sb)];
-        if apart_until(&balls, until, self.reach) {
-            return true;
+        let length = end - start;
+        let until = (self.earliest.upper.min(end) - start) / length;
+        let from = (time - start) / length;
+        let free = free_until(balls, from, until, self.reach);
+        if free <= from {
+            return Some(time);
         }
+        (free < until).then(|| (start + free * length * (1.0 - 4.0 * f64::EPSILON)).max(time))
+    }
+
+    /// Lists the elementary tests of two primitives that are free until `time`; returns whether an
+    /// earlier contact is still possible.
+    fn list_tests(&mut self, pair: [u32; 2], time: f64, sides: &[Piece; 2]) -> bool {
+        let [(sa, share_a), (sb, share_b)] = self.spheres(pair);
+        let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
         let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
             let turned = self.motions[side].sin_cos(0.0);
             let place = |c| self.motions[side].point(c).at(0.0, turned).position;
@@ -237,7 +275,8 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                     target = distance - f64::from(by) - tolerance;
                 }
             }
-            InitialContact::Stop if start == 0.0 && near => {
+            // Proven free until later, they cannot cross at the start.
+            InitialContact::Stop if time == 0.0 => {
                 let (pa, pb) = (at_start(0, sa), at_start(1, sb));
                 let crossings = [
                     crossing(&pa, share_a.edges, &pb),
@@ -257,43 +296,70 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         } else {
             [share_a, share_b].map(|s| Share::whole(s.spheres))
         };
-        let mut open = true;
+        let balls = self.balls(pair, sides);
         for_each_test(shares[0], shares[1], |test| {
-            let path = RigidPath::new(&test, &self.motions, target, |second, k| {
-                if second {
-                    sb[k as usize]
-                } else {
-                    sa[k as usize]
-                }
-            });
-            open = self.earliest.test(test, &path, [i, j]);
-            open
+            let some = [
+                balls[0].only(test.corners.map(|c| c.0)),
+                balls[1].only(test.corners.map(|c| c.1)),
+            ];
+            if let Some(free) = self.free_until(&some, time, sides) {
+                let open = Open {
+                    primitives: pair,
+                    test,
+                    target,
+                    spent: 0,
+                };
+                self.heap.push(Entry::test(free, open));
+            }
+            true
         });
-        open
+        true
     }
-}
 
-impl<A: Volumes, B: Volumes> Search<'_, A, B> {
+    /// Takes one test further, until it is settled or another candidate may come first; returns
+    /// whether an earlier contact is still possible.
+    fn advance(&mut self, mut open: Open, time: f64) -> bool {
+        let limits = self.earliest.limits;
+        let limits = Limits {
+            start: time,
+            horizon: self.earliest.upper.min(limits.horizon),
+            max_iterations: limits.max_iterations - open.spent,
+            ..limits
+        };
+        let until = (self.heap.peek()).map_or(limits.horizon, |next| next.time.max(time));
+        let path = self.path(&open.test, open.primitives, open.target);
+        let bracket = bracket_until(&path, open.test.domain, &limits, until);
+        self.earliest.tests += u32::from(open.spent == 0);
+        open.spent += bracket.iterations;
+        let settled = bracket.contact || bracket.separated || !bracket.slack.is_finite();
+        if settled || bracket.iterations >= limits.max_iterations {
+            let Open {
+                test, primitives, ..
+            } = open;
+            return self.earliest.take(test, bracket, time, primitives);
+        }
+        self.earliest.iterations += bracket.iterations;
+        self.earliest.tolerance = self.earliest.tolerance.max(bracket.tolerance);
+        self.heap.push(Entry::test(bracket.lower, open));
+        true
+    }
+
+    fn path(&self, test: &ElementaryTest, pair: [u32; 2], target: f64) -> RigidPath<f64> {
+        let [(a, _), (b, _)] = self.spheres(pair);
+        RigidPath::new(test, &self.motions, target, |second, k| {
+            if second { b[k as usize] } else { a[k as usize] }
+        })
+    }
+
     /// Finds the nearest sphere pair of the primitives that meet first.
     fn settle(&mut self) {
-        let Some((_, _, [i, j])) = self.earliest.found else {
+        let Some((_, _, pair)) = self.earliest.found else {
             return;
         };
-        let (a, share_a) = self.bodies.0.primitive(i);
-        let (b, share_b) = self.bodies.1.primitive(j);
-        let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-        let (sa, sb) = (a.map(local), b.map(local));
-        let (motions, target) = (self.motions, self.target);
-        self.earliest
-            .settle([share_a.spheres, share_b.spheres], |test| {
-                RigidPath::new(test, &motions, target, |second, k| {
-                    if second {
-                        sb[k as usize]
-                    } else {
-                        sa[k as usize]
-                    }
-                })
-            });
+        let counts = self.spheres(pair).map(|(_, share)| share.spheres);
+        let mut earliest = self.earliest;
+        earliest.settle(counts, |test| self.path(test, pair, self.target));
+        self.earliest = earliest;
     }
 }
 

@@ -6,6 +6,7 @@
 pub mod contacts;
 pub mod distance;
 pub mod first_contact;
+mod queue;
 mod swept;
 pub mod volumes;
 

@@ -1,10 +1,9 @@
 //! Nodes and primitives swept over a piece of the step: chords of their centres with radii that cover
-//! the sagitta, and the order in which the search of [`super::first_contact`] takes them.
+//! the sagitta, and how long one direction after another keeps two primitives apart.
 
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::{Real, Vector};
-use std::cmp::Ordering;
 
 /// Chord of a node's centre over a piece, and the radius around it that covers the node.
 #[derive(Clone, Copy)]
@@ -13,46 +12,6 @@ pub(super) struct Swept {
     pub(super) start: Vec3<f64>,
     pub(super) chord: Vec3<f64>,
     pub(super) radius: f64,
-}
-
-/// A node pair, ordered by the time at which it may first meet; of several that overlap already,
-/// the one that overlaps deepest for its size comes first.
-pub(super) struct Entry {
-    pub(super) time: f64,
-    /// Signed distance of the two balls at the start of the piece, in units of their radii.
-    pub(super) depth: f64,
-    pub(super) nodes: [Swept; 2],
-}
-
-impl Entry {
-    pub(super) fn key(&self) -> (f64, f64, u32, u32) {
-        (
-            self.time,
-            self.depth,
-            self.nodes[0].node,
-            self.nodes[1].node,
-        )
-    }
-}
-impl PartialEq for Entry {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Entry {}
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Entry {
-    /// Reversed: `BinaryHeap` pops the largest.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let (a, b) = (self.key(), other.key());
-        b.0.total_cmp(&a.0)
-            .then(b.1.total_cmp(&a.1))
-            .then((b.2, b.3).cmp(&(a.2, a.3)))
-    }
 }
 
 /// One side's motion over a piece of the step.
@@ -102,38 +61,96 @@ impl Piece {
     }
 }
 
-/// Spheres of one primitive over a piece: position at the start, chord, and radius grown by the
-/// sagitta. The unused rest has no meaning.
+/// Spheres of one primitive, or of one side of an elementary test, over a piece: position at the
+/// start, chord, and radius grown by the sagitta. The unused rest has no meaning.
 #[derive(Clone, Copy)]
 pub(super) struct Balls {
     spheres: [(Vec3<f64>, Vec3<f64>, f64); 3],
     len: usize,
 }
 
-/// Whether one direction proves two primitives free up to the fraction `until` of the piece: along
-/// chords its bound is concave and piecewise linear in time ([`crate::elementary::certificate`]),
-/// so both ends suffice. It spares most leaf pairs their elementary tests.
-pub(super) fn apart_until(balls: &[Balls; 2], until: f64, target: f64) -> bool {
-    let [a, b] = balls.each_ref().map(|side| &side.spheres[..side.len]);
-    let middle = |side: &[(Vec3<f64>, Vec3<f64>, f64)], t: f64| {
-        let sum = side.iter().fold(Vec3::zero(), |m, s| m + s.0 + s.1 * t);
-        sum * (1.0 / side.len() as f64)
-    };
-    let gap = |n: Vec3<f64>, t: f64| {
-        let near = b.iter().map(|s| n.dot(s.0 + s.1 * t) - s.2);
-        let far = a.iter().map(|s| n.dot(s.0 + s.1 * t) + s.2);
-        near.fold(f64::MAX, f64::min) - far.fold(f64::MIN, f64::max)
-    };
-    [0.0, 0.5 * until, until].into_iter().any(|t| {
-        let y = middle(b, t) - middle(a, t);
-        let length = y.length();
-        if length <= 0.0 {
-            return false;
+impl Balls {
+    /// Those of the given spheres, each once.
+    pub(super) fn only(&self, corners: [u8; 4]) -> Self {
+        let mut some = Self { len: 0, ..*self };
+        for (k, i) in corners.into_iter().enumerate() {
+            if !corners[..k].contains(&i) {
+                some.spheres[some.len] = self.spheres[i as usize];
+                some.len += 1;
+            }
         }
-        let n = y * (1.0 / length);
-        // Rounding: a few ulps of the numbers in play.
-        let size = length + (b[0].1 - a[0].1).length() + a[0].2 + b[0].2;
-        let least = target + 64.0 * f64::EPSILON * size;
-        gap(n, 0.0) > least && gap(n, until) > least
-    })
+        some
+    }
+
+    fn spheres(&self) -> &[(Vec3<f64>, Vec3<f64>, f64)] {
+        &self.spheres[..self.len]
+    }
+
+    fn middle(&self, t: f64) -> Vec3<f64> {
+        let sum = (self.spheres().iter()).fold(Vec3::zero(), |m, s| m + s.0 + s.1 * t);
+        sum * (1.0 / self.len as f64)
+    }
+}
+
+/// Most directions that [`free_until`] tries one after another. More cost as much as they save.
+const ROUNDS: usize = 3;
+
+/// Fraction of the piece, from `from` to `until`, up to which directions prove two primitives free.
+/// Along chords a direction's bound is concave and piecewise linear in time
+/// ([`crate::elementary::certificate`]): its first root follows from those of all sphere pairs.
+/// Where one direction ends the next begins. It spares most primitives their elementary tests.
+pub(super) fn free_until(balls: &[Balls; 2], from: f64, until: f64, target: f64) -> f64 {
+    let [a, b] = balls;
+    // Rounding: a few ulps of the numbers in play.
+    let size = |s: &Balls| {
+        let (c, chord, r) = s.spheres[0];
+        c.length() + chord.length() + r
+    };
+    let least = target + 64.0 * f64::EPSILON * (size(a) + size(b));
+    let mut free = from;
+    for _ in 0..ROUNDS {
+        let mut next = free;
+        for t in [free, 0.5 * (free + until), until] {
+            let y = b.middle(t) - a.middle(t);
+            let length = y.length();
+            if length > 0.0 {
+                next = next.max(holds(balls, y * (1.0 / length), free, least));
+            }
+            if next >= until {
+                return until;
+            }
+        }
+        if next <= free {
+            break;
+        }
+        free = next;
+    }
+    free
+}
+
+/// Until when all of the second primitive stays further than `least` beyond all of the first along
+/// `n`, if it does at `from`; else `from`.
+fn holds([a, b]: &[Balls; 2], n: Vec3<f64>, from: f64, least: f64) -> f64 {
+    let along = |s: &(Vec3<f64>, Vec3<f64>, f64)| {
+        let rate = n.dot(s.1);
+        (n.dot(s.0) + rate * from, rate)
+    };
+    let mut step = f64::MAX;
+    for s in a.spheres() {
+        let (far, far_rate) = along(s);
+        for r in b.spheres() {
+            let (near, near_rate) = along(r);
+            let gap = near - r.2 - (far + s.2) - least;
+            let rate = near_rate - far_rate;
+            // Also where it is not a number.
+            if !(gap > 0.0 && rate.is_finite()) {
+                return from;
+            }
+            if rate < 0.0 {
+                step = step.min(gap / -rate);
+            }
+        }
+    }
+    // Rounding of the division and the sum.
+    from + step * (1.0 - 8.0 * f64::EPSILON)
 }

@@ -5,6 +5,7 @@ mod ccd;
 
 mod bad_input;
 mod coherence;
+mod batch;
 mod distance;
 mod families;
 mod first_contact;
