@@ -2,6 +2,12 @@
 
 pub mod candidates;
 pub mod collider;
+mod events;
+mod first_contact;
+mod impulse;
+mod motion;
+mod muting;
+mod pairs;
 pub mod pipeline;
 mod recycled;
 pub mod report;

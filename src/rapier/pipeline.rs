@@ -1,8 +1,12 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
-use super::candidates;
+use super::events;
+use super::first_contact::{Asker, Work};
+use super::motion::{Body, Snapshot};
+use super::pairs::Rules;
 use super::recycled::Recycled;
 use super::report::StepReport;
+use super::{candidates, muting};
 use crate::batch;
 use crate::math::{Real, Vector};
 use crate::parry::{Answers, MedialDispatcher};
@@ -13,6 +17,7 @@ use rapier3d::dynamics::{
 };
 use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, PhysicsWorld};
+use std::collections::HashSet;
 use std::sync::Arc;
 use web_time::Instant;
 
@@ -132,6 +137,30 @@ impl MedialPipeline {
         report.batch_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
+        let asker = Asker {
+            dt: parameters.dt,
+            unit: parameters.length_unit,
+        };
+        let mut work = Work::default();
+        let mut snapshot = if report.medial_colliders == 0 {
+            Snapshot::default()
+        } else {
+            Snapshot::take(gravity, parameters.dt, bodies, colliders, multibody_joints)
+        };
+        let rules = Rules {
+            bodies,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            hooks,
+        };
+        let prediction = parameters.prediction_distance();
+        let muted = muting::muted(&snapshot, &asker, &rules, prediction, &mut work);
+        report.muted = muted.len();
+        self.answers.mute(muted);
+        report.mute_seconds = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
         pipeline.step(
             gravity,
             parameters,
@@ -148,15 +177,52 @@ impl MedialPipeline {
             events,
         );
         report.step_seconds = clock.elapsed().as_secs_f64();
+        self.answers.mute(HashSet::new());
+
+        let clock = Instant::now();
+        snapshot.follow(parameters, bodies);
+        let rules = Rules {
+            bodies,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            hooks,
+        };
+        let outcome = events::resolve(&mut snapshot, asker, rules, narrow_phase, &mut work);
+        for &(index, struck) in &outcome.changed {
+            write_back(&snapshot.bodies[index], struck, bodies);
+        }
+        if !outcome.changed.is_empty() {
+            bodies.propagate_modified_body_positions_to_colliders(colliders);
+        }
+        report.events = outcome.events;
+        report.frozen = outcome.frozen;
+        report.event_seconds = clock.elapsed().as_secs_f64();
         for ids in self.answers.take_missed() {
             self.recycled.forget(ids);
         }
         let counted = self.answers.take_counts();
         report.cache_hits = counted.hits;
         report.cache_misses = counted.misses;
-        report.continuous_queries = counted.casts;
-        report.culled_nodes += counted.nodes;
-        report.elementary_tests += counted.tests;
+        report.continuous_queries = counted.casts + work.queries;
+        report.rotating_queries = work.rotating;
+        report.culled_nodes += counted.nodes + work.nodes;
+        report.elementary_tests += counted.tests + work.tests;
         report
+    }
+}
+
+/// Gives a body the pose and velocities at the end of the event loop.
+fn write_back(moved: &Body, struck: bool, bodies: &mut RigidBodySet) {
+    let Some(body) = moved.handle.and_then(|h| bodies.get_mut(h)) else {
+        return;
+    };
+    if !moved.motion.start.is_finite() {
+        return;
+    }
+    body.set_position(moved.motion.start, struck);
+    if struck {
+        body.set_linvel(moved.velocity[0], true);
+        body.set_angvel(moved.velocity[1], true);
     }
 }
