@@ -4,8 +4,8 @@
 mod ccd;
 
 mod bad_input;
-mod coherence;
 mod batch;
+mod coherence;
 mod distance;
 mod families;
 mod first_contact;
