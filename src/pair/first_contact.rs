@@ -7,8 +7,9 @@
 //! expanded in the order of that time, and the search ends when the next one lies after the best
 //! contact found. A fast turn is searched in pieces, so that sagittas stay small.
 
+use super::apart::{Balls, free_until};
 use super::queue::{Candidate, Entry, Open};
-use super::swept::{Balls, Piece, Swept, free_until};
+use super::swept::Side;
 use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
 use crate::elementary::distance::{crossing, signed_distance, thinnest};
@@ -76,8 +77,9 @@ pub fn first_contact_counted(
     let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
     let target = f64::from(options.target_distance);
     let mut search = Search {
-        bodies: (body1, body2),
+        sides: (Side::new(body1, motions[0]), Side::new(body2, motions[1])),
         motions,
+        times: [0.0, 1.0],
         target,
         reach: match options.initial_contact {
             InitialContact::Stop => target.max(0.0),
@@ -85,6 +87,7 @@ pub fn first_contact_counted(
         },
         initial_contact: options.initial_contact,
         heap: BinaryHeap::new(),
+        open: Vec::new(),
         counts: Counts::default(),
         earliest: Earliest::new(options_limits(options)),
     };
@@ -117,13 +120,17 @@ pub fn first_contact_counted(
 type Spheres = [(Vec3<f64>, f64); 3];
 
 struct Search<'a, A, B> {
-    bodies: (&'a A, &'a B),
+    sides: (Side<'a, A>, Side<'a, B>),
     motions: [RigidMotion<f64>; 2],
+    /// Start and end of the piece searched.
+    times: [f64; 2],
     target: f64,
     /// What culling goes by: no primitive pair has a larger target, raised or not.
     reach: f64,
     initial_contact: InitialContact,
     heap: BinaryHeap<Entry>,
+    /// Elementary tests that are not settled.
+    open: Vec<Open>,
     counts: Counts,
     earliest: Earliest<f64>,
 }
@@ -136,13 +143,14 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             horizon: end,
             ..self.earliest.limits
         };
-        let sides = [0, 1].map(|side| Piece::new(self.motions[side], start, end));
+        self.times = [start, end];
+        self.sides.0.begin(start, end);
+        self.sides.1.begin(start, end);
         self.heap.clear();
-        for i in 0..self.bodies.0.roots() {
-            let a = sides[0].sweep(i, self.bodies.0.bound(i));
-            for j in 0..self.bodies.1.roots() {
-                let b = sides[1].sweep(j, self.bodies.1.bound(j));
-                self.push([a, b], start, end);
+        self.open.clear();
+        for i in 0..self.sides.0.body.roots() {
+            for j in 0..self.sides.1.body.roots() {
+                self.push([i, j]);
             }
         }
         while let Some(entry) = self.heap.pop() {
@@ -150,9 +158,9 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                 break;
             }
             let open = match entry.candidate {
-                Candidate::Nodes(nodes) => self.expand(nodes, entry.time, &sides),
-                Candidate::Primitives(pair) => self.list_tests(pair, entry.time, &sides),
-                Candidate::Test(open) => self.advance(open, entry.time),
+                Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
+                Candidate::Leaves(leaves) => self.list_tests(leaves, entry.time),
+                Candidate::Test(index) => self.advance(index, entry.time),
             };
             if !open {
                 return false;
@@ -161,87 +169,84 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         self.earliest.status == ToiStatus::Separated
     }
 
-    fn push(&mut self, nodes: [Swept; 2], start: f64, end: f64) {
+    /// Queues two swept nodes at the time at which their balls meet, if they do in this piece.
+    fn push(&mut self, nodes: [u32; 2]) {
         self.counts.nodes += 1;
-        let y = nodes[1].start - nodes[0].start;
-        let rate = nodes[1].chord - nodes[0].chord;
-        let radius = nodes[0].radius + nodes[1].radius + self.reach;
+        let (a, b) = (self.sides.0.node(nodes[0]), self.sides.1.node(nodes[1]));
+        let y = b.start - a.start;
+        let rate = b.chord - a.chord;
+        let radius = a.radius + b.radius + self.reach;
         // Rounding of positions, chords and the root: a few ulps of the numbers in play.
-        let size = y.length() + rate.length() + radius.abs();
-        let radius = (radius + 64.0 * f64::EPSILON * size).max(0.0);
+        let size = y.x.abs() + y.y.abs() + y.z.abs() + rate.x.abs() + rate.y.abs() + rate.z.abs();
+        let radius = (radius + 64.0 * f64::EPSILON * (size + radius.abs())).max(0.0);
         let (yy, yr, rr) = (y.length_sq(), y.dot(rate), rate.length_sq());
         let c = yy - radius * radius;
-        let entry = if c <= 0.0 {
-            0.0
+        let (mut time, mut depth) = (self.times[0], 0.0);
+        if c <= 0.0 {
+            depth = (yy.sqrt() - radius) / radius.max(f64::MIN_POSITIVE);
         } else {
             let discriminant = yr * yr - rr * c;
             if yr >= 0.0 || discriminant < 0.0 {
                 return;
             }
-            c / (discriminant.sqrt() - yr)
-        };
-        let time = start + entry * (end - start);
-        if entry > 1.0 || time > self.earliest.upper.min(end) {
-            return;
+            let entry = c / (discriminant.sqrt() - yr);
+            if entry > 1.0 {
+                return;
+            }
+            time += entry * (self.times[1] - self.times[0]);
         }
-        let depth = (yy.sqrt() - radius) / radius.max(f64::MIN_POSITIVE);
-        self.heap.push(Entry::nodes(time, depth, nodes));
+        if time <= self.earliest.upper.min(self.times[1]) {
+            self.heap.push(Entry {
+                time,
+                depth,
+                candidate: Candidate::Nodes(nodes),
+            });
+        }
     }
 
     /// Replaces two nodes by what is below the larger; two primitives wait until directions no
     /// longer keep them apart. Returns whether an earlier contact is still possible.
-    fn expand(&mut self, [a, b]: [Swept; 2], time: f64, sides: &[Piece; 2]) -> bool {
-        let [start, end] = sides[0].times;
-        match (self.bodies.0.below(a.node), self.bodies.1.below(b.node)) {
-            (Below::Primitive(i), Below::Primitive(j)) => {
-                let balls = self.balls([i, j], sides);
-                let free = self.free_until(&balls, time, sides);
-                return match free {
-                    Some(free) if free == time => self.list_tests([i, j], time, sides),
-                    Some(free) => {
-                        self.heap.push(Entry::primitives(free, [i, j]));
-                        true
-                    }
-                    None => true,
-                };
-            }
-            (Below::Nodes(i, j), other) if a.radius >= b.radius || !splits(other) => {
-                for child in [i, j] {
-                    let swept = sides[0].sweep(child, self.bodies.0.bound(child));
-                    self.push([swept, b], start, end);
+    fn expand(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
+        let (a, b) = (self.sides.0.node(i), self.sides.1.node(j));
+        if let (Below::Primitive(p), Below::Primitive(q)) = (a.below, b.below) {
+            let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
+            let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])];
+            return match self.free_until(balls, time) {
+                Some(free) if free == time => self.list_tests([i, j], time),
+                Some(free) => {
+                    let leaves = Candidate::Leaves([i, j]);
+                    self.heap.push(Entry::at(free, leaves));
+                    true
                 }
-            }
-            (_, Below::Nodes(i, j)) => {
-                for child in [i, j] {
-                    let swept = sides[1].sweep(child, self.bodies.1.bound(child));
-                    self.push([a, swept], start, end);
-                }
-            }
-            // The guard above takes every pair with nodes on the left and none on the right.
-            (Below::Nodes(..), Below::Primitive(_)) => {}
+                None => true,
+            };
+        }
+        let first_larger = a.radius >= b.radius;
+        let splits_second = matches!(b.below, Below::Nodes(..));
+        let first = if first_larger || !splits_second {
+            self.sides.0.split(i)
+        } else {
+            None
+        };
+        if let Some(children) = first {
+            children.into_iter().for_each(|c| self.push([c, j]));
+        } else if let Some(children) = self.sides.1.split(j) {
+            children.into_iter().for_each(|c| self.push([i, c]));
         }
         true
     }
 
     fn spheres(&self, [i, j]: [u32; 2]) -> [(Spheres, Share); 2] {
         let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-        let (a, share_a) = self.bodies.0.primitive(i);
-        let (b, share_b) = self.bodies.1.primitive(j);
+        let (a, share_a) = self.sides.0.body.primitive(i);
+        let (b, share_b) = self.sides.1.body.primitive(j);
         [(a.map(local), share_a), (b.map(local), share_b)]
-    }
-
-    fn balls(&self, pair: [u32; 2], sides: &[Piece; 2]) -> [Balls; 2] {
-        let [(a, share_a), (b, share_b)] = self.spheres(pair);
-        [
-            sides[0].balls(&a[..share_a.spheres]),
-            sides[1].balls(&b[..share_b.spheres]),
-        ]
     }
 
     /// Until when directions prove two primitives free from `time` on; `None` if as long as the
     /// search asks.
-    fn free_until(&self, balls: &[Balls; 2], time: f64, sides: &[Piece; 2]) -> Option<f64> {
-        let [start, end] = sides[0].times;
+    fn free_until(&self, balls: [&Balls; 2], time: f64) -> Option<f64> {
+        let [start, end] = self.times;
         let length = end - start;
         let until = (self.earliest.upper.min(end) - start) / length;
         let from = (time - start) / length;
@@ -249,12 +254,19 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         if free <= from {
             return Some(time);
         }
-        (free < until).then(|| (start + free * length * (1.0 - 4.0 * f64::EPSILON)).max(time))
+        // Rounding of the way to the piece's fractions and back.
+        (free < until).then(|| (start + free * length).next_down().next_down().max(time))
     }
 
     /// Lists the elementary tests of two primitives that are free until `time`; returns whether an
     /// earlier contact is still possible.
-    fn list_tests(&mut self, pair: [u32; 2], time: f64, sides: &[Piece; 2]) -> bool {
+    fn list_tests(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
+        let (Below::Primitive(p), Below::Primitive(q)) =
+            (self.sides.0.node(i).below, self.sides.1.node(j).below)
+        else {
+            return true;
+        };
+        let pair = [p, q];
         let [(sa, share_a), (sb, share_b)] = self.spheres(pair);
         let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
         let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
@@ -296,20 +308,23 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         } else {
             [share_a, share_b].map(|s| Share::whole(s.spheres))
         };
-        let balls = self.balls(pair, sides);
+        let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
+        let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])].map(|b| *b);
         for_each_test(shares[0], shares[1], |test| {
             let some = [
                 balls[0].only(test.corners.map(|c| c.0)),
                 balls[1].only(test.corners.map(|c| c.1)),
             ];
-            if let Some(free) = self.free_until(&some, time, sides) {
+            if let Some(free) = self.free_until([&some[0], &some[1]], time) {
                 let open = Open {
                     primitives: pair,
                     test,
                     target,
                     spent: 0,
                 };
-                self.heap.push(Entry::test(free, open));
+                let place = Candidate::Test(self.open.len() as u32);
+                self.heap.push(Entry::at(free, place));
+                self.open.push(open);
             }
             true
         });
@@ -318,7 +333,8 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
 
     /// Takes one test further, until it is settled or another candidate may come first; returns
     /// whether an earlier contact is still possible.
-    fn advance(&mut self, mut open: Open, time: f64) -> bool {
+    fn advance(&mut self, place: u32, time: f64) -> bool {
+        let mut open = self.open[place as usize];
         let limits = self.earliest.limits;
         let limits = Limits {
             start: time,
@@ -340,7 +356,8 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         }
         self.earliest.iterations += bracket.iterations;
         self.earliest.tolerance = self.earliest.tolerance.max(bracket.tolerance);
-        self.heap.push(Entry::test(bracket.lower, open));
+        self.open[place as usize] = open;
+        (self.heap).push(Entry::at(bracket.lower, Candidate::Test(place)));
         true
     }
 
@@ -361,8 +378,4 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         earliest.settle(counts, |test| self.path(test, pair, self.target));
         self.earliest = earliest;
     }
-}
-
-fn splits(below: Below) -> bool {
-    matches!(below, Below::Nodes(..))
 }

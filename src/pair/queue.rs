@@ -1,21 +1,22 @@
 //! What the search of [`super::first_contact`] still has to look at, in the order of the time before
 //! which it is proven free.
 
-use super::swept::Swept;
 use crate::elementary::test_list::ElementaryTest;
 use std::cmp::Ordering;
 
 /// Something that may meet.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Candidate {
-    /// Two nodes, whose swept balls meet then.
-    Nodes([Swept; 2]),
-    /// Two primitives, free until then by directions that their spheres give.
-    Primitives([u32; 2]),
-    /// One elementary test of two primitives.
-    Test(Open),
+    /// Two swept nodes, whose balls meet then.
+    Nodes([u32; 2]),
+    /// The primitives of two swept leaves, free until then by directions that their spheres give.
+    Leaves([u32; 2]),
+    /// An elementary test: its place in the list of those not settled.
+    Test(u32),
 }
 
 /// An elementary test that is not settled.
+#[derive(Clone, Copy)]
 pub(super) struct Open {
     pub(super) primitives: [u32; 2],
     pub(super) test: ElementaryTest,
@@ -36,36 +37,12 @@ pub(super) struct Entry {
 }
 
 impl Entry {
-    pub(super) fn nodes(time: f64, depth: f64, nodes: [Swept; 2]) -> Self {
-        Self {
-            time,
-            depth,
-            candidate: Candidate::Nodes(nodes),
-        }
-    }
-
-    pub(super) fn primitives(time: f64, primitives: [u32; 2]) -> Self {
+    /// Anything but a node pair.
+    pub(super) fn at(time: f64, candidate: Candidate) -> Self {
         Self {
             time,
             depth: -2.0,
-            candidate: Candidate::Primitives(primitives),
-        }
-    }
-
-    pub(super) fn test(time: f64, open: Open) -> Self {
-        Self {
-            time,
-            depth: -3.0,
-            candidate: Candidate::Test(open),
-        }
-    }
-
-    /// Breaks ties, so that answers do not depend on the heap's habits.
-    fn index(&self) -> ([u32; 2], [(u8, u8); 4]) {
-        match &self.candidate {
-            Candidate::Nodes([a, b]) => ([a.node, b.node], Default::default()),
-            Candidate::Primitives(pair) => (*pair, Default::default()),
-            Candidate::Test(open) => (open.primitives, open.test.corners),
+            candidate,
         }
     }
 }
@@ -77,15 +54,17 @@ impl PartialEq for Entry {
 }
 impl Eq for Entry {}
 impl PartialOrd for Entry {
+    #[inline]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 impl Ord for Entry {
     /// Reversed: `BinaryHeap` pops the largest.
+    #[inline]
     fn cmp(&self, other: &Self) -> Ordering {
         (other.time.total_cmp(&self.time))
-            .then(other.depth.total_cmp(&self.depth))
-            .then_with(|| other.index().cmp(&self.index()))
+            .then_with(|| other.depth.total_cmp(&self.depth))
+            .then_with(|| other.candidate.cmp(&self.candidate))
     }
 }
