@@ -32,6 +32,8 @@ const REACH: f64 = 3.0;
 
 /// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
 const BULGE: f64 = 0.2;
+/// Cosine of the angle between two faces at an edge below which one lies on the other.
+const FOLDED: f64 = 0.99;
 
 /// Weight of the planes that hold the medial mesh's boundary, for a solid and for thin sheets,
 /// whose boundary is the surface's own.
@@ -292,11 +294,30 @@ fn quadrics(
             match (opposite.next(), opposite.next()) {
                 (None, _) => add_dangling(complex, [a, b], boundary_weight, &mut quadrics),
                 (Some(c), None) => add_boundary(balls, [a, b, c], boundary_weight, &mut quadrics),
+                // The two sides of something flat meet at its outline. Slabs of a solid's medial
+                // mesh fold by chance only.
+                (Some(c), Some(d))
+                    if boundary_weight >= BOUNDARY_WEIGHT_SHEET && folds(balls, [a, b], [c, d]) =>
+                {
+                    add_boundary(balls, [a, b, c], boundary_weight, &mut quadrics);
+                }
                 _ => {}
             }
         }
     }
     Ok(quadrics)
+}
+
+/// Whether the faces `abc` and `abd` lie on each other, within a few degrees.
+fn folds(balls: &[Ball], ab: [u32; 2], cd: [u32; 2]) -> bool {
+    let at = |v: u32| balls[v as usize].center;
+    let [a, b] = ab.map(at);
+    let along = direction(b - a);
+    let inward = |v: u32| {
+        let from_a = at(v) - a;
+        direction(from_a - along * from_a.dot(along))
+    };
+    inward(cd[0]).dot(inward(cd[1])) > FOLDED
 }
 
 /// Boundary edge `ab` of the face `abc`: a plane across the face, facing away from `c`.
