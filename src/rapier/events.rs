@@ -63,7 +63,7 @@ struct Course {
 
 struct Loop<'a> {
     snapshot: &'a mut Snapshot,
-    asker: Asker,
+    asker: Asker<'a>,
     rules: Rules<'a>,
     /// Slow pairs near enough to their medial axes to be watched.
     deep: HashSet<[ColliderHandle; 2]>,
@@ -154,7 +154,7 @@ impl Loop<'_> {
     fn ask(&mut self, pair: [usize; 2], time: Real, work: &mut Work) {
         self.hits.remove(&pair);
         let handles = pair.map(|k| self.snapshot.parts[k].handle);
-        let watched = self.deep.contains(&handles);
+        let deep = self.deep.contains(&handles);
         let met = self.met.get(&pair).copied().unwrap_or(0);
         // The user's filters are asked once per pair and step, and only where it matters.
         if self.allowed.get(&pair) == Some(&false) || !self.can_give(pair) {
@@ -162,7 +162,7 @@ impl Loop<'_> {
         }
         let hit = self
             .asker
-            .first_contact(self.snapshot, pair, time, met, watched, work);
+            .first_contact(self.snapshot, pair, time, met, deep, work);
         let Some(hit) = hit else { return };
         let (snapshot, rules) = (&*self.snapshot, self.rules);
         let allowed = self.allowed.entry(pair);

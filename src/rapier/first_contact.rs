@@ -6,6 +6,7 @@
 //! left to the solver down to that floor. The floor is half way to the medial axes, so that none
 //! crosses another.
 
+use super::effects::{Effect, Effects, Wanted};
 use super::motion::Snapshot;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Real, Vector};
@@ -74,37 +75,53 @@ pub struct Hit {
 
 /// Asks for first contacts in a step of `dt` seconds.
 #[derive(Clone, Copy)]
-pub struct Asker {
+pub struct Asker<'a> {
+    /// What the pairs call for.
+    pub effects: &'a Wanted,
     /// Length of the step in seconds.
     pub dt: Real,
     /// rapier's length unit.
     pub unit: Real,
 }
 
-impl Asker {
+impl Asker<'_> {
     fn gap(&self, thickness: Real) -> Real {
         (GAP[0] * self.unit)
             .min(GAP[1] * thickness)
             .max(Real::MIN_POSITIVE)
     }
 
-    /// Whether the pair travels far enough in the whole step to get through.
-    pub fn is_fast(&self, snapshot: &Snapshot, pair: [usize; 2], share: Real) -> bool {
-        snapshot.travel(pair, self.dt) > share * snapshot.thickness(pair)
+    fn effects_of(&self, snapshot: &Snapshot, pair: [usize; 2]) -> Effects {
+        self.effects.of(pair.map(|k| snapshot.parts[k].handle))
     }
 
-    /// First contact from `time` on. `met`: how often the pair has met in this step; `watched`: a slow
-    /// pair to be kept above the floor.
+    /// Whether first contacts of the pair are wanted: by default, when it travels more than `share` of
+    /// its thickness in the whole step.
+    pub fn is_fast(&self, snapshot: &Snapshot, pair: [usize; 2], share: Real) -> bool {
+        match self.effects_of(snapshot, pair).continuous {
+            Effect::On => true,
+            Effect::Off => false,
+            Effect::Auto => snapshot.travel(pair, self.dt) > share * snapshot.thickness(pair),
+        }
+    }
+
+    /// First contact from `time` on. `met`: how often the pair has met in this step; `deep`: rapier's
+    /// contacts are, so that even a slow pair is kept above the floor.
     pub fn first_contact(
         &self,
         snapshot: &Snapshot,
         pair: [usize; 2],
         time: Real,
         met: u32,
-        watched: bool,
+        deep: bool,
         work: &mut Work,
     ) -> Option<Hit> {
         let fast = self.is_fast(snapshot, pair, FAST);
+        let watched = match self.effects_of(snapshot, pair).guard {
+            Effect::On => true,
+            Effect::Off => false,
+            Effect::Auto => deep,
+        };
         if !(fast || watched) || time >= self.dt || snapshot.travel(pair, self.dt - time) <= 0.0 {
             return None;
         }
@@ -132,8 +149,8 @@ impl Asker {
             let target = gap * (1.0 + 2.0 * TOLERANCE * met as Real);
             let options = options(target, SINK * thickness);
             earlier(self.query(snapshot, pair, time, &options, work));
-            let deep = (SINK - FLOOR) * thickness;
-            if self.within(snapshot, pair, time, deep, work) {
+            let near_floor = (SINK - FLOOR) * thickness;
+            if self.within(snapshot, pair, time, near_floor, work) {
                 earlier(self.query(snapshot, pair, time, &floor, work));
             }
         } else {

@@ -2,6 +2,8 @@
 
 pub mod candidates;
 pub mod collider;
+mod effects;
+mod emit;
 mod events;
 mod first_contact;
 mod impulse;
@@ -13,5 +15,6 @@ mod recycled;
 pub mod report;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
+pub use effects::{Effect, Effects};
 pub use pipeline::{MedialOptions, MedialPipeline};
 pub use report::StepReport;

@@ -1,6 +1,7 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
-use super::events;
+use super::effects::{Effects, Wanted};
+use super::emit::{Once, Told};
 use super::first_contact::{Asker, Work};
 use super::motion::{Body, Snapshot};
 use super::pairs::Rules;
@@ -15,7 +16,7 @@ use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
     RigidBodySet, SoftBodySet,
 };
-use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
+use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, PhysicsWorld};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -29,7 +30,10 @@ pub const RECYCLE_DISTANCE: Real = 0.01;
 /// How a pipeline works.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct MedialOptions {}
+pub struct MedialOptions {
+    /// What the scene calls for.
+    pub effects: Effects,
+}
 
 /// Steps a world whose medial colliders meet each other: finds their near pairs, computes all
 /// contacts in one batch, and hands them to rapier's narrow phase as it asks for them.
@@ -40,12 +44,22 @@ pub struct MedialOptions {}
 pub struct MedialPipeline {
     answers: Arc<Answers>,
     recycled: Recycled,
+    effects: Wanted,
+    told: Told,
 }
 
 impl MedialPipeline {
     /// A pipeline for one world.
-    pub fn new(_options: MedialOptions) -> Self {
-        Self::default()
+    pub fn new(options: MedialOptions) -> Self {
+        let mut pipeline = Self::default();
+        pipeline.effects.scene = options.effects;
+        pipeline
+    }
+
+    /// What a collider calls for, whatever the scene does; [`Effects::default`] leaves it to the scene.
+    /// Of two colliders that differ, the one that has an effect on decides.
+    pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
+        self.effects.set(collider, effects);
     }
 
     /// Makes the world's narrow phase ask this pipeline first, and lowers the contact recycle
@@ -137,12 +151,14 @@ impl MedialPipeline {
         report.batch_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
+        self.effects.clean(colliders);
         let asker = Asker {
+            effects: &self.effects,
             dt: parameters.dt,
             unit: parameters.length_unit,
         };
         let mut work = Work::default();
-        let mut snapshot = if report.medial_colliders == 0 {
+        let mut snapshot = if report.medial_colliders == 0 || self.effects.none() {
             Snapshot::default()
         } else {
             Snapshot::take(gravity, parameters.dt, bodies, colliders, multibody_joints)
@@ -161,6 +177,7 @@ impl MedialPipeline {
         report.mute_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
+        let once = Once::new(events, &mut self.told);
         pipeline.step(
             gravity,
             parameters,
@@ -174,7 +191,7 @@ impl MedialPipeline {
             soft_bodies,
             ccd_solver,
             hooks,
-            events,
+            &once,
         );
         report.step_seconds = clock.elapsed().as_secs_f64();
         self.answers.mute(HashSet::new());
@@ -188,13 +205,22 @@ impl MedialPipeline {
             multibody_joints,
             hooks,
         };
-        let outcome = events::resolve(&mut snapshot, asker, rules, narrow_phase, &mut work);
+        let outcome = super::events::resolve(&mut snapshot, asker, rules, narrow_phase, &mut work);
         for &(index, struck) in &outcome.changed {
             write_back(&snapshot.bodies[index], struck, bodies);
         }
         if !outcome.changed.is_empty() {
             bodies.propagate_modified_body_positions_to_colliders(colliders);
         }
+        let (told, impulses) = (&mut self.told, &outcome.impulses);
+        once.finish(
+            told,
+            impulses,
+            parameters.dt,
+            bodies,
+            colliders,
+            narrow_phase,
+        );
         report.events = outcome.events;
         report.frozen = outcome.frozen;
         report.event_seconds = clock.elapsed().as_secs_f64();

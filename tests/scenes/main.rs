@@ -2,6 +2,8 @@
 
 mod bodies;
 mod fast_pairs;
+mod heaps;
+mod impacts;
 mod oracle;
 mod random;
 mod resting;
