@@ -12,7 +12,7 @@ use super::impulse::{Impact, Inertia, Material};
 use super::motion::{Kind, Snapshot};
 use super::pairs::{Rules, concerned, in_order, sweep};
 use crate::math::{Real, Vector};
-use parry3d::bounding_volume::BoundingVolume;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -26,6 +26,10 @@ const MAX_CARRIED: u32 = 2 * MAX_EVENTS;
 
 /// Depth from which bodies in an impact are pushed apart, in units of the thickness.
 const PUSH_FROM: Real = 0.1;
+
+/// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
+/// which grows a little with each meeting of a pair.
+const MARGIN: Real = 5.0e-3;
 
 /// Share of the depth below it that is pushed out in a step.
 const PUSH: Real = 0.2;
@@ -70,6 +74,8 @@ struct Loop<'a> {
     allowed: HashMap<[usize; 2], bool>,
     met: HashMap<[usize; 2], u32>,
     courses: Vec<Course>,
+    /// Box of each collider from its body's last impact to the end of the step.
+    boxes: Vec<Aabb>,
     hits: BTreeMap<[usize; 2], Hit>,
     impulses: BTreeMap<[usize; 2], Real>,
     events: usize,
@@ -84,7 +90,7 @@ pub fn resolve(
     narrow_phase: &NarrowPhase,
     work: &mut Work,
 ) -> Outcome {
-    let pairs = sweep(snapshot, asker.dt, asker.unit * 1.0e-3);
+    let pairs = sweep(snapshot, asker.dt, MARGIN * asker.unit);
     if pairs.is_empty() {
         return Outcome::default();
     }
@@ -98,6 +104,7 @@ pub fn resolve(
         allowed: HashMap::new(),
         met: HashMap::new(),
         courses,
+        boxes: Vec::new(),
         hits: BTreeMap::new(),
         impulses: BTreeMap::new(),
         events: 0,
@@ -106,6 +113,10 @@ pub fn resolve(
         events.ask(pair, 0.0, work);
     }
     while let Some((pair, hit)) = events.earliest() {
+        if events.boxes.is_empty() {
+            let parts = 0..events.snapshot.parts.len();
+            events.boxes = parts.map(|k| events.swept_box(k, 0.0)).collect();
+        }
         events.impact(pair, hit);
         events.ask_again(pair, hit.time, work);
     }
@@ -173,35 +184,34 @@ impl Loop<'_> {
 
     /// Asks for all pairs of the bodies that an impact gave another motion.
     fn ask_again(&mut self, pair: [usize; 2], time: Real, work: &mut Work) {
-        let dt = self.asker.dt;
-        let touched = self
-            .bodies(pair)
-            .map(|b| (b, self.snapshot.bodies[b].kind == Kind::Free));
-        let count = self.snapshot.parts.len();
-        let boxes: Vec<_> = (0..count)
-            .map(|k| self.snapshot.swept_aabb(k, time, dt))
+        let bodies = self.bodies(pair);
+        let changed: Vec<usize> = (0..self.snapshot.parts.len())
+            .filter(|&k| {
+                let body = self.snapshot.parts[k].body;
+                bodies.contains(&body) && self.snapshot.bodies[body].kind == Kind::Free
+            })
             .collect();
-        let mut asked = HashSet::new();
-        for (body, _) in touched.into_iter().filter(|t| t.1) {
-            for i in (0..count)
-                .filter(|&k| self.snapshot.parts[k].body == body)
-                .collect::<Vec<_>>()
-            {
-                for j in 0..count {
-                    let both = in_order(self.snapshot, [i, j]);
-                    if !concerned(self.snapshot, both) || !asked.insert(both) {
-                        continue;
-                    }
-                    let skin = self.snapshot.parts[i].skin + self.snapshot.parts[j].skin;
-                    let margin = skin + 1.0e-2 * self.asker.unit;
-                    if boxes[i].loosened(margin).intersects(&boxes[j]) {
-                        self.ask(both, time, work);
-                    } else {
-                        self.hits.remove(&both);
-                    }
+        for &k in &changed {
+            self.boxes[k] = self.swept_box(k, time);
+        }
+        for (n, &i) in changed.iter().enumerate() {
+            for j in 0..self.snapshot.parts.len() {
+                if changed[..n].contains(&j) || !concerned(self.snapshot, [i, j]) {
+                    continue;
+                }
+                let both = in_order(self.snapshot, [i, j]);
+                if self.boxes[i].intersects(&self.boxes[j]) {
+                    self.ask(both, time, work);
+                } else {
+                    self.hits.remove(&both);
                 }
             }
         }
+    }
+
+    fn swept_box(&self, part: usize, time: Real) -> Aabb {
+        let swept = self.snapshot.swept_aabb(part, time, self.asker.dt);
+        swept.loosened(self.snapshot.parts[part].skin + MARGIN * self.asker.unit)
     }
 
     fn impact(&mut self, pair: [usize; 2], hit: Hit) {
@@ -241,10 +251,8 @@ impl Loop<'_> {
                 Inertia::INFINITE
             }
         };
-        let centers = [a, b].map(|x| match x.kind {
-            Kind::Free => x.center(),
-            _ => x.motion_from(hit.time).start * x.mass.local_com,
-        });
+        let now = [a, b].map(|x| x.motion_from(hit.time));
+        let centers = [0, 1].map(|k| now[k].start * [a, b][k].mass.local_com);
         let mut impact = Impact {
             normal: hit.normal,
             arms: centers.map(|c| hit.point - c),
@@ -252,17 +260,11 @@ impl Loop<'_> {
             material: Material::of(c1, c2),
         };
         let velocities = [a, b].map(|x| x.velocity);
+        // A carried body turns about its carrier's centre, not its own.
         let motions = [0, 1].map(|k| {
-            let m = &[a, b][k].motion;
-            // A carried body turns about its carrier's centre.
-            let own = m.start * m.local_center;
-            let center = [a, b][k].motion_from(hit.time);
-            let from = if [a, b][k].kind == Kind::Free {
-                own
-            } else {
-                center.start * m.local_center
-            };
-            [m.linvel + m.angvel.cross(centers[k] - from), m.angvel]
+            let m = &now[k];
+            let arm = centers[k] - m.start * m.local_center;
+            [m.linvel + m.angvel.cross(arm), m.angvel]
         });
         let sunk = hit.depth - PUSH_FROM * self.snapshot.thickness(pair);
         let out = PUSH * sunk.max(0.0) / self.asker.dt;
@@ -277,8 +279,8 @@ impl Loop<'_> {
                 self.courses[bodies[k]].struck |= body.kind == Kind::Free;
             }
         }
-        for k in 0..2 {
-            if self.courses[bodies[k]].frozen {
+        for (k, body) in bodies.iter().enumerate() {
+            if self.courses[*body].frozen {
                 impact.inertias[k] = Inertia::INFINITE;
             }
         }

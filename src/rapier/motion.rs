@@ -152,11 +152,6 @@ impl Body {
         self.motion.start.rotation = self.motion.start.rotation.normalize();
         self.time = time;
     }
-
-    /// Centre of mass now.
-    pub fn center(&self) -> Vector {
-        self.motion.start * self.mass.local_com
-    }
 }
 
 fn shortest(q: Rotation) -> Rotation {

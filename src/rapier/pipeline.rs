@@ -36,7 +36,9 @@ pub struct MedialOptions {
 }
 
 /// Steps a world whose medial colliders meet each other: finds their near pairs, computes all
-/// contacts in one batch, and hands them to rapier's narrow phase as it asks for them.
+/// contacts in one batch, and hands them to rapier's narrow phase as it asks for them. After rapier's
+/// step it resolves the first contacts of fast bodies, of which one at least is medial, on the motion
+/// of the step: see [`Effects`].
 ///
 /// One pipeline per world. A world stepped without one still has contacts, through parry's own
 /// composite shapes.

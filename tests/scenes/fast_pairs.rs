@@ -104,7 +104,7 @@ fn count(seed: u64, cases: u32, by: &[By], second: impl Fn(&mut Random) -> Solid
         let flights = meeting(&mut random);
         let flights = [&flights[0], &flights[1]];
         let least = least_distance(solids, flights);
-        let sure = least < SURE[0] || least > SURE[1];
+        let sure = !(SURE[0]..=SURE[1]).contains(&least);
         count.contacts += u32::from(least < SURE[0]);
         count.clear += u32::from(least > SURE[1]);
         for &by in by.iter().filter(|_| sure) {

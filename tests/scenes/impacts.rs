@@ -1,6 +1,7 @@
 //! Impacts within a step: who is told, who may collide, who gives way, and what is off.
 
 use crate::bodies::*;
+use crate::random::Random;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 use std::sync::Mutex;
@@ -306,5 +307,84 @@ fn another_length_unit() {
             pipeline.step(&mut world);
         }
         assert!(!passed(&world, handles), "scale {scale}");
+    }
+}
+
+/// A dart flies through the hole of a ring that comes towards it, without touching it.
+#[test]
+fn darts_fly_through_the_hole_of_a_ring() {
+    let mut random = Random(4242);
+    for case in 0..40 {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let mut pipeline = attached(&mut world);
+        let start = 2.0 + random.unit();
+        let ring = RigidBodyBuilder::dynamic()
+            .translation(Vector::new(0.0, -start, 0.0))
+            .linvel(Vector::new(0.0, random.within(20.0, 100.0), 0.0));
+        let ring = world
+            .insert(ring, ColliderBuilder::medial_mesh(ring_mesh()))
+            .0;
+        // The hole is 0.4 m wide; the dart, at most 0.05 + 0.2 m from the axis.
+        let aside = random.within(0.0, 0.2);
+        let angle = random.within(0.0, 6.0);
+        let dart = RigidBodyBuilder::dynamic()
+            .pose(Pose::new(
+                Vector::new(aside * angle.cos(), start, aside * angle.sin()),
+                Vector::new(std::f32::consts::FRAC_PI_2, 0.0, 0.0),
+            ))
+            .linvel(Vector::new(0.0, -random.within(20.0, 100.0), 0.0));
+        let dart = world
+            .insert(dart, ColliderBuilder::medial_mesh(ball_bar()))
+            .0;
+        let mut events = 0;
+        let speeds = |world: &PhysicsWorld| [ring, dart].map(|h| world.bodies[h].linvel());
+        let before = speeds(&world);
+        for _ in 0..20 {
+            events += pipeline.step(&mut world).events;
+        }
+        let y = |h: RigidBodyHandle| world.bodies[h].translation().y;
+        assert!(y(ring) > y(dart), "case {case}: they have not met");
+        assert_eq!((events, speeds(&world)), (0, before), "case {case}");
+    }
+}
+
+fn ring_mesh() -> MedialMesh {
+    ring(27, MAJOR, MINOR)
+}
+
+/// Pillars 5 mm thick that fly at each other, crossed, all meet.
+#[test]
+fn thin_pillars_meet() {
+    let pillar = || {
+        let ends = [-0.5, 0.5].map(|z| MedialSphere::new(Vector::new(0.0, 0.0, z), 0.0025));
+        MedialMesh::new(ends.to_vec(), vec![[0, 1]], vec![]).expect("a pillar")
+    };
+    let mut random = Random(5252);
+    for case in 0..40 {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let mut pipeline = attached(&mut world);
+        let handles = [0, 1].map(|k| {
+            let side = [1.0, -1.0][k];
+            let pose = Pose::new(
+                Vector::new(
+                    side * random.within(1.0, 3.0),
+                    random.within(-0.15, 0.15),
+                    0.0,
+                ),
+                Vector::new(random.within(1.2, 1.8) * k as Real, 0.0, 0.0),
+            );
+            let body = RigidBodyBuilder::dynamic().pose(pose);
+            let body = body.linvel(Vector::new(-side * random.within(30.0, 120.0), 0.0, 0.0));
+            world.insert(body, ColliderBuilder::medial_mesh(pillar())).0
+        });
+        let before = handles.map(|h| world.bodies[h].linvel());
+        for _ in 0..12 {
+            pipeline.step(&mut world);
+        }
+        for (h, v) in handles.iter().zip(before) {
+            assert!(world.bodies[*h].linvel().distance(v) > 1.0, "case {case}");
+        }
     }
 }
