@@ -233,8 +233,10 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         if (medial(g1).is_some() || medial(g2).is_some()) && self.answers.is_muted(g1, g2, pos12) {
-            ensure_workspace::<M, C>(g1, g2, workspace);
+            // parry's workspace of a composite shape holds indices into the manifolds.
             manifolds.clear();
+            *workspace = None;
+            ensure_workspace::<M, C>(g1, g2, workspace);
             return Ok(());
         }
         let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
