@@ -232,6 +232,13 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
+        if (medial(g1).is_some() || medial(g2).is_some()) && self.answers.is_muted(g1, g2, pos12) {
+            // parry's workspace of a composite shape holds indices into the manifolds.
+            manifolds.clear();
+            *workspace = None;
+            ensure_workspace::<M, C>(g1, g2, workspace);
+            return Ok(());
+        }
         let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
             return Err(Unsupported);
         };
