@@ -19,26 +19,35 @@ use ccd::judge::{Tally, Truth};
 use ccd::rng::Rng;
 use ccd::subject::Subject;
 use indicatif::{ProgressBar, ProgressStyle};
+use rapier3d_medial::elementary::many::Lanes;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Queries that one worker takes at a time; a multiple of 9 pairs × 2 motions.
 const CHUNK: usize = 1800;
 
+/// Outside the grazing family, 99 of 100 contacts are told no sooner than this before they happen, in
+/// brackets no wider, as fractions of the step.
+const SHARP: f32 = 1.0e-3;
+
+/// Largest part of all queries that may end at the cap of the iterations.
+const UNRESOLVED: f64 = 1.0e-5;
+
 type Tallies = [Tally; Subject::ALL.len()];
 
 /// Draws, asks and judges one chunk of a family.
 fn run_chunk(family: Family, chunk: usize) -> Tallies {
     let mut rng = Rng::new(((family as u64) << 32) + chunk as u64);
+    let draw = |k| family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
+    let queries: Vec<_> = (0..CHUNK).map(draw).collect();
+    let truths: Vec<_> = queries.iter().map(|query| Truth::new(query, 0.0)).collect();
     let mut tallies = Tallies::default();
-    for k in 0..CHUNK {
-        let query = family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
-        let truth = Truth::new(&query, 0.0);
-        for (subject, tally) in Subject::ALL.into_iter().zip(&mut tallies) {
-            let options = subject.options(family.size());
-            if let Some(answer) = subject.answer(&query, &options) {
+    for (subject, tally) in Subject::ALL.into_iter().zip(&mut tallies) {
+        let options = subject.options(family.size());
+        for (truth, answer) in truths.iter().zip(subject.answers(&queries, &options)) {
+            if let Some(answer) = answer {
                 let verdict = truth.judge(&answer, options.time_tolerance.into());
-                tally.add(&truth, &answer, &verdict, subject.late_by());
+                tally.add(truth, &answer, &verdict, subject.late_by());
             }
         }
     }
@@ -86,7 +95,8 @@ fn merge(sum: &mut Tallies, tallies: Tallies) {
 }
 
 fn print_row(name: &str, subject: Subject, tally: &mut Tally) {
-    let (early, width) = (tally.early(), tally.width());
+    let (before, early, width) = (tally.before(), tally.early(), tally.width());
+    let [nanoseconds, _] = tally.nanoseconds();
     // The paper's iteration does not tell overlap from contact.
     let named = match subject {
         Subject::Paper => "-".to_owned(),
@@ -94,7 +104,7 @@ fn print_row(name: &str, subject: Subject, tally: &mut Tally) {
     };
     let per_query = |sum: f64| sum / tally.queries.max(1) as f64;
     println!(
-        "{name:17}{:7}{:>9} {:5.1} {:>7}{:>7}{:>7}{:>7}{:>7}  {:7.1e} {:7.1e}  {:7.1e} {:7.1e}  {:5.1}{:>5} {:>7.0}",
+        "{name:17}{:7}{:>9} {:5.1} {:>7}{:>7}{:>7}{:>7}{:>7}  {:7.1e} {:7.1e}  {:7.1e} {:7.1e}  {:7.1e} {:7.1e}  {:5.1}{:>5} {:>7.0}",
         format!("{subject:?}"),
         tally.queries,
         100.0 * per_query(tally.hits as f64),
@@ -103,14 +113,42 @@ fn print_row(name: &str, subject: Subject, tally: &mut Tally) {
         tally.false_hits,
         named,
         tally.unresolved,
+        before[0],
+        before[1],
         early[0],
         early[1],
         width[0],
         width[1],
         per_query(tally.iterations as f64),
         tally.most_iterations,
-        per_query(tally.time.as_nanos() as f64),
+        nanoseconds,
     );
+}
+
+/// What a certified subject promises and does not keep, over one family.
+fn broken(family: Family, subject: Subject, tally: &mut Tally) -> Vec<String> {
+    let mut broken = Vec::new();
+    let mut none = |what: &str, count: usize| {
+        if count > 0 {
+            broken.push(format!("{family:?} {subject:?}: {count} {what}"));
+        }
+    };
+    none("missed", tally.missed);
+    none("late", tally.late);
+    none("false", tally.false_hits);
+    none("misnamed", tally.misnamed);
+    none("brackets wider than asked", tally.wide);
+    let sharp = [
+        ("told early", tally.early()[1]),
+        ("told before contact", tally.before()[1]),
+        ("wide", tally.width()[1]),
+    ];
+    for (what, p99) in sharp {
+        if family != Family::Grazing && p99 > SHARP {
+            broken.push(format!("{family:?} {subject:?}: p99 {p99:.1e} {what}"));
+        }
+    }
+    broken
 }
 
 fn main() -> ExitCode {
@@ -125,13 +163,18 @@ fn main() -> ExitCode {
     };
     let mut families = run(queries.div_ceil(CHUNK * Family::ALL.len()));
 
+    println!("Lanes: eight of f32, {}", Lanes::Fastest.path());
     println!(
-        "family           subject  queries  hit%  missed   late  false  named unres.  early50 early99  width50 width99  iterations      ns"
+        "family           subject  queries  hit%  missed   late  false  named unres.  before5 before9  early50 early99  width50 width99  iterations      ns"
     );
+    let mut failures = Vec::new();
     let mut total = Tallies::default();
     for (family, tallies) in Family::ALL.into_iter().zip(&mut families) {
         for (subject, tally) in Subject::ALL.into_iter().zip(tallies.iter_mut()) {
             print_row(&format!("{family:?}"), subject, tally);
+            if subject != Subject::Paper {
+                failures.extend(broken(family, subject, tally));
+            }
         }
     }
     families
@@ -139,13 +182,17 @@ fn main() -> ExitCode {
         .for_each(|tallies| merge(&mut total, tallies));
     for (subject, tally) in Subject::ALL.into_iter().zip(&mut total) {
         print_row("all", subject, tally);
+        if subject != Subject::Paper && tally.unresolved as f64 > UNRESOLVED * tally.queries as f64
+        {
+            failures.push(format!("{subject:?}: {} unresolved", tally.unresolved));
+        }
     }
-    let broken = |tally: &Tally| {
-        tally.missed + tally.late + tally.false_hits + tally.misnamed + tally.wide > 0
-    };
-    if total[..2].iter().any(broken) {
-        eprintln!("the guarantee is broken");
-        return ExitCode::FAILURE;
+    for failure in &failures {
+        eprintln!("broken: {failure}");
     }
-    ExitCode::SUCCESS
+    if failures.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }

@@ -56,11 +56,13 @@ fn permuted(query: &Query) -> Query {
 /// Returns the tallies of all subjects.
 fn guarantee(family: Family) -> [Tally; 3] {
     let mut rng = Rng::new(1000 + family as u64);
+    // The lanes are judged in batches, in `lanes.rs`.
+    let subjects = [Subject::Single, Subject::Double, Subject::Paper];
     let mut tallies: [Tally; 3] = Default::default();
     for k in 0..QUERIES {
         let query = family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
         let truth = Truth::new(&query, 0.0);
-        for (subject, tally) in Subject::ALL.into_iter().zip(&mut tallies) {
+        for (subject, tally) in subjects.into_iter().zip(&mut tallies) {
             judge(subject, family, &query, 0.0, &truth, tally);
         }
         if k % 10 == 0 {
