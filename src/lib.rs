@@ -59,7 +59,7 @@ pub mod rapier;
 
 pub use build::{BuildOptions, BuildReport, Progress};
 pub use elementary::{AlternatingStart, InitialContact, Toi, ToiOptions, ToiStatus};
-pub use error::{BuildError, MeshError};
+pub use error::{AssetError, BuildError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
 pub use parry::MedialDispatcher;
 pub use rapier::{

@@ -1,4 +1,4 @@
-//! The command line program `medial`: builds medial meshes from triangle meshes, and describes
+//! The command line program `medial`: builds medial meshes from triangle meshes, bakes and describes
 //! them.
 //!
 //! Results go to standard output, progress and errors to standard error. Exit code 1 with one line
@@ -9,10 +9,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rapier3d_medial::build::mesh_file::{self, TriangleMesh};
 use rapier3d_medial::build::{Hausdorff, hausdorff};
 use rapier3d_medial::math::Vector;
+use rapier3d_medial::medial::asset;
 use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, MedialPrimitive, MeshError};
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::{self, ErrorKind, Write as _};
+use std::fs::File;
+use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -30,9 +32,11 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Build a medial mesh (.ma) from a triangle mesh (obj, stl, ply, off).
+    /// Build a medial mesh (.ma, or baked as .medial) from a triangle mesh (obj, stl, ply, off).
     Build(BuildArguments),
-    /// Describe a medial mesh (.ma).
+    /// Bake a medial mesh (.ma) with its trees and mass properties, to load in no time.
+    Bake(BakeArguments),
+    /// Describe a medial mesh (.ma or baked).
     Info(InfoArguments),
 }
 
@@ -40,7 +44,8 @@ enum Command {
 struct BuildArguments {
     /// Triangle mesh: obj, stl, ply or off.
     input: PathBuf,
-    /// Where to write the medial mesh.
+    /// Where to write the medial mesh: baked, with the mass properties of the triangle mesh, if it ends
+    /// in .medial, else in the .ma format, which has none.
     #[arg(short, long, value_name = "OUT.ma")]
     output: PathBuf,
     /// Largest number of primitives: slabs, cones that belong to no slab, lone spheres
@@ -59,8 +64,17 @@ struct BuildArguments {
 }
 
 #[derive(Args)]
+struct BakeArguments {
+    /// Medial mesh in the .ma format, or baked.
+    input: PathBuf,
+    /// Where to write the baked mesh.
+    #[arg(short, long, value_name = "OUT.medial")]
+    output: PathBuf,
+}
+
+#[derive(Args)]
 struct InfoArguments {
-    /// Medial mesh in the .ma format.
+    /// Medial mesh in the .ma format, or baked.
     mesh: PathBuf,
     /// Measure both Hausdorff distances to the triangle mesh that it was built from.
     #[arg(long, value_name = "IN")]
@@ -132,6 +146,7 @@ enum Failure {
 fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Build(arguments) => build(&arguments),
+        Command::Bake(arguments) => bake(&arguments),
         Command::Info(arguments) => info(&arguments),
     };
     match done {
@@ -153,7 +168,7 @@ fn positive(text: &str) -> Result<f32, String> {
 }
 
 fn build(arguments: &BuildArguments) -> Result<(), Failure> {
-    check_output(arguments)?;
+    check_output(&arguments.input, &arguments.output)?;
     let source = mesh_file::read(&arguments.input)?;
     let mut options = BuildOptions {
         enclose: !arguments.no_enclose,
@@ -179,7 +194,11 @@ fn build(arguments: &BuildArguments) -> Result<(), Failure> {
     );
     bar.finish_and_clear();
     let (mesh, report) = built?;
-    mesh.save_ma(&arguments.output)?;
+    if arguments.output.extension().is_some_and(|e| e == "medial") {
+        mesh.save_asset(&arguments.output)?;
+    } else {
+        mesh.save_ma(&arguments.output)?;
+    }
     let side = report.longest_side;
     let summary = BuildSummary {
         vertices: source.vertices.len(),
@@ -197,8 +216,7 @@ fn build(arguments: &BuildArguments) -> Result<(), Failure> {
 }
 
 /// Refuses, before minutes of work, an output that cannot be or must not be written.
-fn check_output(arguments: &BuildArguments) -> Result<(), Failure> {
-    let output = &arguments.output;
+fn check_output(input: &Path, output: &Path) -> Result<(), Failure> {
     let directory = match output.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -206,18 +224,35 @@ fn check_output(arguments: &BuildArguments) -> Result<(), Failure> {
     if !directory.is_dir() {
         return Err(Failure::NoDirectory(directory.to_owned()));
     }
-    let same = match (output.canonicalize(), arguments.input.canonicalize()) {
+    let same = match (output.canonicalize(), input.canonicalize()) {
         (Ok(output), Ok(input)) => output == input,
         _ => false,
     };
     if same {
-        return Err(Failure::OverInput(output.clone()));
+        return Err(Failure::OverInput(output.to_owned()));
     }
     Ok(())
 }
 
+/// Reads a baked mesh or a `.ma` file, by its first bytes. What cannot be opened is left to the reader to
+/// report.
+fn load(path: &Path) -> Result<MedialMesh, MeshError> {
+    let mut start = [0; asset::MAGIC.len()];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    if read.is_ok() && start == asset::MAGIC {
+        MedialMesh::load_asset(path)
+    } else {
+        MedialMesh::load_ma(path)
+    }
+}
+
+fn bake(arguments: &BakeArguments) -> Result<(), Failure> {
+    check_output(&arguments.input, &arguments.output)?;
+    Ok(load(&arguments.input)?.save_asset(&arguments.output)?)
+}
+
 fn info(arguments: &InfoArguments) -> Result<(), Failure> {
-    let mesh = MedialMesh::load_ma(&arguments.mesh)?;
+    let mesh = load(&arguments.mesh)?;
     let errors = match &arguments.against {
         Some(path) => Some(measure(&mesh, &mesh_file::read(path)?)?),
         None => None,

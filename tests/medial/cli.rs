@@ -62,6 +62,36 @@ fn info_describes_a_mesh() {
 }
 
 #[test]
+fn a_baked_mesh_is_described_as_its_source() {
+    let directory = scratch("bake");
+    let torus = MedialMesh::torus(1.0, 0.25, 16).unwrap();
+    torus.save_ma(directory.join("torus.ma")).unwrap();
+    let output = medial(&directory, &["bake", "torus.ma", "-o", "torus.medial"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let baked = fs::read(directory.join("torus.medial")).unwrap();
+    assert_eq!(baked, torus.to_bytes());
+    let described = |name| medial(&directory, &["info", name]).stdout;
+    assert_eq!(
+        text(&described("torus.medial")),
+        text(&described("torus.ma"))
+    );
+
+    fs::write(directory.join("cut.medial"), &baked[..200]).unwrap();
+    let mut damaged = baked.clone();
+    damaged[150] ^= 1;
+    fs::write(directory.join("damaged.medial"), &damaged).unwrap();
+    let bake = |input, output| medial(&directory, &["bake", input, "-o", output]);
+    assert_fails(&bake("missing.ma", "out.medial"), "missing.ma");
+    assert_fails(&bake("cut.medial", "out.medial"), "cut.medial: 200 bytes");
+    assert_fails(&bake("torus.ma", "./torus.ma"), "is the input");
+    assert_fails(
+        &medial(&directory, &["info", "damaged.medial"]),
+        "damaged.medial: damaged: checksum",
+    );
+    assert!(!directory.join("out.medial").exists());
+}
+
+#[test]
 fn failures_are_one_line_and_exit_code_1() {
     let directory = scratch("failures");
     fs::write(directory.join("broken.ma"), "2 0 0\nv 0 0 0 1\nv 0 0 x 1\n").unwrap();
