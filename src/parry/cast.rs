@@ -115,12 +115,15 @@ impl Cast<'_> {
         if !foreign::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {
             return Err(Unsweepable);
         }
-        let Parts { soup, turned } = parts;
-        let (mut toi, mut counts) =
-            first_contact_counted(self.mesh, motion1, &soup, motion2, seconds, options);
+        let Parts { soup, turned, .. } = &parts;
+        let (toi, mut counts) =
+            first_contact_counted(self.mesh, motion1, soup, motion2, seconds, options);
+        let mut toi = self.with_normal(toi, soup, motion1, motion2);
+        toi.primitives[1] = parts.soup_subshape(toi.primitives[1]);
         if !turned.is_empty() {
-            let (other, more) =
-                advance::first_contact(self.mesh, motion1, &turned, motion2, seconds, options);
+            let (mut other, more) =
+                advance::first_contact(self.mesh, motion1, turned, motion2, seconds, options);
+            other.primitives[1] = parts.turned_subshape(other.primitives[1]);
             counts.nodes += more.nodes;
             counts.tests += more.tests;
             toi = earlier(toi, other);
@@ -130,7 +133,7 @@ impl Cast<'_> {
         {
             return Ok((inside, counts));
         }
-        Ok((self.with_normal(toi, &soup, motion1, motion2), counts))
+        Ok((toi, counts))
     }
 
     /// The overlap at the start, if a medial sphere's centre is inside the other then, deeper than the

@@ -2,10 +2,14 @@
 
 pub mod candidates;
 pub mod collider;
+#[cfg(feature = "debug-render")]
+pub mod debug_draw;
 pub mod pipeline;
 mod recycled;
 pub mod report;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
+#[cfg(feature = "debug-render")]
+pub use debug_draw::MedialDebugRender;
 pub use pipeline::{MedialOptions, MedialPipeline};
 pub use report::StepReport;
