@@ -7,9 +7,13 @@ pub mod debug_draw;
 pub mod pipeline;
 mod recycled;
 pub mod report;
+#[cfg(feature = "serde-serialize")]
+pub mod saved_world;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]
 pub use debug_draw::MedialDebugRender;
 pub use pipeline::{MedialOptions, MedialPipeline};
 pub use report::StepReport;
+#[cfg(feature = "serde-serialize")]
+pub use saved_world::{SavedWorld, SavedWorldError, load_world, save_world};
