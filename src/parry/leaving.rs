@@ -49,7 +49,11 @@ pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> 
         let out = (point - s.center).try_normalize();
         let ray = Ray::new(point, out.unwrap_or(Vector::Y));
         let hit = exit(mesh, &ray)?;
-        Some((hit.time_of_impact, ray.point_at(hit.time_of_impact), hit.subshape))
+        Some((
+            hit.time_of_impact,
+            ray.point_at(hit.time_of_impact),
+            hit.subshape,
+        ))
     });
     let nearest = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((nearest.1, nearest.2))
@@ -62,7 +66,10 @@ fn holds(mesh: &MedialMesh, point: Vector) -> bool {
 /// Primitives whose boxes hold a point.
 fn holding(mesh: &MedialMesh, point: Vector) -> impl Iterator<Item = u32> + '_ {
     let at = Aabb::new(point, point);
-    mesh.bvh().intersect_aabb(&at).collect::<Vec<_>>().into_iter()
+    mesh.bvh()
+        .intersect_aabb(&at)
+        .collect::<Vec<_>>()
+        .into_iter()
 }
 
 /// Where the ray is inside a primitive: lengths from its origin.

@@ -42,10 +42,10 @@ pub fn nearest(
         return Ok((None, Counts::default()));
     }
     let pos21 = pos12.inverse();
-    let region = mesh
-        .aabb()
-        .transform_by(&pos21)
-        .loosened(reach(mesh, other, &pos21, max_distance));
+    let region =
+        mesh.aabb()
+            .transform_by(&pos21)
+            .loosened(reach(mesh, other, &pos21, max_distance));
     let mut parts = Parts::default();
     if !foreign::add_surface(&mut parts, other, &Pose::IDENTITY, &region) {
         return Err(Unsweepable);

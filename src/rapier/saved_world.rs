@@ -77,8 +77,8 @@ pub struct SavedWorld {
     meshes: Vec<MedialMesh>,
     /// Medial colliders, and which mesh each has.
     shapes: Vec<(ColliderHandle, u32)>,
-    /// Colliders that the user changed since the last step.
-    changed: Vec<ColliderHandle>,
+    /// Whether colliders were changed since the last step; their marks say which.
+    changed: bool,
     world: PhysicsWorld,
 }
 
@@ -92,8 +92,8 @@ impl SavedWorld {
         if removed > 0 {
             return Err(SavedWorldError::Removed(removed));
         }
-        let changed = colliders.take_modified().to_vec();
-        let mut colliders = world.colliders.clone();
+        // What is left in this list are then the colliders that get a ball, and no others.
+        let changed = !colliders.take_modified().is_empty();
         let mut meshes: Vec<MedialMesh> = Vec::new();
         let mut known: HashMap<usize, u32> = HashMap::new();
         let mut shapes = Vec::new();
@@ -156,18 +156,16 @@ impl SavedWorld {
             collider.set_shape(SharedShape::medial_mesh(mesh.clone()));
         }
         forget_changes(&mut world);
-        for handle in changed {
-            if let Some(collider) = world.colliders.get_mut(handle) {
-                let shape = collider.shared_shape().clone();
-                collider.set_shape(shape);
-            }
+        if changed {
+            // Lists all colliders as possibly changed; each one's own marks say whether it is.
+            world.colliders.iter_mut().for_each(drop);
         }
         Ok(world)
     }
 }
 
-/// Clears the marks of changed colliders. Only a step does that: one of collision detection alone, with
-/// copies of all that it changes but the colliders.
+/// Clears the marks of the listed colliders. Only a step does that: one of collision detection alone,
+/// with copies of all that it changes but the colliders.
 fn forget_changes(world: &mut PhysicsWorld) {
     CollisionPipeline::new().step(
         0.0,
@@ -217,7 +215,6 @@ pub fn load_world(bytes: &[u8]) -> Result<PhysicsWorld, SavedWorldError> {
     if computed != stored {
         return Err(SavedWorldError::Damaged { computed, stored });
     }
-    let saved: SavedWorld =
-        postcard::from_bytes(content).map_err(SavedWorldError::Unreadable)?;
+    let saved: SavedWorld = postcard::from_bytes(content).map_err(SavedWorldError::Unreadable)?;
     saved.into_world()
 }

@@ -6,8 +6,8 @@ use crate::rotating::vector;
 use crate::shapes::ring;
 use parry3d::math::Real;
 use parry3d::query::{PointQuery, Ray, RayCast};
-use rapier3d_medial::medial::MedialPrimitive;
 use rapier3d_medial::MedialSphere;
+use rapier3d_medial::medial::MedialPrimitive;
 
 const CASES: usize = 200;
 
@@ -120,7 +120,9 @@ fn points_are_projected_on_the_surface() {
                 (true, true) => p.is_inside && p.point == point,
                 // The nearest point of the surface is no nearer than the depth.
                 (true, false) => p.is_inside && on.abs() <= off && far >= -d - off,
-                (false, _) => (d < off || !p.is_inside) && on.abs() <= off && (far - d).abs() <= off,
+                (false, _) => {
+                    (d < off || !p.is_inside) && on.abs() <= off && (far - d).abs() <= off
+                }
             };
             if !right {
                 failures.push(format!("{case} {solid}: {d}, {on} off, {far} away"));

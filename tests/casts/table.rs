@@ -116,7 +116,11 @@ impl Case<'_> {
         };
         // How deep a sphere is in a cylinder or cone is a search that ends early at times.
         let turned = self.shapes.iter().any(|g| is_turned(*g));
-        let most = if turned && self.most < 0.0 { 0.0 } else { self.most };
+        let most = if turned && self.most < 0.0 {
+            0.0
+        } else {
+            self.most
+        };
         expect(c.dist <= most, || format!("{}, over {most}", c.dist))?;
         if self.least > 0.0 {
             expect(c.dist >= self.least, || {
@@ -136,10 +140,7 @@ impl Case<'_> {
         expect(sound, || format!("{c:?}, gap {gap}"))
     }
 
-    fn manifolds(
-        &self,
-        dispatcher: &impl PersistentQueryDispatcher<(), ()>,
-    ) -> Verdict {
+    fn manifolds(&self, dispatcher: &impl PersistentQueryDispatcher<(), ()>) -> Verdict {
         let [g1, g2] = self.shapes;
         let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
         let reach = self.most.max(0.0) + PREDICTION;
@@ -152,7 +153,9 @@ impl Case<'_> {
             for p in &m.points {
                 let p1 = moved(m.subshape_pos1(), p.local_p1);
                 let p2 = self.pos12 * moved(m.subshape_pos2(), p.local_p2);
-                let n1 = m.subshape_pos1().map_or(m.local_n1, |q| q.rotation * m.local_n1);
+                let n1 = m
+                    .subshape_pos1()
+                    .map_or(m.local_n1, |q| q.rotation * m.local_n1);
                 let gap = (p2 - p1).dot(n1);
                 expect((gap - p.dist).abs() < ROUNDING, || {
                     format!("{gap} along the normal, but {}", p.dist)
@@ -167,7 +170,9 @@ impl Case<'_> {
         // parry finds no manifold with voxels that do not touch, whatever the reach.
         let voxels = self.shapes.iter().any(|g| g.as_voxels().is_some());
         let apart = voxels && self.most > 0.0;
-        expect(apart || deepest <= reach, || format!("none at {}", self.most))
+        expect(apart || deepest <= reach, || {
+            format!("none at {}", self.most)
+        })
     }
 
     fn casts(&self, dispatcher: &impl QueryDispatcher) -> Verdict {
@@ -229,12 +234,20 @@ fn every_query_with_every_shape_in_both_orders_is_answered_and_right() {
             for flipped in [false, true] {
                 let (mesh, shape): (&dyn Shape, &dyn Shape) = (&mesh, shape.as_ref());
                 let case = Case {
-                    shapes: if flipped { [shape, mesh] } else { [mesh, shape] },
+                    shapes: if flipped {
+                        [shape, mesh]
+                    } else {
+                        [mesh, shape]
+                    },
                     pos12: if flipped { pose.inverse() } else { pose },
                     flipped,
                     least: sampled - error - ROUNDING,
                     most: sampled + ROUNDING,
-                    on: if flipped { [&on_shape, &on_mesh] } else { [&on_mesh, &on_shape] },
+                    on: if flipped {
+                        [&on_shape, &on_mesh]
+                    } else {
+                        [&on_mesh, &on_shape]
+                    },
                     error,
                 };
                 let verdicts = [

@@ -41,8 +41,12 @@ fn hash(world: &PhysicsWorld) -> u64 {
     };
     for (_, b) in world.bodies.iter() {
         let (t, r, v, w) = (b.translation(), b.rotation(), b.linvel(), b.angvel());
-        [t.x, t.y, t.z, r.x, r.y, r.z, r.w].into_iter().for_each(&mut eat);
-        [v.x, v.y, v.z, w.x, w.y, w.z].into_iter().for_each(&mut eat);
+        [t.x, t.y, t.z, r.x, r.y, r.z, r.w]
+            .into_iter()
+            .for_each(&mut eat);
+        [v.x, v.y, v.z, w.x, w.y, w.z]
+            .into_iter()
+            .for_each(&mut eat);
     }
     hash
 }
@@ -50,7 +54,9 @@ fn hash(world: &PhysicsWorld) -> u64 {
 fn run(threads: usize) -> u64 {
     let mut world = mixed_scene();
     #[cfg(feature = "parallel")]
-    world.configure_thread_pool(threads).expect("a pool of threads");
+    world
+        .configure_thread_pool(threads)
+        .expect("a pool of threads");
     #[cfg(not(feature = "parallel"))]
     let _ = threads;
     let mut pipeline = attached(&mut world);

@@ -34,7 +34,13 @@ fn draw(
         ..Default::default()
     };
     let (bodies, colliders) = (&world.bodies, &world.colliders);
-    render.render(pipeline, &mut recorder, bodies, colliders, &world.narrow_phase);
+    render.render(
+        pipeline,
+        &mut recorder,
+        bodies,
+        colliders,
+        &world.narrow_phase,
+    );
     recorder.lines
 }
 
@@ -43,7 +49,10 @@ fn off_ring(n: u32, pose: &Pose, point: Vector) -> Real {
     let p = pose.inverse_transform_point(point);
     let corner = |i: u32| {
         let angle = i as f64 / f64::from(n) * std::f64::consts::TAU;
-        [f64::from(MAJOR) * angle.cos(), f64::from(MAJOR) * angle.sin()]
+        [
+            f64::from(MAJOR) * angle.cos(),
+            f64::from(MAJOR) * angle.sin(),
+        ]
     };
     let (px, py, pz) = (f64::from(p.x), f64::from(p.y), f64::from(p.z));
     let to_chord = |i: u32| {
@@ -90,7 +99,9 @@ fn mode_filter_and_colours_are_as_rapier_has_them() {
     let ring = add_ring(&mut world, As::Medial, Pose::IDENTITY);
     let handle = world.bodies[ring].colliders()[0];
     // A ball on a body in the same state: rapier itself draws it.
-    let ball = world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::ball(0.1)).1;
+    let ball = world
+        .insert(RigidBodyBuilder::dynamic(), ColliderBuilder::ball(0.1))
+        .1;
     let mut pipeline = DebugRenderPipeline::default();
     pipeline.mode = DebugRenderMode::COLLIDER_SHAPES;
     let mut render = MedialDebugRender::default();
@@ -112,9 +123,15 @@ fn mode_filter_and_colours_are_as_rapier_has_them() {
     let colors = [
         both(&|_| ()),
         both(&|w| w.bodies.iter_mut().for_each(|(_, b)| b.sleep())),
-        both(&|w| [handle, ball].iter().for_each(|h| w.colliders[*h].set_enabled(false))),
         both(&|w| {
-            [handle, ball].iter().for_each(|h| w.colliders[*h].set_enabled(true));
+            [handle, ball]
+                .iter()
+                .for_each(|h| w.colliders[*h].set_enabled(false))
+        }),
+        both(&|w| {
+            [handle, ball]
+                .iter()
+                .for_each(|h| w.colliders[*h].set_enabled(true));
             let fix = |b: &mut RigidBody| b.set_body_type(RigidBodyType::Fixed, true);
             w.bodies.iter_mut().for_each(|(_, b)| fix(b));
         }),
@@ -175,7 +192,9 @@ fn sphere_pairs_are_drawn_on_request() {
         assert!(off_ring(27, lower, *a).abs() < 1.0e-4, "{a}");
     }
     // The circles lie on the spheres: a tube's radius from the axis.
-    let circles = lines.iter().filter(|l| l.2 != style.style.contact_normal_color);
+    let circles = lines
+        .iter()
+        .filter(|l| l.2 != style.style.contact_normal_color);
     let radii: Vec<Real> = circles.map(|l| (l.1 - l.0).length()).collect();
     let chord = 2.0 * MINOR * (std::f32::consts::PI / 24.0).sin();
     assert!(radii.iter().all(|r| (r - chord).abs() < 1.0e-4));

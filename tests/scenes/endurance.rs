@@ -2,7 +2,11 @@
 //! agree.
 //!
 //! The full run, 100,000 steps:
-//! `cargo test --release --all-features --test scenes endurance -- --ignored --nocapture`
+//! `cargo test --all-features --test scenes a_world_lives_long -- --ignored --nocapture`
+//!
+//! rapier 0.36.1 has two limits here, with its own compounds as well, by debug assertions:
+//! `Collider::set_shape` on a composite in contact (`tests/known_issues.rs`), so a shape is swapped by
+//! a new collider; and, in 1 of 150 runs of 3,000 steps with compounds, a collider that changes its parent.
 
 use crate::bodies::*;
 use crate::rng::Rng;
@@ -96,7 +100,9 @@ impl Life {
             1 => RigidBodyBuilder::fixed(),
             _ => RigidBodyBuilder::dynamic().ccd_enabled(self.rng.chance(0.3)),
         };
-        let body = body.pose(self.pose()).linvel(vector(self.rng.in_ball() * 20.0));
+        let body = body
+            .pose(self.pose())
+            .linvel(vector(self.rng.in_ball() * 20.0));
         self.world.insert(body, collider.density(500.0));
     }
 
@@ -121,11 +127,12 @@ impl Life {
     }
 
     fn swap_shape(&mut self) {
-        let shape = self.collider().build().shared_shape().clone();
+        let collider = self.collider();
         if let Some(h) = self.body()
             && let Some(c) = self.world.bodies[h].colliders().first().copied()
         {
-            self.world.colliders[c].set_shape(shape);
+            self.world.remove_collider(c);
+            self.world.insert_collider(collider.density(500.0), Some(h));
         }
     }
 
@@ -214,7 +221,8 @@ impl Life {
         let medial = medial.count();
         let report = self.pipeline.step(&mut self.world);
         for (h, b) in self.world.bodies.iter() {
-            let sound = b.position().is_finite() && b.linvel().is_finite() && b.angvel().is_finite();
+            let sound =
+                b.position().is_finite() && b.linvel().is_finite() && b.angvel().is_finite();
             assert!(
                 sound || self.poisoned.contains(&h),
                 "step {step}: {h:?} at {:?}, {} {}",
@@ -227,7 +235,10 @@ impl Life {
             report.medial_colliders == medial && report.jobs <= report.pairs,
             "step {step}: {medial} medial colliders, {report:?}"
         );
-        assert!(report.pairs <= medial * medial.saturating_sub(1) / 2, "{report:?}");
+        assert!(
+            report.pairs <= medial * medial.saturating_sub(1) / 2,
+            "{report:?}"
+        );
     }
 }
 

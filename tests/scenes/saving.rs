@@ -16,12 +16,16 @@ fn mixed_world() -> (PhysicsWorld, MedialMesh) {
         let at = Vector::new(0.1 * i as Real, 0.4 + 0.5 * i as Real, -0.07 * i as Real);
         let turn = Vector::new(0.5 * i as Real, 0.2, 0.9 * (i % 2) as Real);
         let body = RigidBodyBuilder::dynamic().pose(Pose::new(at, turn));
-        world.insert(body, ColliderBuilder::medial_mesh(mesh.clone()).density(1000.0));
+        world.insert(
+            body,
+            ColliderBuilder::medial_mesh(mesh.clone()).density(1000.0),
+        );
         let side = Vector::new(1.5, 0.5 + 0.5 * i as Real, 0.2 * i as Real);
         let body = RigidBodyBuilder::dynamic().translation(side);
         world.insert(body, ColliderBuilder::ball(0.2).density(500.0));
     }
-    let anchor = world.insert_body(RigidBodyBuilder::fixed().translation(Vector::new(-3.0, 4.0, 0.0)));
+    let anchor =
+        world.insert_body(RigidBodyBuilder::fixed().translation(Vector::new(-3.0, 4.0, 0.0)));
     let hung = RigidBodyBuilder::dynamic().translation(Vector::new(-2.0, 4.0, 0.0));
     let hung = world
         .insert(hung, ColliderBuilder::medial_mesh(ring(12, 0.3, 0.05)))
@@ -100,7 +104,10 @@ fn a_mesh_is_written_once_and_shared_again() {
     let bytes = save_world(&world).expect("a world");
     let per_collider = (bytes.len() - one) / 4;
     let of_mesh = mesh.to_bytes().len();
-    assert!(of_mesh > 2 * per_collider, "{per_collider} of {of_mesh} bytes each");
+    assert!(
+        of_mesh > 2 * per_collider,
+        "{per_collider} of {of_mesh} bytes each"
+    );
     let loaded = load_world(&bytes).expect("what was saved");
     let meshes: Vec<&MedialMesh> = loaded
         .colliders
