@@ -41,6 +41,9 @@ pub struct Cast<'a> {
     pub target_distance: Real,
     /// Whether contact at the start is the answer; otherwise the next deeper one is looked for.
     pub stop_at_penetration: bool,
+    /// Whether contact at the start is the answer at least while they approach, as parry has it for
+    /// straight casts: the character controller would sink otherwise.
+    pub stop_approach: bool,
 }
 
 impl Cast<'_> {
@@ -59,7 +62,9 @@ impl Cast<'_> {
             ..ToiOptions::default()
         };
         let (mut toi, mut counts) = self.query(&motion1, &motion2, seconds, &options)?;
-        if toi.upper <= 0.0 && !self.stop_at_penetration {
+        let approach = (motion2.linvel - motion1.linvel).dot(toi.normal);
+        let stop = self.stop_at_penetration || self.stop_approach && approach < 0.0;
+        if toi.upper <= 0.0 && !stop {
             let core = (CORE * self.mesh.thickness()).max(Real::MIN_POSITIVE);
             let deeper = ToiOptions {
                 target_distance: self.target_distance - core,

@@ -37,7 +37,7 @@ impl MedialDispatcher {
         shapes: [&dyn Shape; 2],
         times: [Real; 2],
         target_distance: Real,
-        stop_at_penetration: bool,
+        [stop_at_penetration, stop_approach]: [bool; 2],
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let flipped = medial(shapes[0]).is_none();
         let [first, second] = if flipped { [1, 0] } else { [0, 1] };
@@ -50,6 +50,7 @@ impl MedialDispatcher {
             times,
             target_distance,
             stop_at_penetration,
+            stop_approach,
         };
         let (hit, counts) = cast.run().map_err(|_| Unsupported)?;
         self.answers.count_cast(counts.nodes, counts.tests);
@@ -210,7 +211,7 @@ impl QueryDispatcher for MedialDispatcher {
             [g1, g2],
             [0.0, end],
             options.target_distance,
-            options.stop_at_penetration,
+            [options.stop_at_penetration, true],
         )
     }
 
@@ -229,7 +230,7 @@ impl QueryDispatcher for MedialDispatcher {
             [g1, g2],
             [start_time, end_time],
             0.0,
-            stop_at_penetration,
+            [stop_at_penetration, false],
         )
     }
 }
