@@ -205,9 +205,9 @@ impl Life {
             DEEDS[deed].1(self);
         }
         // What falls off the ground, or was disabled by rapier for its state, goes.
-        if step % 50 == 0 {
+        if step.is_multiple_of(50) {
             let gone = |(h, b): (RigidBodyHandle, &RigidBody)| {
-                let far = !(b.translation().length() < 100.0);
+                let far = !b.position().is_finite() || b.translation().length() > 100.0;
                 (far || self.poisoned.contains(&h)).then_some(h)
             };
             let gone: Vec<_> = self.world.bodies.iter().filter_map(gone).collect();
