@@ -1,7 +1,6 @@
 //! What a body collides as: medial meshes of several sizes, and what rapier's users take today.
 
 use crate::common::mesh::Mesh;
-use crate::common::surface_error::surface_error;
 use rapier3d::parry::query::{NonlinearRigidMotion, cast_shapes_nonlinear};
 use rapier3d::parry::shape::{Compound, Shape, SharedShape};
 use rapier3d::parry::transformation::vhacd::VHACDParameters;
@@ -22,6 +21,8 @@ pub struct Bodies {
     /// Largest distance between the shapes and their sources, both bodies together, where it was
     /// measured: a contact may come that much nearer or further away.
     pub shape_error: Option<f64>,
+    /// Only every such motion is asked: some answers take a second each.
+    pub every: usize,
     /// Seconds to build both.
     pub seconds: f64,
     shapes: Shapes,
@@ -49,6 +50,7 @@ impl Bodies {
             name: format!("medial mesh, {primitives}"),
             parts: built[0].1.primitives,
             shape_error: Some(error(0) + error(1)),
+            every: 1,
             seconds,
             shapes: Shapes::Medial(built.map(|(mesh, _)| mesh)),
         })
@@ -63,12 +65,13 @@ impl Bodies {
             seconds: start.elapsed().as_secs_f64(),
             parts: parts(&*shapes[0]),
             shape_error: None,
+            every: 1,
             shapes: Shapes::Parry(shapes),
         }
     }
 
-    /// The peers: hull, convex decompositions, triangles, voxels.
-    pub fn peers(meshes: &[Mesh; 2]) -> Vec<Self> {
+    /// The peers: hull, convex decompositions, and, where there is time, triangles and voxels.
+    pub fn peers(meshes: &[Mesh; 2], quick: bool) -> Vec<Self> {
         let default = VHACDParameters::default();
         let decomposition = |resolution, concavity| {
             move |m: &Mesh| {
@@ -85,10 +88,10 @@ impl Bodies {
             let fill = FillMode::FloodFill {
                 detect_cavities: false,
             };
-            let size = (high - low).max_element() / 64.0;
+            let size = (high - low).max_element() / 24.0;
             SharedShape::voxelized_mesh(&m.vertices, &m.indices, size, fill)
         };
-        vec![
+        let mut peers = vec![
             Self::parry("convex hull", meshes, |m| {
                 SharedShape::convex_hull(&m.vertices).expect("a body has a hull")
             }),
@@ -99,8 +102,13 @@ impl Bodies {
             ),
             Self::parry("VHACD, 128 / 0.001", meshes, decomposition(128, 0.001)),
             Self::parry("triangle mesh", meshes, |m| SharedShape::new(m.to_parry())),
-            Self::parry("voxels, 64 along", meshes, voxels),
-        ]
+            Self::parry("voxels, 24 along", meshes, voxels),
+        ];
+        for slow in &mut peers[3..] {
+            slow.every = 100;
+        }
+        peers.truncate(if quick { 3 } else { peers.len() });
+        peers
     }
 
     /// First contact over one second, and whether the answer is a contact.
@@ -131,9 +139,4 @@ fn parts(shape: &dyn Shape) -> usize {
     } else {
         1
     }
-}
-
-/// Longest distance between a medial mesh's boundary and its source that parry's triangles show.
-pub fn checked_error(mesh: &MedialMesh, source: &Mesh) -> Option<Real> {
-    surface_error(mesh, source, 0.02, 20_000).map(|e| e.largest())
 }

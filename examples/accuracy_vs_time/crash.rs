@@ -24,8 +24,6 @@ const TOUCH: f64 = 4.0e-5;
 pub struct Case {
     /// Creature first.
     pub motions: [Motion; 2],
-    /// Number of its speed and of its turn in the grid.
-    pub cell: [usize; 2],
     /// When the surfaces first touch, in seconds.
     pub time: Option<f64>,
 }
@@ -58,11 +56,7 @@ impl Crash {
                     continue;
                 }
                 let time = first_contact(bodies, both, 1.0, TOUCH);
-                cases.push(Case {
-                    motions,
-                    cell,
-                    time,
-                });
+                cases.push(Case { motions, time });
                 progress();
             }
         }

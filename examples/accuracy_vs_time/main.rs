@@ -13,6 +13,8 @@
 //! query missed one at all.
 
 mod bodies;
+// The tests use the rest of it.
+#[allow(dead_code)]
 #[path = "../../tests/common/ccd/mod.rs"]
 mod ccd;
 #[path = "../common/mod.rs"]
@@ -98,9 +100,10 @@ fn representations(quick: bool, mesh: Option<PathBuf>) -> Result<Section, Box<dy
         medial.push(Bodies::medial(&crash.meshes, size)?);
         building.inc(1);
     }
-    let peers = Bodies::peers(&crash.meshes);
+    let peers = Bodies::peers(&crash.meshes, quick);
     building.finish();
-    let ticks = (sizes.len() + peers.len()) * crash.cases.len();
+    let asked = |b: &Bodies| crash.cases.len().div_ceil(b.every);
+    let ticks = medial.iter().chain(&peers).map(asked).sum();
     Ok(with_bar("representations", ticks, |tick| {
         representations::measure(&crash, medial, peers, tick)
     }))

@@ -47,6 +47,18 @@ pub struct Cast<'a> {
 }
 
 impl Cast<'_> {
+    /// First contact as the query tells it, with the mesh as first body; times are fractions of the
+    /// cast's. `options` take the place of the cast's own target and choice of contact at the start.
+    pub fn toi(&self, options: &ToiOptions) -> Result<(Toi, Counts), Unsweepable> {
+        let [start, end] = self.times;
+        let motions = [self.motion1, self.motion2].map(|m| started(m, start));
+        let finite = motions.iter().all(motion_is_finite);
+        if !(finite && end >= start && (end - start).is_finite()) {
+            return Ok((Toi::bad_input(options), Counts::default()));
+        }
+        self.query(&motions[0], &motions[1], end - start, options)
+    }
+
     /// The hit, with the mesh as first shape, or `None` if there is none.
     pub fn run(&self) -> Result<(Option<ShapeCastHit>, Counts), Unsweepable> {
         let [start, end] = self.times;
@@ -97,6 +109,7 @@ impl Cast<'_> {
         Ok((Some(hit), counts))
     }
 
+    /// First contact in `seconds` of motions that start now; times are fractions of it.
     fn query(
         &self,
         motion1: &NonlinearRigidMotion,

@@ -10,7 +10,7 @@ use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     TrackedContact,
 };
-use parry3d::shape::PackedFeatureId;
+use parry3d::shape::{PackedFeatureId, Shape};
 
 /// Cosine under which two contacts of one primitive pair get manifolds of their own (10°): a
 /// manifold has one normal.
@@ -144,8 +144,8 @@ fn kept_normal<M, C>(
 /// change", and panics when a list changes without it. An empty workspace of parry's own survives
 /// saving, one of ours would not.
 pub fn ensure_workspace<M, C>(
-    mesh1: &MedialMesh,
-    mesh2: &MedialMesh,
+    shape1: &dyn Shape,
+    shape2: &dyn Shape,
     workspace: &mut Option<ContactManifoldsWorkspace>,
 ) where
     DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
@@ -154,14 +154,14 @@ pub fn ensure_workspace<M, C>(
         return;
     }
     // Twice the sum of both sizes: certainly out of reach, so that parry finds nothing.
-    let reach = |m: &MedialMesh| {
-        let b = m.aabb();
+    let reach = |s: &dyn Shape| {
+        let b = s.compute_local_aabb();
         b.mins.abs().max(b.maxs.abs()).length()
     };
-    let away = 2.0 * (reach(mesh1) + reach(mesh2));
+    let away = 2.0 * (reach(shape1) + reach(shape2));
     let far = Pose::translation(away, 0.0, 0.0);
     let mut none: Vec<ContactManifold<M, C>> = Vec::new();
     let result =
-        DefaultQueryDispatcher.contact_manifolds(&far, mesh1, mesh2, 0.0, &mut none, workspace);
+        DefaultQueryDispatcher.contact_manifolds(&far, shape1, shape2, 0.0, &mut none, workspace);
     debug_assert!(result.is_ok() && workspace.is_some());
 }

@@ -4,6 +4,7 @@
 mod ccd;
 
 mod bad_input;
+mod batch;
 mod coherence;
 mod distance;
 mod families;

@@ -6,6 +6,11 @@ mod determinism;
 #[cfg(feature = "debug-render")]
 mod drawing;
 mod endurance;
+mod fast_pairs;
+mod heaps;
+mod impacts;
+mod oracle;
+mod random;
 mod resting;
 #[allow(dead_code)]
 #[path = "../common/ccd/rng.rs"]
