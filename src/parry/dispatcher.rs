@@ -251,10 +251,10 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         if (medial(g1).is_some() || medial(g2).is_some()) && self.answers.is_muted(g1, g2, pos12) {
-            // parry's workspace of a composite shape holds indices into the list emptied here.
-            manifolds.clear();
+            // parry's workspace holds indices into the list that is emptied here.
             *workspace = None;
             ensure_workspace::<M, C>(g1, g2, workspace);
+            manifolds.clear();
             return Ok(());
         }
         let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
