@@ -4,33 +4,43 @@ mod bounds;
 mod complex;
 pub mod delaunay;
 mod draft;
+mod edges;
 mod enclose;
+mod fast_hash;
+mod findings;
 pub mod hausdorff;
 mod inner_balls;
 mod insertion_order;
+mod mass;
 pub mod mesh_file;
+mod openings;
 mod orient;
+mod parts;
+mod patches;
 mod primitive_tree;
 mod quadric;
 mod random;
 mod samples;
+mod sheets;
 mod simplify;
 mod solid;
+mod start;
 mod subdivide;
 mod surface;
 mod triangle_tree;
 mod watch;
+mod weld;
 
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
-use bounds::Point;
-use draft::{Ball, Draft};
+use draft::Draft;
 use enclose::enclose;
+pub use findings::{Findings, MassSource};
 use hausdorff::{in_unit, measure};
-use inner_balls::{inner_balls, tetrahedra};
-use samples::blue_noise;
-use simplify::{BOUNDARY_WEIGHT_SHEET, BOUNDARY_WEIGHT_SOLID, Simplifier};
+use mass::mass_properties;
+use parts::Parts;
+use start::{Start, start};
 use std::ops::ControlFlow;
 use surface::Surface;
 use triangle_tree::TriangleTree;
@@ -92,7 +102,9 @@ pub struct BuildReport {
     pub longest_side: Real,
     /// Primitives of the result.
     pub primitives: usize,
-    /// What was found in the input and what was done about it.
+    /// What was found in the input and what was done about it, counted.
+    pub findings: Findings,
+    /// The same in words, and which limit bound.
     pub notes: Vec<String>,
     /// Seconds per stage, in order.
     pub seconds: Vec<(&'static str, f64)>,
@@ -121,35 +133,37 @@ impl MedialMesh {
         let limits = Limits::new(options)?;
         let mut watch = Watch::new(progress);
         watch.begin("surface")?;
-        let surface = Surface::new(vertices, indices)?;
-        let tree = TriangleTree::new(surface.all_corners());
-        let source = Source {
+        let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;
+        let mut source = Source {
             surface,
             tree,
             limits,
         };
         let candidate = source.best_candidate(&mut watch)?;
-        let frame = source.surface.frame;
-        let mut mesh = candidate.draft.to_medial_mesh(&frame)?;
-        if let Some(mass) = source.surface.mass_properties() {
+        watch.begin("mass")?;
+        let surface = source.surface;
+        let (mass, mass_source) = mass_properties(&surface, &mut watch)?;
+        let mut mesh = candidate.draft.to_medial_mesh(&surface.frame)?;
+        if let Some(mass) = mass {
             mesh = mesh.with_mass_properties(mass);
         }
-        let mut notes = source.surface.notes;
+        let mut findings = surface.findings;
+        findings.mass = mass_source;
+        let mut notes = findings.notes();
         notes.extend(candidate.notes);
+        let frame = surface.frame;
         let report = BuildReport {
             hausdorff: in_unit(candidate.hausdorff, frame.scale),
             hausdorff_before_enclosure: candidate.before.map(|h| in_unit(h, frame.scale)),
             longest_side: frame.scale as Real,
             primitives: mesh.primitive_count(),
+            findings,
             notes,
             seconds: watch.finish()?,
         };
         Ok((mesh, report))
     }
 }
-
-/// Half-thickness of the sheets that an open surface is built from (longest side 1).
-const SHEET: f64 = 1e-3;
 
 /// Counts tried when the error is the limit shrink by this factor from one to the next.
 const LADDER: f64 = 0.8;
@@ -227,63 +241,19 @@ struct Source {
 }
 
 impl Source {
-    /// Builds from the inside; where the surface is open or has no inside, from sheets as well, and
-    /// keeps the better.
-    fn best_candidate(&self, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let inner = self.inner_draft(watch)?;
-        let mut solid = None;
-        if !inner.balls.is_empty() {
-            let candidate = self.candidate(inner, BOUNDARY_WEIGHT_SOLID, watch)?;
-            if self.surface.closed {
-                return Ok(candidate);
-            }
-            solid = Some(candidate);
-        }
-        let mut sheets = self.candidate(self.sheets(), BOUNDARY_WEIGHT_SHEET, watch)?;
-        let thickness = 2.0 * SHEET * self.surface.frame.scale;
-        let reason = match solid {
-            Some(_) => "the surface is open",
-            None => "no ball fits inside the surface",
-        };
-        let note = format!("{reason}: built as sheets, {thickness:.3e} thick before enclosure");
-        sheets.notes.push(note);
-        let better = |s: &Candidate| s.error() <= sheets.error();
-        Ok(solid.filter(better).unwrap_or(sheets))
-    }
-
-    /// The medial mesh of all balls inside.
-    fn inner_draft(&self, watch: &mut Watch) -> Result<Draft, BuildError> {
-        watch.begin("samples")?;
+    /// Balls inside where the surface bounds matter, slabs where it is a sheet.
+    fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
         let count = self.limits.samples(self.surface.area);
-        let samples = blue_noise(&self.surface, count, watch)?;
-        watch.begin("delaunay")?;
-        let delaunay = tetrahedra(&samples, watch)?;
-        watch.begin("inner balls")?;
-        inner_balls(&samples, &delaunay, &self.tree, watch)
-    }
-
-    /// The surface itself as thin slabs.
-    fn sheets(&self) -> Draft {
-        let ball = |&center: &Point| Ball {
-            center,
-            radius: SHEET,
-        };
-        Draft {
-            balls: self.surface.vertices.iter().map(ball).collect(),
-            edges: Vec::new(),
-            faces: self.surface.triangles.clone(),
-        }
+        let mut findings = std::mem::take(&mut self.surface.findings);
+        let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
+        self.surface.findings = findings;
+        self.candidate(start, watch)
     }
 
     /// Simplifies to the limits, encloses and measures.
-    fn candidate(
-        &self,
-        draft: Draft,
-        boundary_weight: f64,
-        watch: &mut Watch,
-    ) -> Result<Candidate, BuildError> {
+    fn candidate(&self, start: Start, watch: &mut Watch) -> Result<Candidate, BuildError> {
         watch.begin("simplify")?;
-        let mut simplifier = Simplifier::new(draft, boundary_weight, &self.tree, watch)?;
+        let mut simplifier = Parts::new(start, &self.tree, watch)?;
         let most = self.limits.primitives.unwrap_or(usize::MAX);
         simplifier.reduce_to(most, watch)?;
         let mut candidate = match self.limits.max_error {
@@ -301,7 +271,7 @@ impl Source {
     /// The fewest primitives whose error is at most `max_error`, among counts in ratio [`LADDER`].
     fn coarsest(
         &self,
-        simplifier: &mut Simplifier,
+        simplifier: &mut Parts,
         max_error: f64,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {

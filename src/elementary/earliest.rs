@@ -60,22 +60,28 @@ impl<S: Scalar> Earliest<S> {
             ..self.limits
         };
         let b = bracket(path, test.domain, &limits);
-        self.take(test, b, primitives)
+        self.tests += 1;
+        self.take(test, b, limits.start, primitives)
     }
 
-    /// Takes note of one more test's bracket. Returns whether another test may still change the
-    /// answer. Brackets that were followed beyond the earliest contact come in any order, but those
-    /// without a contact last: they count only if they end before it.
-    pub fn take(&mut self, test: ElementaryTest, mut b: Bracket<S>, primitives: [u32; 2]) -> bool {
+    /// Takes over what the bracket of a test found from `start` on. Returns whether another test may
+    /// still change the answer. Brackets that were followed beyond the earliest contact come in any
+    /// order, but those without a contact last: they count only if they end before it.
+    pub fn take(
+        &mut self,
+        test: ElementaryTest,
+        mut b: Bracket<S>,
+        start: S,
+        primitives: [u32; 2],
+    ) -> bool {
         if self.status == ToiStatus::Overlapping {
             return false;
         }
-        self.tests += 1;
         self.iterations += b.iterations;
         self.tolerance = self.tolerance.max(b.tolerance);
         if !b.slack.is_finite() {
             // Sizes whose squares overflow: nothing can be certified.
-            b.lower = self.limits.start;
+            b.lower = start;
             b.contact = false;
             b.separated = false;
         }
@@ -95,7 +101,7 @@ impl<S: Scalar> Earliest<S> {
             if self.status != ToiStatus::Unresolved {
                 self.status = ToiStatus::Contact;
             }
-            if self.limits.start == S::zero() && b.start_distance < -b.slack {
+            if start == S::zero() && b.start_distance < -b.slack {
                 self.overlap_at_start();
             }
         } else {

@@ -79,7 +79,9 @@ pub fn first_contacts(
     for contacts in [true, false] {
         for ((index, test), bracket) in &found {
             if bracket.contact == contacts {
-                earliest[*index].take(*test, *bracket, [0, 0]);
+                let earliest = &mut earliest[*index];
+                earliest.tests += 1;
+                earliest.take(*test, *bracket, limits.start, [0, 0]);
             }
         }
     }

@@ -121,7 +121,7 @@ impl Mask for bool {
 }
 
 macro_rules! impl_scalar {
-    ($t:ty, $tiny:expr) => {
+    ($t:ty, $tiny:expr, $sin_cos:path) => {
         impl Lane for $t {
             type Mask = bool;
             const EPSILON: f64 = <$t>::EPSILON as f64;
@@ -162,7 +162,7 @@ macro_rules! impl_scalar {
         impl Scalar for $t {
             #[inline(always)]
             fn sin_cos(self) -> (Self, Self) {
-                <$t>::sin_cos(self)
+                $sin_cos(self)
             }
             #[inline(always)]
             fn is_finite(self) -> bool {
@@ -179,8 +179,8 @@ macro_rules! impl_scalar {
         }
     };
 }
-impl_scalar!(f32, 1.0e-30);
-impl_scalar!(f64, 1.0e-200);
+impl_scalar!(f32, 1.0e-30, super::portable::sin_cos_f32);
+impl_scalar!(f64, 1.0e-200, super::portable::sin_cos_f64);
 
 impl Mask for f32x8 {
     #[inline(always)]
@@ -272,6 +272,11 @@ impl<L: Lane> Vec3<L> {
     #[inline(always)]
     pub fn length_sq(self) -> L {
         self.dot(self)
+    }
+    /// Sum of the members' sizes.
+    #[inline(always)]
+    pub fn taxicab(self) -> L {
+        self.x.abs() + self.y.abs() + self.z.abs()
     }
     /// Length.
     #[inline(always)]

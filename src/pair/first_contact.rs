@@ -1,41 +1,21 @@
 //! First contact of two bodies made of primitives, in exact rigid motion: best-first over their
 //! trees. The paper (§4.1) tests all pairs; this visits the few that can come first.
-//!
-//! A node's ball keeps its radius under any rotation; its centre stays within the sagitta
-//! `A/8` of its chord ([`crate::math::motion`]), so two nodes cannot meet before the balls, grown by
-//! both sagittas and moved along the chords, do: the smaller root of a quadratic. Node pairs are
-//! expanded in the order of that time, and the search ends when the next one lies after the best
-//! contact found. A fast turn is searched in pieces, so that sagittas stay small.
 
-use super::swept::{Entry, Piece, Swept, apart_until};
+use super::search::Search;
 use super::volumes::Volumes;
-use crate::elementary::bracket::Limits;
-use crate::elementary::distance::{crossing, signed_distance, thinnest};
-use crate::elementary::first_contact::{Earliest, motion_is_finite, options_limits, to_toi};
-use crate::elementary::path::RigidPath;
-use crate::elementary::test_list::{Share, for_each_test};
-use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
+use crate::elementary::first_contact::{motion_is_finite, to_toi};
+use crate::elementary::{Toi, ToiOptions};
 use crate::math::Real;
-use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
-use crate::medial::tree::Below;
 use parry3d::query::NonlinearRigidMotion;
-use std::collections::BinaryHeap;
-
-/// Angle in radians that a piece of the search turns at most: the sagitta is then below 3 % of the
-/// lever arm. Larger pieces cull worse, smaller ones repeat the walk down the trees.
-const PIECE_ANGLE: f64 = 0.5;
-
-/// Most pieces of one search; a body that turns further in one step is culled less well.
-const MAX_PIECES: f64 = 64.0;
 
 /// Work done by one query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Node pairs looked at.
     pub nodes: u32,
-    /// Elementary tests executed.
+    /// Elementary tests whose kernel ran, however often.
     pub tests: u32,
 }
 
@@ -72,30 +52,8 @@ pub fn first_contact_counted(
         return (Toi::bad_input(options), Counts::default());
     }
     let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
-    let target = f64::from(options.target_distance);
-    let mut search = Search {
-        bodies: (body1, body2),
-        motions,
-        target,
-        reach: match options.initial_contact {
-            InitialContact::Stop => target.max(0.0),
-            InitialContact::Deepen { .. } => target,
-        },
-        initial_contact: options.initial_contact,
-        heap: BinaryHeap::new(),
-        counts: Counts::default(),
-        earliest: Earliest::new(options_limits(options)),
-    };
-    let fastest = motions[0].angle().max(motions[1].angle());
-    let pieces = (fastest / PIECE_ANGLE).ceil().clamp(1.0, MAX_PIECES);
-    for piece in 0..pieces as u32 {
-        let end = f64::from(piece + 1) / pieces;
-        if !search.piece(f64::from(piece) / pieces, end) {
-            break;
-        }
-    }
-    search.settle();
-    search.counts.tests = search.earliest.tests;
+    let mut search = Search::new((body1, body2), motions, options);
+    search.run();
     let found = search.earliest.found;
     let pose = |side: usize, i: u8, t: Real| {
         let Some((_, _, primitives)) = found else {
@@ -110,193 +68,4 @@ pub fn first_contact_counted(
         MedialSphere::new(at * s.center, s.radius)
     };
     (to_toi(&search.earliest, options, pose), search.counts)
-}
-
-struct Search<'a, A, B> {
-    bodies: (&'a A, &'a B),
-    motions: [RigidMotion<f64>; 2],
-    target: f64,
-    /// What culling goes by: no primitive pair has a larger target, raised or not.
-    reach: f64,
-    initial_contact: InitialContact,
-    heap: BinaryHeap<Entry>,
-    counts: Counts,
-    earliest: Earliest<f64>,
-}
-
-impl<A: Volumes, B: Volumes> Search<'_, A, B> {
-    /// Searches one piece of the step; returns whether the next one may still hold the answer.
-    fn piece(&mut self, start: f64, end: f64) -> bool {
-        self.earliest.limits = Limits {
-            start,
-            horizon: end,
-            ..self.earliest.limits
-        };
-        let sides = [0, 1].map(|side| Piece::new(self.motions[side], start, end));
-        self.heap.clear();
-        for i in 0..self.bodies.0.roots() {
-            let a = sides[0].sweep(i, self.bodies.0.bound(i));
-            for j in 0..self.bodies.1.roots() {
-                let b = sides[1].sweep(j, self.bodies.1.bound(j));
-                self.push([a, b], start, end);
-            }
-        }
-        while let Some(entry) = self.heap.pop() {
-            if entry.time > self.earliest.upper.min(end) {
-                break;
-            }
-            if !self.expand(&entry, &sides, start, end) {
-                return false;
-            }
-        }
-        self.earliest.status == ToiStatus::Separated
-    }
-
-    fn push(&mut self, nodes: [Swept; 2], start: f64, end: f64) {
-        self.counts.nodes += 1;
-        let y = nodes[1].start - nodes[0].start;
-        let rate = nodes[1].chord - nodes[0].chord;
-        let radius = nodes[0].radius + nodes[1].radius + self.reach;
-        // Rounding of positions, chords and the root: a few ulps of the numbers in play.
-        let size = y.length() + rate.length() + radius.abs();
-        let radius = (radius + 64.0 * f64::EPSILON * size).max(0.0);
-        let (yy, yr, rr) = (y.length_sq(), y.dot(rate), rate.length_sq());
-        let c = yy - radius * radius;
-        let entry = if c <= 0.0 {
-            0.0
-        } else {
-            let discriminant = yr * yr - rr * c;
-            if yr >= 0.0 || discriminant < 0.0 {
-                return;
-            }
-            c / (discriminant.sqrt() - yr)
-        };
-        let time = start + entry * (end - start);
-        if entry > 1.0 || time > self.earliest.upper.min(end) {
-            return;
-        }
-        self.heap.push(Entry {
-            time,
-            depth: (yy.sqrt() - radius) / radius.max(f64::MIN_POSITIVE),
-            nodes,
-        });
-    }
-
-    fn expand(&mut self, entry: &Entry, sides: &[Piece; 2], start: f64, end: f64) -> bool {
-        let [a, b] = entry.nodes;
-        match (self.bodies.0.below(a.node), self.bodies.1.below(b.node)) {
-            (Below::Primitive(i), Below::Primitive(j)) => {
-                return self.leaf([i, j], entry.depth <= 0.0, sides);
-            }
-            (Below::Nodes(i, j), other) if a.radius >= b.radius || !splits(other) => {
-                for child in [i, j] {
-                    let swept = sides[0].sweep(child, self.bodies.0.bound(child));
-                    self.push([swept, b], start, end);
-                }
-            }
-            (_, Below::Nodes(i, j)) => {
-                for child in [i, j] {
-                    let swept = sides[1].sweep(child, self.bodies.1.bound(child));
-                    self.push([a, swept], start, end);
-                }
-            }
-            // The guard above takes every pair with nodes on the left and none on the right.
-            (Below::Nodes(..), Below::Primitive(_)) => {}
-        }
-        true
-    }
-
-    /// Tests two primitives; returns whether an earlier contact is still possible.
-    fn leaf(&mut self, [i, j]: [u32; 2], near: bool, sides: &[Piece; 2]) -> bool {
-        let (a, share_a) = self.bodies.0.primitive(i);
-        let (b, share_b) = self.bodies.1.primitive(j);
-        let local = |s: &MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-        let (sa, sb) = (a.map(|s| local(&s)), b.map(|s| local(&s)));
-        let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
-        let [start, end] = sides[0].times;
-        let until = (self.earliest.upper.min(end) - start) / (end - start);
-        let balls = [sides[0].balls(sa), sides[1].balls(sb)];
-        if apart_until(&balls, until, self.reach) {
-            return true;
-        }
-        let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
-            let turned = self.motions[side].sin_cos(0.0);
-            let place = |c| self.motions[side].point(c).at(0.0, turned).position;
-            s.iter().map(|s| (place(s.0), s.1)).collect::<Vec<_>>()
-        };
-        let mut target = self.target;
-        if self.initial_contact == InitialContact::Stop {
-            target = target.max(-thinnest(sa, sb));
-        }
-        match self.initial_contact {
-            InitialContact::Deepen { by } => {
-                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
-                let distance = signed_distance(&pa, &pb);
-                let tolerance = self.earliest.limits.tolerance;
-                if distance <= target + tolerance {
-                    target = distance - f64::from(by) - tolerance;
-                }
-            }
-            InitialContact::Stop if start == 0.0 && near => {
-                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
-                let crossings = [
-                    crossing(&pa, share_a.edges, &pb),
-                    crossing(&pb, share_b.edges, &pa),
-                ];
-                if crossings.iter().flatten().any(|c| -c.radius <= target) {
-                    self.earliest.overlap_at_start();
-                    self.earliest.found = None;
-                    return false;
-                }
-            }
-            InitialContact::Stop => {}
-        }
-        // A target of the pair's own leaves no test to a neighbour, whose target is another.
-        let shares = if target == self.target {
-            [share_a, share_b]
-        } else {
-            [share_a, share_b].map(|s| Share::whole(s.spheres))
-        };
-        let mut open = true;
-        for_each_test(shares[0], shares[1], |test| {
-            let path = RigidPath::new(&test, &self.motions, target, |second, k| {
-                if second {
-                    sb[k as usize]
-                } else {
-                    sa[k as usize]
-                }
-            });
-            open = self.earliest.test(test, &path, [i, j]);
-            open
-        });
-        open
-    }
-}
-
-impl<A: Volumes, B: Volumes> Search<'_, A, B> {
-    /// Finds the nearest sphere pair of the primitives that meet first.
-    fn settle(&mut self) {
-        let Some((_, _, [i, j])) = self.earliest.found else {
-            return;
-        };
-        let (a, share_a) = self.bodies.0.primitive(i);
-        let (b, share_b) = self.bodies.1.primitive(j);
-        let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-        let (sa, sb) = (a.map(local), b.map(local));
-        let (motions, target) = (self.motions, self.target);
-        self.earliest
-            .settle([share_a.spheres, share_b.spheres], |test| {
-                RigidPath::new(test, &motions, target, |second, k| {
-                    if second {
-                        sb[k as usize]
-                    } else {
-                        sa[k as usize]
-                    }
-                })
-            });
-    }
-}
-
-fn splits(below: Below) -> bool {
-    matches!(below, Below::Nodes(..))
 }

@@ -84,6 +84,9 @@ fn guarantee(family: Family) -> [Tally; 3] {
             tally.early()[1] <= width && tally.width()[1] <= width,
             "{family:?} {tally:?}"
         );
+        // Bodies that near each other slowly are within the tolerance for long before they touch.
+        let is_slow = matches!(family, Family::Grazing | Family::NearEqual);
+        assert!(is_slow || tally.before()[1] <= 1.0e-3, "{family:?}");
     }
     // Near-equal bodies that turn together, nearly touching: each one's own turning bounds the step,
     // and steps get short. Measured over 9,000 queries: 3 in single, 43 in double precision, at a

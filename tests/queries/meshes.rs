@@ -10,12 +10,12 @@ use rapier3d_medial::math::{Pose, Real, Vector};
 use rapier3d_medial::pair::{contacts, first_contact, nearest_spheres};
 use rapier3d_medial::{MedialMesh, MedialSphere};
 
-fn vector(rng: &mut Rng) -> Vector {
+pub(crate) fn vector(rng: &mut Rng) -> Vector {
     Vector::from([0; 3].map(|_| rng.range(-1.0, 1.0) as Real))
 }
 
 /// Slabs in a fan, a chain of cones, and a lone sphere.
-fn mesh(rng: &mut Rng) -> MedialMesh {
+pub(crate) fn mesh(rng: &mut Rng) -> MedialMesh {
     let mut spheres = Vec::new();
     for k in 0..14 {
         let spread = if k < 7 { 0.4 } else { 0.8 };
@@ -27,7 +27,12 @@ fn mesh(rng: &mut Rng) -> MedialMesh {
     MedialMesh::new(spheres, edges, faces).expect("a medial mesh")
 }
 
-fn motion(rng: &mut Rng, distance: Real, speed: Real, spin: Real) -> NonlinearRigidMotion {
+pub(crate) fn motion(
+    rng: &mut Rng,
+    distance: Real,
+    speed: Real,
+    spin: Real,
+) -> NonlinearRigidMotion {
     let away = vector(rng).normalize_or_zero() * distance;
     let towards = vector(rng) * 0.4 - away.normalize_or_zero();
     let start = Pose::new(away, vector(rng) * 3.0);
@@ -159,4 +164,41 @@ fn distance_and_contacts_are_those_of_brute_force() {
         }
     }
     assert!(near > 1000 && found_any > 100, "{near} {found_any}");
+}
+
+/// Bodies within the tolerance of each other at the start touch at time 0, however their bounding balls
+/// lie; those further apart do later. Casts that may slide ask for this. Planted gaps.
+#[test]
+fn within_the_tolerance_at_the_start_is_contact_at_once() {
+    let centers = [Vector::ZERO, Vector::Y, Vector::Z];
+    let body = |n: usize| {
+        let spheres = centers[..n].iter().map(|c| MedialSphere::new(*c, 0.25));
+        let (edges, faces) = match n {
+            2 => (vec![[0, 1]], vec![]),
+            3 => (vec![], vec![[0, 1, 2]]),
+            _ => (vec![], vec![]),
+        };
+        MedialMesh::new(spheres.collect(), edges, faces).expect("a medial mesh")
+    };
+    let options = ToiOptions::default();
+    let still = NonlinearRigidMotion::identity();
+    for (n, m) in [(1, 1), (1, 2), (1, 3), (2, 2), (2, 3), (3, 3)] {
+        for gap in [0.5, 2.0, 100.0].map(|k| k * options.tolerance) {
+            let mut moving = NonlinearRigidMotion::identity();
+            moving.start = Pose::translation(0.5 + gap, 0.0, 0.0);
+            moving.linvel = -Vector::X;
+            let toi = first_contact(&body(n), &still, &body(m), &moving, 1.0, &options);
+            // Two ulps of a coordinate of 0.5, in time at speed 1.
+            let close = 2.0 * 0.5 * Real::EPSILON;
+            let (earliest, latest) = match gap > options.tolerance {
+                true => (gap - options.tolerance - close, gap + close),
+                false => (0.0, 0.0),
+            };
+            assert_eq!(toi.status, ToiStatus::Contact, "{n} {m} {gap}: {toi:?}");
+            assert!(
+                earliest <= toi.upper && toi.upper <= latest,
+                "{n} {m} {gap}: {toi:?}"
+            );
+        }
+    }
 }

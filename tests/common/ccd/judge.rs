@@ -82,7 +82,11 @@ impl Truth {
                 verdict.false_hit = gap(answer.upper).0 > answer.tolerance;
                 verdict.early = Some(self.early(answer));
                 let before = |contact: f64| (contact - answer.lower).max(0.0);
-                verdict.before = self.contact.contact_at.map(before);
+                let contact = self
+                    .contact
+                    .contact_at
+                    .filter(|_| start.0 > answer.tolerance);
+                verdict.before = contact.map(before);
                 verdict.width = Some(answer.upper - answer.lower);
                 verdict.wide = answer.upper - answer.lower > width;
                 verdict.misnamed = deep_at_start;
@@ -129,9 +133,9 @@ pub struct Verdict {
     pub unresolved: bool,
     /// By how much `lower` precedes the time at which the tolerance is reached.
     pub early: Option<f64>,
-    /// By how much `lower` precedes the true contact, where there is one. A body that nears another
-    /// at speed `v` is within the tolerance by `tolerance / v` before it touches, and contact may be
-    /// told from then on.
+    /// By how much `lower` precedes the true contact, where there is one and the bodies are not within
+    /// the tolerance from the start on. A body that nears another at speed `v` is within the
+    /// tolerance by `tolerance / v` before it touches, and contact may be told from then on.
     pub before: Option<f64>,
     /// Width of the bracket.
     pub width: Option<f64>,
@@ -163,7 +167,8 @@ pub struct Tally {
     early: Vec<f32>,
     before: Vec<f32>,
     width: Vec<f32>,
-    nanoseconds: Vec<f32>,
+    /// Time of each answer.
+    pub nanoseconds: Vec<f32>,
 }
 
 impl Tally {
@@ -203,11 +208,6 @@ impl Tally {
         self.width.extend(verdict.width.map(|x| x as f32));
     }
 
-    /// Median and 99th percentile of the time per answer, in nanoseconds.
-    pub fn nanoseconds(&mut self) -> [f32; 2] {
-        percentiles(&mut self.nanoseconds)
-    }
-
     /// Median and 99th percentile of how long before true contacts `lower` is.
     pub fn before(&mut self) -> [f32; 2] {
         percentiles(&mut self.before)
@@ -224,7 +224,8 @@ impl Tally {
     }
 }
 
-fn percentiles(values: &mut [f32]) -> [f32; 2] {
+/// Median and 99th percentile; 0 of nothing.
+pub fn percentiles(values: &mut [f32]) -> [f32; 2] {
     values.sort_unstable_by(f32::total_cmp);
     let last = values.len().saturating_sub(1);
     [0.5, 0.99].map(|p| {

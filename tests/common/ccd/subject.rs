@@ -24,9 +24,6 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Single, Self::Lanes, Self::Double, Self::Paper];
-
     /// The tolerances it is asked for, with bodies of the given length. For the paper's iteration
     /// it is the distance at which it stops.
     pub fn options(self, size: f64) -> ToiOptions {
