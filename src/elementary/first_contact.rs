@@ -127,7 +127,7 @@ fn valid(
 /// of the step. Cost: 1 to 15 elementary tests of 2 iterations each, typically.
 ///
 /// The guarantee is the module's ([`crate::elementary`]). Wrong counts, values that are not finite
-/// or negative radii give [`ToiStatus::Unresolved`] with `lower = 0`.
+/// or negative radii give [`super::ToiStatus::Unresolved`] with `lower = 0`.
 pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions) -> Toi {
     let Some(movers) = movers(a, b, options) else {
         return Toi::bad_input(options);
