@@ -16,9 +16,9 @@ use crate::error::GpuError;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// On a GPU if there is one, for batches large enough; else on the CPU.
-    #[default]
     Auto,
     /// On the CPU.
+    #[default]
     Cpu,
     /// Every batch through the GPU, be it code on the CPU.
     Gpu,
@@ -46,7 +46,8 @@ pub struct BatchReport {
     pub error: Option<GpuError>,
 }
 
-/// A backend with the meshes that it holds.
+/// A backend with the meshes that it holds; the CPU by default.
+#[derive(Default)]
 pub struct Batch {
     #[cfg(feature = "gpu")]
     backend: Backend,
@@ -68,26 +69,11 @@ impl Batch {
         return pollster::block_on(Self::open_async(backend, options(backend)));
         #[cfg(not(all(feature = "gpu", not(target_arch = "wasm32"))))]
         {
-            let mut batch = Self::on_cpu(backend);
+            let mut batch = Self::default();
             if backend != Backend::Cpu {
                 batch.report.error = Some(GpuError::NotBuilt);
             }
             batch
-        }
-    }
-
-    fn on_cpu(backend: Backend) -> Self {
-        let _ = backend;
-        Self {
-            #[cfg(feature = "gpu")]
-            backend,
-            #[cfg(feature = "gpu")]
-            gpu: None,
-            #[cfg(feature = "gpu")]
-            proposals: Vec::new(),
-            #[cfg(feature = "gpu")]
-            bounds: Vec::new(),
-            report: BatchReport::default(),
         }
     }
 
@@ -146,7 +132,10 @@ fn options(backend: Backend) -> GpuOptions {
 impl Batch {
     /// As [`Self::new`] with a choice of device, without blocking.
     pub async fn open_async(backend: Backend, options: GpuOptions) -> Self {
-        let mut batch = Self::on_cpu(backend);
+        let mut batch = Self {
+            backend,
+            ..Self::default()
+        };
         if backend != Backend::Cpu {
             match Gpu::open(options).await {
                 Ok(gpu) => batch.gpu = Some(gpu),

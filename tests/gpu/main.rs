@@ -14,3 +14,4 @@ mod elementary;
 mod failures;
 mod scene;
 mod shaders;
+mod worlds;
