@@ -1,4 +1,4 @@
-//! How much two meshes of 1,236 primitives ask of the elementary tests: of 6.2 million, the few that can
+//! How much two meshes of 1,236 primitives ask of the elementary tests: of 4.2 million, the few that can
 //! come first. Counts, not times.
 
 use crate::creature::{SCENES, SECONDS, combs, creature, motions};
