@@ -30,7 +30,7 @@ use super::subdivide;
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
-use super::{Hausdorff, Progress};
+use super::options::{Hausdorff, Progress};
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
@@ -82,6 +82,7 @@ pub(super) fn in_unit(h: Hausdorff, scale: f64) -> Hausdorff {
         surface_to_envelope: scaled(h.surface_to_envelope),
         envelope_to_surface: scaled(h.envelope_to_surface),
         uncovered: scaled(h.uncovered),
+        bloat: scaled(h.bloat),
         sampling: scaled(h.sampling),
     }
 }
@@ -116,6 +117,7 @@ pub(super) fn measure(
     let mut boundary = FromBoundary {
         tree,
         solid: &solid,
+        bloat: 0.0,
         hint: 0,
     };
     let whole = vec![solid.whole()];
@@ -125,6 +127,7 @@ pub(super) fn measure(
         surface_to_envelope: outward as Real,
         envelope_to_surface: inward as Real,
         uncovered: source.uncovered as Real,
+        bloat: boundary.bloat as Real,
         sampling: rough.max(rough2).max(resolved) as Real,
     })
 }
@@ -310,6 +313,7 @@ impl Side for FromSource<'_> {
 struct FromBoundary<'a> {
     tree: &'a TriangleTree,
     solid: &'a Solid<'a>,
+    bloat: f64,
     hint: u32,
 }
 
@@ -332,6 +336,9 @@ impl Side for FromBoundary<'_> {
         match self.solid.onto_boundary(cell.center, &near) {
             Some(sample) => {
                 let d = self.tree.distance(sample);
+                if d > self.bloat && self.tree.signed_distance(sample, d) > 0.0 {
+                    self.bloat = d;
+                }
                 Look::Near(d, d + near.signed.distance.abs())
             }
             None => Look::Hidden,

@@ -6,7 +6,7 @@
 //! the solid, which is what marching steps need.
 
 use super::bounds::{Bounds, Point, direction};
-use super::draft::{Ball, Draft};
+use super::draft::{Ball, Corners, Draft};
 use super::primitive_tree::{Nearest, PrimitiveTree};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -30,6 +30,11 @@ impl Cell {
     /// Distance from the middle to a corner.
     pub fn radius(&self) -> f64 {
         self.half_side * 3f64.sqrt()
+    }
+
+    /// Length of a side.
+    pub fn side(&self) -> f64 {
+        2.0 * self.half_side
     }
 
     /// The eight cubes of half the side.
@@ -88,6 +93,11 @@ impl<'a> Solid<'a> {
     /// The primitive nearest to `p`; see [`PrimitiveTree::nearest`].
     pub fn nearest(&self, p: Point, hint: u32) -> Nearest {
         self.tree.nearest(p, hint)
+    }
+
+    /// Its primitives, in the order of the indices that [`Self::nearest`] gives.
+    pub fn primitives(&self) -> &[Corners] {
+        self.tree.primitives()
     }
 
     /// The ball of a primitive that is nearest to the point asked for.

@@ -1,0 +1,251 @@
+//! The pipeline: from a checked surface to the best draft that the limits allow, stage by stage.
+
+use super::bounds::Point;
+use super::draft::{Ball, Draft};
+use super::enclose::enclose;
+use super::fit::{self, Collapsed};
+use super::hausdorff::measure;
+use super::inner_balls::{inner_balls, tetrahedra};
+use super::options::{Hausdorff, Limits, Quality};
+use super::samples::blue_noise;
+use super::simplify::{BOUNDARY_WEIGHT_SHEET, BOUNDARY_WEIGHT_SOLID, Simplifier};
+use super::surface::Surface;
+use super::triangle_tree::TriangleTree;
+use super::watch::Watch;
+use crate::error::BuildError;
+
+/// Half-thickness of the sheets that an open surface is built from (longest side 1).
+const SHEET: f64 = 1e-3;
+
+/// Counts tried when the error is the limit shrink by this factor from one to the next.
+const LADDER: f64 = 0.8;
+
+/// A finished medial mesh and what was measured on it, in the builder's frame.
+pub struct Candidate {
+    pub draft: Draft,
+    pub hausdorff: Hausdorff,
+    pub before: Option<Hausdorff>,
+    pub notes: Vec<String>,
+}
+
+impl Candidate {
+    fn error(&self) -> f64 {
+        let h = &self.hausdorff;
+        f64::from(h.surface_to_envelope.max(h.envelope_to_surface))
+    }
+
+    /// Whether the error is within a limit.
+    pub fn keeps(&self, max_error: Option<f64>) -> bool {
+        max_error.is_none_or(|limit| self.error() <= limit)
+    }
+}
+
+/// A fit whose largest residual is below this share of the plain collapse's is better without
+/// measuring both.
+const CLEARLY_BETTER: f64 = 0.5;
+
+/// The checked surface, its tree, and what to build from it.
+pub struct Source {
+    pub surface: Surface,
+    pub tree: TriangleTree,
+    pub limits: Limits,
+}
+
+impl Source {
+    /// Builds from the inside; where the surface is open or has no inside, from sheets as well, and
+    /// keeps the better.
+    pub fn best_candidate(&self, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        let inner = self.inner_draft(watch)?;
+        let mut solid = None;
+        if !inner.balls.is_empty() {
+            let candidate = self.candidate(inner, BOUNDARY_WEIGHT_SOLID, watch)?;
+            if self.surface.closed {
+                return Ok(candidate);
+            }
+            solid = Some(candidate);
+        }
+        let mut sheets = self.candidate(self.sheets(), BOUNDARY_WEIGHT_SHEET, watch)?;
+        let thickness = 2.0 * SHEET * self.surface.frame.scale;
+        let reason = match solid {
+            Some(_) => "the surface is open",
+            None => "no ball fits inside the surface",
+        };
+        let note = format!("{reason}: built as sheets, {thickness:.3e} thick before enclosure");
+        sheets.notes.push(note);
+        let better = |s: &Candidate| s.error() <= sheets.error();
+        Ok(solid.filter(better).unwrap_or(sheets))
+    }
+
+    /// The medial mesh of all balls inside.
+    fn inner_draft(&self, watch: &mut Watch) -> Result<Draft, BuildError> {
+        watch.begin("samples")?;
+        let count = self.limits.samples(self.surface.area);
+        let samples = blue_noise(&self.surface, count, watch)?;
+        watch.begin("delaunay")?;
+        let delaunay = tetrahedra(&samples, watch)?;
+        watch.begin("inner balls")?;
+        inner_balls(&samples, &delaunay, &self.tree, watch)
+    }
+
+    /// The surface itself as thin slabs.
+    fn sheets(&self) -> Draft {
+        let ball = |&center: &Point| Ball {
+            center,
+            radius: SHEET,
+        };
+        Draft {
+            balls: self.surface.vertices.iter().map(ball).collect(),
+            edges: Vec::new(),
+            faces: self.surface.triangles.clone(),
+        }
+    }
+
+    /// Simplifies and fits to the limits, encloses and measures.
+    fn candidate(
+        &self,
+        draft: Draft,
+        boundary_weight: f64,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
+        watch.begin("simplify")?;
+        let mut simplifier = Simplifier::new(draft, boundary_weight, &self.tree, watch)?;
+        let most = self.limits.primitives.unwrap_or(usize::MAX);
+        let mut candidate = match (self.limits.max_error, self.limits.quality) {
+            (Some(error), _) => {
+                simplifier.reduce_to(most, watch)?;
+                self.coarsest(&mut simplifier, error, watch)?
+            }
+            (None, Quality::Fast) => {
+                simplifier.reduce_to(most, watch)?;
+                self.finish(simplifier.draft(), watch)?
+            }
+            (None, quality) => self.fitted(&mut simplifier, most, quality, watch)?,
+        };
+        if simplifier.broke_topology() {
+            candidate
+                .notes
+                .push("holes or parts were given up to reach the count".into());
+        }
+        Ok(candidate)
+    }
+
+    /// The best of the plain collapse, the balanced fit and, if asked for, the best fit, by the
+    /// error that is reported.
+    fn fitted(
+        &self,
+        simplifier: &mut Simplifier,
+        most: usize,
+        quality: Quality,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
+        let collapsed = Collapsed::new(simplifier, most, watch)?;
+        let target = fit::target(&self.surface, &self.tree, most);
+        let balanced = fit::balanced(&collapsed, &target, most, watch)?;
+        let plain = target.residuals(&collapsed.plain, watch)?.largest;
+        let clear = target.residuals(&balanced.0, watch)?.largest < CLEARLY_BETTER * plain;
+        let mut candidates = vec![balanced.0.clone()];
+        if !clear {
+            candidates.push(collapsed.plain.clone());
+        }
+        if quality == Quality::Best {
+            let (draft, score) = fit::best(balanced.clone(), &collapsed, &target, most, watch)?;
+            if score < balanced.1 {
+                candidates.push(draft);
+            }
+        }
+        let mut best: Option<Candidate> = None;
+        for draft in candidates {
+            let candidate = self.finish(draft, watch)?;
+            if best.as_ref().is_none_or(|b| candidate.error() < b.error()) {
+                best = Some(candidate);
+            }
+        }
+        match best {
+            Some(best) => Ok(best),
+            None => self.finish(collapsed.plain, watch),
+        }
+    }
+
+    /// A rung of the ladder as the quality wants it: fitted where it is above [`Quality::Fast`].
+    fn rung(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        if self.limits.quality == Quality::Fast {
+            return self.finish(draft, watch);
+        }
+        let target = fit::target(&self.surface, &self.tree, draft.primitives().len());
+        let (draft, _) = fit::refitted(draft, &target, watch)?;
+        self.finish(draft, watch)
+    }
+
+    /// The fewest primitives whose error is at most `max_error`, among counts in ratio [`LADDER`].
+    fn coarsest(
+        &self,
+        simplifier: &mut Simplifier,
+        max_error: f64,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
+        let mut rungs = vec![simplifier.draft()];
+        while simplifier.primitives() > 1 {
+            watch.begin("simplify")?;
+            let next = (simplifier.primitives() as f64 * LADDER) as usize;
+            let before = simplifier.primitives();
+            simplifier.reduce_to(next, watch)?;
+            if simplifier.primitives() == before {
+                break;
+            }
+            rungs.push(simplifier.draft());
+        }
+        let finest = rungs[0].primitives().len();
+        let mut best: Option<Candidate> = None;
+        // Rungs below `fine` keep the limit, rungs from `coarse` on break it.
+        let (mut fine, mut coarse) = (0, rungs.len());
+        while fine < coarse {
+            let middle = fine + (coarse - fine) / 2;
+            let candidate = self.rung(rungs[middle].clone(), watch)?;
+            if candidate.error() <= max_error {
+                fine = middle + 1;
+                best = Some(candidate);
+            } else {
+                coarse = middle;
+            }
+        }
+        let (mut candidate, binding) = match best {
+            Some(candidate) => (candidate, "max_error"),
+            None => (self.rung(rungs.swap_remove(0), watch)?, "primitives"),
+        };
+        let count = candidate.draft.primitives().len();
+        let error = candidate.error();
+        candidate.notes.push(match (binding, self.limits.primitives) {
+            ("max_error", _) if count < finest => {
+                format!("max_error {max_error} bound first: {count} primitives, error {error:.5}")
+            }
+            ("max_error", _) => format!("error {error:.5} is within max_error {max_error}"),
+            (_, Some(most)) => format!(
+                "primitives {most} bound first: error {error:.5} is above max_error {max_error}"
+            ),
+            (_, None) => format!(
+                "max_error {max_error} is out of reach: error {error:.5} with all {count} primitives"
+            ),
+        });
+        Ok(candidate)
+    }
+
+    /// Encloses when asked to, and measures before and after.
+    fn finish(&self, mut draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        watch.begin("measure")?;
+        let mut hausdorff = measure(&self.surface, &self.tree, &draft, watch)?;
+        let mut before = None;
+        if self.limits.enclose {
+            before = Some(hausdorff);
+            watch.begin("enclose")?;
+            enclose(&mut draft, &self.surface, self.limits.allow_uncovered, watch)?;
+            watch.begin("measure")?;
+            hausdorff = measure(&self.surface, &self.tree, &draft, watch)?;
+        }
+        Ok(Candidate {
+            draft,
+            hausdorff,
+            before,
+            notes: Vec::new(),
+        })
+    }
+}
