@@ -67,6 +67,14 @@ pub enum MeshError {
         /// What is accepted.
         must: &'static str,
     },
+    /// A polygon that crosses, touches or folds back onto itself.
+    #[error("edges {edge} and {other} of the polygon meet")]
+    PolygonEdgesMeet {
+        /// First corner of one edge.
+        edge: usize,
+        /// First corner of the other.
+        other: usize,
+    },
     /// A text file that is not in the `.ma` format.
     #[error("{path}, line {line}: {message}")]
     Syntax {
@@ -77,6 +85,14 @@ pub enum MeshError {
         /// What is wrong, with the offending text.
         message: String,
     },
+    /// A file that is no baked asset, or a damaged one.
+    #[error("{path}: {source}")]
+    Asset {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: AssetError,
+    },
     /// A file that cannot be read or written.
     #[error("{path}: {source}")]
     File {
@@ -85,6 +101,75 @@ pub enum MeshError {
         /// The reason.
         source: std::io::Error,
     },
+}
+
+/// Bytes that are no baked medial mesh of the version this crate reads, or a damaged one.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum AssetError {
+    /// Some other file.
+    #[error("not a baked medial mesh: it starts with {start:?}")]
+    NotAnAsset {
+        /// Its first bytes, at most 8.
+        start: Vec<u8>,
+    },
+    /// Baked by a crate with another layout.
+    #[error(
+        "baked in version {found} of the format, this crate reads version {reads}: bake it anew"
+    )]
+    Version {
+        /// Its version.
+        found: u32,
+        /// The only version read.
+        reads: u32,
+    },
+    /// Cut short, or with something added, or counts that were changed.
+    #[error("{found} bytes, but {needed} by its counts")]
+    Length {
+        /// What its counts ask for.
+        needed: u64,
+        /// How many bytes there are.
+        found: u64,
+    },
+    /// Changed since it was baked.
+    #[error("damaged: checksum {computed:016x}, but {stored:016x} when baked")]
+    Damaged {
+        /// Checksum of the bytes that are there.
+        computed: u64,
+        /// Checksum that the file carries.
+        stored: u64,
+    },
+    /// A number that no baking writes.
+    #[error("{item} {index} is {value}, must be {must}")]
+    Content {
+        /// What it belongs to.
+        item: &'static str,
+        /// Which one of these.
+        index: usize,
+        /// What was found.
+        value: String,
+        /// What is accepted.
+        must: &'static str,
+    },
+    /// Spheres, edges and faces that are no medial mesh.
+    #[error(transparent)]
+    Mesh(Box<MeshError>),
+}
+
+impl AssetError {
+    pub(crate) fn content(
+        item: &'static str,
+        index: usize,
+        value: impl ToString,
+        must: &'static str,
+    ) -> Self {
+        Self::Content {
+            item,
+            index,
+            value: value.to_string(),
+            must,
+        }
+    }
 }
 
 /// A triangle mesh, or a file of one, that no medial mesh can be built from.

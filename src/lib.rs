@@ -59,18 +59,19 @@ pub mod rapier;
 
 pub use build::{BuildOptions, BuildReport, Progress};
 pub use elementary::{AlternatingStart, InitialContact, Toi, ToiOptions, ToiStatus};
-pub use error::{BuildError, MeshError};
+pub use error::{AssetError, BuildError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
 pub use parry::MedialDispatcher;
 pub use rapier::{
-    MedialColliderBuilder, MedialOptions, MedialPipeline, MedialSharedShape, StepReport,
+    Effect, Effects, MedialColliderBuilder, MedialOptions, MedialPipeline, MedialSharedShape,
+    StepReport,
 };
 
 /// What a rapier app needs: `use rapier3d_medial::prelude::*;`.
 pub mod prelude {
     pub use crate::{
-        BuildOptions, BuildReport, MedialColliderBuilder, MedialMesh, MedialOptions,
-        MedialPipeline, MedialSharedShape, MedialSphere, Progress, StepReport,
+        BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder, MedialMesh,
+        MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, Progress, StepReport,
     };
 }
 

@@ -1,15 +1,25 @@
 //! What is known to be wrong today. Each test asserts the wrong result, so it fails when the fault is
 //! mended; then it becomes a test of the right result elsewhere.
 
+#[path = "build/broken.rs"]
+#[allow(dead_code)] // Shared with `tests/build`, which uses all of it.
+mod broken;
+#[path = "build/meshes.rs"]
+#[allow(dead_code)]
+mod meshes;
+#[path = "medial/oracle.rs"]
+#[allow(dead_code)]
+mod oracle;
+
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
-/// rapier sweeps a body against fixed ones, and a "bullet" against others that are not bullets, with
-/// the target frozen at its end pose. Two fast bodies that move towards each other are therefore not
-/// swept at all (rapier#984), and medial colliders inherit it: of 16 head-on meetings of two thin
-/// rods at 2 × 60 m/s, crossing at right angles, most are missed.
+/// The event loop leaves a pair whose contacts the user modifies ([`ActiveHooks::MODIFY_SOLVER_CONTACTS`])
+/// to rapier, since it has no solver contacts to show. rapier does not sweep two dynamic bodies, so fast
+/// ones pass through each other: of 16 head-on meetings of two thin rods at 2 × 60 m/s, crossing at right
+/// angles, most are missed.
 #[test]
-fn two_fast_bodies_pass_through_each_other() {
+fn fast_bodies_whose_contacts_are_modified_pass_through_each_other() {
     let rod = || {
         let ends = [-0.5, 0.5].map(|z| MedialSphere::new(Vector::new(0.0, 0.0, z), 0.05));
         MedialMesh::new(ends.to_vec(), vec![[0, 1]], vec![]).expect("a rod")
@@ -27,7 +37,9 @@ fn two_fast_bodies_pass_through_each_other() {
                     Vector::new(turn, 0.0, 0.0),
                 ))
                 .linvel(Vector::new(-60.0 * x.signum(), 0.0, 0.0));
-            world.insert(body, ColliderBuilder::medial_mesh(rod())).0
+            let collider = ColliderBuilder::medial_mesh(rod())
+                .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+            world.insert(body, collider).0
         };
         let right = throw(3.0 + phase as Real / 16.0, 0.0);
         let left = throw(-3.0, std::f32::consts::FRAC_PI_2);
@@ -38,4 +50,18 @@ fn two_fast_bodies_pass_through_each_other() {
         missed += u32::from(x(right) < x(left));
     }
     assert!(missed > 8, "only {missed} of 16 are missed now");
+}
+
+/// A mesh of 364 patches, most of them crumbs of a body that fell apart and lost pieces, beside an
+/// open sheet: with 16 and with 60 primitives a part is given up, and enclosure then swells another
+/// one over the gap. With 200 the error is 0.13 of the size.
+#[test]
+fn parts_of_a_mesh_in_hundreds_of_pieces_are_given_up() {
+    let mesh = broken::combined(56);
+    let mut options = BuildOptions::default();
+    options.primitives = Some(60);
+    let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
+    let (_, report) = built.expect("built");
+    let error = report.hausdorff.surface_to_envelope / report.longest_side;
+    assert!(error > 0.5, "error {error} now");
 }

@@ -5,6 +5,9 @@
 //! that is `√((ρ − R)² + h²)`; the minimum over the points of the first circle is sampled, then
 //! narrowed. It changes no faster than the bodies' points move, so an interval of time whose ends
 //! are far enough apart is free; others are halved, the earlier half first.
+//!
+//! Each bench uses a part of it.
+#![allow(dead_code)]
 
 use nalgebra::{Quaternion, Translation3, UnitQuaternion, Vector3};
 use rapier3d::math::{Pose, Vector};

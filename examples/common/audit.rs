@@ -113,6 +113,10 @@ impl Audit {
         if self.floating > 0 {
             failures.push(format!("{} rings float in the air", self.floating));
         }
+        if self.deepest > 0.5 {
+            let share = 100.0 * self.deepest;
+            failures.push(format!("two bodies overlap by {share:.0} % of their radii"));
+        }
         if self.crossings > 0 {
             failures.push(format!("inner lines crossed {} times", self.crossings));
         }

@@ -17,3 +17,4 @@ pub mod scene_table;
 pub mod skeleton;
 pub mod strip;
 pub mod table;
+pub mod triangle_toi;

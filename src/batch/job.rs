@@ -1,9 +1,21 @@
 //! What a batch is asked and what it answers, whatever computes it.
 
+use crate::elementary::{Toi, ToiOptions};
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
 use crate::pair::first_contact::Counts;
+use parry3d::query::NonlinearRigidMotion;
+
+/// One question of a batch. Answers depend on the job alone, never on the batch it is in.
+pub trait Job: Sync {
+    /// What comes back.
+    type Answer: Send;
+    /// Fewest jobs worth handing to another thread, whose waking takes some microseconds.
+    const PER_THREAD: usize;
+    /// Answers this job on the CPU.
+    fn answer(&self) -> Self::Answer;
+}
 
 /// Asks for the sphere pairs of two meshes at fixed poses.
 #[derive(Clone, Debug)]
@@ -25,4 +37,57 @@ pub struct PairResult {
     pub contacts: Vec<SpherePair>,
     /// Work it took.
     pub counts: Counts,
+}
+
+impl Job for PairJob {
+    type Answer = PairResult;
+    const PER_THREAD: usize = 8;
+    fn answer(&self) -> PairResult {
+        let (contacts, counts) =
+            crate::pair::contacts(&self.mesh1, &self.mesh2, &self.pos12, self.prediction);
+        PairResult { contacts, counts }
+    }
+}
+
+/// Asks for the first contact of two meshes that move rigidly.
+#[derive(Clone, Debug)]
+pub struct ToiJob {
+    /// First mesh.
+    pub mesh1: MedialMesh,
+    /// Its motion, world space, velocities per second.
+    pub motion1: NonlinearRigidMotion,
+    /// Second mesh.
+    pub mesh2: MedialMesh,
+    /// Its motion, world space, velocities per second.
+    pub motion2: NonlinearRigidMotion,
+    /// Length of the step in seconds.
+    pub seconds: Real,
+    /// How exact the answer has to be.
+    pub options: ToiOptions,
+}
+
+/// Answer to a [`ToiJob`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToiResult {
+    /// First contact, with the guarantee of [`crate::pair::first_contact()`].
+    pub toi: Toi,
+    /// Work it took.
+    pub counts: Counts,
+}
+
+impl Job for ToiJob {
+    type Answer = ToiResult;
+    /// A query takes from below a microsecond to some hundreds; small groups spread the long ones.
+    const PER_THREAD: usize = 4;
+    fn answer(&self) -> ToiResult {
+        let (toi, counts) = crate::pair::first_contact::first_contact_counted(
+            &self.mesh1,
+            &self.motion1,
+            &self.mesh2,
+            &self.motion2,
+            self.seconds,
+            &self.options,
+        );
+        ToiResult { toi, counts }
+    }
 }

@@ -1,24 +1,37 @@
-//! The command line program `medial`: builds medial meshes from triangle meshes, and describes
+//! The command line program `medial`: builds medial meshes from triangle meshes, bakes and describes
 //! them.
 //!
 //! Results go to standard output, progress and errors to standard error. Exit code 1 with one line
 //! on failure, 2 for arguments that make no sense.
 
+#[path = "medial/jobs.rs"]
+mod jobs;
+
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
+use jobs::{Job, PlanError, plan};
 use rapier3d_medial::build::mesh_file::{self, TriangleMesh};
 use rapier3d_medial::build::{Hausdorff, hausdorff};
 use rapier3d_medial::math::Vector;
+use rapier3d_medial::medial::asset;
 use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, MedialPrimitive, MeshError};
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::{self, ErrorKind, Write as _};
+use std::fs::File;
+use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Steps of the progress bar (a count): one per mille.
+/// Steps of the progress bar (a count) for each mesh: one per mille.
 const BAR_STEPS: u64 = 1000;
+
+/// Exit code after Ctrl-C, as shells have it: 128 and the signal's number.
+const INTERRUPTED: u8 = 130;
+
+/// Set by Ctrl-C.
+static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Medial meshes: concave colliders for rapier that never tunnel.
 #[derive(Parser)]
@@ -30,17 +43,21 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Build a medial mesh (.ma) from a triangle mesh (obj, stl, ply, off).
+    /// Build medial meshes (.ma, or baked as .medial) from triangle meshes (obj, stl, ply, off).
     Build(BuildArguments),
-    /// Describe a medial mesh (.ma).
+    /// Bake a medial mesh (.ma) with its trees and mass properties, to load in no time.
+    Bake(BakeArguments),
+    /// Describe a medial mesh (.ma or baked).
     Info(InfoArguments),
 }
 
 #[derive(Args)]
 struct BuildArguments {
-    /// Triangle mesh: obj, stl, ply or off.
-    input: PathBuf,
-    /// Where to write the medial mesh.
+    /// Triangle meshes: obj, stl, ply or off, or folders of them.
+    #[arg(required = true)]
+    inputs: Vec<PathBuf>,
+    /// Where to write the medial mesh: baked, with the mass properties of the triangle mesh, if it ends
+    /// in .medial, else in the .ma format, which has none; of several, the folder to write them into.
     #[arg(short, long, value_name = "OUT.ma")]
     output: PathBuf,
     /// Largest number of primitives: slabs, cones that belong to no slab, lone spheres
@@ -59,8 +76,17 @@ struct BuildArguments {
 }
 
 #[derive(Args)]
+struct BakeArguments {
+    /// Medial mesh in the .ma format, or baked.
+    input: PathBuf,
+    /// Where to write the baked mesh.
+    #[arg(short, long, value_name = "OUT.medial")]
+    output: PathBuf,
+}
+
+#[derive(Args)]
 struct InfoArguments {
-    /// Medial mesh in the .ma format.
+    /// Medial mesh in the .ma format, or baked.
     mesh: PathBuf,
     /// Measure both Hausdorff distances to the triangle mesh that it was built from.
     #[arg(long, value_name = "IN")]
@@ -104,6 +130,7 @@ struct InfoSummary {
 /// What a build did.
 #[derive(Serialize)]
 struct BuildSummary {
+    output: PathBuf,
     vertices: usize,
     triangles: usize,
     mesh: Description,
@@ -121,10 +148,10 @@ enum Failure {
     Build(#[from] BuildError),
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    #[error("{0} is the input: the output would replace it")]
-    OverInput(PathBuf),
-    #[error("{0}: no such directory")]
-    NoDirectory(PathBuf),
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    #[error("{failed} of {all} meshes failed")]
+    SomeFailed { failed: usize, all: usize },
     #[error("standard output: {0}")]
     Output(#[from] io::Error),
 }
@@ -132,17 +159,26 @@ enum Failure {
 fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Build(arguments) => build(&arguments),
+        Command::Bake(arguments) => bake(&arguments),
         Command::Info(arguments) => info(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            let message = failure.to_string();
-            let line: Vec<&str> = message.split_whitespace().collect();
-            eprintln!("medial: {}", line.join(" "));
-            ExitCode::FAILURE
+            say(&failure);
+            match STOP.load(Ordering::Relaxed) {
+                true => INTERRUPTED.into(),
+                false => ExitCode::FAILURE,
+            }
         }
     }
+}
+
+/// One line, whatever the message holds.
+fn say(failure: &Failure) {
+    let message = failure.to_string();
+    let line: Vec<&str> = message.split_whitespace().collect();
+    eprintln!("medial: {}", line.join(" "));
 }
 
 fn positive(text: &str) -> Result<f32, String> {
@@ -153,8 +189,66 @@ fn positive(text: &str) -> Result<f32, String> {
 }
 
 fn build(arguments: &BuildArguments) -> Result<(), Failure> {
-    check_output(arguments)?;
-    let source = mesh_file::read(&arguments.input)?;
+    let jobs = plan(&arguments.inputs, &arguments.output)?;
+    // The first Ctrl-C ends the build in order, which takes less than a second; the next at once.
+    // Without a handler it ends at once, too.
+    let _ = ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    });
+    let bar = ProgressBar::new(BAR_STEPS * jobs.len() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg} {elapsed}") {
+        bar.set_style(style);
+    }
+    let mut summaries = Vec::new();
+    let mut failures = Vec::new();
+    for (index, job) in jobs.iter().enumerate() {
+        let start = BAR_STEPS * index as u64;
+        let name = match jobs.len() {
+            1 => String::new(),
+            all => format!("{} of {all}, {}: ", index + 1, job.input.display()),
+        };
+        let show = |stage: &str, fraction: f32| {
+            bar.set_message(format!("{name}{stage}"));
+            bar.set_position(start + (fraction * BAR_STEPS as f32) as u64);
+        };
+        match build_one(job, arguments, show) {
+            Ok(summary) if arguments.json => summaries.push(summary),
+            Ok(summary) => bar.suspend(|| print(false, &summary, || summary.text()))?,
+            Err(failure) if jobs.len() == 1 || STOP.load(Ordering::Relaxed) => {
+                bar.finish_and_clear();
+                return Err(failure);
+            }
+            Err(failure) => {
+                bar.suspend(|| say(&failure));
+                failures.push(failure);
+            }
+        }
+    }
+    bar.finish_and_clear();
+    match summaries.as_slice() {
+        [] => {}
+        [only] if jobs.len() == 1 => print(true, only, String::new)?,
+        several => print(true, &several, String::new)?,
+    }
+    match failures.len() {
+        0 => Ok(()),
+        failed => Err(Failure::SomeFailed {
+            failed,
+            all: jobs.len(),
+        }),
+    }
+}
+
+/// Builds and writes one mesh; `show` is told the stage and the part done.
+fn build_one(
+    job: &Job,
+    arguments: &BuildArguments,
+    show: impl Fn(&str, f32),
+) -> Result<BuildSummary, Failure> {
+    show("reading", 0.0);
+    let source = mesh_file::read(&job.input)?;
     let mut options = BuildOptions {
         enclose: !arguments.no_enclose,
         max_error: arguments.max_error,
@@ -163,25 +257,26 @@ fn build(arguments: &BuildArguments) -> Result<(), Failure> {
     if arguments.primitives.is_some() || arguments.max_error.is_some() {
         options.primitives = arguments.primitives.map(|n| n as usize);
     }
-    let bar = ProgressBar::new(BAR_STEPS);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg} {elapsed}") {
-        bar.set_style(style);
-    }
-    let built = MedialMesh::from_trimesh_with_progress(
+    let (mesh, report) = MedialMesh::from_trimesh_with_progress(
         &source.vertices,
         &source.indices,
         &options,
         &mut |progress| {
-            bar.set_message(progress.stage);
-            bar.set_position((progress.fraction * BAR_STEPS as f32) as u64);
-            ControlFlow::Continue(())
+            show(progress.stage, progress.fraction);
+            match STOP.load(Ordering::Relaxed) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
         },
-    );
-    bar.finish_and_clear();
-    let (mesh, report) = built?;
-    mesh.save_ma(&arguments.output)?;
+    )?;
+    if job.output.extension().is_some_and(|e| e == "medial") {
+        mesh.save_asset(&job.output)?;
+    } else {
+        mesh.save_ma(&job.output)?;
+    }
     let side = report.longest_side;
-    let summary = BuildSummary {
+    Ok(BuildSummary {
+        output: job.output.clone(),
         vertices: source.vertices.len(),
         triangles: source.indices.len(),
         mesh: describe(&mesh),
@@ -192,32 +287,28 @@ fn build(arguments: &BuildArguments) -> Result<(), Failure> {
         longest_side: side,
         notes: report.notes,
         seconds: report.seconds,
-    };
-    print(arguments.json, &summary, || summary.text(&arguments.output))
+    })
 }
 
-/// Refuses, before minutes of work, an output that cannot be or must not be written.
-fn check_output(arguments: &BuildArguments) -> Result<(), Failure> {
-    let output = &arguments.output;
-    let directory = match output.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    if !directory.is_dir() {
-        return Err(Failure::NoDirectory(directory.to_owned()));
+/// Reads a baked mesh or a `.ma` file, by its first bytes. What cannot be opened is left to the reader to
+/// report.
+fn load(path: &Path) -> Result<MedialMesh, MeshError> {
+    let mut start = [0; asset::MAGIC.len()];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    if read.is_ok() && start == asset::MAGIC {
+        MedialMesh::load_asset(path)
+    } else {
+        MedialMesh::load_ma(path)
     }
-    let same = match (output.canonicalize(), arguments.input.canonicalize()) {
-        (Ok(output), Ok(input)) => output == input,
-        _ => false,
-    };
-    if same {
-        return Err(Failure::OverInput(output.clone()));
-    }
-    Ok(())
+}
+
+fn bake(arguments: &BakeArguments) -> Result<(), Failure> {
+    jobs::check_output(&arguments.input, &arguments.output)?;
+    Ok(load(&arguments.input)?.save_asset(&arguments.output)?)
 }
 
 fn info(arguments: &InfoArguments) -> Result<(), Failure> {
-    let mesh = MedialMesh::load_ma(&arguments.mesh)?;
+    let mesh = load(&arguments.mesh)?;
     let errors = match &arguments.against {
         Some(path) => Some(measure(&mesh, &mesh_file::read(path)?)?),
         None => None,
@@ -293,10 +384,10 @@ impl Errors {
 }
 
 impl BuildSummary {
-    fn text(&self, output: &Path) -> String {
+    fn text(&self) -> String {
         let mut text = format!(
             "{} from {} vertices, {} triangles\n{}{}",
-            output.display(),
+            self.output.display(),
             self.vertices,
             self.triangles,
             self.mesh.text(),

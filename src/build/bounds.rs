@@ -134,6 +134,13 @@ impl Bounds {
         x * x + y * y + z * z
     }
 
+    /// Distance to the box's farthest corner.
+    pub fn farthest(&self, p: Point) -> f64 {
+        let (lo, hi) = (p - self.lo, self.hi - p);
+        let far = |l: f64, h: f64| l.abs().max(h.abs());
+        Point::new(far(lo.x, hi.x), far(lo.y, hi.y), far(lo.z, hi.z)).length()
+    }
+
     /// Distance to the box, or minus the depth below its nearest face when inside.
     #[inline]
     pub fn signed_distance(&self, p: Point) -> f64 {

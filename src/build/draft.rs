@@ -77,6 +77,17 @@ impl Draft {
         primitives
     }
 
+    /// Both drafts in one.
+    pub fn and(mut self, other: Self) -> Self {
+        let first = self.balls.len() as u32;
+        self.balls.extend(other.balls);
+        let edges = other.edges.into_iter().map(|e| e.map(|v| v + first));
+        self.edges.extend(edges);
+        let faces = other.faces.into_iter().map(|f| f.map(|v| v + first));
+        self.faces.extend(faces);
+        self
+    }
+
     /// The balls of a primitive.
     #[inline]
     pub fn balls_of(&self, corners: Corners) -> [Ball; 3] {

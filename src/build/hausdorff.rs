@@ -66,11 +66,10 @@ pub fn hausdorff(
     vertices: &[Vector],
     indices: &[[u32; 3]],
 ) -> Result<Hausdorff, BuildError> {
-    let surface = Surface::new(vertices, indices)?;
-    let tree = TriangleTree::new(surface.all_corners());
-    let draft = Draft::from_medial_mesh(mesh, &surface.frame);
     let mut proceed = |_: Progress| ControlFlow::Continue(());
     let mut watch = Watch::new(&mut proceed);
+    let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;
+    let draft = Draft::from_medial_mesh(mesh, &surface.frame);
     let measured = measure(&surface, &tree, &draft, &mut watch)?;
     Ok(in_unit(measured, surface.frame.scale))
 }
@@ -269,7 +268,8 @@ impl FromSource<'_> {
         };
         let leaves = |way: f64, towards: Point| self.solid.is_out(p + towards * way, self.hint);
         if leaves(-signed, outward) {
-            return Look::Distance(-signed);
+            let enclosed = -signed > best && self.is_enclosed(p, normal);
+            return Look::Distance(if enclosed { 0.0 } else { -signed });
         }
         if allowed >= -signed && (leaves(allowed, normal) || leaves(allowed, outward)) {
             return Look::Settled;
@@ -280,12 +280,16 @@ impl FromSource<'_> {
         if way <= best * (1.0 + 1e-6) {
             return Look::Distance(way);
         }
-        let outside = p + normal * OFF_SURFACE;
-        if self.tree.winding(outside) > 0.5 {
+        if self.is_enclosed(p, normal) {
             Look::Distance(0.0)
         } else {
             Look::Distance(self.solid.nearest_exit(p, way))
         }
+    }
+
+    /// Whether the surface point `p` lies inside matter that the source bounds.
+    fn is_enclosed(&self, p: Point, normal: Point) -> bool {
+        self.tree.winding(p + normal * OFF_SURFACE) > 0.5
     }
 }
 

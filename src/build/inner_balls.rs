@@ -30,38 +30,53 @@ const INSIDE: f64 = 0.5;
 /// dozen, and exact predicates then cost twenty times more; the shift is far below any error.
 const JITTER: f64 = 1e-7;
 
-/// Delaunay tetrahedra of the samples.
-pub fn tetrahedra(samples: &[Sample], watch: &mut Watch) -> Result<Delaunay, BuildError> {
+/// The samples' points, each shifted a little; the same in every call.
+fn shifted(samples: &[Sample]) -> Vec<Point> {
     let mut random = Random::new(4);
     let mut shift = || JITTER * (random.unit() - 0.5);
-    let points: Vec<Point> = samples
+    samples
         .iter()
         .map(|s| s.point + Point::new(shift(), shift(), shift()))
-        .collect();
+        .collect()
+}
+
+/// Delaunay tetrahedra of the samples.
+pub fn tetrahedra(samples: &[Sample], watch: &mut Watch) -> Result<Delaunay, BuildError> {
+    let points = shifted(samples);
     Delaunay::with_tick(&points, |done| watch.at(done as f64 / points.len() as f64))
 }
 
-/// The initial medial mesh.
+/// The initial medial mesh, and whether each sample is touched by one of its balls. Without
+/// `votes` the winding number decides everywhere: where patches overlap, or two layers lie nearer
+/// to each other than samples do, a ball touches samples of either, and normals mislead.
 pub fn inner_balls(
     samples: &[Sample],
     delaunay: &Delaunay,
     tree: &TriangleTree,
+    votes: bool,
     watch: &mut Watch,
-) -> Result<Draft, BuildError> {
+) -> Result<(Draft, Vec<bool>), BuildError> {
+    let points = shifted(samples);
     let bounds = Bounds::of(samples.iter().map(|s| s.point));
     let mut draft = Draft::default();
     let mut ball_of = vec![NONE; delaunay.tetrahedra.len()];
+    let mut touched = vec![false; samples.len()];
     for (t, corners) in delaunay.tetrahedra.iter().enumerate() {
-        if t % 4096 == 0 {
+        if t % 1024 == 0 {
             watch.at(t as f64 / delaunay.tetrahedra.len() as f64)?;
         }
-        let corners = corners.map(|v| samples[v as usize]);
-        let Some(ball) = circumsphere(corners.map(|s| s.point)) else {
+        // Of the points that the tetrahedra are of: on a flat triangle the samples themselves lie in
+        // a plane, and their sphere would be any.
+        let Some(ball) = circumsphere(corners.map(|v| points[v as usize])) else {
             continue;
         };
-        if bounds.distance_sq(ball.center) == 0.0 && is_inside(&ball, corners, tree) {
+        let around = corners.map(|v| samples[v as usize]);
+        let voted = if votes { vote(&ball, around) } else { None };
+        let inside = || voted.unwrap_or_else(|| tree.winding(ball.center) > INSIDE);
+        if bounds.distance_sq(ball.center) == 0.0 && inside() {
             ball_of[t] = draft.balls.len() as u32;
             draft.balls.push(ball);
+            corners.iter().for_each(|&v| touched[v as usize] = true);
         }
     }
     for (t, neighbors) in delaunay.neighbors.iter().enumerate() {
@@ -81,7 +96,7 @@ pub fn inner_balls(
             }
         }
     }
-    Ok(draft)
+    Ok((draft, touched))
 }
 
 /// The sphere through four points, unless they lie in a plane.
@@ -100,7 +115,8 @@ fn circumsphere([a, b, c, d]: [Point; 4]) -> Option<Ball> {
     })
 }
 
-fn is_inside(ball: &Ball, corners: [Sample; 4], tree: &TriangleTree) -> bool {
+/// Whether the ball is inside, as its samples' normals say if they agree.
+fn vote(ball: &Ball, corners: [Sample; 4]) -> Option<bool> {
     let (mut inside, mut outside) = (0, 0);
     for sample in corners {
         let cosine = (ball.center - sample.point).dot(sample.normal) / ball.radius;
@@ -108,9 +124,9 @@ fn is_inside(ball: &Ball, corners: [Sample; 4], tree: &TriangleTree) -> bool {
         outside += usize::from(cosine > VOTE);
     }
     match (inside, outside) {
-        (3.., 0) => true,
-        (0, 3..) => false,
-        _ => tree.winding(ball.center) > INSIDE,
+        (3.., 0) => Some(true),
+        (0, 3..) => Some(false),
+        _ => None,
     }
 }
 

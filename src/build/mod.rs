@@ -5,17 +5,24 @@ mod chunks;
 mod complex;
 pub mod delaunay;
 mod draft;
+mod edges;
 mod enclose;
+mod fast_hash;
+mod findings;
 mod fit;
 pub mod hausdorff;
 mod inner_balls;
 mod insert;
 mod insertion_order;
 mod least_squares;
+mod mass;
 mod measured;
 pub mod mesh_file;
+mod openings;
 mod options;
 mod orient;
+mod parts;
+mod patches;
 mod pipeline;
 mod primitive_tree;
 mod quadric;
@@ -23,25 +30,29 @@ mod random;
 mod refit;
 mod residuals;
 mod samples;
+mod sheets;
 mod simplify;
 mod solid;
+mod start;
 mod subdivide;
 mod surface;
 mod swaps;
 mod triangle_tree;
 mod watch;
+mod weld;
 
+pub use findings::{Findings, MassSource};
 pub use options::{BuildOptions, BuildReport, Hausdorff, Progress, Quality};
 
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
 use hausdorff::in_unit;
+use mass::mass_properties;
 use options::Limits;
 use pipeline::Source;
 use std::ops::ControlFlow;
 use surface::Surface;
-use triangle_tree::TriangleTree;
 use watch::Watch;
 
 impl MedialMesh {
@@ -67,22 +78,26 @@ impl MedialMesh {
         let limits = Limits::new(options)?;
         let mut watch = Watch::new(progress);
         watch.begin("surface")?;
-        let surface = Surface::new(vertices, indices)?;
-        let tree = TriangleTree::new(surface.all_corners());
-        let source = Source {
+        let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;
+        let mut source = Source {
             surface,
             tree,
             limits,
         };
         let candidate = source.best_candidate(&mut watch)?;
-        let frame = source.surface.frame;
-        let mut mesh = candidate.draft.to_medial_mesh(&frame)?;
-        if let Some(mass) = source.surface.mass_properties() {
+        let target_reached = candidate.keeps(source.limits.max_error);
+        watch.begin("mass")?;
+        let surface = source.surface;
+        let (mass, mass_source) = mass_properties(&surface, &mut watch)?;
+        let mut mesh = candidate.draft.to_medial_mesh(&surface.frame)?;
+        if let Some(mass) = mass {
             mesh = mesh.with_mass_properties(mass);
         }
-        let target_reached = candidate.keeps(source.limits.max_error);
-        let mut notes = source.surface.notes;
+        let mut findings = surface.findings;
+        findings.mass = mass_source;
+        let mut notes = findings.notes();
         notes.extend(candidate.notes);
+        let frame = surface.frame;
         let report = BuildReport {
             hausdorff: in_unit(candidate.hausdorff, frame.scale),
             hausdorff_before_enclosure: candidate.before.map(|h| in_unit(h, frame.scale)),
@@ -91,6 +106,7 @@ impl MedialMesh {
             euler: mesh.spheres().len() as i64 - mesh.edges().len() as i64
                 + mesh.faces().len() as i64,
             target_reached,
+            findings,
             notes,
             seconds: watch.finish()?,
         };

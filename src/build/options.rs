@@ -1,5 +1,6 @@
 //! What a build is asked for, and what it reports.
 
+use super::findings::Findings;
 use crate::error::BuildError;
 use crate::math::Real;
 
@@ -88,7 +89,9 @@ pub struct BuildReport {
     pub euler: i64,
     /// Whether the result keeps every limit asked for. The count is always kept.
     pub target_reached: bool,
-    /// What was found in the input and what was done about it.
+    /// What was found in the input and what was done about it, counted.
+    pub findings: Findings,
+    /// The same in words, and which limit bound.
     pub notes: Vec<String>,
     /// Seconds per stage, in order.
     pub seconds: Vec<(&'static str, f64)>,

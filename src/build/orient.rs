@@ -1,198 +1,198 @@
-//! Which way the triangles of a surface face, and whether it is closed.
+//! Patches of a surface: triangles joined across edges of two, each patch turned to face one way.
 //!
-//! Two triangles that share an edge agree when they use it in opposite directions. A surface whose
-//! triangles agree keeps its orientation, for a shell turned inward is how a cavity is written;
-//! otherwise each shell is made to agree by flooding across its edges and turned outward. A closed
-//! shell faces inward when its signed volume is negative (divergence theorem: the sum of
-//! `a · (b × c) / 6`).
+//! Two triangles that share an edge agree when they use it in opposite directions. Within a patch
+//! the majority decides; which side of a patch is outside is for `patches` to find out.
+//!
+//! An edge of more than two triangles does not say who belongs together. But a fin on a body leaves
+//! the body whole: patches that end somewhere are taken away, and where two triangles of an edge
+//! are then left, they join.
 
 use super::bounds::Point;
-use super::triangle_tree::solid_angle_of;
+use super::edges::{Edges, Shells, Use};
+use super::findings::Findings;
+use super::watch::Watch;
+use crate::error::BuildError;
 
-/// What [`orient`] found.
-pub struct Orientation {
-    /// Edges of one triangle.
-    pub open_edges: usize,
-    /// Edges of more than two triangles.
-    pub crowded_edges: usize,
-    /// Edges, of two triangles or more, that stay used more often in one direction.
-    pub unbalanced_edges: usize,
-    /// Triangles turned round.
-    pub turned: usize,
-    /// Signed volume after turning.
+/// Triangles joined across edges of two.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Patch {
+    /// It uses each of its edges an even number of times: it ends nowhere.
+    pub closed: bool,
+    /// Its triangles cannot all face the same way.
+    pub twisted: bool,
+    /// Signed volume about the origin; means something where the patch is closed.
     pub volume: f64,
+    /// Sum of its triangles' areas.
+    pub area: f64,
+    /// How many triangles it has.
+    pub triangles: usize,
+    /// How many of them were turned round.
+    pub turned: usize,
 }
 
-impl Orientation {
-    /// What a user should know about it.
-    pub fn notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
-        let mut say = |count: usize, what: &str| {
-            if count > 0 {
-                notes.push(format!("{count} {what}"));
-            }
-        };
-        say(self.open_edges, "open edges (edges of one triangle)");
-        say(
-            self.crowded_edges,
-            "non-manifold edges (edges of more than two triangles)",
-        );
-        say(
-            self.unbalanced_edges,
-            "edges whose triangles cannot be made to face the same way",
-        );
-        say(self.turned, "triangles turned to face outward");
-        notes
-    }
+/// All patches, and what of them ends where.
+pub struct Patches {
+    /// The patch of each triangle.
+    pub of: Vec<u32>,
+    /// In order of their first triangles.
+    pub list: Vec<Patch>,
+    /// Edges of one triangle: their vertices, and their patches.
+    pub open_edges: Vec<([u32; 2], u32)>,
 }
 
-/// One use of an edge by a triangle.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Use {
-    lo: u32,
-    hi: u32,
-    triangle: u32,
-    forward: bool,
-}
-
-/// A neighbour across an edge, and whether both use the edge in the same direction.
-type Neighbor = (u32, bool);
-
-/// Turns triangles so that neighbours agree and closed shells face outward.
-pub fn orient(vertices: &[Point], triangles: &mut [[u32; 3]]) -> Orientation {
-    let uses = sorted_uses(triangles);
-    let neighbors = neighbors(triangles.len(), &uses);
-    let agree = neighbors.iter().flatten().all(|n| !n.1);
-    let (shell, shells, turn) = flood(&neighbors, !agree);
-    let mut turned = 0;
-    let mut flip = |t: &mut [u32; 3]| {
-        t.swap(1, 2);
-        turned += 1;
-    };
-    for (t, &turn) in triangles.iter_mut().zip(&turn) {
-        if turn {
-            flip(t);
-        }
-    }
-    let mut volumes = vec![0.0; shells];
-    for (t, &s) in triangles.iter().zip(&shell) {
-        volumes[s as usize] += signed_volume(vertices, t);
-    }
-    if agree && volumes.iter().sum::<f64>() < 0.0 {
-        triangles.iter_mut().for_each(&mut flip);
-        volumes.iter_mut().for_each(|v| *v = -*v);
-    }
-    let inward: Vec<bool> = if agree {
-        inverted_shells(vertices, triangles, &shell, &volumes)
-    } else {
-        volumes.iter().map(|&v| v < 0.0).collect()
-    };
-    for (t, &s) in triangles.iter_mut().zip(&shell) {
-        if inward[s as usize] {
-            flip(t);
-        }
-    }
-    let uses = sorted_uses(triangles);
-    let edges = || uses.chunk_by(|a, b| (a.lo, a.hi) == (b.lo, b.hi));
-    let unbalanced =
-        |e: &[Use]| e.len() > 1 && 2 * e.iter().filter(|u| u.forward).count() != e.len();
-    Orientation {
-        open_edges: edges().filter(|e| e.len() == 1).count(),
-        crowded_edges: edges().filter(|e| e.len() > 2).count(),
-        unbalanced_edges: edges().filter(|e| unbalanced(e)).count(),
-        turned,
-        volume: triangles.iter().map(|t| signed_volume(vertices, t)).sum(),
-    }
-}
-
-fn sorted_uses(triangles: &[[u32; 3]]) -> Vec<Use> {
-    let mut uses: Vec<Use> = triangles
-        .iter()
-        .enumerate()
-        .flat_map(|(i, &[a, b, c])| {
-            [(a, b), (b, c), (c, a)].map(|(u, v)| Use {
-                lo: u.min(v),
-                hi: u.max(v),
-                triangle: i as u32,
-                forward: u < v,
-            })
-        })
-        .collect();
-    uses.sort_unstable();
-    uses
-}
-
-/// Neighbours across edges of exactly two triangles: a crowded edge does not say who belongs
-/// together.
-fn neighbors(triangles: usize, uses: &[Use]) -> Vec<Vec<Neighbor>> {
-    let mut neighbors = vec![Vec::new(); triangles];
-    for edge in uses.chunk_by(|a, b| (a.lo, a.hi) == (b.lo, b.hi)) {
-        if let [u, v] = edge {
-            let same = u.forward == v.forward;
-            neighbors[u.triangle as usize].push((v.triangle, same));
-            neighbors[v.triangle as usize].push((u.triangle, same));
-        }
-    }
-    neighbors
-}
-
-/// Shell of each triangle, number of shells, and (when asked) which triangles to turn so that
-/// they agree with the first of their shell.
-fn flood(neighbors: &[Vec<Neighbor>], turning: bool) -> (Vec<u32>, usize, Vec<bool>) {
-    let mut shell = vec![u32::MAX; neighbors.len()];
-    let mut turn = vec![false; neighbors.len()];
-    let mut shells = 0;
-    let mut waiting = Vec::new();
-    for first in 0..neighbors.len() {
-        if shell[first] != u32::MAX {
-            continue;
-        }
-        shell[first] = shells;
-        waiting.push(first);
-        while let Some(t) = waiting.pop() {
-            for &(other, same) in &neighbors[t] {
-                let other = other as usize;
-                if shell[other] == u32::MAX {
-                    shell[other] = shells;
-                    turn[other] = turning && (turn[t] != same);
-                    waiting.push(other);
-                }
-            }
-        }
-        shells += 1;
-    }
-    (shell, shells as usize, turn)
-}
-
-/// Shells of negative volume that no other shell encloses: not cavities but shells inside out.
-fn inverted_shells(
+/// Finds the patches, and turns triangles so that each patch faces one way.
+pub fn orient(
     vertices: &[Point],
-    triangles: &[[u32; 3]],
-    shell: &[u32],
-    volumes: &[f64],
-) -> Vec<bool> {
-    let mut inverted = vec![false; volumes.len()];
-    for (index, &volume) in volumes.iter().enumerate() {
-        if volume >= 0.0 {
-            continue;
+    triangles: &mut [[u32; 3]],
+    findings: &mut Findings,
+    watch: &mut Watch,
+) -> Result<Patches, BuildError> {
+    let edges = Edges::new(vertices.len(), triangles, watch)?;
+    let mut shells = Shells::new(triangles.len());
+    // Per root of a shell.
+    let mut open = vec![false; triangles.len()];
+    let mut twisted: Vec<usize> = Vec::new();
+    let mut single: Vec<([u32; 2], usize)> = Vec::new();
+    let mut crowded: Vec<&[Use]> = Vec::new();
+    for (i, (ends, uses)) in edges.iter().enumerate() {
+        watch.every(i)?;
+        match uses {
+            [only] => single.push((ends, only.triangle())),
+            [a, b] if !shells.join(a, b) => twisted.push(a.triangle()),
+            [_, _] => {}
+            _ => crowded.push(uses),
         }
-        let Some(own) = shell.iter().position(|&s| s as usize == index) else {
-            continue;
-        };
-        let p = vertices[triangles[own][0] as usize];
-        let winding: f64 = triangles
-            .iter()
-            .zip(shell)
-            .filter(|&(_, &s)| s as usize != index)
-            .map(|(t, _)| solid_angle_of(p, &t.map(|v| vertices[v as usize])))
-            .sum::<f64>()
-            / (4.0 * std::f64::consts::PI);
-        inverted[index] = winding < 0.5;
     }
-    inverted
+    findings.edges_open = single.len();
+    findings.edges_crowded = crowded.len();
+    for &(_, triangle) in &single {
+        open[shells.find(triangle).0] = true;
+    }
+    strip(&crowded, &mut shells, &mut open, watch)?;
+    for (i, uses) in crowded.iter().enumerate() {
+        watch.every(i)?;
+        let mut whole = uses.iter().filter(|u| !open[shells.find(u.triangle()).0]);
+        let pair = (whole.next(), whole.next(), whole.next());
+        drop(whole);
+        if let (Some(a), Some(b), None) = pair
+            && !shells.join(a, b)
+        {
+            twisted.push(a.triangle());
+        }
+    }
+    findings.edges_twisted = twisted.len();
+    let (of, mut list) = number(&mut shells, vertices, triangles, watch)?;
+    findings.patches = list.len();
+    for triangle in twisted {
+        list[of[triangle] as usize].twisted = true;
+    }
+    let mut users: Vec<u32> = Vec::new();
+    for (i, (_, uses)) in edges.iter().enumerate() {
+        watch.every(i)?;
+        users.clear();
+        users.extend(uses.iter().map(|u| of[u.triangle()]));
+        users.sort_unstable();
+        for own in users
+            .chunk_by(|a, b| a == b)
+            .filter(|own| own.len() % 2 == 1)
+        {
+            list[own[0] as usize].closed = false;
+        }
+    }
+    let patch_of = |(ends, triangle): ([u32; 2], usize)| (ends, of[triangle]);
+    Ok(Patches {
+        open_edges: single.into_iter().map(patch_of).collect(),
+        of,
+        list,
+    })
 }
 
-fn signed_volume(vertices: &[Point], t: &[u32; 3]) -> f64 {
-    let [a, b, c] = t.map(|v| vertices[v as usize]);
-    a.dot(b.cross(c)) / 6.0
+/// Marks as open the shells that end at crowded edges once the open ones are away, and so on.
+fn strip(
+    crowded: &[&[Use]],
+    shells: &mut Shells,
+    open: &mut [bool],
+    watch: &mut Watch,
+) -> Result<(), BuildError> {
+    let mut touching: Vec<(usize, usize)> = Vec::new();
+    // Uses of each edge by shells that are not open.
+    let mut left = vec![0usize; crowded.len()];
+    let mut waiting: Vec<usize> = Vec::new();
+    for (edge, uses) in crowded.iter().enumerate() {
+        watch.every(edge)?;
+        let shells_of = uses.iter().map(|u| shells.find(u.triangle()).0);
+        for shell in shells_of {
+            touching.push((shell, edge));
+            left[edge] += usize::from(!open[shell]);
+        }
+        if left[edge] == 1 {
+            waiting.push(edge);
+        }
+    }
+    touching.sort_unstable();
+    let mut steps = 0;
+    while let Some(edge) = waiting.pop() {
+        let last = crowded[edge].iter().map(|u| shells.find(u.triangle()).0);
+        let Some(shell) = last.into_iter().find(|&s| !open[s]) else {
+            continue;
+        };
+        open[shell] = true;
+        let first = touching.partition_point(|t| t.0 < shell);
+        for &(_, edge) in touching[first..].iter().take_while(|t| t.0 == shell) {
+            watch.every(steps)?;
+            steps += 1;
+            left[edge] -= 1;
+            if left[edge] == 1 {
+                waiting.push(edge);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Numbers the shells, turns the minority of each, and sums up areas and volumes.
+fn number(
+    shells: &mut Shells,
+    vertices: &[Point],
+    triangles: &mut [[u32; 3]],
+    watch: &mut Watch,
+) -> Result<(Vec<u32>, Vec<Patch>), BuildError> {
+    let mut number_of = vec![u32::MAX; triangles.len()];
+    let mut of = Vec::with_capacity(triangles.len());
+    let mut odd = Vec::with_capacity(triangles.len());
+    // Triangles that face against the root, and those that face with it.
+    let mut votes: Vec<[usize; 2]> = Vec::new();
+    for t in 0..triangles.len() {
+        watch.every(t)?;
+        let (root, against) = shells.find(t);
+        let patch = &mut number_of[root];
+        if *patch == u32::MAX {
+            *patch = votes.len() as u32;
+            votes.push([0; 2]);
+        }
+        votes[*patch as usize][usize::from(!against)] += 1;
+        of.push(*patch);
+        odd.push(against);
+    }
+    let mut list = vec![
+        Patch {
+            closed: true,
+            ..Default::default()
+        };
+        votes.len()
+    ];
+    for (t, triangle) in triangles.iter_mut().enumerate() {
+        watch.every(t)?;
+        let patch = of[t] as usize;
+        let [against, with] = votes[patch];
+        list[patch].triangles += 1;
+        if odd[t] != (against > with) {
+            triangle.swap(1, 2);
+            list[patch].turned += 1;
+        }
+        let [a, b, c] = triangle.map(|v| vertices[v as usize]);
+        list[patch].volume += a.dot(b.cross(c)) / 6.0;
+        list[patch].area += 0.5 * (b - a).cross(c - a).length();
+    }
+    Ok((of, list))
 }

@@ -1,21 +1,17 @@
 //! The pipeline: from a checked surface to the best draft that the limits allow, stage by stage.
 
-use super::bounds::Point;
-use super::draft::{Ball, Draft};
+use super::draft::Draft;
 use super::enclose::enclose;
 use super::fit::{self, Collapsed};
 use super::hausdorff::measure;
-use super::inner_balls::{inner_balls, tetrahedra};
 use super::options::{Hausdorff, Limits, Quality};
-use super::samples::blue_noise;
-use super::simplify::{BOUNDARY_WEIGHT_SHEET, BOUNDARY_WEIGHT_SOLID, Simplifier};
+use super::parts::Parts;
+use super::simplify::Simplifier;
+use super::start::{Start, start};
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
 use crate::error::BuildError;
-
-/// Half-thickness of the sheets that an open surface is built from (longest side 1).
-const SHEET: f64 = 1e-3;
 
 /// Counts tried when the error is the limit shrink by this factor from one to the next.
 const LADDER: f64 = 0.8;
@@ -52,81 +48,42 @@ pub struct Source {
 }
 
 impl Source {
-    /// Builds from the inside; where the surface is open or has no inside, from sheets as well, and
-    /// keeps the better.
-    pub fn best_candidate(&self, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let inner = self.inner_draft(watch)?;
-        let mut solid = None;
-        if !inner.balls.is_empty() {
-            let candidate = self.candidate(inner, BOUNDARY_WEIGHT_SOLID, watch)?;
-            if self.surface.closed {
-                return Ok(candidate);
-            }
-            solid = Some(candidate);
-        }
-        let mut sheets = self.candidate(self.sheets(), BOUNDARY_WEIGHT_SHEET, watch)?;
-        let thickness = 2.0 * SHEET * self.surface.frame.scale;
-        let reason = match solid {
-            Some(_) => "the surface is open",
-            None => "no ball fits inside the surface",
-        };
-        let note = format!("{reason}: built as sheets, {thickness:.3e} thick before enclosure");
-        sheets.notes.push(note);
-        let better = |s: &Candidate| s.error() <= sheets.error();
-        Ok(solid.filter(better).unwrap_or(sheets))
-    }
-
-    /// The medial mesh of all balls inside.
-    fn inner_draft(&self, watch: &mut Watch) -> Result<Draft, BuildError> {
-        watch.begin("samples")?;
+    /// Balls inside where the surface bounds matter, slabs where it is a sheet.
+    pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
         let count = self.limits.samples(self.surface.area);
-        let samples = blue_noise(&self.surface, count, watch)?;
-        watch.begin("delaunay")?;
-        let delaunay = tetrahedra(&samples, watch)?;
-        watch.begin("inner balls")?;
-        inner_balls(&samples, &delaunay, &self.tree, watch)
-    }
-
-    /// The surface itself as thin slabs.
-    fn sheets(&self) -> Draft {
-        let ball = |&center: &Point| Ball {
-            center,
-            radius: SHEET,
-        };
-        Draft {
-            balls: self.surface.vertices.iter().map(ball).collect(),
-            edges: Vec::new(),
-            faces: self.surface.triangles.clone(),
-        }
+        let mut findings = std::mem::take(&mut self.surface.findings);
+        let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
+        self.surface.findings = findings;
+        self.candidate(start, watch)
     }
 
     /// Simplifies and fits to the limits, encloses and measures.
-    fn candidate(
-        &self,
-        draft: Draft,
-        boundary_weight: f64,
-        watch: &mut Watch,
-    ) -> Result<Candidate, BuildError> {
+    fn candidate(&self, start: Start, watch: &mut Watch) -> Result<Candidate, BuildError> {
         watch.begin("simplify")?;
-        let mut simplifier = Simplifier::new(draft, boundary_weight, &self.tree, watch)?;
+        let mut parts = Parts::new(start, &self.tree, watch)?;
         let most = self.limits.primitives.unwrap_or(usize::MAX);
-        let mut candidate = match (self.limits.max_error, self.limits.quality) {
-            (Some(error), _) => {
-                simplifier.reduce_to(most, watch)?;
-                self.coarsest(&mut simplifier, error, watch)?
-            }
-            (None, Quality::Fast) => {
-                simplifier.reduce_to(most, watch)?;
-                self.finish(simplifier.draft(), watch)?
-            }
-            (None, quality) => self.fitted(&mut simplifier, most, quality, watch)?,
+        let mut candidate = if let Some(error) = self.limits.max_error {
+            parts.reduce_to(most, watch)?;
+            self.coarsest(&mut parts, error, watch)?
+        } else if let Some(simplifier) = self.fittable(&mut parts) {
+            self.fitted(simplifier, most, watch)?
+        } else {
+            parts.reduce_to(most, watch)?;
+            self.finish(parts.draft(), watch)?
         };
-        if simplifier.broke_topology() {
+        if parts.broke_topology() {
             candidate
                 .notes
                 .push("holes or parts were given up to reach the count".into());
         }
         Ok(candidate)
+    }
+
+    /// The simplifier of what a fit can improve: solids without sheets or overlaps, whose surface
+    /// tells inside from outside at each point.
+    fn fittable<'p, 's>(&self, parts: &'p mut Parts<'s>) -> Option<&'p mut Simplifier<'s>> {
+        let wanted = self.limits.quality > Quality::Fast && self.surface.simple;
+        parts.only_solid().filter(|_| wanted)
     }
 
     /// The best of the plain collapse, the balanced fit and, if asked for, the best fit, by the
@@ -135,7 +92,6 @@ impl Source {
         &self,
         simplifier: &mut Simplifier,
         most: usize,
-        quality: Quality,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
         let collapsed = Collapsed::new(simplifier, most, watch)?;
@@ -147,7 +103,7 @@ impl Source {
         if !clear {
             candidates.push(collapsed.plain.clone());
         }
-        if quality == Quality::Best {
+        if self.limits.quality == Quality::Best {
             let (draft, score) = fit::best(balanced.clone(), &collapsed, &target, most, watch)?;
             if score < balanced.1 {
                 candidates.push(draft);
@@ -168,7 +124,7 @@ impl Source {
 
     /// A rung of the ladder as the quality wants it: fitted where it is above [`Quality::Fast`].
     fn rung(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        if self.limits.quality == Quality::Fast {
+        if self.limits.quality == Quality::Fast || !self.surface.simple {
             return self.finish(draft, watch);
         }
         let target = fit::target(&self.surface, &self.tree, draft.primitives().len());
@@ -179,7 +135,7 @@ impl Source {
     /// The fewest primitives whose error is at most `max_error`, among counts in ratio [`LADDER`].
     fn coarsest(
         &self,
-        simplifier: &mut Simplifier,
+        simplifier: &mut Parts,
         max_error: f64,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {

@@ -24,6 +24,8 @@ pub struct Sample {
     pub point: Point,
     /// Unit normal; at vertices the mean of the triangles', weighted by their angles.
     pub normal: Point,
+    /// A triangle that it lies in.
+    pub triangle: u32,
 }
 
 /// About `count` samples: vertices first, so that corners are kept, then points of triangles.
@@ -64,7 +66,11 @@ pub fn even_samples(surface: &Surface, count: usize, random: &mut Random) -> Vec
             // The square root makes the point uniform over the triangle.
             let (s, t) = (random.unit().sqrt(), random.unit());
             let point = a * (1.0 - s) + b * (s * (1.0 - t)) + c * (s * t);
-            samples.push(Sample { point, normal });
+            samples.push(Sample {
+                point,
+                normal,
+                triangle: triangle as u32,
+            });
             next = share * (samples.len() as f64 + random.unit());
         }
     }
@@ -74,7 +80,7 @@ pub fn even_samples(surface: &Surface, count: usize, random: &mut Random) -> Vec
 /// One sample at each vertex, with the angle-weighted normal (Baerentzen and Aanaes 2005), whose
 /// sign tells inside from outside.
 pub fn vertex_samples(surface: &Surface) -> Vec<Sample> {
-    let mut normals = vec![Point::zero(); surface.vertices.len()];
+    let mut normals = vec![(Point::zero(), 0); surface.vertices.len()];
     for (t, (vertices, &normal)) in surface.triangles.iter().zip(&surface.normals).enumerate() {
         let corners = surface.corners(t);
         for k in 0..3 {
@@ -82,7 +88,7 @@ pub fn vertex_samples(surface: &Surface) -> Vec<Sample> {
             let v = corners[(k + 2) % 3] - corners[k];
             let angle = u.cross(v).length().atan2(u.dot(v));
             let sum = &mut normals[vertices[k] as usize];
-            *sum = *sum + normal * angle;
+            *sum = (sum.0 + normal * angle, t as u32);
         }
     }
     let used = |n: &Point| n.length_sq() > 0.0;
@@ -90,10 +96,11 @@ pub fn vertex_samples(surface: &Surface) -> Vec<Sample> {
         .vertices
         .iter()
         .zip(normals)
-        .filter(|(_, n)| used(n))
-        .map(|(&point, n)| Sample {
+        .filter(|(_, (n, _))| used(n))
+        .map(|(&point, (n, triangle))| Sample {
             point,
             normal: direction(n),
+            triangle,
         })
         .collect()
 }

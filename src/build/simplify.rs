@@ -30,6 +30,11 @@ const STABILITY_FLOOR: f64 = 0.3;
 /// nearly singular there and says nothing.
 const REACH: f64 = 3.0;
 
+/// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
+const BULGE: f64 = 0.2;
+/// Cosine of the angle between two faces at an edge below which one lies on the other.
+const FOLDED: f64 = 0.99;
+
 /// Weight of the planes that hold the medial mesh's boundary, for a solid and for thin sheets,
 /// whose boundary is the surface's own.
 pub const BOUNDARY_WEIGHT_SOLID: f64 = 0.1;
@@ -153,7 +158,14 @@ impl<'a> Simplifier<'a> {
             self.blocked.push(candidate);
             return;
         }
-        let (_, ball) = self.merge(a, b);
+        let (_, mut ball) = self.merge(a, b);
+        // On round bodies all planes agree on many balls, of which some reach far out of the solid.
+        if self
+            .tree
+            .any_within(ball.center, ball.radius * (1.0 - BULGE))
+        {
+            (_, ball) = self.cheapest(a, b, None);
+        }
         self.collapse(a, b, ball);
         self.progressed = true;
         self.push_around(a, |_| true);
@@ -232,22 +244,33 @@ impl<'a> Simplifier<'a> {
     pub(super) fn merge(&self, a: u32, b: u32) -> (f64, Ball) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
         let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let middle = Ball {
-            center: (ball_a.center + ball_b.center) * 0.5,
-            radius: 0.5 * (ball_a.radius + ball_b.radius),
-        };
+        let middle = middle(&ball_a, &ball_b);
         let length = (ball_b.center - ball_a.center).length();
         let near = |m: &Ball| (m.center - middle.center).length() <= REACH * length;
         let minimiser = quadric.minimiser(&middle);
-        let minimiser = minimiser.filter(|m| m.radius > 0.0 && near(m));
-        let (error, ball) = [ball_a, ball_b, middle]
+        self.cheapest(a, b, minimiser.filter(|m| m.radius > 0.0 && near(m)))
+    }
+
+    /// The cheapest of two balls, their middle and a fourth to merge the two into, and its cost.
+    fn cheapest(&self, a: u32, b: u32, minimiser: Option<Ball>) -> (f64, Ball) {
+        let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
+        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
+        let (error, ball) = [ball_a, ball_b, middle(&ball_a, &ball_b)]
             .into_iter()
             .chain(minimiser)
             .map(|ball| (quadric.error(&ball), ball))
             .min_by(|x, y| x.0.total_cmp(&y.0))
-            .unwrap_or((0.0, middle));
+            .unwrap_or((0.0, ball_a));
         let stability = stability(&ball_a, &ball_b).max(STABILITY_FLOOR);
         ((error + FLAT_COST) * stability * stability, ball)
+    }
+}
+
+/// The ball halfway between two.
+fn middle(a: &Ball, b: &Ball) -> Ball {
+    Ball {
+        center: (a.center + b.center) * 0.5,
+        radius: 0.5 * (a.radius + b.radius),
     }
 }
 
@@ -287,11 +310,30 @@ fn quadrics(
             match (opposite.next(), opposite.next()) {
                 (None, _) => add_dangling(complex, [a, b], boundary_weight, &mut quadrics),
                 (Some(c), None) => add_boundary(balls, [a, b, c], boundary_weight, &mut quadrics),
+                // The two sides of something flat meet at its outline. Slabs of a solid's medial
+                // mesh fold by chance only.
+                (Some(c), Some(d))
+                    if boundary_weight >= BOUNDARY_WEIGHT_SHEET && folds(balls, [a, b], [c, d]) =>
+                {
+                    add_boundary(balls, [a, b, c], boundary_weight, &mut quadrics);
+                }
                 _ => {}
             }
         }
     }
     Ok(quadrics)
+}
+
+/// Whether the faces `abc` and `abd` lie on each other, within a few degrees.
+fn folds(balls: &[Ball], ab: [u32; 2], cd: [u32; 2]) -> bool {
+    let at = |v: u32| balls[v as usize].center;
+    let [a, b] = ab.map(at);
+    let along = direction(b - a);
+    let inward = |v: u32| {
+        let from_a = at(v) - a;
+        direction(from_a - along * from_a.dot(along))
+    };
+    inward(cd[0]).dot(inward(cd[1])) > FOLDED
 }
 
 /// Boundary edge `ab` of the face `abc`: a plane across the face, facing away from `c`.

@@ -1,16 +1,15 @@
 //! The source surface: checked, welded, oriented, and brought to the builder's frame, in which its
 //! longest side is 1 and its box is centred at the origin.
 
-use super::bounds::{Bounds, Point, coordinate, direction};
-use super::orient;
+use super::bounds::{Bounds, Point, direction};
+use super::findings::Findings;
+use super::orient::{Patches, orient};
+use super::patches::{Kind, judge};
+use super::triangle_tree::TriangleTree;
+use super::watch::Watch;
+use super::weld::{Welded, weld};
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
-use parry3d::mass_properties::MassProperties;
-use std::collections::HashMap;
-
-/// Vertices nearer than this are one (longest side 1). Well above the rounding of `f32` input,
-/// well below any error a build can reach; wider would close slits, narrower leaves seams open.
-const WELD: f64 = 1e-6;
 
 /// A triangle lower than this over its longest edge has no usable normal and no area that matters
 /// (longest side 1). It still closes the surface: it counts as a neighbour, not as a triangle.
@@ -34,6 +33,7 @@ impl Frame {
 
 /// A triangle mesh that the stages can rely on: finite, no needles, consistently oriented where
 /// that is possible.
+#[derive(Clone)]
 pub struct Surface {
     /// Welded vertices, in the builder's frame.
     pub vertices: Vec<Point>,
@@ -49,34 +49,41 @@ pub struct Surface {
     pub frame: Frame,
     /// Sum of the triangles' areas (longest side 1).
     pub area: f64,
-    /// Volume enclosed (longest side 1); meaningful when `closed`.
-    pub volume: f64,
-    /// Whether each edge is used as often in one direction as in the other.
-    pub closed: bool,
+    /// Whether each triangle is a sheet's, and bounds no matter.
+    pub sheet: Vec<bool>,
+    /// The patch of each triangle; see [`super::orient`].
+    pub patch_of: Vec<u32>,
+    /// Whether the triangles that are no sheet's close a volume without overlaps.
+    pub simple: bool,
     /// What was found and what was done about it.
-    pub notes: Vec<String>,
+    pub findings: Findings,
 }
 
 impl Surface {
-    /// Checks and cleans a triangle mesh given in the user's unit.
-    pub fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<Self, BuildError> {
-        check(vertices, indices)?;
+    /// Checks and cleans a triangle mesh given in the user's unit, and finds out what bounds matter
+    /// and what is a sheet; also gives the tree of its triangles, whose winding number counts only
+    /// what bounds matter.
+    pub fn new(
+        vertices: &[Vector],
+        indices: &[[u32; 3]],
+        watch: &mut Watch,
+    ) -> Result<(Self, TriangleTree), BuildError> {
+        check(vertices, indices, watch)?;
         let frame = frame_of(vertices, indices)?;
+        let mut findings = Findings::default();
         let entered: Vec<Point> = vertices.iter().map(|&v| frame.enter(v)).collect();
-        let (vertices, index_of, welded) = weld(&entered, indices);
-        let mut notes = Vec::new();
-        if vertices.len() < entered.len() {
-            let (from, to) = (entered.len(), vertices.len());
-            notes.push(format!("{from} vertices: {to} used and distinct"));
-        }
-        let mut triangles = distinct(indices, &index_of, &mut notes);
-        let orientation = orient::orient(&vertices, &mut triangles);
-        notes.extend(orientation.notes());
-        let has_area = |t: &[u32; 3]| height(corners(&vertices, t)) >= NEEDLE;
-        let (triangles, needles): (Vec<_>, Vec<_>) = triangles.into_iter().partition(has_area);
-        if !needles.is_empty() {
-            notes.push(format!("{} triangles without area ignored", needles.len()));
-        }
+        let Welded {
+            vertices,
+            mut triangles,
+            moved,
+        } = weld(&entered, indices, &mut findings, watch)?;
+        drop(entered);
+        let mut patches = orient(&vertices, &mut triangles, &mut findings, watch)?;
+        let area_of = |t: &[u32; 3]| height(corners(&vertices, t)) >= NEEDLE;
+        let mut keep = triangles.iter().map(area_of);
+        patches.of.retain(|_| keep.next().unwrap_or(false));
+        let (triangles, needles): (Vec<_>, Vec<_>) = triangles.into_iter().partition(area_of);
+        findings.triangles_without_area = needles.len();
         if triangles.is_empty() {
             let side = frame.scale;
             return Err(BuildError::ZeroSize {
@@ -86,22 +93,89 @@ impl Surface {
                 ),
             });
         }
-        let crosses = triangles
-            .iter()
-            .map(|t| cross(corners(&vertices, t)))
-            .collect::<Vec<_>>();
-        Ok(Self {
-            area: crosses.iter().map(|c| 0.5 * c.length()).sum(),
-            normals: crosses.into_iter().map(direction).collect(),
-            volume: orientation.volume,
-            closed: orientation.open_edges == 0 && orientation.unbalanced_edges == 0,
+        watch.at(0.5)?;
+        let crosses = triangles.iter().map(|t| cross(corners(&vertices, t)));
+        let (normals, areas): (Vec<Point>, Vec<f64>) =
+            crosses.map(|c| (direction(c), 0.5 * c.length())).unzip();
+        let mut surface = Self {
+            area: areas.iter().sum(),
+            normals,
             vertices,
             triangles,
             needles,
-            welded,
+            welded: moved,
             frame,
-            notes,
-        })
+            sheet: Vec::new(),
+            patch_of: Vec::new(),
+            simple: false,
+            findings,
+        };
+        let corners_of = |i: usize| surface.corners(i);
+        let mut tree = TriangleTree::new(surface.triangles.len(), corners_of, watch)?;
+        surface.sort(patches, &mut tree, watch)?;
+        Ok((surface, tree))
+    }
+
+    /// Has the patches judged, and takes down what came out.
+    fn sort(
+        &mut self,
+        mut patches: Patches,
+        tree: &mut TriangleTree,
+        watch: &mut Watch,
+    ) -> Result<(), BuildError> {
+        let mut findings = std::mem::take(&mut self.findings);
+        let kinds = judge(self, &mut patches, tree, &mut findings, watch)?;
+        let mut ends = vec![false; kinds.len()];
+        for &(_, patch) in &patches.open_edges {
+            ends[patch as usize] = true;
+        }
+        let mut simple = !findings.overlapping;
+        for ((patch, kind), ends) in patches.list.iter().zip(&kinds).zip(ends) {
+            match kind {
+                Kind::Solid => {
+                    findings.patches_solid += 1;
+                    findings.patches_mended += usize::from(ends);
+                    findings.patches_cavity += usize::from(patch.closed && patch.volume < 0.0);
+                    simple &= patch.closed && !patch.twisted;
+                }
+                Kind::Sheet => {
+                    findings.patches_sheet += 1;
+                    findings.patches_flat += usize::from(patch.closed);
+                }
+            }
+        }
+        self.simple = simple;
+        self.sheet = patches
+            .of
+            .iter()
+            .map(|&p| kinds[p as usize] == Kind::Sheet)
+            .collect();
+        self.patch_of = patches.of;
+        self.findings = findings;
+        Ok(())
+    }
+
+    /// The triangles that `wanted` says, as a surface of their own.
+    pub fn part(&self, wanted: impl Fn(usize) -> bool) -> Self {
+        let of = |i: &usize| wanted(*i);
+        let chosen: Vec<usize> = (0..self.triangles.len()).filter(of).collect();
+        let triangles: Vec<[u32; 3]> = chosen.iter().map(|&i| self.triangles[i]).collect();
+        Self {
+            vertices: self.vertices.clone(),
+            normals: chosen.iter().map(|&i| self.normals[i]).collect(),
+            area: triangles
+                .iter()
+                .map(|t| 0.5 * cross(corners(&self.vertices, t)).length())
+                .sum(),
+            triangles,
+            needles: Vec::new(),
+            welded: self.welded,
+            frame: self.frame,
+            sheet: chosen.iter().map(|&i| self.sheet[i]).collect(),
+            patch_of: chosen.iter().map(|&i| self.patch_of[i]).collect(),
+            simple: self.simple,
+            findings: self.findings.clone(),
+        }
     }
 
     /// Corners of a triangle.
@@ -113,34 +187,9 @@ impl Surface {
     pub fn all_corners(&self) -> impl Iterator<Item = [Point; 3]> + '_ {
         (0..self.triangles.len()).map(|i| self.corners(i))
     }
-
-    /// Mass properties at unit density in the user's frame and unit, when the surface encloses a
-    /// volume.
-    ///
-    /// They are integrated in the builder's frame, because parry sums in `f32` about the origin,
-    /// and then scaled: mass with the third power of the length, inertia with the fifth.
-    pub fn mass_properties(&self) -> Option<MassProperties> {
-        // A flat closed surface has a volume of rounding errors only.
-        if !self.closed || self.volume < 1e-9 * self.area {
-            return None;
-        }
-        let vertices: Vec<Vector> = self.vertices.iter().map(|v| v.to_vector()).collect();
-        let mut mass = MassProperties::from_trimesh(1.0, &vertices, &self.triangles);
-        let scale = self.frame.scale;
-        mass.local_com =
-            (Point::from_vector(mass.local_com) * scale + self.frame.center).to_vector();
-        mass.inv_mass = (f64::from(mass.inv_mass) / scale.powi(3)) as Real;
-        let inverse = Point::from_vector(mass.inv_principal_inertia) * (1.0 / scale.powi(5));
-        mass.inv_principal_inertia = inverse.to_vector();
-        let usable = mass.local_com.is_finite()
-            && mass.inv_mass.is_finite()
-            && mass.inv_mass > 0.0
-            && mass.inv_principal_inertia.is_finite();
-        usable.then_some(mass)
-    }
 }
 
-fn check(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<(), BuildError> {
+fn check(vertices: &[Vector], indices: &[[u32; 3]], watch: &mut Watch) -> Result<(), BuildError> {
     if indices.is_empty() {
         return Err(BuildError::Empty {
             vertices: vertices.len(),
@@ -154,6 +203,7 @@ fn check(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<(), BuildError> {
     }
     let count = vertices.len();
     for (index, triangle) in indices.iter().enumerate() {
+        watch.every(index)?;
         if let Some(&value) = triangle.iter().find(|&&v| v as usize >= count) {
             return Err(BuildError::IndexOutOfRange {
                 index,
@@ -186,76 +236,6 @@ fn frame_of(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<Frame, BuildErr
         center: bounds.center(),
         scale,
     })
-}
-
-/// Merges vertices nearer than [`WELD`]; gives the distinct ones, the new index of each old one, and
-/// the largest distance between the two.
-fn weld(vertices: &[Point], indices: &[[u32; 3]]) -> (Vec<Point>, Vec<u32>, f64) {
-    // Large cells: a vertex then rarely lies near a cell's side, so that one look-up does.
-    let cell = 64.0 * WELD;
-    let key = |p: Point| [0, 1, 2].map(|k| (coordinate(p, k) / cell).floor() as i64);
-    let reach = Point::new(WELD, WELD, WELD);
-    let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-    let mut distinct: Vec<Point> = Vec::new();
-    let mut index_of = vec![u32::MAX; vertices.len()];
-    let mut moved_sq = 0.0f64;
-    for &v in indices.iter().flatten() {
-        if index_of[v as usize] != u32::MAX {
-            continue;
-        }
-        let p = vertices[v as usize];
-        let (lo, hi) = (key(p - reach), key(p + reach));
-        let mut twin = None;
-        for x in lo[0]..=hi[0] {
-            for y in lo[1]..=hi[1] {
-                for z in lo[2]..=hi[2] {
-                    let near = grid.get(&[x, y, z]).into_iter().flatten();
-                    twin = twin.or(near
-                        .copied()
-                        .find(|&i| (distinct[i as usize] - p).length_sq() < WELD * WELD));
-                }
-            }
-        }
-        index_of[v as usize] = twin.unwrap_or_else(|| {
-            let new = distinct.len() as u32;
-            distinct.push(p);
-            grid.entry(key(p)).or_default().push(new);
-            new
-        });
-        let kept = distinct[index_of[v as usize] as usize];
-        moved_sq = moved_sq.max((kept - p).length_sq());
-    }
-    (distinct, index_of, moved_sq.sqrt())
-}
-
-/// Triangles of three different vertices, each set of vertices once.
-fn distinct(indices: &[[u32; 3]], index_of: &[u32], notes: &mut Vec<String>) -> Vec<[u32; 3]> {
-    let mut seen = std::collections::HashSet::new();
-    let (mut collapsed, mut repeated) = (0usize, 0usize);
-    let mut triangles = Vec::with_capacity(indices.len());
-    for t in indices {
-        let t = t.map(|v| index_of[v as usize]);
-        if t[0] == t[1] || t[1] == t[2] || t[2] == t[0] {
-            collapsed += 1;
-            continue;
-        }
-        let mut key = t;
-        key.sort_unstable();
-        if seen.insert(key) {
-            triangles.push(t);
-        } else {
-            repeated += 1;
-        }
-    }
-    if collapsed > 0 {
-        notes.push(format!(
-            "{collapsed} triangles of fewer than three points ignored"
-        ));
-    }
-    if repeated > 0 {
-        notes.push(format!("{repeated} repeated triangles ignored"));
-    }
-    triangles
 }
 
 fn corners(vertices: &[Point], t: &[u32; 3]) -> [Point; 3] {

@@ -7,6 +7,8 @@
 //! moment is the sum of its area vectors.
 
 use super::bounds::{Bounds, Point, coordinate, direction};
+use super::watch::Watch;
+use crate::error::BuildError;
 
 /// Triangles in a leaf. 2 to 8 differ by less than a tenth in time.
 const LEAF: usize = 4;
@@ -28,7 +30,8 @@ struct Node {
 struct Dipole {
     center: Point,
     moment: Point,
-    /// Distance from `center` to the farthest corner of the group.
+    area: f64,
+    /// At least the distance from `center` to the farthest corner of the group.
     radius: f64,
 }
 
@@ -36,51 +39,85 @@ struct Dipole {
 pub struct TriangleTree {
     nodes: Vec<Node>,
     corners: Vec<[Point; 3]>,
+    /// Place of each triangle among those given.
+    given: Vec<u32>,
+    /// How much each triangle counts in the winding number: 1, or −1 where it is seen from behind,
+    /// or 0 where it bounds nothing.
+    counts: Vec<i8>,
 }
 
+/// Middle of a triangle, and its place among those given.
+type Item = (Point, u32);
+
+/// Larger groups report before they are split: a millisecond's work.
+const LARGE: usize = 8_192;
+
 impl TriangleTree {
-    /// Builds the tree by halving at the median of the longest spread of the centroids.
-    pub fn new(triangles: impl Iterator<Item = [Point; 3]>) -> Self {
-        let mut items: Vec<(Point, [Point; 3], u32)> = triangles
-            .enumerate()
-            .map(|(i, t)| ((t[0] + t[1] + t[2]) * (1.0 / 3.0), t, i as u32))
-            .collect();
+    /// Builds the tree of `count` triangles by halving at the median of the longest spread of
+    /// their middles.
+    ///
+    /// Each triangle counts in the winding number until [`Self::recount`].
+    pub fn new(
+        count: usize,
+        corners: impl Fn(usize) -> [Point; 3],
+        watch: &mut Watch,
+    ) -> Result<Self, BuildError> {
+        let mut items: Vec<Item> = Vec::with_capacity(count);
+        for i in 0..count {
+            watch.every(i)?;
+            let [a, b, c] = corners(i);
+            items.push(((a + b + c) * (1.0 / 3.0), i as u32));
+        }
+        let mut nodes = vec![Node::EMPTY];
+        build(&mut nodes, 0, (0, &mut items), &corners, watch)?;
         let mut tree = Self {
-            nodes: Vec::with_capacity(items.len()),
-            corners: Vec::new(),
+            nodes,
+            corners: items.iter().map(|i| corners(i.1 as usize)).collect(),
+            given: items.into_iter().map(|i| i.1).collect(),
+            counts: vec![1; count],
         };
-        tree.nodes.push(Node::empty());
-        tree.build(0, 0, &mut items);
-        tree.corners = items.iter().map(|i| i.1).collect();
-        tree
+        tree.sum_up(watch)?;
+        Ok(tree)
     }
 
-    fn build(&mut self, node: usize, first: usize, items: &mut [(Point, [Point; 3], u32)]) {
-        let bounds = Bounds::of(items.iter().flat_map(|i| i.1));
-        let dipole = Dipole::of(items);
-        let leaf = items.len() <= LEAF;
-        let children = self.nodes.len();
-        self.nodes[node] = Node {
-            bounds,
-            first: if leaf { first as u32 } else { children as u32 },
-            count: if leaf { items.len() as u32 } else { 0 },
-            dipole,
-        };
-        if leaf {
-            return;
+    /// Lets each triangle, by its place among those given, count as `counts` says: 1, −1 or 0.
+    pub fn recount(
+        &mut self,
+        counts: impl Fn(u32) -> i8,
+        watch: &mut Watch,
+    ) -> Result<(), BuildError> {
+        for (i, (count, &given)) in self.counts.iter_mut().zip(&self.given).enumerate() {
+            watch.every(i)?;
+            *count = counts(given);
         }
-        let axis = Bounds::of(items.iter().map(|i| i.0)).longest_axis();
-        let middle = items.len() / 2;
-        items.select_nth_unstable_by(middle, |a, b| {
-            coordinate(a.0, axis)
-                .total_cmp(&coordinate(b.0, axis))
-                .then(a.2.cmp(&b.2))
-        });
-        self.nodes.push(Node::empty());
-        self.nodes.push(Node::empty());
-        let (left, right) = items.split_at_mut(middle);
-        self.build(children, first, left);
-        self.build(children + 1, first + middle, right);
+        self.sum_up(watch)
+    }
+
+    /// Turns the triangles that are seen from behind round, so that they count as 1.
+    pub fn turn(&mut self) {
+        for (count, corners) in self.counts.iter_mut().zip(&mut self.corners) {
+            if *count < 0 {
+                corners.swap(1, 2);
+                *count = 1;
+            }
+        }
+    }
+
+    /// Forms the dipoles, children before parents.
+    fn sum_up(&mut self, watch: &mut Watch) -> Result<(), BuildError> {
+        for index in (0..self.nodes.len()).rev() {
+            watch.every(index)?;
+            let node = &self.nodes[index];
+            let first = node.first as usize;
+            self.nodes[index].dipole = if node.count > 0 {
+                let range = first..first + node.count as usize;
+                Dipole::of(&self.corners[range.clone()], &self.counts[range])
+            } else {
+                let [left, right] = [first, first + 1].map(|n| &self.nodes[n]);
+                Dipole::of_both(&left.dipole, &right.dipole, &node.bounds)
+            };
+        }
+        Ok(())
     }
 
     /// Distance to the surface.
@@ -219,8 +256,12 @@ impl TriangleTree {
             }
             let first = node.first as usize;
             if node.count > 0 {
-                let leaf = &self.corners[first..first + node.count as usize];
-                solid_angle += leaf.iter().map(|t| solid_angle_of(p, t)).sum::<f64>();
+                for i in first..first + node.count as usize {
+                    if self.counts[i] != 0 {
+                        let angle = solid_angle_of(p, &self.corners[i]);
+                        solid_angle += f64::from(self.counts[i]) * angle;
+                    }
+                }
             } else {
                 stack.extend([first as u32, first as u32 + 1]);
             }
@@ -229,45 +270,103 @@ impl TriangleTree {
     }
 }
 
-impl Node {
-    fn empty() -> Self {
-        Self {
-            bounds: Bounds::EMPTY,
-            first: 0,
-            count: 0,
-            dipole: Dipole {
-                center: Point::zero(),
-                moment: Point::zero(),
-                radius: 0.0,
-            },
-        }
+/// Splits the items of a node, the first of which is the tree's `first`, at the median of the
+/// longest spread.
+fn build(
+    nodes: &mut Vec<Node>,
+    node: usize,
+    (first, items): (usize, &mut [Item]),
+    corners: &impl Fn(usize) -> [Point; 3],
+    watch: &mut Watch,
+) -> Result<(), BuildError> {
+    if items.len() > LARGE {
+        watch.at(0.0)?;
     }
+    let leaf = items.len() <= LEAF;
+    let children = nodes.len();
+    nodes[node] = Node {
+        bounds: Bounds::of(items.iter().flat_map(|i| corners(i.1 as usize))),
+        first: if leaf { first as u32 } else { children as u32 },
+        count: if leaf { items.len() as u32 } else { 0 },
+        dipole: Dipole::NONE,
+    };
+    if leaf {
+        return Ok(());
+    }
+    let axis = Bounds::of(items.iter().map(|i| i.0)).longest_axis();
+    let middle = items.len() / 2;
+    items.select_nth_unstable_by(middle, |a, b| {
+        coordinate(a.0, axis)
+            .total_cmp(&coordinate(b.0, axis))
+            .then(a.1.cmp(&b.1))
+    });
+    nodes.extend([Node::EMPTY, Node::EMPTY]);
+    let (left, right) = items.split_at_mut(middle);
+    build(nodes, children, (first, left), corners, watch)?;
+    build(nodes, children + 1, (first + middle, right), corners, watch)
+}
+
+impl Node {
+    const EMPTY: Self = Self {
+        bounds: Bounds::EMPTY,
+        first: 0,
+        count: 0,
+        dipole: Dipole::NONE,
+    };
 }
 
 impl Dipole {
-    fn of(items: &[(Point, [Point; 3], u32)]) -> Self {
-        let (mut area, mut center, mut moment) = (0.0, Point::zero(), Point::zero());
-        for (centroid, [a, b, c], _) in items {
+    /// Of nothing.
+    const NONE: Self = Self {
+        center: Point {
+            x: 0.0,
+            y: 0.0,
+            z: 0.0,
+        },
+        moment: Point {
+            x: 0.0,
+            y: 0.0,
+            z: 0.0,
+        },
+        area: 0.0,
+        radius: 0.0,
+    };
+
+    fn of(triangles: &[[Point; 3]], counts: &[i8]) -> Self {
+        let mut sum = Self::NONE;
+        let counted = || triangles.iter().zip(counts).filter(|t| *t.1 != 0);
+        for ([a, b, c], &count) in counted() {
             let n = (*b - *a).cross(*c - *a) * 0.5;
             let weight = n.length();
-            area += weight;
-            center = center + *centroid * weight;
-            moment = moment + n;
+            sum.area += weight;
+            sum.center = sum.center + (*a + *b + *c) * (weight / 3.0);
+            sum.moment = sum.moment + n * f64::from(count);
         }
-        let center = if area > 0.0 {
-            center * (1.0 / area)
-        } else {
-            items.first().map_or(Point::zero(), |i| i.0)
+        if sum.area > 0.0 {
+            sum.center = sum.center * (1.0 / sum.area);
+        }
+        let corners = counted().flat_map(|t| *t.0);
+        let radius_sq = corners.map(|corner| (corner - sum.center).length_sq());
+        sum.radius = radius_sq.fold(0.0, f64::max).sqrt();
+        sum
+    }
+
+    /// Of two groups that lie in a box.
+    fn of_both(left: &Self, right: &Self, bounds: &Bounds) -> Self {
+        let area = left.area + right.area;
+        if area <= 0.0 {
+            return Self::NONE;
+        }
+        let center = (left.center * left.area + right.center * right.area) * (1.0 / area);
+        let reach = |d: &Self| match d.area > 0.0 {
+            true => d.radius + (d.center - center).length(),
+            false => 0.0,
         };
-        let radius_sq = items
-            .iter()
-            .flat_map(|i| i.1)
-            .map(|corner| (corner - center).length_sq())
-            .fold(0.0, f64::max);
         Self {
             center,
-            moment,
-            radius: radius_sq.sqrt(),
+            moment: left.moment + right.moment,
+            area,
+            radius: reach(left).max(reach(right)).min(bounds.farthest(center)),
         }
     }
 }

@@ -64,13 +64,25 @@ impl<S: Scalar> Earliest<S> {
             horizon: self.upper.min(self.limits.horizon),
             ..self.limits
         };
-        let mut b = bracket(path, test.domain, &limits);
+        let b = bracket(path, test.domain, &limits);
         self.tests += 1;
+        self.take(test, b, limits.start, primitives)
+    }
+
+    /// Takes over what the bracket of a test found from `start` on. Returns whether another test may
+    /// still change the answer.
+    pub fn take(
+        &mut self,
+        test: ElementaryTest,
+        mut b: Bracket<S>,
+        start: S,
+        primitives: [u32; 2],
+    ) -> bool {
         self.iterations += b.iterations;
         self.tolerance = self.tolerance.max(b.tolerance);
         if !b.slack.is_finite() {
             // Sizes whose squares overflow: nothing can be certified.
-            b.lower = limits.start;
+            b.lower = start;
             b.contact = false;
             b.separated = false;
         }
@@ -89,7 +101,7 @@ impl<S: Scalar> Earliest<S> {
             if self.status != ToiStatus::Unresolved {
                 self.status = ToiStatus::Contact;
             }
-            if limits.start == S::zero() && b.start_distance < -b.slack {
+            if start == S::zero() && b.start_distance < -b.slack {
                 self.overlap_at_start();
             }
         } else {

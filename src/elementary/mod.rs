@@ -31,6 +31,7 @@ pub mod first_contact;
 pub mod many;
 pub mod path;
 pub mod penetration;
+pub mod resumed;
 pub mod slab_crossing;
 pub mod sphere_slab;
 pub mod test_list;

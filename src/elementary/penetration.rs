@@ -14,6 +14,26 @@ use super::distance::nearest_in_test;
 use super::test_list::{Share, edges, for_each_test};
 use crate::math::lane::{Scalar, Vec3};
 
+/// Difference of two gaps that counts as none, in units of `EPSILON × gap`: a gap is a sum of 8
+/// rounded terms, with a margin of 2. Less, and equal directions are told apart by rounding.
+const TIE_ULPS: f64 = 32.0;
+
+/// Cosine from which a direction is another one turned (10°, that of one contact patch). Wider, and a
+/// normal that is only rounding's is followed; narrower, and one that turns with its body is not.
+const TURNED: f64 = 0.985;
+
+/// Distance of two centres, in units of the sum of their radii, below which it has no direction of its
+/// own: `f32` poses leave no digit of it. Larger, and normals jump where surfaces begin to cross;
+/// smaller, and they are those of rounding.
+pub const LOST: f64 = 1.0e-6;
+
+/// How much deeper than the least depth the normal of the step before may be, as a fraction of it,
+/// before it is given up. Two bodies that lie in the middle of each other tremble by what the
+/// solver corrects in a step; that must be less than half of this times the depth, or the normal
+/// turns over at each tremble. Larger, and a body is pushed out the longer way: at most so much
+/// longer.
+pub const HYSTERESIS: f64 = 0.1;
+
 /// A sphere in a common frame: centre and radius.
 pub type Ball<S> = (Vec3<S>, S);
 
@@ -29,62 +49,124 @@ pub fn gap_along<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>], n: Vec3<S>) -> S {
     }
 }
 
-/// Largest gap over all directions that can attain it, and that direction. Ties go to the
-/// direction nearest to `preferred`.
-pub fn deepest<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>], preferred: Vec3<S>) -> (S, Vec3<S>) {
-    let mut best: Option<(S, Vec3<S>)> = None;
-    let tie = S::splat(16.0 * S::EPSILON);
-    let mut offer = |n: Vec3<S>| {
-        let length = n.length();
-        if length <= S::splat(S::TINY) || !length.is_finite() {
-            return;
+/// Largest gap over all directions that can attain it, and that direction.
+///
+/// Of directions whose gap is less by at most `hysteresis` (a fraction of the depth; 0: by
+/// rounding) the one nearest to `preferred` is taken: with the normal of the step before, the
+/// normal of a deep contact follows the bodies and turns over once, not at every tremble.
+pub fn deepest<S: Scalar>(
+    a: &[Ball<S>],
+    b: &[Ball<S>],
+    preferred: Vec3<S>,
+    hysteresis: S,
+) -> (S, Vec3<S>) {
+    let preferred = unit(preferred).unwrap_or(Vec3::new(S::one(), S::zero(), S::zero()));
+    let gap = |n: &Vec3<S>| (gap_along(a, b, *n), *n);
+    let steady: Vec<_> = steady_directions(a, b).iter().map(gap).collect();
+    let loose: Vec<_> = loose_directions(a, b, preferred).iter().map(gap).collect();
+    let all = || steady.iter().chain(&loose);
+    let most = all().map(|c| c.0).fold(-S::splat(f64::MAX), S::max);
+    let least = most - most.abs() * (hysteresis + S::splat(TIE_ULPS * S::EPSILON));
+    let closer = |x: (S, Vec3<S>), y: (S, Vec3<S>)| {
+        if x.1.dot(preferred) < y.1.dot(preferred) {
+            y
+        } else {
+            x
         }
-        let n = n * (S::one() / length);
-        let gap = gap_along(a, b, n);
-        best = Some(match best {
-            None => (gap, n),
-            Some(old) => {
-                let band = tie * (old.0.abs() + gap.abs());
-                let close = (gap - old.0).abs() <= band;
-                let better = if close {
-                    old.1.dot(preferred) < n.dot(preferred)
-                } else {
-                    old.0 < gap
-                };
-                if better { (gap, n) } else { old }
-            }
-        });
     };
+    let nearest = |found: &mut dyn Iterator<Item = &(S, Vec3<S>)>| {
+        found.filter(|c| c.0 >= least).copied().reduce(closer)
+    };
+    // A loose direction is where `preferred` was and does not turn with the bodies: it only serves
+    // where nothing else is there.
+    nearest(&mut steady.iter())
+        .filter(|c| c.1.dot(preferred) >= S::splat(TURNED))
+        .or_else(|| nearest(&mut all()))
+        .unwrap_or((most, preferred))
+}
+
+/// Directions that the two bodies alone decide: of the nearest spheres, and tangent to both.
+fn steady_directions<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> Vec<Vec3<S>> {
+    let mut found = Vec::new();
     for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
-        offer(nearest_in_test(&test, a, b).1.y);
+        let s = nearest_in_test(&test, a, b).1;
+        if s.length > S::splat(LOST) * (s.length - s.distance) {
+            found.extend(unit(s.y));
+        }
         true
     });
-    let edge = |s: &[Ball<S>], e: &[u8; 2]| {
-        let (p, q) = (s[e[0] as usize], s[e[1] as usize]);
-        (q.0 - p.0, q.1 - p.1)
-    };
-    // On the first body the far side counts (n·p + r), on the second the near one (n·p − r): the
-    // slope of an edge of the first is the negative of its radius change.
-    let mut tangent = |e1: (Vec3<S>, S), e2: (Vec3<S>, S)| {
-        if let Some([n1, n2]) = tangent_directions(e1, e2) {
-            offer(n1);
-            offer(n2);
-        }
-    };
-    let first = |e: (Vec3<S>, S)| (e.0, -e.1);
-    if a.len() == 3 {
-        tangent(first(edge(a, &[0, 1])), first(edge(a, &[0, 2])));
+    let (of_first, of_second) = slopes(a, b);
+    let mut tangent = |e1, e2| found.extend(tangent_directions(e1, e2).into_iter().flatten());
+    if let [e1, _, e3] = of_first[..] {
+        tangent(e1, e3);
     }
-    if b.len() == 3 {
-        tangent(edge(b, &[0, 1]), edge(b, &[0, 2]));
+    if let [e1, _, e3] = of_second[..] {
+        tangent(e1, e3);
     }
-    for ea in edges(a.len()) {
-        for eb in edges(b.len()) {
-            tangent(first(edge(a, ea)), edge(b, eb));
+    for e1 in &of_first {
+        for e2 in &of_second {
+            tangent(*e1, *e2);
         }
     }
-    offer(preferred);
-    best.unwrap_or((S::zero(), preferred))
+    found.into_iter().filter_map(unit).collect()
+}
+
+/// Directions nearest to `preferred`: itself, and tangent to one edge of either body. They are the
+/// deepest where the bodies leave a choice: cones on one axis, spheres with one centre.
+fn loose_directions<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>], preferred: Vec3<S>) -> Vec<Vec3<S>> {
+    let (of_first, of_second) = slopes(a, b);
+    let on_circle = |(e, d): &(Vec3<S>, S)| {
+        let along = unit(*e)?;
+        let sine = *d / e.length();
+        let cosine_sq = S::one() - sine * sine;
+        // Where `preferred` leaves nothing but rounding, any direction across the edge serves.
+        let wish = along.cross(preferred);
+        let aside = if wish.length() > S::splat(64.0 * S::EPSILON) {
+            unit(wish)?
+        } else {
+            any_normal(along)?
+        };
+        let across = unit(aside.cross(along))?;
+        (cosine_sq > S::zero()).then(|| across * cosine_sq.sqrt() + along * sine)
+    };
+    let circles = of_first.iter().chain(&of_second).filter_map(on_circle);
+    std::iter::once(preferred)
+        .chain(circles)
+        .filter_map(unit)
+        .collect()
+}
+
+/// Edges of both with the slope `n·e` of a tangent direction. On the first body the far side counts
+/// (`n·p + r`), on the second the near one (`n·p − r`): the slope of an edge of the first is the
+/// negative of its radius change.
+fn slopes<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (Vec<Slope<S>>, Vec<Slope<S>>) {
+    let of = |s: &[Ball<S>], sign: f64| {
+        let slope = |e: &[u8; 2]| {
+            let (p, q) = (s[e[0] as usize], s[e[1] as usize]);
+            (q.0 - p.0, (q.1 - p.1) * S::splat(sign))
+        };
+        edges(s.len()).iter().map(slope).collect()
+    };
+    (of(a, -1.0), of(b, 1.0))
+}
+
+/// An edge `e` and the `d` of `n·e = d`.
+type Slope<S> = (Vec3<S>, S);
+
+/// A unit direction across a unit vector.
+fn any_normal<S: Scalar>(v: Vec3<S>) -> Option<Vec3<S>> {
+    let (x, y) = (S::one(), S::zero());
+    let [by_x, by_y] = [Vec3::new(x, y, y), Vec3::new(y, x, y)].map(|axis| v.cross(axis));
+    unit(if by_x.length_sq() < by_y.length_sq() {
+        by_y
+    } else {
+        by_x
+    })
+}
+
+fn unit<S: Scalar>(v: Vec3<S>) -> Option<Vec3<S>> {
+    let length = v.length();
+    (length > S::splat(S::TINY) && length.is_finite()).then(|| v * (S::one() / length))
 }
 
 /// The two unit directions with `n·e1 = d1` and `n·e2 = d2`, if they exist.

@@ -9,15 +9,15 @@
 //! Writers differ, so a reader accepts: edges of faces listed or not, further tokens on a line
 //! (types and flags), CRLF, blank lines, `#` comments, any order of the elements.
 
+use super::files::{self, file_error};
 use super::mesh::MedialMesh;
 use super::primitive::MedialSphere;
 use super::text::{Line, Lines, TextError, quote};
 use crate::error::MeshError;
 use crate::math::Vector;
-use std::fs::{self, File, OpenOptions};
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Write};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::path::Path;
 
 /// Elements reserved ahead of reading at most (a count): a header may announce billions.
 const RESERVE: usize = 1 << 16;
@@ -59,16 +59,7 @@ impl MedialMesh {
     ///
     /// Written beside `path` first, then renamed: `path` is complete or as it was before.
     pub fn save_ma(&self, path: impl AsRef<Path>) -> Result<(), MeshError> {
-        let path = path.as_ref();
-        let (partial, file) = create_beside(path).map_err(|source| file_error(path, source))?;
-        self.write_ma(&file)
-            .and_then(|()| file.sync_all())
-            .and_then(|()| fs::rename(&partial, path))
-            .map_err(|source| {
-                // The first error is the one to report; a leftover partial file is harmless.
-                let _ = fs::remove_file(&partial);
-                file_error(path, source)
-            })
+        files::replace(path.as_ref(), |file| self.write_ma(file))
     }
 
     /// As [`MedialMesh::save_ma`], to a writer. Numbers have the fewest digits that read back as
@@ -191,28 +182,4 @@ fn indices<'t, const N: usize>(
         return Err(line.error(format!("{problem} in {}", quote(line.text))));
     }
     Ok(found)
-}
-
-fn file_error(path: &Path, source: io::Error) -> MeshError {
-    MeshError::File {
-        path: path.to_owned(),
-        source,
-    }
-}
-
-/// A new file in the directory of `path`, under a name that no other writer has.
-fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
-    static NEXT: AtomicU64 = AtomicU64::new(0);
-    let name = path
-        .file_name()
-        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"))?;
-    let mut partial = name.to_os_string();
-    let unique = NEXT.fetch_add(1, Ordering::Relaxed);
-    partial.push(format!(".{}-{unique}.partial", std::process::id()));
-    let partial = path.with_file_name(partial);
-    let file = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(&partial)?;
-    Ok((partial, file))
 }

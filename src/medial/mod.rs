@@ -1,14 +1,22 @@
 //! L1: the data. Spheres joined by medial cones and slabs, their trees, mass and files.
 
+pub mod asset;
+pub mod boxes;
+mod check;
 pub mod chord;
 mod cover;
 pub mod envelope;
 pub mod exact;
+mod files;
 pub mod ma_file;
 pub mod mass;
 pub mod mesh;
+pub mod polygon;
 pub mod primitive;
+#[cfg(feature = "serde")]
+mod saved;
 mod sheet;
+pub mod simplex;
 pub mod solids;
 pub(crate) mod text;
 pub mod tree;

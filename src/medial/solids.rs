@@ -1,4 +1,4 @@
-//! Solids whose medial mesh is known: ball, capsule, torus.
+//! Round solids whose medial mesh is known: ball, capsule, torus, tubes, and frames of round bars.
 
 use super::mesh::MedialMesh;
 use super::primitive::MedialSphere;
@@ -75,15 +75,102 @@ impl MedialMesh {
         let edges = (0..count).map(|i| [i, (i + 1) % count]).collect();
         Self::new(spheres, edges, vec![])
     }
+
+    /// A tube: a cone between each two neighbouring spheres, and from the last to the first if it is
+    /// `closed` (body's frame). Exact where the radius changes linearly along straight pieces; joints are
+    /// balls. Radii may be 0 at single points: a tip.
+    ///
+    /// Fails on an empty list, on a closed one of less than three, and on spheres as
+    /// [`MedialMesh::new`] does, by their index.
+    ///
+    /// ```
+    /// use rapier3d_medial::{MedialMesh, MedialSphere, math::Vector};
+    /// let at = |x, y, r| MedialSphere::new(Vector::new(x, y, 0.0), r);
+    /// let hook = MedialMesh::tube(&[at(0.0, 1.0, 0.1), at(0.0, 0.0, 0.1), at(0.4, 0.0, 0.02)], false)?;
+    /// assert_eq!(hook.primitive_count(), 2);
+    /// # Ok::<(), rapier3d_medial::MeshError>(())
+    /// ```
+    pub fn tube(spheres: &[MedialSphere], closed: bool) -> Result<Self, MeshError> {
+        if closed && spheres.len() < 3 {
+            return Err(MeshError::Parameter {
+                what: "the number of spheres of a closed tube",
+                value: spheres.len() as f64,
+                must: "at least 3",
+            });
+        }
+        let count = spheres.len() as u32;
+        let open = (1..count).map(|i| [i - 1, i]);
+        let edges = open.chain(closed.then(|| [count - 1, 0])).collect();
+        Self::new(spheres.to_vec(), edges, vec![])
+    }
+
+    /// A rectangular frame, as around a picture, its hole along the y-axis like that of
+    /// [`Self::torus`]: four round bars of `radius` whose axes are the sides of the rectangle `|x| ≤ half_x`,
+    /// `|z| ≤ half_z` of the xz-plane, rounded at the corners (lengths, body's frame). Exact: all points
+    /// within `radius` of the rectangle's outline.
+    ///
+    /// Fails unless all three are positive and finite, and `radius` is below both half lengths, which
+    /// would leave no hole.
+    pub fn rectangle_frame(half_x: Real, half_z: Real, radius: Real) -> Result<Self, MeshError> {
+        let radius = positive("radius", radius)?;
+        let half_x = wider("half_x", half_x, radius)?;
+        let half_z = wider("half_z", half_z, radius)?;
+        let at = |x: Real, z: Real| MedialSphere::new(Vector::new(x, 0.0, z), radius);
+        let corners = [
+            at(-half_x, -half_z),
+            at(half_x, -half_z),
+            at(half_x, half_z),
+            at(-half_x, half_z),
+        ];
+        Self::tube(&corners, true)
+    }
+
+    /// The frame of a box, as of a crate or a cage: twelve round bars of `radius` whose axes are the edges
+    /// of the box of `half_extents` about the origin (lengths, body's frame). Exact: all points
+    /// within `radius` of an edge.
+    ///
+    /// Fails unless all are positive and finite, and `radius` is below all half extents.
+    pub fn box_frame(half_extents: Vector, radius: Real) -> Result<Self, MeshError> {
+        let radius = positive("radius", radius)?;
+        let h = Vector::new(
+            wider("half_extents.x", half_extents.x, radius)?,
+            wider("half_extents.y", half_extents.y, radius)?,
+            wider("half_extents.z", half_extents.z, radius)?,
+        );
+        // Bit `k` of a corner is its side along axis `k`; an edge flips one bit.
+        let side = |i: u32, bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let corner =
+            |i| MedialSphere::new(h * Vector::new(side(i, 0), side(i, 1), side(i, 2)), radius);
+        let edges = (0..8).flat_map(|i| (0..3).map(move |bit| [i, i | 1 << bit]));
+        Self::new(
+            (0..8).map(corner).collect(),
+            edges.filter(|[i, j]| i != j).collect(),
+            vec![],
+        )
+    }
 }
 
-fn positive(what: &'static str, value: Real) -> Result<Real, MeshError> {
-    if value.is_finite() && value > 0.0 {
+pub(super) fn positive(what: &'static str, value: Real) -> Result<Real, MeshError> {
+    checked(what, value, value > 0.0, "positive and finite")
+}
+
+pub(super) fn not_negative(what: &'static str, value: Real) -> Result<Real, MeshError> {
+    checked(what, value, value >= 0.0, "at least 0 and finite")
+}
+
+fn wider(what: &'static str, value: Real, radius: Real) -> Result<Real, MeshError> {
+    checked(what, value, value > radius, "above the radius and finite")
+}
+
+fn checked(
+    what: &'static str,
+    value: Real,
+    good: bool,
+    must: &'static str,
+) -> Result<Real, MeshError> {
+    if good && value.is_finite() {
         return Ok(value);
     }
-    Err(MeshError::Parameter {
-        what,
-        value: value.into(),
-        must: "positive and finite",
-    })
+    let value = value.into();
+    Err(MeshError::Parameter { what, value, must })
 }

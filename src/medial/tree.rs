@@ -29,6 +29,20 @@ pub enum Below {
 }
 
 impl Node {
+    /// A node from its parts, for a tree that [`SphereTree::from_nodes`] checks.
+    pub(super) fn new(center: Vector, radius: Real, below: Below) -> Self {
+        let (index, leaf) = match below {
+            Below::Primitive(index) => (index, true),
+            Below::Nodes(index, _) => (index, false),
+        };
+        Self {
+            center,
+            radius,
+            index,
+            leaf,
+        }
+    }
+
     /// Its primitive or its children.
     pub fn below(&self) -> Below {
         if self.leaf {
@@ -70,6 +84,31 @@ impl SphereTree {
         });
         tree.build(0, &mut items, spheres, primitives);
         tree
+    }
+
+    /// Takes the nodes of a tree built before over `primitives` primitives. Each node but the root has to
+    /// be below exactly one that comes before it, and each primitive below exactly one: then every walk
+    /// ends. Otherwise gives the first node that is wrong.
+    pub(super) fn from_nodes(nodes: Vec<Node>, primitives: usize) -> Result<Self, usize> {
+        let mut seen = vec![false; nodes.len() + primitives];
+        let mut first = |index: usize| !std::mem::replace(&mut seen[index], true);
+        for (i, node) in nodes.iter().enumerate() {
+            let numbers = node.center.is_finite() && node.radius.is_finite() && node.radius >= 0.0;
+            let index = node.index as usize;
+            let sound = if node.leaf {
+                index < primitives && first(nodes.len() + index)
+            } else {
+                index > i && index + 1 < nodes.len() && first(index) && first(index + 1)
+            };
+            if !(numbers && sound) {
+                return Err(i);
+            }
+        }
+        // As many nodes as a binary tree of so many leaves has: none can be left out.
+        if nodes.len() + 1 != 2 * primitives {
+            return Err(nodes.len());
+        }
+        Ok(Self { nodes })
     }
 
     /// The nodes; the root first.

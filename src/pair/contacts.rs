@@ -28,6 +28,9 @@ const PARALLEL_SINE_SQ: f64 = 0.01;
 /// cones is reported by both.
 const SAME_POINT: f64 = 1.0e-4;
 
+/// Feature of a pair whose medial surfaces cross: it belongs to no one test.
+const CROSSING: u32 = 1 << 17;
+
 /// A colliding, or nearly colliding, sphere pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpherePair {
@@ -90,6 +93,24 @@ pub fn contacts(
         }
     }
     (found, counts)
+}
+
+/// The sphere pair of two overlapping primitives along the normal nearest to `old`, that of the step
+/// before, among those hardly deeper than the least ([`penetration::HYSTERESIS`]). `at`: their
+/// deepest contact now; the points stay in the middle of its.
+pub(crate) fn along_old_normal(
+    body1: &impl Volumes,
+    body2: &impl Volumes,
+    pos12: &Pose,
+    at: &SpherePair,
+    old: Vector,
+) -> SpherePair {
+    let place = Placement::new(pos12);
+    let pair = PrimitivePair::new(body1, body2, at.primitives, &place);
+    let (a, b) = pair.spheres();
+    let (gap, n) = penetration::deepest(a, b, Vec3::from_vector(old), penetration::HYSTERESIS);
+    let middle = (Vec3::from_vector(at.points[0]) + place.point(at.points[1])) * 0.5;
+    pair.across(middle, gap, n)
 }
 
 /// A relative pose in double precision, its rotation normalised.
@@ -179,7 +200,7 @@ impl<'a> PrimitivePair<'a> {
     /// Unit direction of a nearest pair; where the centres coincide, the deepest one.
     fn direction(&self, domain: Domain, f: &Family<f64>, s: &Nearest<f64>) -> Vec3<f64> {
         let radius = s.length - s.distance;
-        if s.length > 1.0e-6 * radius.abs() && s.length > 0.0 {
+        if s.length > penetration::LOST * radius.abs() && s.length > 0.0 {
             return ActiveFace::new(domain, f, s, &[Vec3::zero(); 4]).direction(domain, f, s);
         }
         self.deepest().1
@@ -189,7 +210,7 @@ impl<'a> PrimitivePair<'a> {
         let (a, b) = self.spheres();
         let middle =
             |s: &[Ball]| s.iter().fold(Vec3::zero(), |m, b| m + b.0) * (1.0 / s.len() as f64);
-        penetration::deepest(a, b, middle(b) - middle(a))
+        penetration::deepest(a, b, middle(b) - middle(a), 0.0)
     }
 
     /// A crossing of any edge with the other's slab, owned or not: with one the nearest spheres mean
@@ -210,14 +231,13 @@ impl<'a> PrimitivePair<'a> {
 
     fn push_crossing(&self, crossing: slab_crossing::Crossing<f64>, found: &mut Vec<SpherePair>) {
         let (gap, n) = self.deepest();
+        found.push(self.across(crossing.point, gap, n));
+    }
+
+    /// A contact whose points lie on both sides of a point.
+    fn across(&self, middle: Vec3<f64>, gap: f64, n: Vec3<f64>) -> SpherePair {
         let half = n * (-0.5 * gap);
-        self.emit(
-            1 << 17,
-            gap,
-            n,
-            [crossing.point + half, crossing.point - half],
-            found,
-        );
+        self.sphere_pair(CROSSING, gap, n, [middle + half, middle - half])
     }
 
     fn push(
@@ -251,25 +271,24 @@ impl<'a> PrimitivePair<'a> {
                 && Vec3::<f64>::from_vector(c.normal).dot(normal) >= SAME_PATCH
         });
         if !seen {
-            self.emit(feature, s.distance, normal, [point1, point2], found);
+            found.push(self.sphere_pair(feature, s.distance, normal, [point1, point2]));
         }
     }
 
-    fn emit(
+    fn sphere_pair(
         &self,
         feature: u32,
         distance: f64,
         normal: Vec3<f64>,
         points: [Vec3<f64>; 2],
-        found: &mut Vec<SpherePair>,
-    ) {
-        found.push(SpherePair {
+    ) -> SpherePair {
+        SpherePair {
             primitives: self.indices,
             feature,
             distance: distance as Real,
             normal: normal.to_vector(),
             points: [points[0].to_vector(), self.place.inverse_point(points[1])],
-        });
+        }
     }
 }
 

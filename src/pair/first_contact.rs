@@ -7,13 +7,16 @@
 //! expanded in the order of that time, and the search ends when the next one lies after the best
 //! contact found. A fast turn is searched in pieces, so that sagittas stay small.
 
-use super::swept::{Entry, Piece, Swept, apart_until};
+use super::apart::{Balls, free_until};
+use super::queue::{Candidate, Entry, Open};
+use super::swept::Side;
 use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
 use crate::elementary::distance::{crossing, signed_distance, thinnest};
 use crate::elementary::first_contact::{Earliest, motion_is_finite, options_limits, to_toi};
 use crate::elementary::path::RigidPath;
-use crate::elementary::test_list::{Share, for_each_test};
+use crate::elementary::resumed::bracket_until;
+use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::Real;
 use crate::math::lane::Vec3;
@@ -74,8 +77,9 @@ pub fn first_contact_counted(
     let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
     let target = f64::from(options.target_distance);
     let mut search = Search {
-        bodies: (body1, body2),
+        sides: (Side::new(body1, motions[0]), Side::new(body2, motions[1])),
         motions,
+        times: [0.0, 1.0],
         target,
         reach: match options.initial_contact {
             InitialContact::Stop => target.max(0.0),
@@ -83,6 +87,7 @@ pub fn first_contact_counted(
         },
         initial_contact: options.initial_contact,
         heap: BinaryHeap::new(),
+        open: Vec::new(),
         counts: Counts::default(),
         earliest: Earliest::new(options_limits(options)),
     };
@@ -112,14 +117,20 @@ pub fn first_contact_counted(
     (to_toi(&search.earliest, options, pose), search.counts)
 }
 
+type Spheres = [(Vec3<f64>, f64); 3];
+
 struct Search<'a, A, B> {
-    bodies: (&'a A, &'a B),
+    sides: (Side<'a, A>, Side<'a, B>),
     motions: [RigidMotion<f64>; 2],
+    /// Start and end of the piece searched.
+    times: [f64; 2],
     target: f64,
     /// What culling goes by: no primitive pair has a larger target, raised or not.
     reach: f64,
     initial_contact: InitialContact,
     heap: BinaryHeap<Entry>,
+    /// Elementary tests that are not settled.
+    open: Vec<Open>,
     counts: Counts,
     earliest: Earliest<f64>,
 }
@@ -132,93 +143,132 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             horizon: end,
             ..self.earliest.limits
         };
-        let sides = [0, 1].map(|side| Piece::new(self.motions[side], start, end));
+        self.times = [start, end];
+        self.sides.0.begin(start, end);
+        self.sides.1.begin(start, end);
         self.heap.clear();
-        for i in 0..self.bodies.0.roots() {
-            let a = sides[0].sweep(i, self.bodies.0.bound(i));
-            for j in 0..self.bodies.1.roots() {
-                let b = sides[1].sweep(j, self.bodies.1.bound(j));
-                self.push([a, b], start, end);
+        self.open.clear();
+        for i in 0..self.sides.0.body.roots() {
+            for j in 0..self.sides.1.body.roots() {
+                self.push([i, j]);
             }
         }
         while let Some(entry) = self.heap.pop() {
             if entry.time > self.earliest.upper.min(end) {
                 break;
             }
-            if !self.expand(&entry, &sides, start, end) {
+            let open = match entry.candidate {
+                Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
+                Candidate::Leaves(leaves) => self.list_tests(leaves, entry.time),
+                Candidate::Test(index) => self.advance(index, entry.time),
+            };
+            if !open {
                 return false;
             }
         }
         self.earliest.status == ToiStatus::Separated
     }
 
-    fn push(&mut self, nodes: [Swept; 2], start: f64, end: f64) {
+    /// Queues two swept nodes at the time at which their balls meet, if they do in this piece.
+    fn push(&mut self, nodes: [u32; 2]) {
         self.counts.nodes += 1;
-        let y = nodes[1].start - nodes[0].start;
-        let rate = nodes[1].chord - nodes[0].chord;
-        let radius = nodes[0].radius + nodes[1].radius + self.reach;
+        let (a, b) = (self.sides.0.node(nodes[0]), self.sides.1.node(nodes[1]));
+        let y = b.start - a.start;
+        let rate = b.chord - a.chord;
+        let radius = a.radius + b.radius + self.reach;
         // Rounding of positions, chords and the root: a few ulps of the numbers in play.
-        let size = y.length() + rate.length() + radius.abs();
-        let radius = (radius + 64.0 * f64::EPSILON * size).max(0.0);
+        let size = y.x.abs() + y.y.abs() + y.z.abs() + rate.x.abs() + rate.y.abs() + rate.z.abs();
+        let radius = (radius + 64.0 * f64::EPSILON * (size + radius.abs())).max(0.0);
         let (yy, yr, rr) = (y.length_sq(), y.dot(rate), rate.length_sq());
         let c = yy - radius * radius;
-        let entry = if c <= 0.0 {
-            0.0
+        let (mut time, mut depth) = (self.times[0], 0.0);
+        if c <= 0.0 {
+            depth = (yy.sqrt() - radius) / radius.max(f64::MIN_POSITIVE);
         } else {
             let discriminant = yr * yr - rr * c;
             if yr >= 0.0 || discriminant < 0.0 {
                 return;
             }
-            c / (discriminant.sqrt() - yr)
-        };
-        let time = start + entry * (end - start);
-        if entry > 1.0 || time > self.earliest.upper.min(end) {
-            return;
+            let entry = c / (discriminant.sqrt() - yr);
+            if entry > 1.0 {
+                return;
+            }
+            time += entry * (self.times[1] - self.times[0]);
         }
-        self.heap.push(Entry {
-            time,
-            depth: (yy.sqrt() - radius) / radius.max(f64::MIN_POSITIVE),
-            nodes,
-        });
+        if time <= self.earliest.upper.min(self.times[1]) {
+            self.heap.push(Entry {
+                time,
+                depth,
+                candidate: Candidate::Nodes(nodes),
+            });
+        }
     }
 
-    fn expand(&mut self, entry: &Entry, sides: &[Piece; 2], start: f64, end: f64) -> bool {
-        let [a, b] = entry.nodes;
-        match (self.bodies.0.below(a.node), self.bodies.1.below(b.node)) {
-            (Below::Primitive(i), Below::Primitive(j)) => {
-                return self.leaf([i, j], entry.depth <= 0.0, sides);
-            }
-            (Below::Nodes(i, j), other) if a.radius >= b.radius || !splits(other) => {
-                for child in [i, j] {
-                    let swept = sides[0].sweep(child, self.bodies.0.bound(child));
-                    self.push([swept, b], start, end);
+    /// Replaces two nodes by what is below the larger; two primitives wait until directions no
+    /// longer keep them apart. Returns whether an earlier contact is still possible.
+    fn expand(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
+        let (a, b) = (self.sides.0.node(i), self.sides.1.node(j));
+        if let (Below::Primitive(p), Below::Primitive(q)) = (a.below, b.below) {
+            let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
+            let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])];
+            return match self.free_until(balls, time) {
+                Some(free) if free == time => self.list_tests([i, j], time),
+                Some(free) => {
+                    let leaves = Candidate::Leaves([i, j]);
+                    self.heap.push(Entry::at(free, leaves));
+                    true
                 }
-            }
-            (_, Below::Nodes(i, j)) => {
-                for child in [i, j] {
-                    let swept = sides[1].sweep(child, self.bodies.1.bound(child));
-                    self.push([a, swept], start, end);
-                }
-            }
-            // The guard above takes every pair with nodes on the left and none on the right.
-            (Below::Nodes(..), Below::Primitive(_)) => {}
+                None => true,
+            };
+        }
+        let first_larger = a.radius >= b.radius;
+        let splits_second = matches!(b.below, Below::Nodes(..));
+        let first = if first_larger || !splits_second {
+            self.sides.0.split(i)
+        } else {
+            None
+        };
+        if let Some(children) = first {
+            children.into_iter().for_each(|c| self.push([c, j]));
+        } else if let Some(children) = self.sides.1.split(j) {
+            children.into_iter().for_each(|c| self.push([i, c]));
         }
         true
     }
 
-    /// Tests two primitives; returns whether an earlier contact is still possible.
-    fn leaf(&mut self, [i, j]: [u32; 2], near: bool, sides: &[Piece; 2]) -> bool {
-        let (a, share_a) = self.bodies.0.primitive(i);
-        let (b, share_b) = self.bodies.1.primitive(j);
-        let local = |s: &MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-        let (sa, sb) = (a.map(|s| local(&s)), b.map(|s| local(&s)));
-        let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
-        let [start, end] = sides[0].times;
-        let until = (self.earliest.upper.min(end) - start) / (end - start);
-        let balls = [sides[0].balls(sa), sides[1].balls(sb)];
-        if apart_until(&balls, until, self.reach) {
-            return true;
+    fn spheres(&self, [i, j]: [u32; 2]) -> [(Spheres, Share); 2] {
+        let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
+        let (a, share_a) = self.sides.0.body.primitive(i);
+        let (b, share_b) = self.sides.1.body.primitive(j);
+        [(a.map(local), share_a), (b.map(local), share_b)]
+    }
+
+    /// Until when directions prove two primitives free from `time` on; `None` if as long as the
+    /// search asks.
+    fn free_until(&self, balls: [&Balls; 2], time: f64) -> Option<f64> {
+        let [start, end] = self.times;
+        let length = end - start;
+        let until = (self.earliest.upper.min(end) - start) / length;
+        let from = (time - start) / length;
+        let free = free_until(balls, from, until, self.reach);
+        if free <= from {
+            return Some(time);
         }
+        // Rounding of the way to the piece's fractions and back.
+        (free < until).then(|| (start + free * length).next_down().next_down().max(time))
+    }
+
+    /// Lists the elementary tests of two primitives that are free until `time`; returns whether an
+    /// earlier contact is still possible.
+    fn list_tests(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
+        let (Below::Primitive(p), Below::Primitive(q)) =
+            (self.sides.0.node(i).below, self.sides.1.node(j).below)
+        else {
+            return true;
+        };
+        let pair = [p, q];
+        let [(sa, share_a), (sb, share_b)] = self.spheres(pair);
+        let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
         let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
             let turned = self.motions[side].sin_cos(0.0);
             let place = |c| self.motions[side].point(c).at(0.0, turned).position;
@@ -237,7 +287,8 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                     target = distance - f64::from(by) - tolerance;
                 }
             }
-            InitialContact::Stop if start == 0.0 && near => {
+            // Proven free until later, they cannot cross at the start.
+            InitialContact::Stop if time == 0.0 => {
                 let (pa, pb) = (at_start(0, sa), at_start(1, sb));
                 let crossings = [
                     crossing(&pa, share_a.edges, &pb),
@@ -257,46 +308,74 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         } else {
             [share_a, share_b].map(|s| Share::whole(s.spheres))
         };
-        let mut open = true;
+        let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
+        let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])].map(|b| *b);
         for_each_test(shares[0], shares[1], |test| {
-            let path = RigidPath::new(&test, &self.motions, target, |second, k| {
-                if second {
-                    sb[k as usize]
-                } else {
-                    sa[k as usize]
-                }
-            });
-            open = self.earliest.test(test, &path, [i, j]);
-            open
+            let some = [
+                balls[0].only(test.corners.map(|c| c.0)),
+                balls[1].only(test.corners.map(|c| c.1)),
+            ];
+            if let Some(free) = self.free_until([&some[0], &some[1]], time) {
+                let open = Open {
+                    primitives: pair,
+                    test,
+                    target,
+                    spent: 0,
+                };
+                let place = Candidate::Test(self.open.len() as u32);
+                self.heap.push(Entry::at(free, place));
+                self.open.push(open);
+            }
+            true
         });
-        open
+        true
     }
-}
 
-impl<A: Volumes, B: Volumes> Search<'_, A, B> {
+    /// Takes one test further, until it is settled or another candidate may come first; returns
+    /// whether an earlier contact is still possible.
+    fn advance(&mut self, place: u32, time: f64) -> bool {
+        let mut open = self.open[place as usize];
+        let limits = self.earliest.limits;
+        let limits = Limits {
+            start: time,
+            horizon: self.earliest.upper.min(limits.horizon),
+            max_iterations: limits.max_iterations - open.spent,
+            ..limits
+        };
+        let until = (self.heap.peek()).map_or(limits.horizon, |next| next.time.max(time));
+        let path = self.path(&open.test, open.primitives, open.target);
+        let bracket = bracket_until(&path, open.test.domain, &limits, until);
+        self.earliest.tests += u32::from(open.spent == 0);
+        open.spent += bracket.iterations;
+        let settled = bracket.contact || bracket.separated || !bracket.slack.is_finite();
+        if settled || bracket.iterations >= limits.max_iterations {
+            let Open {
+                test, primitives, ..
+            } = open;
+            return self.earliest.take(test, bracket, time, primitives);
+        }
+        self.earliest.iterations += bracket.iterations;
+        self.earliest.tolerance = self.earliest.tolerance.max(bracket.tolerance);
+        self.open[place as usize] = open;
+        (self.heap).push(Entry::at(bracket.lower, Candidate::Test(place)));
+        true
+    }
+
+    fn path(&self, test: &ElementaryTest, pair: [u32; 2], target: f64) -> RigidPath<f64> {
+        let [(a, _), (b, _)] = self.spheres(pair);
+        RigidPath::new(test, &self.motions, target, |second, k| {
+            if second { b[k as usize] } else { a[k as usize] }
+        })
+    }
+
     /// Finds the nearest sphere pair of the primitives that meet first.
     fn settle(&mut self) {
-        let Some((_, _, [i, j])) = self.earliest.found else {
+        let Some((_, _, pair)) = self.earliest.found else {
             return;
         };
-        let (a, share_a) = self.bodies.0.primitive(i);
-        let (b, share_b) = self.bodies.1.primitive(j);
-        let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-        let (sa, sb) = (a.map(local), b.map(local));
-        let (motions, target) = (self.motions, self.target);
-        self.earliest
-            .settle([share_a.spheres, share_b.spheres], |test| {
-                RigidPath::new(test, &motions, target, |second, k| {
-                    if second {
-                        sb[k as usize]
-                    } else {
-                        sa[k as usize]
-                    }
-                })
-            });
+        let counts = self.spheres(pair).map(|(_, share)| share.spheres);
+        let mut earliest = self.earliest;
+        earliest.settle(counts, |test| self.path(test, pair, self.target));
+        self.earliest = earliest;
     }
-}
-
-fn splits(below: Below) -> bool {
-    matches!(below, Below::Nodes(..))
 }

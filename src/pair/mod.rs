@@ -3,9 +3,11 @@
 //! Culling happens here and only here: bounding spheres decide which primitives meet, and the
 //! distance itself is always left to [`crate::elementary`].
 
+mod apart;
 pub mod contacts;
 pub mod distance;
 pub mod first_contact;
+mod queue;
 mod swept;
 pub mod volumes;
 

@@ -1,86 +1,103 @@
-//! Nodes and primitives swept over a piece of the step: chords of their centres with radii that cover
-//! the sagitta, and the order in which the search of [`super::first_contact`] takes them.
+//! One body over a piece of the step: nodes and primitives with the chords of their centres, and
+//! radii that cover the sagitta.
 
+use super::apart::Balls;
+use super::volumes::Volumes;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
-use crate::math::{Real, Vector};
-use std::cmp::Ordering;
+use crate::medial::tree::Below;
 
 /// Chord of a node's centre over a piece, and the radius around it that covers the node.
 #[derive(Clone, Copy)]
 pub(super) struct Swept {
-    pub(super) node: u32,
     pub(super) start: Vec3<f64>,
     pub(super) chord: Vec3<f64>,
     pub(super) radius: f64,
+    pub(super) below: Below,
+    /// Where the first of its swept children is, or the balls of its primitive; [`NOT_YET`] before
+    /// they are wanted.
+    next: u32,
 }
 
-/// A node pair, ordered by the time at which it may first meet; of several that overlap already,
-/// the one that overlaps deepest for its size comes first.
-pub(super) struct Entry {
-    pub(super) time: f64,
-    /// Signed distance of the two balls at the start of the piece, in units of their radii.
-    pub(super) depth: f64,
-    pub(super) nodes: [Swept; 2],
-}
+const NOT_YET: u32 = u32::MAX;
 
-impl Entry {
-    pub(super) fn key(&self) -> (f64, f64, u32, u32) {
-        (
-            self.time,
-            self.depth,
-            self.nodes[0].node,
-            self.nodes[1].node,
-        )
-    }
-}
-impl PartialEq for Entry {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Entry {}
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Entry {
-    /// Reversed: `BinaryHeap` pops the largest.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let (a, b) = (self.key(), other.key());
-        b.0.total_cmp(&a.0)
-            .then(b.1.total_cmp(&a.1))
-            .then((b.2, b.3).cmp(&(a.2, a.3)))
-    }
-}
-
-/// One side's motion over a piece of the step.
-pub(super) struct Piece {
+/// One side of a search. A node is swept once, however many nodes of the other side it meets.
+pub(super) struct Side<'a, V> {
+    pub(super) body: &'a V,
     motion: RigidMotion<f64>,
-    pub(super) times: [f64; 2],
+    times: [f64; 2],
     turned: [(f64, f64); 2],
+    nodes: Vec<Swept>,
+    balls: Vec<Balls>,
 }
 
-impl Piece {
-    pub(super) fn new(motion: RigidMotion<f64>, start: f64, end: f64) -> Self {
+impl<'a, V: Volumes> Side<'a, V> {
+    pub(super) fn new(body: &'a V, motion: RigidMotion<f64>) -> Self {
         Self {
+            body,
             motion,
-            times: [start, end],
-            turned: [motion.sin_cos(start), motion.sin_cos(end)],
+            times: [0.0; 2],
+            turned: [(0.0, 1.0); 2],
+            nodes: Vec::new(),
+            balls: Vec::new(),
         }
     }
 
-    pub(super) fn balls(&self, spheres: &[(Vec3<f64>, f64)]) -> Balls {
+    /// Turns to the piece between two times, with its roots swept: the first of [`Self::node`].
+    pub(super) fn begin(&mut self, start: f64, end: f64) {
+        self.times = [start, end];
+        self.turned = self.times.map(|t| self.motion.sin_cos(t));
+        self.nodes.clear();
+        self.balls.clear();
+        for root in 0..self.body.roots() {
+            self.nodes.push(self.sweep(root));
+        }
+    }
+
+    pub(super) fn node(&self, at: u32) -> &Swept {
+        &self.nodes[at as usize]
+    }
+
+    /// Where the two children of a swept node are; `None` if it is a leaf.
+    pub(super) fn split(&mut self, at: u32) -> Option<[u32; 2]> {
+        let Swept { below, next, .. } = *self.node(at);
+        let Below::Nodes(first, second) = below else {
+            return None;
+        };
+        if next != NOT_YET {
+            return Some([next, next + 1]);
+        }
+        let new = self.nodes.len() as u32;
+        for child in [first, second] {
+            self.nodes.push(self.sweep(child));
+        }
+        self.nodes[at as usize].next = new;
+        Some([new, new + 1])
+    }
+
+    /// Sweeps the spheres of a leaf's primitive; where they are for [`Self::balls`].
+    pub(super) fn sweep_leaf(&mut self, at: u32, primitive: u32) -> u32 {
+        let place = &mut self.nodes[at as usize].next;
+        if *place != NOT_YET {
+            return *place;
+        }
+        let new = self.balls.len() as u32;
+        *place = new;
+        let (spheres, share) = self.body.primitive(primitive);
         let mut balls = Balls {
             spheres: [(Vec3::zero(), Vec3::zero(), 0.0); 3],
-            len: spheres.len(),
+            len: share.spheres,
         };
-        for (ball, (center, radius)) in balls.spheres.iter_mut().zip(spheres) {
-            let (from, chord, sagitta) = self.chord(*center);
-            *ball = (from, chord, radius + sagitta);
+        for (ball, s) in balls.spheres.iter_mut().zip(&spheres[..share.spheres]) {
+            let (from, chord, sagitta) = self.chord(Vec3::from_vector(s.center));
+            *ball = (from, chord, f64::from(s.radius) + sagitta);
         }
-        balls
+        self.balls.push(balls);
+        new
+    }
+
+    pub(super) fn balls(&self, place: u32) -> &Balls {
+        &self.balls[place as usize]
     }
 
     /// Position of a point at the start of the piece, the chord of its path, and the sagitta.
@@ -91,49 +108,15 @@ impl Piece {
         (from, to - from, path.acceleration * (length * length) / 8.0)
     }
 
-    pub(super) fn sweep(&self, node: u32, (center, radius): (Vector, Real)) -> Swept {
+    fn sweep(&self, node: u32) -> Swept {
+        let (center, radius) = self.body.bound(node);
         let (start, chord, sagitta) = self.chord(Vec3::from_vector(center));
         Swept {
-            node,
             start,
             chord,
             radius: f64::from(radius) + sagitta,
+            below: self.body.below(node),
+            next: NOT_YET,
         }
     }
-}
-
-/// Spheres of one primitive over a piece: position at the start, chord, and radius grown by the
-/// sagitta. The unused rest has no meaning.
-#[derive(Clone, Copy)]
-pub(super) struct Balls {
-    spheres: [(Vec3<f64>, Vec3<f64>, f64); 3],
-    len: usize,
-}
-
-/// Whether one direction proves two primitives free up to the fraction `until` of the piece: along
-/// chords its bound is concave and piecewise linear in time ([`crate::elementary::certificate`]),
-/// so both ends suffice. It spares most leaf pairs their elementary tests.
-pub(super) fn apart_until(balls: &[Balls; 2], until: f64, target: f64) -> bool {
-    let [a, b] = balls.each_ref().map(|side| &side.spheres[..side.len]);
-    let middle = |side: &[(Vec3<f64>, Vec3<f64>, f64)], t: f64| {
-        let sum = side.iter().fold(Vec3::zero(), |m, s| m + s.0 + s.1 * t);
-        sum * (1.0 / side.len() as f64)
-    };
-    let gap = |n: Vec3<f64>, t: f64| {
-        let near = b.iter().map(|s| n.dot(s.0 + s.1 * t) - s.2);
-        let far = a.iter().map(|s| n.dot(s.0 + s.1 * t) + s.2);
-        near.fold(f64::MAX, f64::min) - far.fold(f64::MIN, f64::max)
-    };
-    [0.0, 0.5 * until, until].into_iter().any(|t| {
-        let y = middle(b, t) - middle(a, t);
-        let length = y.length();
-        if length <= 0.0 {
-            return false;
-        }
-        let n = y * (1.0 / length);
-        // Rounding: a few ulps of the numbers in play.
-        let size = length + (b[0].1 - a[0].1).length() + a[0].2 + b[0].2;
-        let least = target + 64.0 * f64::EPSILON * size;
-        gap(n, 0.0) > least && gap(n, until) > least
-    })
 }

@@ -216,15 +216,17 @@ impl Search<'_> {
             lower = lower.next_down();
         }
         let unresolved = self.status == ToiStatus::Unresolved;
-        let border = bodies
-            .get(found.primitives[1] as usize)
-            .map_or(0.0, |b| b.border);
+        let body = bodies.get(found.primitives[1] as usize);
+        let border = body.map_or(0.0, |b| b.border);
         let NearBall { ball, apart, .. } = found.near;
-        // A centre inside the body has no direction of its own: away from the body's centre.
-        let out = [found.near.direction, ball.0, found.place.axis]
-            .into_iter()
-            .find(|v| v.length_sq() > 0.0)
-            .map_or(Vec3::zero(), unit);
+        let (out, apart) = match body {
+            // A centre inside has no nearest point but the way out.
+            Some(b) if apart <= 0.0 => {
+                let (out, way) = b.way_out(&found.place, ball.0);
+                (out, -way)
+            }
+            _ => (unit(found.near.direction), apart),
+        };
         let world = |p: Vec3<f64>| (p + found.place.origin + origin).to_vector();
         let foot = ball.0 - out * apart;
         let points = [

@@ -6,21 +6,26 @@
 use crate::batch::{PairJob, PairResult};
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
-use std::collections::HashMap;
+use parry3d::shape::Shape;
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-struct Key {
+/// Two shapes at one relative pose, to the bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Key {
+    /// Instance ids; 0 for a shape that is not medial.
     ids: [u64; 2],
     pose: [u32; 7],
 }
 
 impl Key {
-    fn new(mesh1: &MedialMesh, mesh2: &MedialMesh, pos12: &Pose) -> Self {
+    /// Of two shapes, of which one at least is medial.
+    pub fn new(shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> Self {
         let (t, r) = (pos12.translation, pos12.rotation);
+        let id = |s: &dyn Shape| s.as_shape::<MedialMesh>().map_or(0, |m| m.instance_id());
         Self {
-            ids: [mesh1.instance_id(), mesh2.instance_id()],
+            ids: [id(shape1), id(shape2)],
             pose: [t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(Real::to_bits),
         }
     }
@@ -51,6 +56,7 @@ pub struct Answers {
     nodes: AtomicU64,
     tests: AtomicU64,
     missed: Mutex<Vec<[u64; 2]>>,
+    muted: RwLock<HashSet<Key>>,
 }
 
 impl Answers {
@@ -89,6 +95,17 @@ impl Answers {
             .push([mesh1.instance_id(), mesh2.instance_id()]);
         self.count(counts.nodes, counts.tests);
         with(&PairResult { contacts, counts })
+    }
+
+    /// From now on these pairs have no contacts, and no others: someone else takes care of them.
+    pub fn mute(&self, pairs: HashSet<Key>) {
+        *self.muted.write().unwrap_or_else(PoisonError::into_inner) = pairs;
+    }
+
+    /// Whether a pair is muted.
+    pub fn is_muted(&self, shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> bool {
+        let muted = self.muted.read().unwrap_or_else(PoisonError::into_inner);
+        !muted.is_empty() && muted.contains(&Key::new(shape1, shape2, pos12))
     }
 
     /// Counts a shape cast and its work.

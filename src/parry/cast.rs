@@ -3,12 +3,14 @@
 
 use super::advance;
 use super::foreign::{self, Parts};
+use super::inside;
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Pose, Real, Vector};
+use crate::medial::mesh::Simplex;
 use crate::medial::{MedialMesh, MedialSphere};
-use crate::pair::Volumes;
 use crate::pair::first_contact::{Counts, first_contact_counted};
+use crate::pair::{Volumes, nearest_spheres};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
 use parry3d::shape::Shape;
@@ -42,6 +44,18 @@ pub struct Cast<'a> {
 }
 
 impl Cast<'_> {
+    /// First contact as the query tells it, with the mesh as first body; times are fractions of the
+    /// cast's. `options` take the place of the cast's own target and choice of contact at the start.
+    pub fn toi(&self, options: &ToiOptions) -> Result<(Toi, Counts), Unsweepable> {
+        let [start, end] = self.times;
+        let motions = [self.motion1, self.motion2].map(|m| started(m, start));
+        let finite = motions.iter().all(motion_is_finite);
+        if !(finite && end >= start && (end - start).is_finite()) {
+            return Ok((Toi::bad_input(options), Counts::default()));
+        }
+        self.query(&motions[0], &motions[1], end - start, options)
+    }
+
     /// The hit, with the mesh as first shape, or `None` if there is none.
     pub fn run(&self) -> Result<(Option<ShapeCastHit>, Counts), Unsweepable> {
         let [start, end] = self.times;
@@ -90,6 +104,7 @@ impl Cast<'_> {
         Ok((Some(hit), counts))
     }
 
+    /// First contact in `seconds` of motions that start now; times are fractions of it.
     fn query(
         &self,
         motion1: &NonlinearRigidMotion,
@@ -98,9 +113,9 @@ impl Cast<'_> {
         options: &ToiOptions,
     ) -> Result<(Toi, Counts), Unsweepable> {
         if let Some(other) = self.other.as_shape::<MedialMesh>() {
-            return Ok(first_contact_counted(
-                self.mesh, motion1, other, motion2, seconds, options,
-            ));
+            let (toi, counts) =
+                first_contact_counted(self.mesh, motion1, other, motion2, seconds, options);
+            return Ok((self.with_normal(toi, other, motion1, motion2), counts));
         }
         let region = swept_region(
             self.mesh,
@@ -123,27 +138,76 @@ impl Cast<'_> {
             counts.tests += more.tests;
             toi = earlier(toi, other);
         }
-        let stops = options.initial_contact == InitialContact::Stop;
-        if stops && toi.upper > 0.0 && self.starts_inside(motion1, motion2, options.target_distance)
+        if options.initial_contact == InitialContact::Stop
+            && let Some(inside) = self.starts_inside(motion1, motion2, options)
         {
-            toi.status = ToiStatus::Overlapping;
-            toi.lower = 0.0;
-            toi.upper = 0.0;
+            return Ok((inside, counts));
         }
-        Ok((toi, counts))
+        Ok((self.with_normal(toi, &soup, motion1, motion2), counts))
     }
 
-    /// Whether a medial sphere's centre starts inside the other, deeper than the target.
+    /// The overlap at the start, if a medial sphere's centre is inside the other then, deeper than the
+    /// target.
     fn starts_inside(
         &self,
         motion1: &NonlinearRigidMotion,
         motion2: &NonlinearRigidMotion,
-        target: Real,
-    ) -> bool {
+        options: &ToiOptions,
+    ) -> Option<Toi> {
         let pos21 = motion2.start.inverse() * motion1.start;
-        self.mesh.spheres().iter().any(|s: &MedialSphere| {
-            s.radius + target >= 0.0 && foreign::holds_point(self.other, pos21 * s.center)
-        })
+        let spheres = self.mesh.spheres();
+        let placed = |s: &MedialSphere| MedialSphere::new(pos21 * s.center, s.radius);
+        let inside = |s: &MedialSphere| {
+            s.radius + options.target_distance >= 0.0
+                && inside::holds_point(self.other, pos21 * s.center)
+        };
+        if !spheres.iter().any(inside) {
+            return None;
+        }
+        let mut toi = Toi {
+            status: ToiStatus::Overlapping,
+            lower: 0.0,
+            upper: 0.0,
+            ..Toi::separated(options)
+        };
+        let placed: Vec<_> = spheres.iter().map(placed).collect();
+        if let Some(way) = inside::way_out(self.other, &placed) {
+            let of_sphere = |s: &Simplex| s.vertices.contains(&(way.sphere as u32));
+            let primitive = self.mesh.simplices().iter().position(of_sphere);
+            let MedialSphere { center, radius } = placed[way.sphere];
+            let out = way.direction;
+            let world = |p: Vector| motion2.start * p;
+            let foot = world(center + out * way.to_surface);
+            toi.normal = motion2.start.rotation * -out;
+            toi.points = [world(center - out * radius), foot];
+            toi.spheres = [
+                MedialSphere::new(world(center), radius),
+                MedialSphere::new(foot, 0.0),
+            ];
+            toi.primitives = [primitive.unwrap_or(0) as u32, 0];
+        }
+        Some(toi)
+    }
+
+    /// The same answer; where medial surfaces cross at the start, with the normal and the points of the
+    /// deepest contact, which the query leaves open.
+    fn with_normal(
+        &self,
+        mut toi: Toi,
+        other: &impl Volumes,
+        motion1: &NonlinearRigidMotion,
+        motion2: &NonlinearRigidMotion,
+    ) -> Toi {
+        if toi.status != ToiStatus::Overlapping || toi.normal != Vector::ZERO {
+            return toi;
+        }
+        let pos12 = motion1.start.inverse() * motion2.start;
+        if let (Some(c), _) = nearest_spheres(self.mesh, other, &pos12, self.target_distance) {
+            toi.normal = motion1.start.rotation * c.normal;
+            toi.points = [motion1.start * c.points[0], motion2.start * c.points[1]];
+            toi.primitives = c.primitives;
+        }
+        toi
     }
 }
 

@@ -232,13 +232,24 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
+        if (medial(g1).is_some() || medial(g2).is_some()) && self.answers.is_muted(g1, g2, pos12) {
+            ensure_workspace::<M, C>(g1, g2, workspace);
+            manifolds.clear();
+            return Ok(());
+        }
         let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
             return Err(Unsupported);
         };
         ensure_workspace::<M, C>(mesh1, mesh2, workspace);
         self.answers
             .contacts(mesh1, mesh2, pos12, prediction, |found| {
-                write_manifolds(&found.contacts, pos12, prediction, manifolds);
+                write_manifolds(
+                    [mesh1, mesh2],
+                    &found.contacts,
+                    pos12,
+                    prediction,
+                    manifolds,
+                );
             });
         Ok(())
     }

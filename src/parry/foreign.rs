@@ -3,7 +3,7 @@
 //! radius.
 //!
 //! A closed body is then only its surface: whether the other starts inside it needs
-//! [`holds_point`] besides. Cylinders and cones have no flat faces: they are collected apart, for
+//! [`super::inside`] besides. Cylinders and cones have no flat faces: they are collected apart, for
 //! [`super::advance`].
 
 use super::turned::Turned;
@@ -96,31 +96,6 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
         _ => return false,
     }
     true
-}
-
-/// Whether a body given by its closed surface holds a point (in its own frame). Triangle meshes,
-/// height fields and polylines are surfaces: they hold nothing. Balls, capsules, cylinders and cones are
-/// swept as solids and need no such test, and parry's own fails where one has no size.
-pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
-    match shape.as_typed_shape() {
-        TypedShape::TriMesh(_)
-        | TypedShape::HeightField(_)
-        | TypedShape::Polyline(_)
-        | TypedShape::Segment(_)
-        | TypedShape::Triangle(_)
-        | TypedShape::RoundTriangle(_)
-        | TypedShape::Ball(_)
-        | TypedShape::Capsule(_)
-        | TypedShape::Cylinder(_)
-        | TypedShape::Cone(_)
-        | TypedShape::RoundCylinder(_)
-        | TypedShape::RoundCone(_) => false,
-        TypedShape::Compound(c) => c
-            .shapes()
-            .iter()
-            .any(|(pose, s)| holds_point(s.as_ref(), pose.inverse_transform_point(point))),
-        _ => shape.contains_local_point(point),
-    }
 }
 
 fn add_cuboid(soup: &mut Soup, cuboid: &Cuboid, pose: &Pose, border: Real) {

@@ -1,23 +1,32 @@
-//! Sphere pairs → persistent contact manifolds: one manifold per primitive pair, so that each keeps
-//! its own normal (one per collider pair lets a chain of rings fall apart).
+//! Sphere pairs → persistent contact manifolds: one contact per patch, for a solver's time goes by
+//! contacts; one manifold per primitive pair, so that each keeps its own normal (one per collider
+//! pair lets a chain of rings fall apart).
 
-use crate::math::{Pose, Real};
+use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
+use crate::pair::contacts::along_old_normal;
 use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     TrackedContact,
 };
-use parry3d::shape::PackedFeatureId;
+use parry3d::shape::{PackedFeatureId, Shape};
 
 /// Cosine under which two contacts of one primitive pair get manifolds of their own (10°): a
 /// manifold has one normal.
 const SAME_NORMAL: Real = 0.985;
 
-/// Writes the manifolds of a pair at relative pose `pos12`. Contacts further apart than `prediction`
+/// Cosine from which two contacts closer than the thinner body's thickness are one patch (11°): the
+/// neighbours of a joint all report the contact there, under normals a little apart. At 20° two rings
+/// of 27 cones (13° a joint) that hang in each other lose the notch that holds them, and never sleep.
+const SAME_PATCH: Real = 0.98;
+
+/// Writes the manifolds of two meshes at relative pose `pos12`. Contacts further apart than `prediction`
 /// are left out; the deepest of a primitive pair gives its manifold the normal. Manifolds that were
-/// there keep their data, and points of the same features keep their impulses.
+/// there keep their data, and points of the same features keep their impulses. Where a deep contact's
+/// normal would turn over, it stays that of the old manifold while that is hardly deeper.
 pub fn write_manifolds<M, C>(
+    meshes: [&MedialMesh; 2],
     contacts: &[SpherePair],
     pos12: &Pose,
     prediction: Real,
@@ -27,10 +36,8 @@ pub fn write_manifolds<M, C>(
     C: Default + Copy,
 {
     let old = std::mem::take(manifolds);
-    let mut near: Vec<&SpherePair> = contacts
-        .iter()
-        .filter(|c| c.distance <= prediction)
-        .collect();
+    let near = contacts.iter().filter(|c| c.distance <= prediction);
+    let mut near = deepest_of_each_patch(near, meshes[0].thickness().min(meshes[1].thickness()));
     near.sort_by(|a, b| {
         a.primitives
             .cmp(&b.primitives)
@@ -38,7 +45,15 @@ pub fn write_manifolds<M, C>(
             .then(a.feature.cmp(&b.feature))
     });
     let inverse = pos12.rotation.inverse();
-    for c in near {
+    let groups = near.chunk_by(|a, b| a.primitives == b.primitives);
+    let settled: Vec<SpherePair> = groups
+        .flat_map(|group| {
+            let kept = kept_normal(meshes, pos12, group, &old);
+            let rest = if kept.is_some() { &[] } else { group };
+            kept.into_iter().chain(rest.iter().map(|c| **c))
+        })
+        .collect();
+    for c in &settled {
         let [a, b] = c.primitives;
         let same = |m: &&mut ContactManifold<M, C>| {
             [m.subshape1, m.subshape2] == c.primitives && m.local_n1.dot(c.normal) >= SAME_NORMAL
@@ -72,6 +87,8 @@ pub fn write_manifolds<M, C>(
         let previous = old
             .iter()
             .filter(|m| [m.subshape1, m.subshape2] == c.primitives)
+            // An impulse along a normal that turned over would pull.
+            .filter(|m| m.local_n1.dot(c.normal) > 0.0)
             .flat_map(|m| &m.points)
             .find(|p| p.fid1 == feature);
         if let Some(previous) = previous {
@@ -81,12 +98,54 @@ pub fn write_manifolds<M, C>(
     }
 }
 
+/// The contacts that have no deeper one of about the same normal within `radius`.
+fn deepest_of_each_patch<'a>(
+    contacts: impl Iterator<Item = &'a SpherePair>,
+    radius: Real,
+) -> Vec<&'a SpherePair> {
+    let mut sorted: Vec<&SpherePair> = contacts.collect();
+    sorted.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    let mut kept: Vec<&SpherePair> = Vec::new();
+    for c in sorted {
+        let covers = |k: &&SpherePair| {
+            k.points[0].distance_squared(c.points[0]) < radius * radius
+                && k.normal.dot(c.normal) >= SAME_PATCH
+        };
+        if !kept.iter().any(covers) {
+            kept.push(c);
+        }
+    }
+    kept
+}
+
+/// What takes the place of all contacts of a primitive pair, deepest first, where the deepest has none
+/// of the old normals but one of them still serves.
+fn kept_normal<M, C>(
+    [mesh1, mesh2]: [&MedialMesh; 2],
+    pos12: &Pose,
+    group: &[&SpherePair],
+    old: &[ContactManifold<M, C>],
+) -> Option<SpherePair> {
+    let deepest = group.first().filter(|c| c.distance < 0.0)?;
+    let mut before = old
+        .iter()
+        .filter(|m| [m.subshape1, m.subshape2] == deepest.primitives)
+        .map(|m| m.local_n1);
+    let same = |n: &Vector| n.dot(deepest.normal) >= SAME_NORMAL;
+    let first = before.next().filter(|n| !same(n))?;
+    if before.any(|n| same(&n)) {
+        return None;
+    }
+    let kept = along_old_normal(mesh1, mesh2, pos12, deepest, first);
+    (!same(&kept.normal)).then_some(kept)
+}
+
 /// Makes sure that a workspace is there. rapier reads its presence as "the list of manifolds may
 /// change", and panics when a list changes without it. An empty workspace of parry's own survives
 /// saving, one of ours would not.
 pub fn ensure_workspace<M, C>(
-    mesh1: &MedialMesh,
-    mesh2: &MedialMesh,
+    shape1: &dyn Shape,
+    shape2: &dyn Shape,
     workspace: &mut Option<ContactManifoldsWorkspace>,
 ) where
     DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
@@ -95,14 +154,14 @@ pub fn ensure_workspace<M, C>(
         return;
     }
     // Twice the sum of both sizes: certainly out of reach, so that parry finds nothing.
-    let reach = |m: &MedialMesh| {
-        let b = m.aabb();
+    let reach = |s: &dyn Shape| {
+        let b = s.compute_local_aabb();
         b.mins.abs().max(b.maxs.abs()).length()
     };
-    let away = 2.0 * (reach(mesh1) + reach(mesh2));
+    let away = 2.0 * (reach(shape1) + reach(shape2));
     let far = Pose::translation(away, 0.0, 0.0);
     let mut none: Vec<ContactManifold<M, C>> = Vec::new();
     let result =
-        DefaultQueryDispatcher.contact_manifolds(&far, mesh1, mesh2, 0.0, &mut none, workspace);
+        DefaultQueryDispatcher.contact_manifolds(&far, shape1, shape2, 0.0, &mut none, workspace);
     debug_assert!(result.is_ok() && workspace.is_some());
 }

@@ -6,6 +6,7 @@ pub mod cast;
 pub mod dispatcher;
 pub mod follow;
 pub mod foreign;
+pub mod inside;
 pub mod manifolds;
 pub mod parts;
 pub mod shape;

@@ -145,6 +145,32 @@ impl Turned {
         if off(base) <= off(flank) { base } else { flank }
     }
 
+    /// The shortest way from a point inside to the surface: unit direction and length.
+    pub fn way_out(&self, place: &Place, point: Vec3<f64>) -> (Vec3<f64>, f64) {
+        let (h, r) = (self.half_height, self.radius);
+        let y = point.dot(place.axis);
+        let across = point - place.axis * y;
+        let rho = across.length();
+        let outwards = if rho > 0.0 {
+            across * (1.0 / rho)
+        } else {
+            unit(any_across(place.axis))
+        };
+        let down = (-place.axis, y + h);
+        let others = if self.pointed {
+            // The flank's normal in the profile is (r, 2h), its offset r h.
+            let length = (2.0 * h).hypot(r).max(f64::MIN_POSITIVE);
+            let flank = (place.axis * r + outwards * (2.0 * h)) * (1.0 / length);
+            [(flank, (r * (h - y) - 2.0 * h * rho) / length), down]
+        } else {
+            [(outwards, r - rho), (place.axis, h - y)]
+        };
+        let nearest = others.into_iter().chain([down]);
+        nearest
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map_or((place.axis, 0.0), |(n, way)| (n, way.max(0.0)))
+    }
+
     fn at(&self, place: &Place, ball: Ball) -> NearBall {
         let y = ball.0.dot(place.axis);
         let across = ball.0 - place.axis * y;
@@ -246,6 +272,13 @@ fn minimise(until: f64, size: f64, eval: impl Fn(f64) -> (NearBall, f64)) -> Nea
         near_hi
     };
     NearBall { direction, ..best }
+}
+
+/// Some direction across a unit vector.
+fn any_across(v: Vec3<f64>) -> Vec3<f64> {
+    let axis = |x, y| v.cross(Vec3::new(x, y, 0.0));
+    let (a, b) = (axis(1.0, 0.0), axis(0.0, 1.0));
+    if a.length_sq() < b.length_sq() { b } else { a }
 }
 
 /// The vector at length 1; 0 stays 0.

@@ -1,8 +1,13 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
-use super::candidates;
+use super::effects::{Effects, Wanted};
+use super::emit::{Once, Told};
+use super::first_contact::{Asker, Work};
+use super::motion::{Body, Snapshot};
+use super::pairs::Rules;
 use super::recycled::Recycled;
 use super::report::StepReport;
+use super::{candidates, muting};
 use crate::batch;
 use crate::math::{Real, Vector};
 use crate::parry::{Answers, MedialDispatcher};
@@ -11,8 +16,9 @@ use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
     RigidBodySet, SoftBodySet,
 };
-use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
+use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, PhysicsWorld};
+use std::collections::HashSet;
 use std::sync::Arc;
 use web_time::Instant;
 
@@ -24,10 +30,15 @@ pub const RECYCLE_DISTANCE: Real = 0.01;
 /// How a pipeline works.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct MedialOptions {}
+pub struct MedialOptions {
+    /// What the scene calls for.
+    pub effects: Effects,
+}
 
 /// Steps a world whose medial colliders meet each other: finds their near pairs, computes all
-/// contacts in one batch, and hands them to rapier's narrow phase as it asks for them.
+/// contacts in one batch, and hands them to rapier's narrow phase as it asks for them. After rapier's
+/// step it resolves the first contacts of fast bodies, of which one at least is medial, on the motion
+/// of the step: see [`Effects`].
 ///
 /// One pipeline per world. A world stepped without one still has contacts, through parry's own
 /// composite shapes.
@@ -35,12 +46,22 @@ pub struct MedialOptions {}
 pub struct MedialPipeline {
     answers: Arc<Answers>,
     recycled: Recycled,
+    effects: Wanted,
+    told: Told,
 }
 
 impl MedialPipeline {
     /// A pipeline for one world.
-    pub fn new(_options: MedialOptions) -> Self {
-        Self::default()
+    pub fn new(options: MedialOptions) -> Self {
+        let mut pipeline = Self::default();
+        pipeline.effects.scene = options.effects;
+        pipeline
+    }
+
+    /// What a collider calls for, whatever the scene does; [`Effects::default`] leaves it to the scene.
+    /// Of two colliders that differ, the one that has an effect on decides.
+    pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
+        self.effects.set(collider, effects);
     }
 
     /// Makes the world's narrow phase ask this pipeline first, and lowers the contact recycle
@@ -132,6 +153,33 @@ impl MedialPipeline {
         report.batch_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
+        self.effects.clean(colliders);
+        let asker = Asker {
+            effects: &self.effects,
+            dt: parameters.dt,
+            unit: parameters.length_unit,
+        };
+        let mut work = Work::default();
+        let mut snapshot = if report.medial_colliders == 0 || self.effects.none() {
+            Snapshot::default()
+        } else {
+            Snapshot::take(gravity, parameters.dt, bodies, colliders, multibody_joints)
+        };
+        let rules = Rules {
+            bodies,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            hooks,
+        };
+        let prediction = parameters.prediction_distance();
+        let muted = muting::muted(&snapshot, &asker, &rules, prediction, &mut work);
+        report.muted = muted.len();
+        self.answers.mute(muted);
+        report.mute_seconds = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        let once = Once::new(events, &mut self.told);
         pipeline.step(
             gravity,
             parameters,
@@ -145,18 +193,64 @@ impl MedialPipeline {
             soft_bodies,
             ccd_solver,
             hooks,
-            events,
+            &once,
         );
         report.step_seconds = clock.elapsed().as_secs_f64();
+        self.answers.mute(HashSet::new());
+
+        let clock = Instant::now();
+        snapshot.follow(parameters, bodies);
+        let rules = Rules {
+            bodies,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            hooks,
+        };
+        let outcome = super::events::resolve(&mut snapshot, asker, rules, narrow_phase, &mut work);
+        for &(index, struck) in &outcome.changed {
+            write_back(&snapshot.bodies[index], struck, bodies);
+        }
+        if !outcome.changed.is_empty() {
+            bodies.propagate_modified_body_positions_to_colliders(colliders);
+        }
+        let (told, impulses) = (&mut self.told, &outcome.impulses);
+        once.finish(
+            told,
+            impulses,
+            parameters.dt,
+            bodies,
+            colliders,
+            narrow_phase,
+        );
+        report.events = outcome.events;
+        report.frozen = outcome.frozen;
+        report.event_seconds = clock.elapsed().as_secs_f64();
         for ids in self.answers.take_missed() {
             self.recycled.forget(ids);
         }
         let counted = self.answers.take_counts();
         report.cache_hits = counted.hits;
         report.cache_misses = counted.misses;
-        report.continuous_queries = counted.casts;
-        report.culled_nodes += counted.nodes;
-        report.elementary_tests += counted.tests;
+        report.continuous_queries = counted.casts + work.queries;
+        report.rotating_queries = work.rotating;
+        report.culled_nodes += counted.nodes + work.nodes;
+        report.elementary_tests += counted.tests + work.tests;
         report
+    }
+}
+
+/// Gives a body the pose and velocities at the end of the event loop.
+fn write_back(moved: &Body, struck: bool, bodies: &mut RigidBodySet) {
+    let Some(body) = moved.handle.and_then(|h| bodies.get_mut(h)) else {
+        return;
+    };
+    if !moved.motion.start.is_finite() {
+        return;
+    }
+    body.set_position(moved.motion.start, struck);
+    if struck {
+        body.set_linvel(moved.velocity[0], true);
+        body.set_angvel(moved.velocity[1], true);
     }
 }

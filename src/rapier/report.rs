@@ -19,12 +19,24 @@ pub struct StepReport {
     pub cache_misses: u64,
     /// Continuous queries (first contact) executed.
     pub continuous_queries: u64,
+    /// Those of them, on the motions of the step, in which a body turned.
+    pub rotating_queries: u64,
+    /// Pairs that the solver had no contacts for because the event loop took them over.
+    pub muted: usize,
+    /// Impacts resolved within the step.
+    pub events: usize,
+    /// Bodies that stopped before the step's end, or were carried along, after too many impacts.
+    pub frozen: usize,
     /// Node pairs of sphere trees looked at.
     pub culled_nodes: u64,
     /// Elementary tests (cone–cone, sphere–slab) executed.
     pub elementary_tests: u64,
     /// Seconds spent gathering pairs and in the batch.
     pub batch_seconds: f64,
+    /// Seconds spent on choosing the muted pairs.
+    pub mute_seconds: f64,
+    /// Seconds of the event loop.
+    pub event_seconds: f64,
     /// Seconds of rapier's own step, which includes manifolds and continuous queries.
     pub step_seconds: f64,
 }

@@ -1,11 +1,17 @@
 //! Triangle mesh → medial mesh, against planted shapes and independent checks.
 
 mod bad_input;
+mod broken;
+mod corpus;
 mod delaunay;
 mod distance;
 mod enclosure;
 mod meshes;
 mod options;
+#[path = "../medial/oracle.rs"]
+#[allow(dead_code)] // Shared with `tests/medial`, which uses all of it.
+mod oracle;
+mod scale;
 mod shapes;
 
 use meshes::Mesh;

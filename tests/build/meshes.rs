@@ -131,7 +131,7 @@ pub fn l_shape() -> Mesh {
 }
 
 /// An outline (counterclockwise) from z = 0 to `height`; `cap` are its triangles.
-fn prism(outline: &[(f32, f32)], height: f32, cap: &[[u32; 3]]) -> Mesh {
+pub fn prism(outline: &[(f32, f32)], height: f32, cap: &[[u32; 3]]) -> Mesh {
     let n = outline.len() as u32;
     let at = |z: f32| outline.iter().map(move |&(x, y)| Vector::new(x, y, z));
     let mut indices = Vec::new();

@@ -145,7 +145,7 @@ fn a_break_ends_the_build_soon() {
             assert!(built.is_err_and(cancelled), "in {at}");
         }
     }
-    assert_eq!(tried.len(), 7, "{tried:?}");
+    assert_eq!(tried.len(), 9, "{tried:?}");
 }
 
 #[test]

@@ -62,6 +62,36 @@ fn info_describes_a_mesh() {
 }
 
 #[test]
+fn a_baked_mesh_is_described_as_its_source() {
+    let directory = scratch("bake");
+    let torus = MedialMesh::torus(1.0, 0.25, 16).unwrap();
+    torus.save_ma(directory.join("torus.ma")).unwrap();
+    let output = medial(&directory, &["bake", "torus.ma", "-o", "torus.medial"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let baked = fs::read(directory.join("torus.medial")).unwrap();
+    assert_eq!(baked, torus.to_bytes());
+    let described = |name| medial(&directory, &["info", name]).stdout;
+    assert_eq!(
+        text(&described("torus.medial")),
+        text(&described("torus.ma"))
+    );
+
+    fs::write(directory.join("cut.medial"), &baked[..200]).unwrap();
+    let mut damaged = baked.clone();
+    damaged[150] ^= 1;
+    fs::write(directory.join("damaged.medial"), &damaged).unwrap();
+    let bake = |input, output| medial(&directory, &["bake", input, "-o", output]);
+    assert_fails(&bake("missing.ma", "out.medial"), "missing.ma");
+    assert_fails(&bake("cut.medial", "out.medial"), "cut.medial: 200 bytes");
+    assert_fails(&bake("torus.ma", "./torus.ma"), "is the input");
+    assert_fails(
+        &medial(&directory, &["info", "damaged.medial"]),
+        "damaged.medial: damaged: checksum",
+    );
+    assert!(!directory.join("out.medial").exists());
+}
+
+#[test]
 fn failures_are_one_line_and_exit_code_1() {
     let directory = scratch("failures");
     fs::write(directory.join("broken.ma"), "2 0 0\nv 0 0 0 1\nv 0 0 x 1\n").unwrap();
@@ -193,6 +223,102 @@ fn an_interrupted_build_leaves_no_half_written_file() {
         }
     }
     assert!(interrupted > 0);
+}
+
+/// One command builds a folder and a file beside it; a mesh that cannot be built costs only itself.
+#[test]
+fn several_meshes_are_built_into_a_folder() {
+    let directory = scratch("several");
+    fs::create_dir(directory.join("in")).unwrap();
+    fs::write(directory.join("in/first.obj"), CORNER).unwrap();
+    fs::write(directory.join("in/second.v2.obj"), CORNER).unwrap();
+    fs::write(directory.join("in/notes.txt"), "no mesh").unwrap();
+    fs::write(directory.join("broken.obj"), "v 0 0 0\nv 1 0\n").unwrap();
+    let names = || {
+        let entries = fs::read_dir(directory.join("out")).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+
+    let run = ["build", "in", "-o", "out", "-p", "20", "--json"];
+    let output = medial(&directory, &run);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let built: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(built.as_array().unwrap().len(), 2);
+    assert_eq!(names(), ["first.ma", "second.v2.ma"]);
+
+    let output = medial(
+        &directory,
+        &["build", "broken.obj", "in", "-o", "out", "-p", "20"],
+    );
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("broken.obj, line 2"), "{message}");
+    assert!(message.contains("1 of 3 meshes failed"), "{message}");
+    assert_eq!(names(), ["first.ma", "second.v2.ma"]);
+    MedialMesh::load_ma(directory.join("out/first.ma")).unwrap();
+
+    fs::write(directory.join("first.obj"), CORNER).unwrap();
+    let twice = medial(&directory, &["build", "in", "first.obj", "-o", "out"]);
+    assert_fails(&twice, "would go there");
+    fs::create_dir(directory.join("empty")).unwrap();
+    assert_fails(
+        &medial(&directory, &["build", "empty", "-o", "out"]),
+        "no triangle mesh",
+    );
+}
+
+/// Ctrl-C ends the build soon and in order: nothing is left, not even an unfinished file.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_nothing() {
+    let directory = scratch("ctrl-c");
+    fs::write(directory.join("corner.obj"), CORNER).unwrap();
+    let mut interrupted = 0;
+    for delay in [100, 300] {
+        let child = Command::new(env!("CARGO_BIN_EXE_medial"))
+            .args(["build", "corner.obj", "-o", "out.ma", "--primitives", "500"])
+            .current_dir(&directory)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        thread::sleep(Duration::from_millis(delay));
+        let sent = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status()
+            .unwrap();
+        let output = child.wait_with_output().unwrap();
+        // A busy machine may get it before its handler is in place, or after the build.
+        let code = output.status.code();
+        assert!(matches!(code, None | Some(0 | 130)), "{code:?} {sent:?}");
+        if code == Some(130) {
+            interrupted += 1;
+            assert!(text(&output.stderr).contains("cancelled during"));
+        }
+        let mut left = fs::read_dir(&directory)
+            .unwrap()
+            .map(|e| e.unwrap().file_name());
+        let whole = |name: std::ffi::OsString| {
+            name == "corner.obj" || (code == Some(0) && name == "out.ma")
+        };
+        assert!(left.all(whole), "{code:?}");
+        let _ = fs::remove_file(directory.join("out.ma"));
+    }
+    assert!(interrupted > 0, "no build was interrupted");
+}
+
+/// A file that cannot take its place is removed again.
+#[test]
+fn a_write_that_fails_leaves_nothing() {
+    let directory = scratch("unwritable");
+    fs::write(directory.join("corner.obj"), CORNER).unwrap();
+    fs::create_dir_all(directory.join("out/corner.ma/taken")).unwrap();
+    let run = ["build", "corner.obj", "-o", "out", "--primitives", "20"];
+    assert_fails(&medial(&directory, &run), "corner.ma");
+    let left: Vec<_> = fs::read_dir(directory.join("out")).unwrap().collect();
+    assert_eq!(left.len(), 1, "{left:?}");
 }
 
 #[test]

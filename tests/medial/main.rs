@@ -1,5 +1,6 @@
 //! The data layer: mass, files, envelope, exact solids, refusals, and the command line.
 
+mod asset;
 mod broken_file;
 #[cfg(feature = "cli")]
 mod cli;
@@ -10,3 +11,6 @@ mod mesh;
 mod mesh_file;
 mod oracle;
 mod polygon;
+#[cfg(feature = "serde")]
+mod serde_formats;
+mod solids;

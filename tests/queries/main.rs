@@ -4,6 +4,8 @@
 mod ccd;
 
 mod bad_input;
+mod batch;
+mod coherence;
 mod distance;
 mod families;
 mod first_contact;

@@ -10,12 +10,12 @@ use rapier3d_medial::math::{Pose, Real, Vector};
 use rapier3d_medial::pair::{contacts, first_contact, nearest_spheres};
 use rapier3d_medial::{MedialMesh, MedialSphere};
 
-fn vector(rng: &mut Rng) -> Vector {
+pub(crate) fn vector(rng: &mut Rng) -> Vector {
     Vector::from([0; 3].map(|_| rng.range(-1.0, 1.0) as Real))
 }
 
 /// Slabs in a fan, a chain of cones, and a lone sphere.
-fn mesh(rng: &mut Rng) -> MedialMesh {
+pub(crate) fn mesh(rng: &mut Rng) -> MedialMesh {
     let mut spheres = Vec::new();
     for k in 0..14 {
         let spread = if k < 7 { 0.4 } else { 0.8 };
@@ -27,7 +27,12 @@ fn mesh(rng: &mut Rng) -> MedialMesh {
     MedialMesh::new(spheres, edges, faces).expect("a medial mesh")
 }
 
-fn motion(rng: &mut Rng, distance: Real, speed: Real, spin: Real) -> NonlinearRigidMotion {
+pub(crate) fn motion(
+    rng: &mut Rng,
+    distance: Real,
+    speed: Real,
+    spin: Real,
+) -> NonlinearRigidMotion {
     let away = vector(rng).normalize_or_zero() * distance;
     let towards = vector(rng) * 0.4 - away.normalize_or_zero();
     let start = Pose::new(away, vector(rng) * 3.0);

@@ -1,0 +1,212 @@
+//! A heap of rings at rest, sleeping off: what a step costs as medial meshes, as rapier's convex
+//! hulls, as parry's convex decomposition, as triangle meshes and as voxels.
+//!
+//! ```text
+//! cargo bench --bench piles                    # 30, 200 and 1,000 rings: minutes
+//! cargo bench --bench piles -- --rings 30
+//! ```
+//!
+//! Every kind gets the same rings at the same places, rapier's defaults, and time to settle. Then
+//! the kinds take turns, nine times: the ratios of one turn are of the same minute of the machine.
+//! Hulls settle into another heap (they have no hole), so theirs is another scene of equal numbers.
+
+mod common;
+mod torus;
+
+use common::{Hash, median, processor};
+use rapier3d::parry::transformation::voxelization::FillMode;
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+use std::time::Instant;
+use torus::{MINOR, ring, surface};
+
+/// Turns of each kind; the spread is taken over them.
+const TURNS: usize = 9;
+/// Half a second of simulated time a turn.
+const STEPS: usize = 30;
+/// Four seconds to settle.
+const SETTLE: usize = 240;
+/// Above this many rings only the medial mesh, the hull and the decomposition run.
+const ALL_KINDS: usize = 30;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Medial,
+    Hull,
+    Decomposition,
+    Triangles,
+    Voxels,
+}
+
+impl Kind {
+    const ALL: [Kind; 5] = [
+        Kind::Medial,
+        Kind::Hull,
+        Kind::Decomposition,
+        Kind::Triangles,
+        Kind::Voxels,
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Medial => "medial mesh, 27 cones",
+            Kind::Hull => "convex hull",
+            Kind::Decomposition => "VHACD, default",
+            Kind::Triangles => "triangle mesh",
+            Kind::Voxels => "voxels of r / 4",
+        }
+    }
+
+    fn shape(self) -> SharedShape {
+        let (points, triangles) = surface();
+        match self {
+            Kind::Medial => SharedShape::medial_mesh(ring(27)),
+            Kind::Hull => SharedShape::convex_hull(&points).expect("a hull of a torus"),
+            Kind::Decomposition => SharedShape::convex_decomposition(&points, &triangles),
+            Kind::Triangles => SharedShape::trimesh(points, triangles).expect("a torus"),
+            Kind::Voxels => {
+                let fill = FillMode::FloodFill {
+                    detect_cavities: false,
+                };
+                SharedShape::voxelized_mesh(&points, &triangles, MINOR as f32 / 4.0, fill)
+            }
+        }
+    }
+}
+
+/// One world of rings.
+struct Pile {
+    kind: Kind,
+    world: PhysicsWorld,
+    pipeline: Option<MedialPipeline>,
+    milliseconds: Vec<f64>,
+}
+
+impl Pile {
+    /// Rings in layers of a square, tilted one by one, in a pen as wide as the square.
+    fn new(kind: Kind, rings: usize) -> Self {
+        let mut world = PhysicsWorld::default();
+        let side = if rings > 100 { 6 } else { 3 };
+        let half = 0.75 * side as Real;
+        let slab = |x: Real, y: Real, z: Real, at: Vector| {
+            ColliderBuilder::cuboid(x, y, z).translation(at)
+        };
+        let tall = 60.0;
+        world.insert_collider(slab(50.0, 0.5, 50.0, Vector::NEG_Y * 0.5), None);
+        for axis in [Vector::X, Vector::NEG_X] {
+            world.insert_collider(slab(0.5, tall, 50.0, axis * (half + 0.5)), None);
+        }
+        for axis in [Vector::Z, Vector::NEG_Z] {
+            world.insert_collider(slab(50.0, tall, 0.5, axis * (half + 0.5)), None);
+        }
+        // All kinds weigh the same and turn alike: the mass is the body's, not the collider's.
+        let mass = ring(27).mass_properties(1000.0);
+        let collider = ColliderBuilder::new(kind.shape()).density(0.0);
+        for k in 0..rings {
+            let (layer, place) = (k / (side * side), k % (side * side));
+            let at = |i: usize| (i as Real - 0.5 * (side - 1) as Real) * 1.4;
+            let center = Vector::new(
+                at(place % side),
+                0.6 + 0.5 * layer as Real,
+                at(place / side),
+            );
+            let tilt = Vector::new(0.3, 0.0, 0.2) * ((k % 7) as Real - 3.0);
+            let body = RigidBodyBuilder::dynamic()
+                .pose(Pose::new(center, tilt))
+                .additional_mass_properties(mass)
+                .can_sleep(false);
+            world.insert(body, collider.clone());
+        }
+        let pipeline = (kind == Kind::Medial).then(|| {
+            let mut pipeline = MedialPipeline::new(MedialOptions::default());
+            pipeline.attach(&mut world);
+            pipeline
+        });
+        Self {
+            kind,
+            world,
+            pipeline,
+            milliseconds: Vec::new(),
+        }
+    }
+
+    fn step(&mut self, steps: usize) {
+        for _ in 0..steps {
+            match &mut self.pipeline {
+                Some(pipeline) => drop(pipeline.step(&mut self.world)),
+                None => self.world.step(),
+            }
+        }
+    }
+
+    fn turn(&mut self) {
+        let start = Instant::now();
+        self.step(STEPS);
+        let seconds = start.elapsed().as_secs_f64();
+        self.milliseconds.push(1e3 * seconds / STEPS as f64);
+    }
+
+    /// What the solver works on: manifolds with contacts, and contacts.
+    fn solved(&self) -> [usize; 2] {
+        let pairs = self.world.narrow_phase.contact_pairs();
+        let manifolds = pairs.flat_map(|pair| pair.solver_manifolds());
+        let contacts = manifolds.map(|m| m.data.solver_contacts.len());
+        contacts
+            .filter(|&n| n > 0)
+            .fold([0, 0], |[m, c], n| [m + 1, c + n])
+    }
+
+    /// Mean height of the rings, and a hash of all poses.
+    fn state(&self) -> (Real, String) {
+        let mut hash = Hash::new();
+        let (mut sum, mut count) = (0.0, 0);
+        for (_, body) in self.world.bodies.iter() {
+            let at = body.translation();
+            for x in [at.x, at.y, at.z] {
+                hash.add(x.to_bits().into());
+            }
+            sum += at.y;
+            count += 1;
+        }
+        (sum / count as Real, hash.short())
+    }
+}
+
+fn piles(rings: usize) {
+    println!("\n{rings} rings, {TURNS} turns of {STEPS} steps, after {SETTLE}");
+    println!(
+        "{:<24}{:>9}{:>9}{:>16}{:>11}{:>10}{:>13}  hash",
+        "", "ms/step", "ratio", "spread", "manifolds", "contacts", "mean height"
+    );
+    let kinds = Kind::ALL
+        .into_iter()
+        .filter(|kind| rings <= ALL_KINDS || !matches!(kind, Kind::Triangles | Kind::Voxels));
+    let mut piles: Vec<Pile> = kinds.map(|kind| Pile::new(kind, rings)).collect();
+    piles.iter_mut().for_each(|pile| pile.step(SETTLE));
+    for _ in 0..TURNS {
+        piles.iter_mut().for_each(Pile::turn);
+    }
+    let medial = piles[0].milliseconds.clone();
+    for pile in &piles {
+        let ratios = medial.iter().zip(&pile.milliseconds).map(|(m, p)| m / p);
+        let mut ratios: Vec<f64> = ratios.collect();
+        let ratio = median(&mut ratios);
+        let spread = format!("{:.2} to {:.2}", ratios[0], ratios[TURNS - 1]);
+        let (height, hash) = pile.state();
+        let [manifolds, contacts] = pile.solved();
+        println!(
+            "{:<24}{:>9.2}{ratio:>9.2}{spread:>16}{manifolds:>11}{contacts:>10}{height:>13.2}  {hash}",
+            pile.kind.name(),
+            median(&mut pile.milliseconds.clone()),
+        );
+    }
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let wanted = arguments.iter().position(|a| a == "--rings");
+    let wanted = wanted.and_then(|k| arguments.get(k + 1)?.parse().ok());
+    println!("{}; ratio: medial mesh to the row's", processor());
+    let sizes = wanted.map_or(vec![30, 200, 1000], |n| vec![n]);
+    sizes.into_iter().for_each(piles);
+}

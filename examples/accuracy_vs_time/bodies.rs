@@ -1,0 +1,142 @@
+//! What a body collides as: medial meshes of several sizes, and what rapier's users take today.
+
+use crate::common::mesh::Mesh;
+use rapier3d::parry::query::{NonlinearRigidMotion, cast_shapes_nonlinear};
+use rapier3d::parry::shape::{Compound, Shape, SharedShape};
+use rapier3d::parry::transformation::vhacd::VHACDParameters;
+use rapier3d::parry::transformation::voxelization::FillMode;
+use rapier3d::prelude::Real;
+use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, ToiOptions, ToiStatus, pair};
+use std::time::Instant;
+
+/// Tolerance of the medial queries, in metres: that of the true contacts.
+const TOLERANCE: Real = 4.0e-5;
+
+/// Two bodies in one representation.
+pub struct Bodies {
+    /// As the page names it.
+    pub name: String,
+    /// Primitives, parts, triangles or voxels of the creature.
+    pub parts: usize,
+    /// Largest distance between the shapes and their sources, both bodies together, where it was
+    /// measured: a contact may come that much nearer or further away.
+    pub shape_error: Option<f64>,
+    /// Only every such motion is asked: some answers take a second each.
+    pub every: usize,
+    /// Seconds to build both.
+    pub seconds: f64,
+    shapes: Shapes,
+}
+
+enum Shapes {
+    Medial([MedialMesh; 2]),
+    Parry([SharedShape; 2]),
+}
+
+impl Bodies {
+    /// Medial meshes with as many primitives each.
+    pub fn medial(meshes: &[Mesh; 2], primitives: usize) -> Result<Self, BuildError> {
+        let mut options = BuildOptions::default();
+        options.primitives = Some(primitives);
+        let start = Instant::now();
+        let build = |m: &Mesh| MedialMesh::from_trimesh(&m.vertices, &m.indices, &options);
+        let built = [build(&meshes[0])?, build(&meshes[1])?];
+        let seconds = start.elapsed().as_secs_f64();
+        let error = |k: usize| {
+            let h = &built[k].1.hausdorff;
+            f64::from(h.surface_to_envelope.max(h.envelope_to_surface) + h.sampling)
+        };
+        Ok(Self {
+            name: format!("medial mesh, {primitives}"),
+            parts: built[0].1.primitives,
+            shape_error: Some(error(0) + error(1)),
+            every: 1,
+            seconds,
+            shapes: Shapes::Medial(built.map(|(mesh, _)| mesh)),
+        })
+    }
+
+    /// Shapes of parry's, made by `build`.
+    fn parry(name: &str, meshes: &[Mesh; 2], build: impl Fn(&Mesh) -> SharedShape) -> Self {
+        let start = Instant::now();
+        let shapes = [build(&meshes[0]), build(&meshes[1])];
+        Self {
+            name: name.into(),
+            seconds: start.elapsed().as_secs_f64(),
+            parts: parts(&*shapes[0]),
+            shape_error: None,
+            every: 1,
+            shapes: Shapes::Parry(shapes),
+        }
+    }
+
+    /// The peers: hull, convex decompositions, and, where there is time, triangles and voxels.
+    pub fn peers(meshes: &[Mesh; 2], quick: bool) -> Vec<Self> {
+        let default = VHACDParameters::default();
+        let decomposition = |resolution, concavity| {
+            move |m: &Mesh| {
+                let parameters = VHACDParameters {
+                    resolution,
+                    concavity,
+                    ..default
+                };
+                SharedShape::convex_decomposition_with_params(&m.vertices, &m.indices, &parameters)
+            }
+        };
+        let voxels = |m: &Mesh| {
+            let (low, high) = m.bounds();
+            let fill = FillMode::FloodFill {
+                detect_cavities: false,
+            };
+            let size = (high - low).max_element() / 24.0;
+            SharedShape::voxelized_mesh(&m.vertices, &m.indices, size, fill)
+        };
+        let mut peers = vec![
+            Self::parry("convex hull", meshes, |m| {
+                SharedShape::convex_hull(&m.vertices).expect("a body has a hull")
+            }),
+            Self::parry(
+                "VHACD, default",
+                meshes,
+                decomposition(default.resolution, default.concavity),
+            ),
+            Self::parry("VHACD, 128 / 0.001", meshes, decomposition(128, 0.001)),
+            Self::parry("triangle mesh", meshes, |m| SharedShape::new(m.to_parry())),
+            Self::parry("voxels, 24 along", meshes, voxels),
+        ];
+        for slow in &mut peers[3..] {
+            slow.every = 100;
+        }
+        peers.truncate(if quick { 3 } else { peers.len() });
+        peers
+    }
+
+    /// First contact over one second, and whether the answer is a contact.
+    pub fn first_contact(&self, motions: [&NonlinearRigidMotion; 2]) -> Option<f64> {
+        match &self.shapes {
+            Shapes::Medial([a, b]) => {
+                let mut options = ToiOptions::default();
+                options.tolerance = TOLERANCE;
+                options.time_tolerance = 1.0e-6;
+                let toi = pair::first_contact(a, motions[0], b, motions[1], 1.0, &options);
+                (toi.status != ToiStatus::Separated).then(|| toi.upper.into())
+            }
+            Shapes::Parry([a, b]) => {
+                let hit = cast_shapes_nonlinear(motions[0], &**a, motions[1], &**b, 0.0, 1.0, true);
+                hit.ok().flatten().map(|hit| hit.time_of_impact.into())
+            }
+        }
+    }
+}
+
+fn parts(shape: &dyn Shape) -> usize {
+    if let Some(compound) = shape.as_shape::<Compound>() {
+        compound.shapes().len()
+    } else if let Some(triangles) = shape.as_trimesh() {
+        triangles.indices().len()
+    } else if let Some(voxels) = shape.as_voxels() {
+        voxels.voxels().filter(|v| !v.state.is_empty()).count()
+    } else {
+        1
+    }
+}

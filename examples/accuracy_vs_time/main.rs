@@ -1,0 +1,144 @@
+//! What accuracy costs in time: sizes and representations, tolerance and precision, straight paths
+//! and exact rotation, each against a truth that is not ours.
+//!
+//! ```text
+//! cargo run --release --example accuracy_vs_time              # minutes
+//! cargo run --release --example accuracy_vs_time -- --quick   # under a minute
+//! ```
+//! Options: `--quick` (fewer motions and sizes), `--mesh FILE` (your own body flies instead of the
+//! creature, scaled to its width), `--out DIR` (default target/accuracy_vs_time).
+//!
+//! Writes a table (CSV) and a plot (SVG) for each experiment and one page, `index.html`, with all.
+//! Exits with 1 where a medial mesh missed a contact by more than its shape's error, or a certified
+//! query missed one at all.
+
+mod bodies;
+// The tests use the rest of it.
+#[allow(dead_code)]
+#[path = "../../tests/common/ccd/mod.rs"]
+mod ccd;
+#[path = "../common/mod.rs"]
+mod common;
+mod crash;
+mod elementary;
+mod random;
+mod report;
+mod representations;
+
+use bodies::Bodies;
+use common::arguments::Arguments;
+use common::mesh::Mesh;
+use common::progress::bar;
+use crash::Crash;
+use rapier3d_medial::build::mesh_file;
+use report::{Section, page};
+use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("accuracy_vs_time: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
+    let mut arguments = Arguments::from_env();
+    let quick = arguments.flag("--quick");
+    let mesh: Option<PathBuf> = arguments.value("--mesh")?;
+    let out = arguments.value("--out")?;
+    let out: PathBuf = out.unwrap_or_else(|| "target/accuracy_vs_time".into());
+    arguments.finish()?;
+    fs::create_dir_all(&out)?;
+
+    let queries = if quick { 2_000 } else { 20_000 };
+    let sections = [
+        representations(quick, mesh)?,
+        with_bar("tolerance", 24, |tick| elementary::tolerance(queries, tick)),
+        with_bar("motion", 6, |tick| elementary::motion(queries / 4, tick)),
+    ];
+    for section in &sections {
+        fs::write(out.join(section.name).with_extension("csv"), section.csv())?;
+        fs::write(out.join(section.name).with_extension("svg"), section.svg()?)?;
+    }
+    let index = out.join("index.html");
+    fs::write(&index, page(&sections, &machine())?)?;
+    println!("{}", index.display());
+    check(&sections)
+}
+
+/// Runs an experiment under a progress bar of some ticks.
+fn with_bar(name: &'static str, ticks: usize, run: impl FnOnce(&dyn Fn()) -> Section) -> Section {
+    let bar = bar(name, ticks);
+    let section = run(&|| bar.inc(1));
+    bar.finish();
+    section
+}
+
+fn representations(quick: bool, mesh: Option<PathBuf>) -> Result<Section, Box<dyn Error>> {
+    let own = mesh.map(mesh_file::read).transpose()?.map(|read| Mesh {
+        vertices: read.vertices,
+        indices: read.indices,
+    });
+    let (motions, sizes): (usize, &[usize]) = if quick {
+        (4, &[20, 100, 500])
+    } else {
+        (44, &[20, 50, 100, 200, 500, 1000, 2000, 5000])
+    };
+    let cells = crash::SPEEDS.len() * crash::TURNS.len();
+    let truth = bar("truth", motions * cells);
+    let crash = Crash::new(own, motions, || truth.inc(1));
+    truth.finish();
+    let building = bar("build", sizes.len() + 1);
+    let mut medial = Vec::new();
+    for &size in sizes {
+        medial.push(Bodies::medial(&crash.meshes, size)?);
+        building.inc(1);
+    }
+    let peers = Bodies::peers(&crash.meshes, quick);
+    building.finish();
+    let asked = |b: &Bodies| crash.cases.len().div_ceil(b.every);
+    let ticks = medial.iter().chain(&peers).map(asked).sum();
+    Ok(with_bar("representations", ticks, |tick| {
+        representations::measure(&crash, medial, peers, tick)
+    }))
+}
+
+/// The processor and the number of threads: what the times are of.
+fn machine() -> String {
+    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = info.lines().find(|line| line.starts_with("model name"));
+    let name = name.and_then(|line| line.split(": ").nth(1));
+    let name = name.unwrap_or("unknown processor");
+    format!(
+        "{name}, one thread, {} {}.",
+        std::env::consts::OS,
+        std::env::consts::ARCH
+    )
+}
+
+/// What must hold whatever the machine: certified queries miss nothing, and where triangles and
+/// medial meshes disagree, it is by no more than their shapes.
+fn check(sections: &[Section]) -> Result<(), Box<dyn Error>> {
+    let mut failures = Vec::new();
+    for section in sections {
+        let column = |name| section.head.iter().position(|head| *head == name);
+        let column = column("beyond shape error").or(column("missed"));
+        for row in &section.rows {
+            let certified = ["medial mesh", "certified", "exact"];
+            let certified = certified.iter().any(|start| row[0].starts_with(start));
+            if certified && column.is_some_and(|c| row[c] != "0") {
+                failures.push(format!("{}: {}", section.name, row.join(" ")));
+            }
+        }
+    }
+    match failures[..] {
+        [] => Ok(()),
+        _ => Err(failures.join("\n").into()),
+    }
+}

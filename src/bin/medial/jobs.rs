@@ -1,0 +1,126 @@
+//! What `medial build` is to do: which triangle meshes, and where each result goes. Everything that
+//! can be refused is refused before minutes of work.
+
+use rapier3d_medial::build::mesh_file::MeshFormat;
+use std::collections::HashMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// One mesh to build.
+#[derive(Debug)]
+pub struct Job {
+    /// The triangle mesh.
+    pub input: PathBuf,
+    /// Where the medial mesh goes.
+    pub output: PathBuf,
+}
+
+/// Why nothing is built.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    #[error("{0} is the input: the output would replace it")]
+    OverInput(PathBuf),
+    #[error("{0}: no such directory")]
+    NoDirectory(PathBuf),
+    #[error("{0}: no triangle mesh in it (obj, stl, ply, off)")]
+    NoMeshes(PathBuf),
+    #[error("{output}: both {first} and {second} would go there")]
+    SameOutput {
+        output: PathBuf,
+        first: PathBuf,
+        second: PathBuf,
+    },
+    #[error("{path}: {source}")]
+    Folder { path: PathBuf, source: io::Error },
+}
+
+/// One job per mesh; a folder stands for all meshes in it. Several meshes go into the folder
+/// `output`, which is made if it is not there; a single one goes to the file, or into the folder.
+pub fn plan(inputs: &[PathBuf], output: &Path) -> Result<Vec<Job>, PlanError> {
+    let mut meshes = Vec::new();
+    for input in inputs {
+        if input.is_dir() {
+            meshes.extend(meshes_in(input)?);
+        } else {
+            meshes.push(input.clone());
+        }
+    }
+    let single = matches!(inputs, [only] if !only.is_dir());
+    let into_folder = !single || output.is_dir();
+    if into_folder && !output.is_dir() {
+        check_parent(output)?;
+        std::fs::create_dir(output).map_err(|source| PlanError::Folder {
+            path: output.to_owned(),
+            source,
+        })?;
+    }
+    let mut taken: HashMap<PathBuf, PathBuf> = HashMap::new();
+    let mut jobs = Vec::new();
+    for input in meshes {
+        let output = if into_folder {
+            // A stem may have dots of its own, which `with_extension` would take for an ending.
+            let mut name = input.file_stem().unwrap_or_default().to_owned();
+            name.push(".ma");
+            output.join(name)
+        } else {
+            output.to_owned()
+        };
+        check_output(&input, &output)?;
+        if let Some(first) = taken.insert(output.clone(), input.clone()) {
+            return Err(PlanError::SameOutput {
+                output,
+                first,
+                second: input,
+            });
+        }
+        jobs.push(Job { input, output });
+    }
+    Ok(jobs)
+}
+
+/// The triangle meshes in a folder, by name.
+fn meshes_in(folder: &Path) -> Result<Vec<PathBuf>, PlanError> {
+    let failed = |source| PlanError::Folder {
+        path: folder.to_owned(),
+        source,
+    };
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.is_file() && MeshFormat::of(&path).is_some() {
+            found.push(path);
+        }
+    }
+    if found.is_empty() {
+        return Err(PlanError::NoMeshes(folder.to_owned()));
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Refuses, before minutes of work, an output that cannot be or must not be written.
+pub fn check_output(input: &Path, output: &Path) -> Result<(), PlanError> {
+    check_parent(output)?;
+    if is_same_file(output, input) {
+        return Err(PlanError::OverInput(output.to_owned()));
+    }
+    Ok(())
+}
+
+fn check_parent(output: &Path) -> Result<(), PlanError> {
+    let directory = match output.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    match directory.is_dir() {
+        true => Ok(()),
+        false => Err(PlanError::NoDirectory(directory.to_owned())),
+    }
+}
+
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}

@@ -1,0 +1,93 @@
+//! Solid parts and sheets, simplified side by side to a common count.
+//!
+//! One collapse over both would not do: errors are sums over the faces that were merged, of which
+//! a dense solid has thousands and a card two, so that cards would go first.
+
+use super::draft::Draft;
+use super::simplify::{BOUNDARY_WEIGHT_SHEET, BOUNDARY_WEIGHT_SOLID, Simplifier};
+use super::start::Start;
+use super::triangle_tree::TriangleTree;
+use super::watch::Watch;
+use crate::error::BuildError;
+
+/// The two parts of a medial mesh on its way to fewer primitives.
+pub struct Parts<'a> {
+    solid: Simplifier<'a>,
+    sheets: Simplifier<'a>,
+    /// Share of the primitives that sheets get: that of the area.
+    share: f64,
+    /// But this many, up to half of all: one for each patch.
+    least: usize,
+    /// A single primitive cannot be both.
+    gave_up_sheets: bool,
+}
+
+impl<'a> Parts<'a> {
+    /// Prepares both.
+    pub fn new(
+        start: Start,
+        tree: &'a TriangleTree,
+        watch: &mut Watch,
+    ) -> Result<Self, BuildError> {
+        Ok(Self {
+            solid: Simplifier::new(start.solid, BOUNDARY_WEIGHT_SOLID, tree, watch)?,
+            sheets: Simplifier::new(start.sheets, BOUNDARY_WEIGHT_SHEET, tree, watch)?,
+            share: start.share,
+            least: start.sheet_patches,
+            gave_up_sheets: false,
+        })
+    }
+
+    /// The solid part, if it is all there is.
+    pub fn only_solid(&mut self) -> Option<&mut Simplifier<'a>> {
+        (self.sheets.primitives() == 0).then_some(&mut self.solid)
+    }
+
+    /// Number of primitives now.
+    pub fn primitives(&self) -> usize {
+        self.solid.primitives() + self.sheet_primitives()
+    }
+
+    fn sheet_primitives(&self) -> usize {
+        match self.gave_up_sheets {
+            true => 0,
+            false => self.sheets.primitives(),
+        }
+    }
+
+    /// Whether holes had to be closed, or parts joined, to reach a count.
+    pub fn broke_topology(&self) -> bool {
+        self.gave_up_sheets || self.solid.broke_topology() || self.sheets.broke_topology()
+    }
+
+    /// The medial mesh as it is now.
+    pub fn draft(&self) -> Draft {
+        match self.gave_up_sheets {
+            true => self.solid.draft(),
+            false => self.solid.draft().and(self.sheets.draft()),
+        }
+    }
+
+    /// Simplifies until there are at most `target` primitives: each part by its share, and what one
+    /// does not need goes to the other.
+    pub fn reduce_to(&mut self, target: usize, watch: &mut Watch) -> Result<(), BuildError> {
+        let (solid, sheets) = (self.solid.primitives(), self.sheet_primitives());
+        if solid + sheets <= target {
+            return Ok(());
+        }
+        self.gave_up_sheets |= target < 2 && solid > 0;
+        if sheets > 0 && !self.gave_up_sheets {
+            let fair = (target as f64 * self.share).round() as usize;
+            let fair = fair.max(self.least.min(target / 2));
+            let spare = target.saturating_sub(solid);
+            let most = if solid > 0 { target - 1 } else { target };
+            let for_sheets = fair.max(spare).clamp(1, most.max(1));
+            self.sheets.reduce_to(for_sheets, watch)?;
+        }
+        let left = target.saturating_sub(self.sheet_primitives());
+        if solid > 0 {
+            self.solid.reduce_to(left, watch)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,84 @@
+//! serde for medial meshes (feature `serde`): in binary formats the baked asset ([`super::asset`]), in
+//! formats for people its spheres, edges and faces, from which all else is computed anew.
+
+use super::asset::{mass_numbers, mass_of};
+use super::mesh::MedialMesh;
+use super::primitive::MedialSphere;
+use crate::math::{Real, Vector};
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::fmt;
+
+/// A mesh for people to read.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "MedialMesh", deny_unknown_fields)]
+struct Listed {
+    /// Centre and radius.
+    spheres: Vec<[Real; 4]>,
+    #[serde(default)]
+    edges: Vec<[u32; 2]>,
+    #[serde(default)]
+    faces: Vec<[u32; 3]>,
+    /// Mass properties measured on the source, at unit density: centre, 1/mass, 1/principal inertia,
+    /// its frame (x y z w).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    source_mass: Option<[Real; 11]>,
+}
+
+impl Serialize for MedialMesh {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if !serializer.is_human_readable() {
+            return serializer.serialize_bytes(&self.to_bytes());
+        }
+        let numbers = |s: &MedialSphere| [s.center.x, s.center.y, s.center.z, s.radius];
+        Listed {
+            spheres: self.spheres().iter().map(numbers).collect(),
+            edges: self.edges().to_vec(),
+            faces: self.faces().to_vec(),
+            source_mass: self.parts().source_mass.as_ref().map(mass_numbers),
+        }
+        .serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for MedialMesh {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        if !deserializer.is_human_readable() {
+            return deserializer.deserialize_bytes(Baked);
+        }
+        let listed = Listed::deserialize(deserializer)?;
+        let sphere = |&[x, y, z, r]: &[Real; 4]| MedialSphere::new(Vector::new(x, y, z), r);
+        let spheres = listed.spheres.iter().map(sphere).collect();
+        let mesh = Self::new(spheres, listed.edges, listed.faces).map_err(D::Error::custom)?;
+        Ok(match listed.source_mass {
+            Some(numbers) => {
+                mesh.with_mass_properties(mass_of(1, &numbers).map_err(D::Error::custom)?)
+            }
+            None => mesh,
+        })
+    }
+}
+
+struct Baked;
+
+impl<'de> Visitor<'de> for Baked {
+    type Value = MedialMesh;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("the bytes of a baked medial mesh")
+    }
+
+    fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<MedialMesh, E> {
+        MedialMesh::from_bytes(bytes).map_err(E::custom)
+    }
+
+    /// Formats without a type for bytes write a list of them. It grows as they come: a length that is
+    /// only claimed allocates nothing.
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<MedialMesh, A::Error> {
+        let mut bytes = Vec::new();
+        while let Some(byte) = list.next_element()? {
+            bytes.push(byte);
+        }
+        self.visit_bytes(&bytes)
+    }
+}

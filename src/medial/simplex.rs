@@ -1,0 +1,82 @@
+//! The convex volumes of a medial mesh by their spheres, and who of them tests which edge and sphere.
+
+use super::primitive::{MedialPrimitive, MedialSphere};
+use std::collections::HashSet;
+
+/// The spheres of a primitive, and the edges and spheres that it tests for the whole mesh.
+///
+/// An edge shared by several slabs is owned by the first of them, and so is a sphere: a query that
+/// visits all primitives then meets each edge and sphere once.
+#[derive(Clone, Copy, Debug)]
+pub struct Simplex {
+    /// Indices of its spheres.
+    pub vertices: [u32; 3],
+    /// How many of them count: 1, 2 or 3.
+    pub len: u8,
+    /// Bit `i`: it owns sphere `vertices[i]`.
+    pub owns_vertex: u8,
+    /// Bit `i`: it owns the edge from `vertices[i]` to `vertices[(i + 1) % 3]`.
+    pub owns_edge: u8,
+}
+
+/// An edge, smaller index first.
+pub fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// Slabs in the order of the faces, then the cones of no slab, then the spheres of neither.
+pub fn primitives_of(spheres: usize, edges: &[[u32; 2]], faces: &[[u32; 3]]) -> Vec<Simplex> {
+    let mut edge_taken = HashSet::new();
+    let mut vertex_taken = vec![false; spheres];
+    let mut own_vertex = |v: u32, bit: u8| {
+        let first = !std::mem::replace(&mut vertex_taken[v as usize], true);
+        u8::from(first) << bit
+    };
+    let mut primitives = Vec::with_capacity(faces.len());
+    for &vertices in faces {
+        let [a, b, c] = vertices;
+        let mut owns_edge = 0;
+        for (bit, e) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
+            owns_edge |= u8::from(edge_taken.insert(sorted(e))) << bit;
+        }
+        let owns_vertex = own_vertex(a, 0) | own_vertex(b, 1) | own_vertex(c, 2);
+        primitives.push(Simplex {
+            vertices,
+            len: 3,
+            owns_vertex,
+            owns_edge,
+        });
+    }
+    for &[a, b] in edges {
+        if edge_taken.insert([a, b]) {
+            primitives.push(Simplex {
+                vertices: [a, b, b],
+                len: 2,
+                owns_vertex: own_vertex(a, 0) | own_vertex(b, 1),
+                owns_edge: 1,
+            });
+        }
+    }
+    for v in 0..spheres as u32 {
+        let owns_vertex = own_vertex(v, 0);
+        if owns_vertex != 0 {
+            primitives.push(Simplex {
+                vertices: [v; 3],
+                len: 1,
+                owns_vertex,
+                owns_edge: 1,
+            });
+        }
+    }
+    primitives
+}
+
+/// The volume of a simplex.
+pub fn primitive_of(spheres: &[MedialSphere], p: &Simplex) -> MedialPrimitive {
+    let [a, b, c] = p.vertices.map(|v| spheres[v as usize]);
+    match p.len {
+        1 => MedialPrimitive::Sphere(a),
+        2 => MedialPrimitive::Cone([a, b]),
+        _ => MedialPrimitive::Slab([a, b, c]),
+    }
+}

@@ -1,0 +1,70 @@
+//! What the search of [`super::first_contact`] still has to look at, in the order of the time before
+//! which it is proven free.
+
+use crate::elementary::test_list::ElementaryTest;
+use std::cmp::Ordering;
+
+/// Something that may meet.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Candidate {
+    /// Two swept nodes, whose balls meet then.
+    Nodes([u32; 2]),
+    /// The primitives of two swept leaves, free until then by directions that their spheres give.
+    Leaves([u32; 2]),
+    /// An elementary test: its place in the list of those not settled.
+    Test(u32),
+}
+
+/// An elementary test that is not settled.
+#[derive(Clone, Copy)]
+pub(super) struct Open {
+    pub(super) primitives: [u32; 2],
+    pub(super) test: ElementaryTest,
+    /// Target distance of this primitive pair.
+    pub(super) target: f64,
+    /// Iterations so far.
+    pub(super) spent: u32,
+}
+
+/// A candidate, ordered by the time until which it is free; of several at the same time, first the
+/// tests, then primitives, then the node pair that overlaps deepest for its size.
+pub(super) struct Entry {
+    pub(super) time: f64,
+    /// Signed distance of two node balls at the start of the piece, in units of their radii, so at
+    /// least −1; below that for what is not a node pair.
+    pub(super) depth: f64,
+    pub(super) candidate: Candidate,
+}
+
+impl Entry {
+    /// Anything but a node pair.
+    pub(super) fn at(time: f64, candidate: Candidate) -> Self {
+        Self {
+            time,
+            depth: -2.0,
+            candidate,
+        }
+    }
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Entry {}
+impl PartialOrd for Entry {
+    #[inline]
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Entry {
+    /// Reversed: `BinaryHeap` pops the largest.
+    #[inline]
+    fn cmp(&self, other: &Self) -> Ordering {
+        (other.time.total_cmp(&self.time))
+            .then_with(|| other.depth.total_cmp(&self.depth))
+            .then_with(|| other.candidate.cmp(&self.candidate))
+    }
+}

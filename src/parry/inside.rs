@@ -1,0 +1,138 @@
+//! Bodies that start inside a closed one: whether they do, and which way out is the shortest.
+//!
+//! A convex body is left through one of its faces: with `n` the face's outward normal and `h` its
+//! offset, all spheres `(c, r)` are out after moving by `max (h − n·c + r)` along `n`, and the face for
+//! which that is least is the answer. (An edge may give a shorter way to a body that is not wholly
+//! inside; a face is what a solver can push against.)
+
+use crate::math::{Real, Vector};
+use crate::medial::MedialSphere;
+use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, TypedShape};
+
+/// Whether a body given by its closed surface holds a point (in its own frame). Triangle meshes,
+/// height fields and polylines are surfaces: they hold nothing. Balls, capsules, cylinders and cones are
+/// swept as solids and need no such test, and parry's own fails where one has no size.
+pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
+    match shape.as_typed_shape() {
+        TypedShape::TriMesh(_)
+        | TypedShape::HeightField(_)
+        | TypedShape::Polyline(_)
+        | TypedShape::Segment(_)
+        | TypedShape::Triangle(_)
+        | TypedShape::RoundTriangle(_)
+        | TypedShape::Ball(_)
+        | TypedShape::Capsule(_)
+        | TypedShape::Cylinder(_)
+        | TypedShape::Cone(_)
+        | TypedShape::RoundCylinder(_)
+        | TypedShape::RoundCone(_) => false,
+        TypedShape::Compound(c) => c
+            .shapes()
+            .iter()
+            .any(|(pose, s)| holds_point(s.as_ref(), pose.inverse_transform_point(point))),
+        _ => shape.contains_local_point(point),
+    }
+}
+
+/// A way out of a closed body.
+#[derive(Clone, Copy, Debug)]
+pub struct WayOut {
+    /// Index of the sphere that has the longest way.
+    pub sphere: usize,
+    /// Unit direction, in the closed body's frame.
+    pub direction: Vector,
+    /// From that sphere's centre to the surface, a length.
+    pub to_surface: Real,
+    /// By how much to move, a length.
+    pub depth: Real,
+}
+
+/// The way out for spheres given in the shape's frame, if one of their centres is inside. Of a
+/// compound's children it is that of the one they are deepest in; of shapes without faces (voxels) that
+/// of the centre furthest from the surface.
+pub fn way_out(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<WayOut> {
+    if let TypedShape::Compound(c) = shape.as_typed_shape() {
+        let of_child = |(pose, child): &(crate::math::Pose, parry3d::shape::SharedShape)| {
+            let local = |s: &MedialSphere| {
+                MedialSphere::new(pose.inverse_transform_point(s.center), s.radius)
+            };
+            let local: Vec<_> = spheres.iter().map(local).collect();
+            let way = way_out(child.as_ref(), &local)?;
+            Some(WayOut {
+                direction: pose.rotation * way.direction,
+                ..way
+            })
+        };
+        let ways = c.shapes().iter().filter_map(of_child);
+        return ways.max_by(|a, b| a.depth.total_cmp(&b.depth));
+    }
+    if !spheres.iter().any(|s| holds_point(shape, s.center)) {
+        return None;
+    }
+    let mut best: Option<WayOut> = None;
+    let through = |n: Vector, offset: Real| {
+        let to_surface = |s: &MedialSphere| offset - n.dot(s.center);
+        let depth = |s: &MedialSphere| to_surface(s) + s.radius;
+        let deepest = spheres
+            .iter()
+            .enumerate()
+            .max_by(|a, b| depth(a.1).total_cmp(&depth(b.1)));
+        if let Some((sphere, s)) = deepest
+            && best.is_none_or(|old| depth(s) < old.depth)
+        {
+            best = Some(WayOut {
+                sphere,
+                direction: n,
+                to_surface: to_surface(s),
+                depth: depth(s),
+            });
+        }
+    };
+    match shape.as_typed_shape() {
+        TypedShape::Cuboid(c) => cuboid_faces(c, 0.0, through),
+        TypedShape::RoundCuboid(c) => cuboid_faces(&c.inner_shape, c.border_radius, through),
+        TypedShape::ConvexPolyhedron(c) => hull_faces(c, 0.0, through),
+        TypedShape::RoundConvexPolyhedron(c) => {
+            hull_faces(&c.inner_shape, c.border_radius, through);
+        }
+        TypedShape::HalfSpace(plane) => {
+            let mut through = through;
+            through(plane.normal, 0.0);
+        }
+        _ => best = by_projection(shape, spheres),
+    }
+    best
+}
+
+fn cuboid_faces(cuboid: &Cuboid, border: Real, mut face: impl FnMut(Vector, Real)) {
+    let h = cuboid.half_extents;
+    for (axis, half) in [(Vector::X, h.x), (Vector::Y, h.y), (Vector::Z, h.z)] {
+        face(axis, half + border);
+        face(-axis, half + border);
+    }
+}
+
+fn hull_faces(hull: &ConvexPolyhedron, border: Real, mut face: impl FnMut(Vector, Real)) {
+    let ring = hull.vertices_adj_to_face();
+    for f in hull.faces() {
+        let corner = hull.points()[ring[f.first_vertex_or_edge as usize] as usize];
+        face(f.normal, f.normal.dot(corner) + border);
+    }
+}
+
+fn by_projection(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<WayOut> {
+    let way = |(sphere, s): (usize, &MedialSphere)| {
+        if !holds_point(shape, s.center) {
+            return None;
+        }
+        let out = shape.project_local_point(s.center, false).point - s.center;
+        Some(WayOut {
+            sphere,
+            direction: out.try_normalize()?,
+            to_surface: out.length(),
+            depth: out.length() + s.radius,
+        })
+    };
+    let ways = spheres.iter().enumerate().filter_map(way);
+    ways.max_by(|a, b| a.depth.total_cmp(&b.depth))
+}

@@ -1,0 +1,342 @@
+//! After rapier's step: the impacts that it missed, in the order of their times.
+//!
+//! Each impact moves both bodies to its time and gives two impulses: one to the velocities that the
+//! solver left, so that the next step begins right, and one to the motion of this step, so that it
+//! goes on right. Then all pairs of both bodies are asked for again. A body with more than
+//! [`MAX_EVENTS`] impacts stays where it is for the rest of the step, or is carried along by what pushes
+//! it. No hit is ever dropped, at the current time neither; so no medial axis crosses another on the
+//! motion executed.
+
+use super::first_contact::{Asker, GUARDED, Hit, Work};
+use super::impulse::{Impact, Inertia, Material};
+use super::motion::{Kind, Snapshot};
+use super::pairs::{Rules, concerned, in_order, sweep};
+use crate::math::{Real, Vector};
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::query::NonlinearRigidMotion;
+use rapier3d::geometry::{ColliderHandle, NarrowPhase};
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// Impacts of a body in one step after which it stays where it is. Not varied in measurements.
+const MAX_EVENTS: u32 = 16;
+
+/// Impacts after which a body is no longer carried along either: two that push it from both sides
+/// would go on for ever.
+const MAX_CARRIED: u32 = 2 * MAX_EVENTS;
+
+/// Depth from which bodies in an impact are pushed apart, in units of the thickness.
+const PUSH_FROM: Real = 0.1;
+
+/// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
+/// which grows a little with each meeting of a pair.
+const MARGIN: Real = 5.0e-3;
+
+/// Share of the depth below it that is pushed out in a step.
+const PUSH: Real = 0.2;
+
+/// An impact that happened.
+#[derive(Clone, Copy, Debug)]
+pub struct Impulse {
+    /// Both colliders, in the narrow phase's order.
+    pub colliders: [ColliderHandle; 2],
+    /// Impulse between them, summed over the step.
+    pub impulse: Real,
+}
+
+/// What the event loop did.
+#[derive(Default)]
+pub struct Outcome {
+    /// Impacts.
+    pub events: usize,
+    /// Bodies that stayed where they were before the step's end.
+    pub frozen: usize,
+    /// Pairs that exchanged an impulse.
+    pub impulses: Vec<Impulse>,
+    /// Bodies to be written back: index, and whether their velocity changed.
+    pub changed: Vec<(usize, bool)>,
+}
+
+/// State of one body in the loop.
+#[derive(Clone, Copy, Default)]
+struct Course {
+    events: u32,
+    frozen: bool,
+    moved: bool,
+    struck: bool,
+}
+
+struct Loop<'a> {
+    snapshot: &'a mut Snapshot,
+    asker: Asker<'a>,
+    rules: Rules<'a>,
+    /// Slow pairs near enough to their medial axes to be watched.
+    deep: HashSet<[ColliderHandle; 2]>,
+    allowed: HashMap<[usize; 2], bool>,
+    met: HashMap<[usize; 2], u32>,
+    courses: Vec<Course>,
+    /// Box of each collider from its body's last impact to the end of the step.
+    boxes: Vec<Aabb>,
+    hits: BTreeMap<[usize; 2], Hit>,
+    impulses: BTreeMap<[usize; 2], Real>,
+    events: usize,
+}
+
+/// Finds and resolves the impacts on the motions of `snapshot`, which is at the bodies' last poses
+/// afterwards.
+pub fn resolve(
+    snapshot: &mut Snapshot,
+    asker: Asker,
+    rules: Rules,
+    narrow_phase: &NarrowPhase,
+    work: &mut Work,
+) -> Outcome {
+    let pairs = sweep(snapshot, asker.dt, MARGIN * asker.unit);
+    if pairs.is_empty() {
+        return Outcome::default();
+    }
+    let courses = vec![Course::default(); snapshot.bodies.len()];
+    let deep = deep(snapshot, narrow_phase, &pairs);
+    let mut events = Loop {
+        snapshot,
+        asker,
+        rules,
+        deep,
+        allowed: HashMap::new(),
+        met: HashMap::new(),
+        courses,
+        boxes: Vec::new(),
+        hits: BTreeMap::new(),
+        impulses: BTreeMap::new(),
+        events: 0,
+    };
+    for pair in pairs {
+        events.ask(pair, 0.0, work);
+    }
+    while let Some((pair, hit)) = events.earliest() {
+        if events.boxes.is_empty() {
+            let parts = 0..events.snapshot.parts.len();
+            events.boxes = parts.map(|k| events.swept_box(k, 0.0)).collect();
+        }
+        events.impact(pair, hit);
+        events.ask_again(pair, hit.time, work);
+    }
+    events.finish()
+}
+
+/// Pairs whose contacts in rapier are deep enough that even a slow one may get to the axes.
+fn deep(
+    snapshot: &Snapshot,
+    narrow_phase: &NarrowPhase,
+    pairs: &[[usize; 2]],
+) -> HashSet<[ColliderHandle; 2]> {
+    let depth = |[i, j]: [usize; 2]| {
+        let [h1, h2] = [i, j].map(|k| snapshot.parts[k].handle);
+        let found = narrow_phase.contact_pair(h1, h2)?;
+        let points = found.manifolds().iter().flat_map(|m| &m.points);
+        points.map(|p| -p.dist).reduce(Real::max)
+    };
+    let is_deep = |pair: &&[usize; 2]| {
+        depth(**pair).is_some_and(|d| d > GUARDED * snapshot.thickness(**pair))
+    };
+    let handles = |pair: &[usize; 2]| pair.map(|k| snapshot.parts[k].handle);
+    pairs.iter().filter(is_deep).map(handles).collect()
+}
+
+impl Loop<'_> {
+    fn earliest(&self) -> Option<([usize; 2], Hit)> {
+        let first = self
+            .hits
+            .iter()
+            .min_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(b.0)))?;
+        Some((*first.0, *first.1))
+    }
+
+    fn bodies(&self, pair: [usize; 2]) -> [usize; 2] {
+        pair.map(|k| self.snapshot.parts[k].body)
+    }
+
+    /// Whether an impact could still change the motion of either.
+    fn can_give(&self, pair: [usize; 2]) -> bool {
+        self.bodies(pair).iter().any(|&b| {
+            self.snapshot.bodies[b].kind == Kind::Free && self.courses[b].events <= MAX_CARRIED
+        })
+    }
+
+    fn ask(&mut self, pair: [usize; 2], time: Real, work: &mut Work) {
+        self.hits.remove(&pair);
+        let handles = pair.map(|k| self.snapshot.parts[k].handle);
+        let deep = self.deep.contains(&handles);
+        let met = self.met.get(&pair).copied().unwrap_or(0);
+        // The user's filters are asked once per pair and step, and only where it matters.
+        if self.allowed.get(&pair) == Some(&false) || !self.can_give(pair) {
+            return;
+        }
+        let hit = self
+            .asker
+            .first_contact(self.snapshot, pair, time, met, deep, work);
+        let Some(hit) = hit else { return };
+        let (snapshot, rules) = (&*self.snapshot, self.rules);
+        let allowed = self.allowed.entry(pair);
+        if *allowed.or_insert_with(|| rules.respond(snapshot, pair)) {
+            self.hits.insert(pair, hit);
+        }
+    }
+
+    /// Asks for all pairs of the bodies that an impact gave another motion.
+    fn ask_again(&mut self, pair: [usize; 2], time: Real, work: &mut Work) {
+        let bodies = self.bodies(pair);
+        let changed: Vec<usize> = (0..self.snapshot.parts.len())
+            .filter(|&k| {
+                let body = self.snapshot.parts[k].body;
+                bodies.contains(&body) && self.snapshot.bodies[body].kind == Kind::Free
+            })
+            .collect();
+        for &k in &changed {
+            self.boxes[k] = self.swept_box(k, time);
+        }
+        for (n, &i) in changed.iter().enumerate() {
+            for j in 0..self.snapshot.parts.len() {
+                if changed[..n].contains(&j) || !concerned(self.snapshot, [i, j]) {
+                    continue;
+                }
+                let both = in_order(self.snapshot, [i, j]);
+                if self.boxes[i].intersects(&self.boxes[j]) {
+                    self.ask(both, time, work);
+                } else {
+                    self.hits.remove(&both);
+                }
+            }
+        }
+    }
+
+    fn swept_box(&self, part: usize, time: Real) -> Aabb {
+        let swept = self.snapshot.swept_aabb(part, time, self.asker.dt);
+        swept.loosened(self.snapshot.parts[part].skin + MARGIN * self.asker.unit)
+    }
+
+    fn impact(&mut self, pair: [usize; 2], hit: Hit) {
+        self.events += 1;
+        *self.met.entry(pair).or_insert(0) += 1;
+        let bodies = self.bodies(pair);
+        for b in bodies {
+            let course = &mut self.courses[b];
+            if self.snapshot.bodies[b].kind == Kind::Free {
+                self.snapshot.bodies[b].advance(hit.time);
+                self.snapshot.bodies[b].awake = true;
+                course.moved = true;
+                course.events += 1;
+            }
+        }
+        if hit.normal == Vector::ZERO {
+            for b in bodies {
+                self.courses[b].events = self.courses[b].events.max(MAX_EVENTS + 1);
+            }
+        } else {
+            self.push(pair, hit);
+        }
+        for k in 0..2 {
+            self.freeze(bodies[k], bodies[1 - k], hit.time);
+        }
+    }
+
+    fn push(&mut self, pair: [usize; 2], hit: Hit) {
+        let bodies = self.bodies(pair);
+        let [c1, c2] = pair.map(|k| &self.rules.colliders[self.snapshot.parts[k].handle]);
+        let [a, b] = bodies.map(|b| &self.snapshot.bodies[b]);
+        let inertia = |k: usize| {
+            let (own, other) = [(a, b), (b, a)][k];
+            if own.kind == Kind::Free && own.dominance <= other.dominance {
+                Inertia::of(own)
+            } else {
+                Inertia::INFINITE
+            }
+        };
+        let now = [a, b].map(|x| x.motion_from(hit.time));
+        let centers = [0, 1].map(|k| now[k].start * [a, b][k].mass.local_com);
+        let mut impact = Impact {
+            normal: hit.normal,
+            arms: centers.map(|c| hit.point - c),
+            inertias: [inertia(0), inertia(1)],
+            material: Material::of(c1, c2),
+        };
+        let velocities = [a, b].map(|x| x.velocity);
+        // A carried body turns about its carrier's centre, not its own.
+        let motions = [0, 1].map(|k| {
+            let m = &now[k];
+            let arm = centers[k] - m.start * m.local_center;
+            [m.linvel + m.angvel.cross(arm), m.angvel]
+        });
+        let sunk = hit.depth - PUSH_FROM * self.snapshot.thickness(pair);
+        let out = PUSH * sunk.max(0.0) / self.asker.dt;
+        if let Some(j) = impact.impulse(velocities, 0.0) {
+            *self.impulses.entry(pair).or_insert(0.0) += j.length();
+            for k in 0..2 {
+                let sign = [-1.0, 1.0][k];
+                let [dv, dw] = impact.inertias[k].change(impact.arms[k], j * sign);
+                let body = &mut self.snapshot.bodies[bodies[k]];
+                body.velocity[0] += dv;
+                body.velocity[1] += dw;
+                self.courses[bodies[k]].struck |= body.kind == Kind::Free;
+            }
+        }
+        for (k, body) in bodies.iter().enumerate() {
+            if self.courses[*body].frozen {
+                impact.inertias[k] = Inertia::INFINITE;
+            }
+        }
+        if let Some(j) = impact.impulse(motions, out) {
+            for k in 0..2 {
+                let sign = [-1.0, 1.0][k];
+                let [dv, dw] = impact.inertias[k].change(impact.arms[k], j * sign);
+                let motion = &mut self.snapshot.bodies[bodies[k]].motion;
+                motion.linvel += dv;
+                motion.angvel += dw;
+            }
+        }
+    }
+
+    /// Stops a body that had too many impacts, or lets what pushes it carry it along.
+    fn freeze(&mut self, body: usize, other: usize, time: Real) {
+        let events = self.courses[body].events;
+        if self.snapshot.bodies[body].kind != Kind::Free || events <= MAX_EVENTS {
+            return;
+        }
+        let carrier = &self.snapshot.bodies[other];
+        let carries = carrier.kind == Kind::Driven || self.courses[other].frozen;
+        let carrying = carrier.motion_from(time);
+        self.courses[body].frozen = true;
+        let motion = &mut self.snapshot.bodies[body].motion;
+        *motion = if carries && events <= MAX_CARRIED {
+            let center = carrying.start * carrying.local_center;
+            NonlinearRigidMotion {
+                local_center: motion.start.inverse_transform_point(center),
+                linvel: carrying.linvel,
+                angvel: carrying.angvel,
+                ..*motion
+            }
+        } else {
+            NonlinearRigidMotion::constant_position(motion.start)
+        };
+    }
+
+    fn finish(self) -> Outcome {
+        let mut outcome = Outcome {
+            events: self.events,
+            ..Outcome::default()
+        };
+        for (b, course) in self.courses.iter().enumerate().filter(|(_, c)| c.moved) {
+            outcome.frozen += usize::from(course.frozen);
+            outcome.changed.push((b, course.struck));
+            self.snapshot.bodies[b].advance(self.asker.dt);
+        }
+        outcome.impulses = self
+            .impulses
+            .iter()
+            .map(|(pair, impulse)| Impulse {
+                colliders: pair.map(|k| self.snapshot.parts[k].handle),
+                impulse: *impulse,
+            })
+            .collect();
+        outcome
+    }
+}

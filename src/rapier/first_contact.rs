@@ -1,0 +1,250 @@
+//! First contact of two colliders on the motions of a [`Snapshot`]: which target distance a pair gets,
+//! and the certified query that finds it.
+//!
+//! A fast pair stops a small gap before it touches; what touches already may sink a tenth of the
+//! thickness deeper, but no further than [`FLOOR`]; what is deeper may sink by a hair. A slow pair is
+//! left to the solver down to that floor. The floor is half way to the medial axes, so that none
+//! crosses another.
+
+use super::effects::{Effect, Effects, Wanted};
+use super::motion::Snapshot;
+use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
+use crate::math::{Real, Vector};
+use crate::pair::first_contact::{Counts, first_contact_counted};
+use crate::parry::cast::Cast;
+use parry3d::query::NonlinearRigidMotion;
+
+/// Relative travel in a step, in units of the thinner collider's thickness, from which a pair is fast.
+const FAST: Real = 0.25;
+
+/// Depth no pair may reach, in units of the thickness; with [`FAST`] it makes a whole half: a slow pair
+/// deeper than [`GUARDED`] at the start is watched, any other cannot get there.
+const FLOOR: Real = 0.5;
+
+/// Depth of rapier's contacts, in units of the thickness, from which a slow pair is watched.
+pub const GUARDED: Real = FLOOR - FAST;
+
+/// How much deeper a touching fast pair may get in one go, in units of the thickness.
+const SINK: Real = 0.1;
+
+/// Gap at which a fast pair counts as in contact, in units of rapier's length unit and of the
+/// thickness, whichever is less. Chosen on one set of scenes and never varied.
+const GAP: [Real; 2] = [1.0e-3, 0.1];
+
+/// Tolerance of the query, in units of the gap.
+const TOLERANCE: Real = 0.1;
+
+/// How much deeper a pair below the floor may get in one go, in units of the gap.
+const HAIR: Real = 0.1;
+
+/// Gap up to which a pair touches at the start and belongs to the solver, in units of [`GAP`].
+const TOUCHING: Real = 0.45;
+
+/// What a query found, and its price.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Continuous queries.
+    pub queries: u64,
+    /// Those of them in exact rotation.
+    pub rotating: u64,
+    /// Node pairs.
+    pub nodes: u64,
+    /// Elementary tests.
+    pub tests: u64,
+}
+
+impl Work {
+    fn add(&mut self, counts: Counts) {
+        self.nodes += u64::from(counts.nodes);
+        self.tests += u64::from(counts.tests);
+    }
+}
+
+/// First contact of two colliders.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    /// Seconds into the step, at the contact's lower bound.
+    pub time: Real,
+    /// Unit normal from the first to the second, zero where unknown.
+    pub normal: Vector,
+    /// Middle of the nearest points, world frame.
+    pub point: Vector,
+    /// Depth below the surfaces, ≥ 0, a length.
+    pub depth: Real,
+}
+
+/// Asks for first contacts in a step of `dt` seconds.
+#[derive(Clone, Copy)]
+pub struct Asker<'a> {
+    /// What the pairs call for.
+    pub effects: &'a Wanted,
+    /// Length of the step in seconds.
+    pub dt: Real,
+    /// rapier's length unit.
+    pub unit: Real,
+}
+
+impl Asker<'_> {
+    fn gap(&self, thickness: Real) -> Real {
+        (GAP[0] * self.unit)
+            .min(GAP[1] * thickness)
+            .max(Real::MIN_POSITIVE)
+    }
+
+    fn effects_of(&self, snapshot: &Snapshot, pair: [usize; 2]) -> Effects {
+        self.effects.of(pair.map(|k| snapshot.parts[k].handle))
+    }
+
+    /// Whether first contacts of the pair are wanted: by default, when it travels more than `share` of
+    /// its thickness in the whole step.
+    pub fn is_fast(&self, snapshot: &Snapshot, pair: [usize; 2], share: Real) -> bool {
+        match self.effects_of(snapshot, pair).continuous {
+            Effect::On => true,
+            Effect::Off => false,
+            Effect::Auto => snapshot.travel(pair, self.dt) > share * snapshot.thickness(pair),
+        }
+    }
+
+    /// First contact from `time` on. `met`: how often the pair has met in this step; `deep`: rapier's
+    /// contacts are, so that even a slow pair is kept above the floor.
+    pub fn first_contact(
+        &self,
+        snapshot: &Snapshot,
+        pair: [usize; 2],
+        time: Real,
+        met: u32,
+        deep: bool,
+        work: &mut Work,
+    ) -> Option<Hit> {
+        let fast = self.is_fast(snapshot, pair, FAST);
+        let watched = match self.effects_of(snapshot, pair).guard {
+            Effect::On => true,
+            Effect::Off => false,
+            Effect::Auto => deep,
+        };
+        if !(fast || watched) || time >= self.dt || snapshot.travel(pair, self.dt - time) <= 0.0 {
+            return None;
+        }
+        let thickness = snapshot.thickness(pair);
+        let gap = self.gap(thickness);
+        let skin = snapshot.parts[pair[0]].skin + snapshot.parts[pair[1]].skin;
+        let options = |target: Real, by: Real| ToiOptions {
+            target_distance: skin + target,
+            tolerance: TOLERANCE * gap,
+            initial_contact: InitialContact::Deepen { by },
+            ..ToiOptions::default()
+        };
+        let floor = options(-FLOOR * thickness, HAIR * gap);
+        let mut hit: Option<Hit> = None;
+        let mut earlier = |new: Option<Hit>| {
+            if let Some(n) = new
+                && hit.is_none_or(|h| n.time < h.time)
+            {
+                hit = Some(n);
+            }
+        };
+        if fast {
+            // Where a meeting was, the gap is that of the target to within the tolerance: a larger
+            // target makes it count as touching.
+            let target = gap * (1.0 + 2.0 * TOLERANCE * met as Real);
+            let options = options(target, SINK * thickness);
+            earlier(self.query(snapshot, pair, time, &options, work));
+            let near_floor = (SINK - FLOOR) * thickness;
+            if self.within(snapshot, pair, time, near_floor, work) {
+                earlier(self.query(snapshot, pair, time, &floor, work));
+            }
+        } else {
+            earlier(self.query(snapshot, pair, time, &floor, work));
+        }
+        hit
+    }
+
+    /// Whether the pair touches at the start of the step, so that the solver has it.
+    pub fn touches(&self, snapshot: &Snapshot, pair: [usize; 2], work: &mut Work) -> bool {
+        let gap = self.gap(snapshot.thickness(pair));
+        self.within(snapshot, pair, 0.0, TOUCHING * gap, work)
+    }
+
+    /// Whether the surfaces are within `distance` of each other at `time`.
+    fn within(
+        &self,
+        snapshot: &Snapshot,
+        pair: [usize; 2],
+        time: Real,
+        distance: Real,
+        work: &mut Work,
+    ) -> bool {
+        let still = |m: NonlinearRigidMotion| NonlinearRigidMotion::constant_position(m.start);
+        let motions = pair.map(|k| still(snapshot.motion(k, time)));
+        let skin = snapshot.parts[pair[0]].skin + snapshot.parts[pair[1]].skin;
+        let options = ToiOptions {
+            target_distance: distance + skin,
+            ..ToiOptions::default()
+        };
+        let answer = ask(snapshot, pair, &motions, 1.0, &options);
+        answer.is_some_and(|(toi, counts)| {
+            work.add(counts);
+            toi.status != ToiStatus::Separated
+        })
+    }
+
+    fn query(
+        &self,
+        snapshot: &Snapshot,
+        pair: [usize; 2],
+        time: Real,
+        options: &ToiOptions,
+        work: &mut Work,
+    ) -> Option<Hit> {
+        let motions = pair.map(|k| snapshot.motion(k, time));
+        let seconds = self.dt - time;
+        let (toi, counts) = ask(snapshot, pair, &motions, seconds, options)?;
+        work.queries += 1;
+        work.rotating += u64::from(motions.iter().any(|m| m.angvel != Vector::ZERO));
+        work.add(counts);
+        (toi.status != ToiStatus::Separated).then(|| Hit {
+            time: time + toi.lower * seconds,
+            normal: toi.normal,
+            point: (toi.points[0] + toi.points[1]) * 0.5,
+            depth: (toi.points[0] - toi.points[1]).dot(toi.normal).max(0.0),
+        })
+    }
+}
+
+/// The certified query for two colliders, one of them medial. `None` for shapes that cannot be swept.
+fn ask(
+    snapshot: &Snapshot,
+    [i, j]: [usize; 2],
+    motions: &[NonlinearRigidMotion; 2],
+    seconds: Real,
+    options: &ToiOptions,
+) -> Option<(Toi, Counts)> {
+    let (p, q) = (&snapshot.parts[i], &snapshot.parts[j]);
+    let [m1, m2] = motions;
+    if let (Some(a), Some(b)) = (p.medial(), q.medial()) {
+        return Some(first_contact_counted(a, m1, b, m2, seconds, options));
+    }
+    let flipped = p.medial().is_none();
+    let (mesh, other, m1, m2) = if flipped {
+        (q, p, m2, m1)
+    } else {
+        (p, q, m1, m2)
+    };
+    let cast = Cast {
+        motion1: m1,
+        mesh: mesh.medial()?,
+        motion2: m2,
+        other: &*other.shape,
+        times: [0.0, seconds],
+        target_distance: options.target_distance,
+        stop_at_penetration: true,
+    };
+    let (mut toi, counts) = cast.toi(options).ok()?;
+    if flipped {
+        toi.normal = -toi.normal;
+        toi.points.swap(0, 1);
+        toi.spheres.swap(0, 1);
+        toi.primitives.swap(0, 1);
+    }
+    Some((toi, counts))
+}

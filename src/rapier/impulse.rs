@@ -1,0 +1,133 @@
+//! The impulse of one impact: Newton's restitution, Coulomb's friction, exact lever arms.
+//!
+//! With the relative velocity `v = (v2 + ω2 × r2) − (v1 + ω1 × r1)` at the contact and the effective
+//! inverse mass `k(u) = u · (m1⁻¹ + m2⁻¹) u + u · ((I1⁻¹ (r1 × u)) × r1) + u · ((I2⁻¹ (r2 × u)) × r2)`,
+//! the normal impulse that takes `v·n` to `v'` is `j = (v' − v·n) / k(n)`; friction takes the sliding
+//! velocity to 0 with at most `μ j`.
+
+use super::motion::Body;
+use crate::math::{Real, Vector};
+use parry3d::math::AngularInertia;
+use rapier3d::dynamics::{CoefficientCombineRule, LockedAxes};
+use rapier3d::geometry::Collider;
+
+/// Restitution and friction of two colliders, by rapier's combine rules.
+#[derive(Clone, Copy, Debug)]
+pub struct Material {
+    /// Coefficient of restitution.
+    pub restitution: Real,
+    /// Coefficient of friction.
+    pub friction: Real,
+}
+
+impl Material {
+    /// That of two colliders together.
+    pub fn of(a: &Collider, b: &Collider) -> Self {
+        let (a, b) = (a.material(), b.material());
+        let combine = CoefficientCombineRule::combine;
+        Self {
+            restitution: combine(
+                a.restitution,
+                b.restitution,
+                a.restitution_combine_rule,
+                b.restitution_combine_rule,
+            ),
+            friction: combine(
+                a.friction,
+                b.friction,
+                a.friction_combine_rule,
+                b.friction_combine_rule,
+            ),
+        }
+    }
+}
+
+/// What resists an impulse: inverse mass along the world's axes and inverse inertia, world frame.
+#[derive(Clone, Copy)]
+pub struct Inertia {
+    mass: Vector,
+    angular: AngularInertia,
+}
+
+impl Inertia {
+    /// Nothing moves it.
+    pub const INFINITE: Self = Self {
+        mass: Vector::ZERO,
+        angular: AngularInertia {
+            m11: 0.0,
+            m12: 0.0,
+            m13: 0.0,
+            m22: 0.0,
+            m23: 0.0,
+            m33: 0.0,
+        },
+    };
+
+    /// Of a free body where it is now.
+    pub fn of(body: &Body) -> Self {
+        let mut i = body.mass.world_inv_inertia(&body.motion.start.rotation);
+        if body.locked.contains(LockedAxes::ROTATION_LOCKED_X) {
+            (i.m11, i.m12, i.m13) = (0.0, 0.0, 0.0);
+        }
+        if body.locked.contains(LockedAxes::ROTATION_LOCKED_Y) {
+            (i.m12, i.m22, i.m23) = (0.0, 0.0, 0.0);
+        }
+        if body.locked.contains(LockedAxes::ROTATION_LOCKED_Z) {
+            (i.m13, i.m23, i.m33) = (0.0, 0.0, 0.0);
+        }
+        Self {
+            mass: body.inverse_mass,
+            angular: i,
+        }
+    }
+
+    fn along(&self, arm: Vector, u: Vector) -> Real {
+        (self.mass * u).dot(u) + (self.angular * arm.cross(u)).cross(arm).dot(u)
+    }
+
+    /// Change of the two velocities by an impulse at `arm` from the centre of mass.
+    pub fn change(&self, arm: Vector, impulse: Vector) -> [Vector; 2] {
+        [self.mass * impulse, self.angular * arm.cross(impulse)]
+    }
+}
+
+/// A contact between two bodies that may move.
+#[derive(Clone, Copy)]
+pub struct Impact {
+    /// Unit normal from the first to the second.
+    pub normal: Vector,
+    /// From the centres of mass to the contact point.
+    pub arms: [Vector; 2],
+    /// What resists.
+    pub inertias: [Inertia; 2],
+    /// Restitution and friction.
+    pub material: Material,
+}
+
+impl Impact {
+    /// The impulse on the second body (the first gets its negative) after which the bodies part with
+    /// `least` or faster. `None` if they do so already, or nothing can move.
+    pub fn impulse(&self, velocities: [[Vector; 2]; 2], least: Real) -> Option<Vector> {
+        let at = |k: usize| velocities[k][0] + velocities[k][1].cross(self.arms[k]);
+        let v = at(1) - at(0);
+        let normal_speed = v.dot(self.normal);
+        let k = |u: Vector| {
+            self.inertias[0].along(self.arms[0], u) + self.inertias[1].along(self.arms[1], u)
+        };
+        let resistance = k(self.normal);
+        if normal_speed >= least || resistance <= Real::MIN_POSITIVE {
+            return None;
+        }
+        let after = (-self.material.restitution * normal_speed).max(least);
+        let push = (after - normal_speed) / resistance;
+        let slide = v - self.normal * normal_speed;
+        let speed = slide.length();
+        let mut impulse = self.normal * push;
+        if speed > Real::MIN_POSITIVE {
+            let u = slide / speed;
+            let stop = speed / k(u).max(Real::MIN_POSITIVE);
+            impulse -= u * stop.min(self.material.friction * push);
+        }
+        impulse.is_finite().then_some(impulse)
+    }
+}

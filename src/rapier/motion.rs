@@ -1,0 +1,336 @@
+//! Who moves in a step, and how: bodies and colliders before rapier's step, and the motion it then
+//! gave them. rapier turns a body in `n` linearised pieces, so a fast turn ends short of `|ω| dt`;
+//! what counts is where the body is, and the turns it made on the way.
+
+use crate::math::{Pose, Real, Rotation, Vector};
+use crate::medial::MedialMesh;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::mass_properties::MassProperties;
+use parry3d::query::NonlinearRigidMotion;
+use rapier3d::dynamics::{
+    IntegrationParameters, LockedAxes, MultibodyJointSet, RigidBody, RigidBodyHandle, RigidBodySet,
+};
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, SharedShape};
+use std::collections::HashMap;
+use std::f32::consts::TAU;
+
+/// Turn in a step, in radians, from which the end rotation alone may hide whole turns.
+const MAY_WRAP: Real = 2.5;
+
+/// Turn in a step, in radians, up to which the boxes at both ends, grown by the sagitta, bound it.
+const SMALL_TURN: Real = 0.5;
+
+/// Whether an impact may move a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Never moves.
+    Fixed,
+    /// Moves, and nothing stops it: kinematic bodies, and links of multibodies, whose joints would
+    /// not survive being moved one by one.
+    Driven,
+    /// Dynamic.
+    Free,
+}
+
+/// A body in a step.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// `None` for what colliders without a body stand on.
+    pub handle: Option<RigidBodyHandle>,
+    /// Whether an impact may move it.
+    pub kind: Kind,
+    /// Took part in rapier's step.
+    pub awake: bool,
+    /// Motion from [`Self::time`] on, world frame, per second.
+    pub motion: NonlinearRigidMotion,
+    /// Seconds into the step at which `motion` starts.
+    pub time: Real,
+    /// Linear and angular velocity that the solver works with, per second.
+    pub velocity: [Vector; 2],
+    /// Largest distance of a point of its colliders from the centre of mass, a length.
+    pub reach: Real,
+    /// Mass, centre and inertia in the body's frame.
+    pub mass: MassProperties,
+    /// Inverse mass along the world's axes, 0 where locked.
+    pub inverse_mass: Vector,
+    /// Locked axes.
+    pub locked: LockedAxes,
+    /// rapier's dominance group.
+    pub dominance: i16,
+}
+
+impl Body {
+    fn new(handle: RigidBodyHandle, body: &RigidBody, is_link: bool) -> Self {
+        let kind = match (body.is_fixed(), body.is_dynamic() && !is_link) {
+            (true, _) => Kind::Fixed,
+            (false, true) => Kind::Free,
+            (false, false) => Kind::Driven,
+        };
+        let properties = body.mass_properties();
+        Self {
+            handle: Some(handle),
+            kind,
+            awake: kind != Kind::Fixed && !body.is_sleeping(),
+            motion: NonlinearRigidMotion {
+                local_center: properties.local_mprops.local_com,
+                ..NonlinearRigidMotion::constant_position(*body.position())
+            },
+            time: 0.0,
+            velocity: [body.linvel(), body.angvel()],
+            reach: 0.0,
+            mass: properties.local_mprops,
+            inverse_mass: properties.effective_inv_mass,
+            locked: properties.flags,
+            dominance: body.effective_dominance_group(),
+        }
+    }
+
+    fn ground() -> Self {
+        Self {
+            handle: None,
+            kind: Kind::Fixed,
+            awake: false,
+            motion: NonlinearRigidMotion::identity(),
+            time: 0.0,
+            velocity: [Vector::ZERO; 2],
+            reach: 0.0,
+            mass: MassProperties::default(),
+            inverse_mass: Vector::ZERO,
+            locked: LockedAxes::empty(),
+            dominance: i16::from(i8::MAX) + 1,
+        }
+    }
+
+    /// Velocity with which the solver starts, before contacts: gravity and forces of the user.
+    fn predict(&mut self, body: &RigidBody, gravity: Vector, dt: Real) {
+        if self.kind == Kind::Fixed || !self.awake {
+            return;
+        }
+        (self.motion.linvel, self.motion.angvel) = if body.is_kinematic() {
+            let end = body.next_position();
+            let com = self.motion.local_center;
+            let turn = end.rotation * body.position().rotation.inverse();
+            let moved = *end * com - *body.position() * com;
+            (moved / dt, shortest(turn).to_scaled_axis() / dt)
+        } else {
+            let forces = gravity * body.gravity_scale() + body.user_force() * self.inverse_mass;
+            (body.linvel() + forces * dt, body.angvel())
+        };
+    }
+
+    /// The motion that took it to where it is after rapier's step.
+    fn moved(&mut self, body: &RigidBody, iterations: usize, dt: Real) {
+        self.velocity = [body.linvel(), body.angvel()];
+        // rapier computes the mass of a body that is new in this step only now.
+        let properties = body.mass_properties();
+        let com = properties.local_mprops.local_com;
+        self.reach += (com - self.mass.local_com).length();
+        self.mass = properties.local_mprops;
+        self.inverse_mass = properties.effective_inv_mass;
+        self.locked = properties.flags;
+        self.dominance = body.effective_dominance_group();
+        self.motion.local_center = com;
+        let (start, end) = (self.motion.start, *body.position());
+        let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
+        let turn = unwrapped(turn, body.angvel() * dt, iterations.max(1) as Real);
+        self.motion.linvel = (end * com - start * com) / dt;
+        self.motion.angvel = turn / dt;
+        self.awake |= self.motion.linvel != Vector::ZERO || self.motion.angvel != Vector::ZERO;
+    }
+
+    /// Motion from `time` on.
+    pub fn motion_from(&self, time: Real) -> NonlinearRigidMotion {
+        NonlinearRigidMotion {
+            start: self.motion.position_at_time(time - self.time),
+            ..self.motion
+        }
+    }
+
+    /// Moves it to where it is at `time`.
+    pub fn advance(&mut self, time: Real) {
+        self.motion = self.motion_from(time);
+        self.motion.start.rotation = self.motion.start.rotation.normalize();
+        self.time = time;
+    }
+}
+
+fn shortest(q: Rotation) -> Rotation {
+    if q.w < 0.0 { -q } else { q }
+}
+
+/// The turn `turn` plus whole turns, as rapier's integration of `expected` in `n` pieces made it.
+fn unwrapped(turn: Vector, expected: Vector, n: Real) -> Vector {
+    let asked = expected.length();
+    if asked <= MAY_WRAP {
+        return turn;
+    }
+    let made = expected * (n * 2.0 * (asked / (2.0 * n)).atan() / asked);
+    let axis = turn.normalize_or_zero();
+    if axis == Vector::ZERO {
+        // Whole turns only: about the axis expected.
+        return made.normalize() * (made.length() / TAU).round() * TAU;
+    }
+    turn + axis * (((made.dot(axis) - turn.length()) / TAU).round() * TAU)
+}
+
+/// A collider in a step.
+#[derive(Clone)]
+pub struct Part {
+    /// Its handle.
+    pub handle: ColliderHandle,
+    /// Index of its body.
+    pub body: usize,
+    /// Its shape.
+    pub shape: SharedShape,
+    /// Pose in the body's frame; in the world's without a body.
+    pub offset: Pose,
+    /// Its box at the start, world frame.
+    pub aabb: Aabb,
+    /// How thin it is, a length: the radius that nearly all of a medial mesh has, or what rapier's
+    /// own test of fast bodies goes by. 0 for surfaces.
+    pub thickness: Real,
+    /// How far outside its shape it is solid.
+    pub skin: Real,
+}
+
+impl Part {
+    /// The medial mesh, if it is one.
+    pub fn medial(&self) -> Option<&MedialMesh> {
+        self.shape.as_shape::<MedialMesh>()
+    }
+}
+
+/// All bodies and colliders that can meet a medial one in a step.
+#[derive(Default)]
+pub struct Snapshot {
+    /// Bodies; the first stands for no body.
+    pub bodies: Vec<Body>,
+    /// Colliders that are solid and enabled.
+    pub parts: Vec<Part>,
+}
+
+impl Snapshot {
+    /// The world before a step, bodies in the motion that their velocities and forces announce.
+    pub fn take(
+        gravity: Vector,
+        dt: Real,
+        bodies: &RigidBodySet,
+        colliders: &ColliderSet,
+        multibodies: &MultibodyJointSet,
+    ) -> Self {
+        let mut snapshot = Self {
+            bodies: vec![Body::ground()],
+            parts: Vec::new(),
+        };
+        let mut indices = HashMap::new();
+        for (handle, collider) in colliders.iter_enabled() {
+            if collider.is_sensor() {
+                continue;
+            }
+            let parent = collider.parent().and_then(|h| Some((h, bodies.get(h)?)));
+            let index = parent.map_or(0, |(h, body)| {
+                *indices.entry(h).or_insert_with(|| {
+                    let is_link = multibodies.rigid_body_link(h).is_some();
+                    let mut new = Body::new(h, body, is_link);
+                    new.predict(body, gravity, dt);
+                    snapshot.bodies.push(new);
+                    snapshot.bodies.len() - 1
+                })
+            });
+            snapshot.add_part(handle, collider, index);
+        }
+        snapshot
+    }
+
+    fn add_part(&mut self, handle: ColliderHandle, collider: &Collider, index: usize) {
+        let offset = match collider.position_wrt_parent() {
+            Some(offset) if index != 0 => *offset,
+            _ => *collider.position(),
+        };
+        let body = &mut self.bodies[index];
+        let pose = body.motion.start * offset;
+        let shape = collider.shared_shape().clone();
+        if !pose.is_finite() {
+            return;
+        }
+        let bound = shape.compute_local_bounding_sphere();
+        let arm = offset * bound.center() - body.motion.local_center;
+        body.reach = body.reach.max(arm.length() + bound.radius());
+        let thickness = match shape.as_shape::<MedialMesh>() {
+            Some(mesh) => mesh.thickness(),
+            None => shape.ccd_thickness(),
+        };
+        self.parts.push(Part {
+            handle,
+            body: index,
+            offset,
+            aabb: shape.compute_aabb(&pose),
+            shape,
+            thickness,
+            skin: collider.contact_skin(),
+        });
+    }
+
+    /// Replaces the announced motions by those that rapier's step made.
+    pub fn follow(&mut self, parameters: &IntegrationParameters, bodies: &RigidBodySet) {
+        for body in &mut self.bodies {
+            if let Some(b) = body.handle.and_then(|h| bodies.get(h))
+                && body.kind != Kind::Fixed
+            {
+                body.moved(b, parameters.num_solver_iterations, parameters.dt);
+            }
+        }
+    }
+
+    /// Motion of a collider from `time` on.
+    pub fn motion(&self, part: usize, time: Real) -> NonlinearRigidMotion {
+        let part = &self.parts[part];
+        let motion = self.bodies[part.body].motion_from(time);
+        NonlinearRigidMotion {
+            start: motion.start * part.offset,
+            local_center: part.offset.inverse() * motion.local_center,
+            ..motion
+        }
+    }
+
+    /// How thin the thinner of two colliders is, a length; surfaces do not count.
+    pub fn thickness(&self, [i, j]: [usize; 2]) -> Real {
+        let of = |k: usize| {
+            let t = self.parts[k].thickness;
+            if t > 0.0 { t } else { Real::MAX }
+        };
+        of(i).min(of(j)).min(1.0e6)
+    }
+
+    /// Bound on how far a point of one collider moves relative to the other in `seconds`.
+    pub fn travel(&self, [i, j]: [usize; 2], seconds: Real) -> Real {
+        let [a, b] = [i, j].map(|k| &self.bodies[self.parts[k].body]);
+        let slide = (a.motion.linvel - b.motion.linvel).length();
+        let swing = |body: &Body| body.motion.angvel.length() * body.reach;
+        (slide + swing(a) + swing(b)) * seconds
+    }
+
+    /// Box that holds a collider from `time` to `end` seconds.
+    pub fn swept_aabb(&self, part: usize, time: Real, end: Real) -> Aabb {
+        let p = &self.parts[part];
+        let body = &self.bodies[p.body];
+        let still = body.motion.linvel == Vector::ZERO && body.motion.angvel == Vector::ZERO;
+        if still && body.time == 0.0 {
+            return p.aabb;
+        }
+        let motion = self.motion(part, time);
+        let last = motion.position_at_time(end - time);
+        let turn = motion.angvel.length() * (end - time);
+        let bound = p.shape.compute_local_bounding_sphere();
+        // A body carried along by another turns about that one's centre.
+        let reach = (bound.center() - motion.local_center).length() + bound.radius();
+        if turn <= SMALL_TURN {
+            let sagitta = 0.125 * turn * turn * reach;
+            let ends = p.shape.compute_aabb(&motion.start);
+            return ends.merged(&p.shape.compute_aabb(&last)).loosened(sagitta);
+        }
+        let center = |pose: &Pose| *pose * motion.local_center;
+        let (c0, c1) = (center(&motion.start), center(&last));
+        Aabb::new(c0.min(c1), c0.max(c1)).loosened(reach)
+    }
+}

@@ -1,0 +1,42 @@
+//! Which pairs the event loop takes over from the solver: those that travel further in the step than
+//! they are thick, and do not touch yet. For them rapier gets no contacts, since its own would come
+//! from the poses at the start: too late, or at a place where the bodies never meet.
+
+use super::first_contact::{Asker, Work};
+use super::motion::Snapshot;
+use super::pairs::{Rules, sweep};
+use crate::math::Real;
+use crate::parry::answers::Key;
+use std::collections::HashSet;
+
+/// Relative travel in a step, in units of the thinner collider's thickness, from which a pair is muted.
+const TRAVEL: Real = 1.0;
+
+/// The pairs to be muted, under the key by which the narrow phase will ask.
+pub fn muted(
+    snapshot: &Snapshot,
+    asker: &Asker,
+    rules: &Rules,
+    prediction: Real,
+    work: &mut Work,
+) -> HashSet<Key> {
+    let mut keys = HashSet::new();
+    for pair in sweep(snapshot, asker.dt, 0.0) {
+        let [p, q] = pair.map(|k| &snapshot.parts[k]);
+        let plane = p.shape.as_halfspace().or(q.shape.as_halfspace());
+        let reach = prediction + p.skin + q.skin;
+        let apart = |a: &parry3d::bounding_volume::Aabb, b: &parry3d::bounding_volume::Aabb| {
+            (a.mins - b.maxs).max(b.mins - a.maxs).max_element() > reach
+        };
+        if plane.is_none()
+            && !apart(&p.aabb, &q.aabb)
+            && asker.is_fast(snapshot, pair, TRAVEL)
+            && rules.respond(snapshot, pair)
+            && !asker.touches(snapshot, pair, work)
+        {
+            let [m1, m2] = pair.map(|k| snapshot.motion(k, 0.0).start);
+            keys.insert(Key::new(&*p.shape, &*q.shape, &m1.inv_mul(&m2)));
+        }
+    }
+    keys
+}

@@ -1,0 +1,121 @@
+//! Which colliders may meet: rapier's own rules, and sweep and prune over swept boxes.
+
+use super::motion::{Body, Kind, Snapshot};
+use crate::math::Real;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use rapier3d::dynamics::{ImpulseJointSet, MultibodyJointSet, RigidBodySet, RigidBodyType};
+use rapier3d::geometry::{ColliderSet, SolverFlags};
+use rapier3d::pipeline::{ActiveHooks, PairFilterContext, PhysicsHooks};
+
+/// What decides whether two colliders respond to each other (`narrow_phase/pair_update.rs` of rapier
+/// 0.36, in its order).
+#[derive(Clone, Copy)]
+pub struct Rules<'a> {
+    /// Bodies.
+    pub bodies: &'a RigidBodySet,
+    /// Colliders.
+    pub colliders: &'a ColliderSet,
+    /// Joints, some of which turn contacts off.
+    pub impulse_joints: &'a ImpulseJointSet,
+    /// Multibodies, likewise.
+    pub multibody_joints: &'a MultibodyJointSet,
+    /// Filters of the user.
+    pub hooks: &'a dyn PhysicsHooks,
+}
+
+impl Rules<'_> {
+    /// Whether rapier would let them push each other. Pairs whose contacts the user modifies are left
+    /// to rapier.
+    pub fn respond(&self, snapshot: &Snapshot, pair: [usize; 2]) -> bool {
+        let [h1, h2] = pair.map(|k| snapshot.parts[k].handle);
+        let (Some(c1), Some(c2)) = (self.colliders.get(h1), self.colliders.get(h2)) else {
+            return false;
+        };
+        let body = |h| self.bodies.get(h).map(|b| b.body_type());
+        let types = [c1, c2].map(|c| c.parent().and_then(body).unwrap_or(RigidBodyType::Fixed));
+        let typed = [c1, c2]
+            .iter()
+            .any(|c| c.active_collision_types().test(types[0], types[1]));
+        if !typed
+            || !c1.collision_groups().test(c2.collision_groups())
+            || !c1.solver_groups().test(c2.solver_groups())
+        {
+            return false;
+        }
+        if let (Some(b1), Some(b2)) = (c1.parent(), c2.parent()) {
+            let mut joints = self.impulse_joints.joints_between(b1, b2);
+            if joints.any(|(_, j)| !j.data.contacts_enabled) {
+                return false;
+            }
+            let links = [b1, b2].map(|b| self.multibody_joints.rigid_body_link(b));
+            if let [Some(l1), Some(l2)] = links
+                && l1.multibody == l2.multibody
+            {
+                // Both are driven by their joints; nothing here could push them.
+                return false;
+            }
+        }
+        let active = c1.active_hooks() | c2.active_hooks();
+        if active.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS) {
+            return false;
+        }
+        if !active.contains(ActiveHooks::FILTER_CONTACT_PAIRS) {
+            return true;
+        }
+        let context = PairFilterContext {
+            bodies: self.bodies,
+            colliders: self.colliders,
+            collider1: h1,
+            collider2: h2,
+            rigid_body1: c1.parent(),
+            rigid_body2: c2.parent(),
+        };
+        let flags = self.hooks.filter_contact_pair(&context);
+        flags.is_some_and(|f| f.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
+    }
+}
+
+/// Whether an impact between two colliders is for the event loop to find: one of them medial, one of
+/// them free, and one awake.
+pub fn concerned(snapshot: &Snapshot, [i, j]: [usize; 2]) -> bool {
+    let (p, q) = (&snapshot.parts[i], &snapshot.parts[j]);
+    let (a, b) = (&snapshot.bodies[p.body], &snapshot.bodies[q.body]);
+    let free = |body: &Body| body.kind == Kind::Free;
+    p.body != q.body
+        && (free(a) || free(b))
+        && (a.awake || b.awake)
+        && (p.medial().is_some() || q.medial().is_some())
+}
+
+/// Pairs of colliders, none of them fixed, whose boxes over the whole step meet, in the narrow phase's
+/// order (lower collider index first).
+pub fn sweep(snapshot: &Snapshot, dt: Real, margin: Real) -> Vec<[usize; 2]> {
+    let moving = |k: &usize| snapshot.bodies[snapshot.parts[*k].body].kind != Kind::Fixed;
+    let mut boxes: Vec<(Aabb, usize)> = (0..snapshot.parts.len())
+        .filter(moving)
+        .map(|k| {
+            let aabb = snapshot.swept_aabb(k, 0.0, dt);
+            (aabb.loosened(margin + snapshot.parts[k].skin), k)
+        })
+        .collect();
+    boxes.sort_by(|a, b| a.0.mins.x.total_cmp(&b.0.mins.x));
+    let mut pairs = Vec::new();
+    for (n, (a, i)) in boxes.iter().enumerate() {
+        for (b, j) in &boxes[n + 1..] {
+            if b.mins.x > a.maxs.x {
+                break;
+            }
+            if a.intersects(b) && concerned(snapshot, [*i, *j]) {
+                pairs.push(in_order(snapshot, [*i, *j]));
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs
+}
+
+/// In the narrow phase's order.
+pub fn in_order(snapshot: &Snapshot, [i, j]: [usize; 2]) -> [usize; 2] {
+    let index = |k: usize| snapshot.parts[k].handle.into_raw_parts().0;
+    if index(i) <= index(j) { [i, j] } else { [j, i] }
+}
