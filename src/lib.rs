@@ -57,7 +57,7 @@ pub mod pair;
 pub mod parry;
 pub mod rapier;
 
-pub use build::{BuildOptions, BuildReport, Progress};
+pub use build::{BuildOptions, BuildReport, Progress, Quality};
 pub use elementary::{AlternatingStart, InitialContact, Toi, ToiOptions, ToiStatus};
 pub use error::{AssetError, BuildError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
@@ -71,7 +71,7 @@ pub use rapier::{
 pub mod prelude {
     pub use crate::{
         BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder, MedialMesh,
-        MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, Progress, StepReport,
+        MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, Progress, Quality, StepReport,
     };
 }
 

@@ -73,6 +73,13 @@ pub struct Hausdorff {
     pub sampling: Real,
 }
 
+impl Hausdorff {
+    /// The two-sided distance: the larger of both directions.
+    pub fn error(&self) -> Real {
+        self.surface_to_envelope.max(self.envelope_to_surface)
+    }
+}
+
 /// What a build did, measured.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]

@@ -26,8 +26,7 @@ pub struct Candidate {
 
 impl Candidate {
     fn error(&self) -> f64 {
-        let h = &self.hausdorff;
-        f64::from(h.surface_to_envelope.max(h.envelope_to_surface))
+        f64::from(self.hausdorff.error())
     }
 
     /// Whether the error is within a limit.
@@ -38,7 +37,7 @@ impl Candidate {
 
 /// A fit whose largest residual is below this share of the plain collapse's is better without
 /// measuring both.
-const CLEARLY_BETTER: f64 = 0.5;
+const CLEARLY_BETTER: f64 = 0.75;
 
 /// The checked surface, its tree, and what to build from it.
 pub struct Source {
@@ -87,7 +86,7 @@ impl Source {
     }
 
     /// The best of the plain collapse, the balanced fit and, if asked for, the best fit, by the
-    /// error that is reported.
+    /// error that is reported: a higher quality has the lower one's result among its own.
     fn fitted(
         &self,
         simplifier: &mut Simplifier,
@@ -97,29 +96,19 @@ impl Source {
         let collapsed = Collapsed::new(simplifier, most, watch)?;
         let target = fit::target(&self.surface, &self.tree, most);
         let balanced = fit::balanced(&collapsed, &target, most, watch)?;
+        let mut best = self.enclosed(balanced.0.clone(), watch)?;
         let plain = target.residuals(&collapsed.plain, watch)?.largest;
-        let clear = target.residuals(&balanced.0, watch)?.largest < CLEARLY_BETTER * plain;
-        let mut candidates = vec![balanced.0.clone()];
-        if !clear {
-            candidates.push(collapsed.plain.clone());
+        if target.residuals(&balanced.0, watch)?.largest > CLEARLY_BETTER * plain {
+            best = best.or_better(self.enclosed(collapsed.plain.clone(), watch)?);
         }
         if self.limits.quality == Quality::Best {
-            let (draft, score) = fit::best(balanced.clone(), &collapsed, &target, most, watch)?;
-            if score < balanced.1 {
-                candidates.push(draft);
+            let score = balanced.1;
+            let (draft, new) = fit::best(balanced, &collapsed, &target, most, watch)?;
+            if new < score {
+                best = best.or_better(self.enclosed(draft, watch)?);
             }
         }
-        let mut best: Option<Candidate> = None;
-        for draft in candidates {
-            let candidate = self.finish(draft, watch)?;
-            if best.as_ref().is_none_or(|b| candidate.error() < b.error()) {
-                best = Some(candidate);
-            }
-        }
-        match best {
-            Some(best) => Ok(best),
-            None => self.finish(collapsed.plain, watch),
-        }
+        self.reported(best, watch)
     }
 
     /// A rung of the ladder as the quality wants it: fitted where it is above [`Quality::Fast`].
@@ -186,22 +175,58 @@ impl Source {
     }
 
     /// Encloses when asked to, and measures before and after.
-    fn finish(&self, mut draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        watch.begin("measure")?;
-        let mut hausdorff = measure(&self.surface, &self.tree, &draft, watch)?;
+    fn finish(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        let enclosed = self.enclosed(draft, watch)?;
+        self.reported(enclosed, watch)
+    }
+
+    /// Encloses when asked to, and measures the result.
+    fn enclosed(&self, draft: Draft, watch: &mut Watch) -> Result<Enclosed, BuildError> {
         let mut before = None;
+        let mut enclosed = draft;
         if self.limits.enclose {
-            before = Some(hausdorff);
             watch.begin("enclose")?;
-            enclose(&mut draft, &self.surface, self.limits.allow_uncovered, watch)?;
+            before = Some(enclosed.clone());
+            enclose(&mut enclosed, &self.surface, self.limits.allow_uncovered, watch)?;
+        }
+        watch.begin("measure")?;
+        let hausdorff = measure(&self.surface, &self.tree, &enclosed, watch)?;
+        Ok(Enclosed {
+            draft: enclosed,
+            hausdorff,
+            before,
+        })
+    }
+
+    /// Measures as well what was there before the enclosure.
+    fn reported(&self, enclosed: Enclosed, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        let mut before = None;
+        if let Some(draft) = &enclosed.before {
             watch.begin("measure")?;
-            hausdorff = measure(&self.surface, &self.tree, &draft, watch)?;
+            before = Some(measure(&self.surface, &self.tree, draft, watch)?);
         }
         Ok(Candidate {
-            draft,
-            hausdorff,
+            draft: enclosed.draft,
+            hausdorff: enclosed.hausdorff,
             before,
             notes: Vec::new(),
         })
+    }
+}
+
+/// A draft after enclosure, its error, and the draft before.
+struct Enclosed {
+    draft: Draft,
+    hausdorff: Hausdorff,
+    before: Option<Draft>,
+}
+
+impl Enclosed {
+    fn or_better(self, other: Self) -> Self {
+        if other.hausdorff.error() < self.hausdorff.error() {
+            other
+        } else {
+            self
+        }
     }
 }

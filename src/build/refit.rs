@@ -82,8 +82,9 @@ pub fn refit(
     let mut envelope = Vec::new();
     let mut failures = 0;
     for iteration in 0..=iterations {
-        // The last score must not rest on samples that have moved far.
-        if iteration % REFRESH == 0 || iteration == iterations {
+        // The last score of a long fit must not rest on samples that have moved far.
+        let last = iteration == iterations && iterations > 2;
+        if iteration % REFRESH == 0 || last {
             envelope = envelope_samples(&Solid::new(draft), target.spacing, watch)?;
         }
         let mut found = target.examine(draft, &mut hints, &envelope, watch)?;
