@@ -52,6 +52,45 @@ fn fast_bodies_whose_contacts_are_modified_pass_through_each_other() {
     assert!(missed > 8, "only {missed} of 16 are missed now");
 }
 
+/// rapier 0.36.1: a composite collider in contact whose shape is swapped leaves its old contacts in the
+/// solver's graph; a debug assertion tells. With rapier's own compound as with a medial mesh.
+#[test]
+#[cfg(debug_assertions)]
+fn rapier_panics_when_a_compound_in_contact_gets_another_shape() {
+    let swapped = std::panic::catch_unwind(|| {
+        let ball = |x: Real| {
+            let at = Pose::from_translation(Vector::new(x, 0.0, 0.0));
+            (at, SharedShape::ball(0.2))
+        };
+        let mut world = PhysicsWorld::new();
+        world.insert_collider(ColliderBuilder::cuboid(5.0, 0.5, 5.0), None);
+        let compound = SharedShape::compound(vec![ball(-0.3), ball(0.3)]);
+        let handles: Vec<_> = (0..6)
+            .map(|i| {
+                let at = Vector::new(0.1 * (i % 2) as Real, 0.7 + 0.35 * i as Real, 0.0);
+                let body = RigidBodyBuilder::dynamic().translation(at);
+                world.insert(body, ColliderBuilder::new(compound.clone())).1
+            })
+            .collect();
+        for step in 0..300 {
+            world.step();
+            if step % 10 == 9 {
+                let collider = &mut world.colliders[handles[step / 10 % 6]];
+                let swapped = collider.shape().as_compound().is_some();
+                collider.set_shape(if swapped {
+                    SharedShape::ball(0.2)
+                } else {
+                    compound.clone()
+                });
+            }
+        }
+    });
+    assert!(
+        swapped.is_err(),
+        "mended: swap shapes in tests/scenes/endurance.rs"
+    );
+}
+
 /// A mesh of 364 patches, most of them crumbs of a body that fell apart and lost pieces, beside an
 /// open sheet: with 16 and with 60 primitives a part is given up, and enclosure then swells another
 /// one over the gap. With 200 the error is 0.13 of the size.

@@ -9,11 +9,12 @@ use crate::random::Random;
 use nalgebra::Vector3;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d::prelude::{Pose, Real, Vector};
+use std::f64::consts::PI;
 
 /// Distances that the creature travels in the step, in its own widths.
 pub const SPEEDS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 /// Angles that it turns in the step, in radians.
-pub const TURNS: [f64; 5] = [0.0, 0.1, 0.5, 1.5, 3.14];
+pub const TURNS: [f64; 5] = [0.0, 0.1, 0.5, 1.5, PI];
 /// Width of the creature, in metres.
 pub const WIDTH: f64 = 4.0;
 /// Two surfaces this near have touched, in metres: a hundred-thousandth of the width, above what

@@ -16,5 +16,6 @@ pub mod scene_strip;
 pub mod scene_table;
 pub mod skeleton;
 pub mod strip;
+pub mod surface_error;
 pub mod table;
 pub mod triangle_toi;

@@ -32,6 +32,7 @@ const REACH: f64 = 3.0;
 
 /// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
 const BULGE: f64 = 0.2;
+
 /// Cosine of the angle between two faces at an edge below which one lies on the other.
 const FOLDED: f64 = 0.99;
 

@@ -16,7 +16,7 @@
 //!   are lost); here a miss is proven for all sphere pairs.
 //! - Its Conditions 1 and 2 (touching at `t0` or `t1`) need no special case.
 
-use super::certificate::{ActiveFace, fixed_step, free_throughout, turning_step};
+use super::certificate::{ActiveFace, first_step, fixed_step, turning_step};
 use super::path::Path;
 use super::test_list::Domain;
 use super::{cone_cone, sphere_slab};
@@ -54,7 +54,8 @@ pub struct Bracket<L: Lane> {
     pub tolerance: L,
     /// Rounding slack.
     pub slack: L,
-    /// Signed distance where the search began.
+    /// Signed distance where the nearest spheres were first looked for: at the start of the search,
+    /// or later when a first certificate proved it free until then.
     pub start_distance: L,
     /// Nearest spheres at `lower`.
     pub nearest: Nearest<L>,
@@ -92,6 +93,26 @@ fn fixed_pair_root<L: Lane>(s: &Nearest<L>, y_rate: Vec3<L>, reach: L) -> L {
     L::select(exists, root, L::splat(NEVER))
 }
 
+/// What a certified step proves, a little less than it says, for rounding.
+struct Proven<L> {
+    /// Free until here.
+    end: L,
+    /// The next `lower`.
+    lower: L,
+}
+
+impl<L: Lane> Proven<L> {
+    #[inline(always)]
+    fn new(lower: L, step: L) -> Self {
+        let end = lower + step * L::splat(1.0 - STEP_ULPS * L::EPSILON);
+        let next = end * L::splat(1.0 - 0.5 * STEP_ULPS * L::EPSILON);
+        Self {
+            end,
+            lower: next.max(lower),
+        }
+    }
+}
+
 /// A bracket on its way, in every lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Running<L: Lane> {
@@ -105,9 +126,8 @@ pub struct Running<L: Lane> {
 }
 
 impl<L: Lane> Running<L> {
-    /// At the start of the search. Lanes whose motion one direction proves free are finished at
-    /// once: a fixed direction's bound is concave and piecewise linear on straight paths, so
-    /// positive at both ends is positive between them.
+    /// At the start of the search. On straight paths [`first_step`] finishes some lanes at once and
+    /// lets the others begin later.
     #[inline(always)]
     pub fn new<P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Self {
         let slack = path.scale() * L::splat(SLACK_ULPS * L::EPSILON);
@@ -138,9 +158,14 @@ impl<L: Lane> Running<L> {
             speed: path.speed().max(L::splat(L::TINY)),
         };
         if !P::CURVED {
-            let free = free_throughout(path, domain, slack);
+            let c = path.at(limits.start);
+            let remaining = limits.horizon - limits.start;
+            let step = first_step(path, domain, &c, slack, remaining);
+            let proven = Proven::new(limits.start, step);
+            // Without any step nothing is known of the start, which may be the horizon too.
+            let free = L::zero().lt(step) & limits.horizon.le(proven.end);
             running.bracket.separated = free;
-            running.bracket.lower = L::select(free, limits.horizon, limits.start);
+            running.bracket.lower = L::select(free, limits.horizon, proven.lower);
             running.active = !free;
         }
         running
@@ -189,11 +214,10 @@ impl<L: Lane> Running<L> {
             let m = face.turning_rate(&s, n, y_rate);
             step = step.max(turning_step(path, domain, &c, n, m, slack, remaining));
         }
-        let proven = lower + step * L::splat(1.0 - STEP_ULPS * L::EPSILON);
-        let next = (proven * L::splat(1.0 - 0.5 * STEP_ULPS * L::EPSILON)).max(lower);
-        let free = active & !self.rooted & limits.horizon.le(proven);
+        let proven = Proven::new(lower, step);
+        let free = active & !self.rooted & limits.horizon.le(proven.end);
         b.separated = b.separated | free;
-        b.lower = L::select(active, next.min(b.upper), lower);
+        b.lower = L::select(active, proven.lower.min(b.upper), lower);
         b.lower = L::select(free, limits.horizon, b.lower);
         active = active & !free;
         let closed = active & self.rooted & (b.upper - b.lower).le(limits.time_tolerance);

@@ -150,23 +150,30 @@ fn corner_count(domain: Domain) -> usize {
     }
 }
 
-/// Whether one fixed direction proves that there is no contact in the whole step, on straight
-/// paths. The direction is that between the middles of both bodies half way, as far as their
-/// distance then is; a third of all misses ends here.
+/// How long two directions that need no nearest spheres prove straight paths free: from the middle
+/// of the first body to that of the second when they are closest, which settles most misses, and
+/// against the drift of the second, which leads to the neighbourhood of most contacts. Each costs a
+/// tenth of an iteration of the bracket, and together they save a third of them.
 #[inline(always)]
-pub fn free_throughout<L: Lane, P: Path<L>>(path: &P, domain: Domain, slack: L) -> L::Mask {
-    let ends = [path.at(L::zero()).y, path.at(L::one()).y];
+pub fn first_step<L: Lane, P: Path<L>>(
+    path: &P,
+    domain: Domain,
+    c: &Corners<L>,
+    slack: L,
+    remaining: L,
+) -> L {
+    let tiny = L::splat(L::TINY);
+    // Twice the middles of two opposite corners; lengths cancel.
     let last = corner_count(domain) - 1;
-    let middle = |y: &[Vec3<L>; 4]| y[0] + y[last];
-    let toward = middle(&ends[0]) + middle(&ends[1]);
-    let n = toward * (L::one() / toward.length().max(L::splat(L::TINY)));
-    let mut least = L::splat(f32::MAX.into());
-    for y in &ends {
-        for (y, radius) in y.iter().zip(path.radius()).take(corner_count(domain)) {
-            least = least.min(n.dot(*y) - *radius);
-        }
-    }
-    slack.lt(least)
+    let middle = c.y[0] + c.y[last];
+    let drift = c.rate[0] + c.rate[last];
+    let speed_sq = drift.length_sq().max(tiny);
+    let closest = -(middle.dot(drift) / speed_sq);
+    let passing = middle + drift * closest.max(L::zero()).min(remaining);
+    let n = passing * (L::one() / passing.length().max(tiny));
+    let step = fixed_step(path, domain, c, n, slack, remaining);
+    let n = drift * -(L::one() / speed_sq.sqrt());
+    step.max(fixed_step(path, domain, c, n, slack, remaining))
 }
 
 /// How long the bound of a fixed direction stays positive. A corner that is not positive now gives

@@ -156,7 +156,7 @@ impl Mask for bool {
 }
 
 macro_rules! impl_scalar {
-    ($t:ty, $tiny:expr) => {
+    ($t:ty, $tiny:expr, $sin_cos:path) => {
         impl Lane for $t {
             type Mask = bool;
             const EPSILON: f64 = <$t>::EPSILON as f64;
@@ -197,7 +197,7 @@ macro_rules! impl_scalar {
         impl Scalar for $t {
             #[inline(always)]
             fn sin_cos(self) -> (Self, Self) {
-                <$t>::sin_cos(self)
+                $sin_cos(self)
             }
             #[inline(always)]
             fn is_finite(self) -> bool {
@@ -214,8 +214,8 @@ macro_rules! impl_scalar {
         }
     };
 }
-impl_scalar!(f32, 1.0e-30);
-impl_scalar!(f64, 1.0e-200);
+impl_scalar!(f32, 1.0e-30, super::portable::sin_cos_f32);
+impl_scalar!(f64, 1.0e-200, super::portable::sin_cos_f64);
 
 impl Mask for f32x8 {
     #[inline(always)]

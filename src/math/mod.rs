@@ -5,6 +5,7 @@ pub mod lane;
 pub(crate) mod lane_avx;
 pub mod motion;
 pub mod nearest;
+pub mod portable;
 pub mod tolerance;
 
 /// Position (translation and rotation), as in rapier's API.

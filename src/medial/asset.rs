@@ -357,7 +357,7 @@ pub(super) fn mass_of(index: usize, numbers: &[Real; MASS]) -> Result<MassProper
 /// FNV-1a's step on words of 8 bytes, with a rotation that brings high bits down. Each step maps the
 /// state one to one for a given word, and the word for a given state: a change within one word always
 /// changes the result; of others one in 2⁶⁴ goes unseen.
-fn checksum(bytes: &[u8]) -> u64 {
+pub(crate) fn checksum(bytes: &[u8]) -> u64 {
     const PRIME: u64 = 0x0000_0100_0000_01b3;
     const START: u64 = 0xcbf2_9ce4_8422_2325;
     let step = |h: u64, word: u64| (h ^ word).wrapping_mul(PRIME).rotate_left(29);

@@ -8,6 +8,7 @@ pub mod contacts;
 pub mod distance;
 pub mod first_contact;
 mod queue;
+mod search;
 mod swept;
 pub mod volumes;
 

@@ -1,4 +1,4 @@
-//! What the search of [`super::first_contact`] still has to look at, in the order of the time before
+//! What the search of [`super::search`] still has to look at, in the order of the time before
 //! which it is proven free.
 
 use crate::elementary::test_list::ElementaryTest;
@@ -7,10 +7,8 @@ use std::cmp::Ordering;
 /// Something that may meet.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Candidate {
-    /// Two swept nodes, whose balls meet then.
+    /// Two swept nodes: their balls meet then, or directions keep their primitives apart until then.
     Nodes([u32; 2]),
-    /// The primitives of two swept leaves, free until then by directions that their spheres give.
-    Leaves([u32; 2]),
     /// An elementary test: its place in the list of those not settled.
     Test(u32),
 }

@@ -84,14 +84,11 @@ impl<'a, V: Volumes> Side<'a, V> {
         let new = self.balls.len() as u32;
         *place = new;
         let (spheres, share) = self.body.primitive(primitive);
-        let mut balls = Balls {
-            spheres: [(Vec3::zero(), Vec3::zero(), 0.0); 3],
-            len: share.spheres,
-        };
-        for (ball, s) in balls.spheres.iter_mut().zip(&spheres[..share.spheres]) {
+        let balls = spheres[..share.spheres].iter().map(|s| {
             let (from, chord, sagitta) = self.chord(Vec3::from_vector(s.center));
-            *ball = (from, chord, f64::from(s.radius) + sagitta);
-        }
+            (from, chord, f64::from(s.radius) + sagitta)
+        });
+        let balls = Balls::new(balls);
         self.balls.push(balls);
         new
     }

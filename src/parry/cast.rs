@@ -41,6 +41,9 @@ pub struct Cast<'a> {
     pub target_distance: Real,
     /// Whether contact at the start is the answer; otherwise the next deeper one is looked for.
     pub stop_at_penetration: bool,
+    /// Whether contact at the start is the answer at least while they approach, as parry has it for
+    /// straight casts: the character controller would sink otherwise.
+    pub stop_approach: bool,
 }
 
 impl Cast<'_> {
@@ -71,7 +74,9 @@ impl Cast<'_> {
             ..ToiOptions::default()
         };
         let (mut toi, mut counts) = self.query(&motion1, &motion2, seconds, &options)?;
-        if toi.upper <= 0.0 && !self.stop_at_penetration {
+        let approach = (motion2.linvel - motion1.linvel).dot(toi.normal);
+        let stop = self.stop_at_penetration || self.stop_approach && approach < 0.0;
+        if toi.upper <= 0.0 && !stop {
             let core = (CORE * self.mesh.thickness()).max(Real::MIN_POSITIVE);
             let deeper = ToiOptions {
                 target_distance: self.target_distance - core,
@@ -128,12 +133,15 @@ impl Cast<'_> {
         if !foreign::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {
             return Err(Unsweepable);
         }
-        let Parts { soup, turned } = parts;
-        let (mut toi, mut counts) =
-            first_contact_counted(self.mesh, motion1, &soup, motion2, seconds, options);
+        let Parts { soup, turned, .. } = &parts;
+        let (toi, mut counts) =
+            first_contact_counted(self.mesh, motion1, soup, motion2, seconds, options);
+        let mut toi = self.with_normal(toi, soup, motion1, motion2);
+        toi.primitives[1] = parts.soup_subshape(toi.primitives[1]);
         if !turned.is_empty() {
-            let (other, more) =
-                advance::first_contact(self.mesh, motion1, &turned, motion2, seconds, options);
+            let (mut other, more) =
+                advance::first_contact(self.mesh, motion1, turned, motion2, seconds, options);
+            other.primitives[1] = parts.turned_subshape(other.primitives[1]);
             counts.nodes += more.nodes;
             counts.tests += more.tests;
             toi = earlier(toi, other);
@@ -143,7 +151,7 @@ impl Cast<'_> {
         {
             return Ok((inside, counts));
         }
-        Ok((self.with_normal(toi, &soup, motion1, motion2), counts))
+        Ok((toi, counts))
     }
 
     /// The overlap at the start, if a medial sphere's centre is inside the other then, deeper than the

@@ -4,9 +4,10 @@
 use super::answers::Answers;
 use super::cast::Cast;
 use super::manifolds::{ensure_workspace, write_manifolds};
+use super::near;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::pair::{SpherePair, nearest_spheres};
+use crate::pair::SpherePair;
 use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{
     ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
@@ -16,7 +17,8 @@ use parry3d::query::{
 use parry3d::shape::Shape;
 use std::sync::Arc;
 
-/// Answers all queries of two medial meshes, and shape casts of one with anything. Chain it
+/// Answers all queries of two medial meshes, and of one with any built-in shape all but contact
+/// manifolds. Chain it
 /// before the default: `MedialDispatcher::default().chain(DefaultQueryDispatcher)`.
 #[derive(Clone, Default)]
 pub struct MedialDispatcher {
@@ -35,7 +37,7 @@ impl MedialDispatcher {
         shapes: [&dyn Shape; 2],
         times: [Real; 2],
         target_distance: Real,
-        stop_at_penetration: bool,
+        [stop_at_penetration, stop_approach]: [bool; 2],
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let flipped = medial(shapes[0]).is_none();
         let [first, second] = if flipped { [1, 0] } else { [0, 1] };
@@ -48,6 +50,7 @@ impl MedialDispatcher {
             times,
             target_distance,
             stop_at_penetration,
+            stop_approach,
         };
         let (hit, counts) = cast.run().map_err(|_| Unsupported)?;
         self.answers.count_cast(counts.nodes, counts.tests);
@@ -63,12 +66,15 @@ impl MedialDispatcher {
         g2: &dyn Shape,
         max_distance: Real,
     ) -> Result<Option<SpherePair>, Unsupported> {
-        let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
-            return Err(Unsupported);
-        };
-        let (nearest, counts) = nearest_spheres(mesh1, mesh2, pos12, max_distance);
+        let (found, counts) = match (medial(g1), medial(g2)) {
+            (Some(mesh), _) => near::nearest(mesh, g2, pos12, max_distance),
+            (None, Some(mesh)) => near::nearest(mesh, g1, &pos12.inverse(), max_distance)
+                .map(|(pair, counts)| (pair.map(|p| flipped(p, pos12)), counts)),
+            (None, None) => return Err(Unsupported),
+        }
+        .map_err(|_| Unsupported)?;
         self.answers.count(counts.nodes, counts.tests);
-        Ok(nearest)
+        Ok(found)
     }
 }
 
@@ -96,6 +102,18 @@ fn passed_by(pos12: &Pose, velocity: Vector, g1: &dyn Shape, g2: &dyn Shape, tar
     // Rounding must not end the cast before the last contact.
     let passed = (apart + size) / speed * (1.0 + 16.0 * Real::EPSILON);
     passed.min(Real::MAX)
+}
+
+/// The pair of the swapped query, whose first body is our second.
+fn flipped(pair: SpherePair, pos12: &Pose) -> SpherePair {
+    let [p, q] = pair.primitives;
+    let [a, b] = pair.points;
+    SpherePair {
+        primitives: [q, p],
+        normal: pos12.rotation * -pair.normal,
+        points: [b, a],
+        ..pair
+    }
 }
 
 fn medial(shape: &dyn Shape) -> Option<&MedialMesh> {
@@ -193,7 +211,7 @@ impl QueryDispatcher for MedialDispatcher {
             [g1, g2],
             [0.0, end],
             options.target_distance,
-            options.stop_at_penetration,
+            [options.stop_at_penetration, true],
         )
     }
 
@@ -212,7 +230,7 @@ impl QueryDispatcher for MedialDispatcher {
             [g1, g2],
             [start_time, end_time],
             0.0,
-            stop_at_penetration,
+            [stop_at_penetration, false],
         )
     }
 }
@@ -233,6 +251,8 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         if (medial(g1).is_some() || medial(g2).is_some()) && self.answers.is_muted(g1, g2, pos12) {
+            // parry's workspace holds indices into the list that is emptied here.
+            *workspace = None;
             ensure_workspace::<M, C>(g1, g2, workspace);
             manifolds.clear();
             return Ok(());

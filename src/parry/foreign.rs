@@ -24,6 +24,29 @@ pub struct Parts {
     pub soup: Soup,
     /// Cylinders and cones.
     pub turned: Vec<Turned>,
+    /// parry's subshape of each primitive of the soup: child, triangle, segment, cell or voxel.
+    soup_subshapes: Vec<u32>,
+    turned_subshapes: Vec<u32>,
+}
+
+impl Parts {
+    /// parry's subshape of a primitive of the soup.
+    pub fn soup_subshape(&self, primitive: u32) -> u32 {
+        let of = self.soup_subshapes.get(primitive as usize);
+        of.copied().unwrap_or(0)
+    }
+
+    /// parry's subshape of one of the turned bodies.
+    pub fn turned_subshape(&self, index: u32) -> u32 {
+        let of = self.turned_subshapes.get(index as usize);
+        of.copied().unwrap_or(0)
+    }
+
+    /// Names the subshape of what was added since the last call.
+    fn name(&mut self, subshape: u32) {
+        self.soup_subshapes.resize(self.soup.len(), subshape);
+        self.turned_subshapes.resize(self.turned.len(), subshape);
+    }
 }
 
 /// Adds the surface of `shape`, placed at `pose` in the parts' frame, as far as it meets `region`
@@ -31,6 +54,7 @@ pub struct Parts {
 pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
     if let Some(turned) = Turned::new(shape, pose) {
         parts.turned.push(turned);
+        parts.name(0);
         return true;
     }
     let soup = &mut parts.soup;
@@ -57,20 +81,23 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
             let local = region.transform_by(&pose.inverse());
             for i in m.bvh().intersect_aabb(&local) {
                 let t = m.triangle(i);
-                soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
+                parts.soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
+                parts.name(i);
             }
         }
         TypedShape::Polyline(l) => {
             let local = region.transform_by(&pose.inverse());
             for i in l.bvh().intersect_aabb(&local) {
                 let s = l.segment(i);
-                soup.push(&[ball(s.a, 0.0), ball(s.b, 0.0)]);
+                parts.soup.push(&[ball(s.a, 0.0), ball(s.b, 0.0)]);
+                parts.name(i);
             }
         }
         TypedShape::HeightField(h) => {
             let local = region.transform_by(&pose.inverse());
-            h.map_elements_in_local_aabb(&local, &mut |_, t| {
-                soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
+            h.map_elements_in_local_aabb(&local, &mut |i, t| {
+                parts.soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
+                parts.name(i);
             });
         }
         TypedShape::Voxels(v) => {
@@ -79,7 +106,8 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
             for voxel in v.voxels_intersecting_local_aabb(&local) {
                 if !voxel.state.is_empty() {
                     let at = pose * Pose::from_translation(voxel.center);
-                    add_cuboid(soup, &cube, &at, 0.0);
+                    add_cuboid(&mut parts.soup, &cube, &at, 0.0);
+                    parts.name(voxel.linear_id.flat_id() as u32);
                 }
             }
         }
@@ -88,13 +116,19 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
             add_plane(soup, plane, pose, &local);
         }
         TypedShape::Compound(c) => {
-            return c
-                .shapes()
-                .iter()
-                .all(|(child, s)| add_surface(parts, s.as_ref(), &(pose * child), region));
+            for (i, (child, s)) in c.shapes().iter().enumerate() {
+                let (soup, turned) = (parts.soup.len(), parts.turned.len());
+                if !add_surface(parts, s.as_ref(), &(pose * child), region) {
+                    return false;
+                }
+                parts.soup_subshapes.truncate(soup);
+                parts.turned_subshapes.truncate(turned);
+                parts.name(i as u32);
+            }
         }
         _ => return false,
     }
+    parts.name(0);
     true
 }
 

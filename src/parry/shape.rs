@@ -3,6 +3,7 @@
 //! It stays `TypedShape::Custom`: rapier then asks our dispatcher for its continuous collision
 //! detection, which keeps the certificate.
 
+use super::leaving;
 use super::parts::MedialPart;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
@@ -80,6 +81,9 @@ impl RayCast for MedialMesh {
         max_time_of_impact: Real,
         solid: bool,
     ) -> Option<RayIntersection> {
+        if !solid && let Some(exit) = leaving::exit(self, ray) {
+            return (exit.time_of_impact <= max_time_of_impact).then_some(exit);
+        }
         CompositeShapeRef(self)
             .cast_local_ray_and_get_normal(ray, max_time_of_impact, solid)
             .map(|(part, hit)| hit.with_subshape(part))
@@ -87,7 +91,12 @@ impl RayCast for MedialMesh {
 }
 
 impl PointQuery for MedialMesh {
+    /// Of a point inside, not solid: a point of the surface, straight out of the primitive whose surface
+    /// is nearest. Where primitives overlap another way may be shorter.
     fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
+        if !solid && let Some((surface, part)) = leaving::surface_point(self, point) {
+            return PointProjection::new(true, surface).with_subshape(part);
+        }
         CompositeShapeRef(self)
             .project_local_point(point, Real::MAX, solid)
             .map_or(PointProjection::new(false, point), |(part, p)| {
@@ -95,12 +104,7 @@ impl PointQuery for MedialMesh {
             })
     }
     fn project_local_point_and_get_feature(&self, point: Vector) -> (PointProjection, FeatureId) {
-        CompositeShapeRef(self)
-            .project_local_point_and_get_feature(point, Real::MAX)
-            .map_or(
-                (PointProjection::new(false, point), FeatureId::Unknown),
-                |(part, p, feature)| (p.with_subshape(part), feature),
-            )
+        (self.project_local_point(point, false), FeatureId::Face(0))
     }
 }
 

@@ -21,6 +21,7 @@
 //! decides how sharp the bound is, never whether it holds.
 
 use crate::math::lane::Vec3;
+use crate::math::portable::hypot;
 use crate::math::{Pose, Real, Vector};
 use parry3d::shape::{Shape, TypedShape};
 
@@ -109,7 +110,7 @@ impl Turned {
 
     /// Largest distance of its points from its centre, without the border.
     pub fn reach(&self) -> f64 {
-        self.half_height.hypot(self.radius)
+        hypot(self.half_height, self.radius)
     }
 
     /// Support function in the direction `m`, of any length, about the centre.
@@ -141,7 +142,7 @@ impl Turned {
             0.0
         };
         let flank = (-h + 2.0 * h * share, r * (1.0 - share));
-        let off = |p: (f64, f64)| (y - p.0).hypot(rho - p.1);
+        let off = |p: (f64, f64)| hypot(y - p.0, rho - p.1);
         if off(base) <= off(flank) { base } else { flank }
     }
 
@@ -159,7 +160,7 @@ impl Turned {
         let down = (-place.axis, y + h);
         let others = if self.pointed {
             // The flank's normal in the profile is (r, 2h), its offset r h.
-            let length = (2.0 * h).hypot(r).max(f64::MIN_POSITIVE);
+            let length = hypot(2.0 * h, r).max(f64::MIN_POSITIVE);
             let flank = (place.axis * r + outwards * (2.0 * h)) * (1.0 / length);
             [(flank, (r * (h - y) - 2.0 * h * rho) / length), down]
         } else {
@@ -177,7 +178,7 @@ impl Turned {
         let rho = across.length();
         let foot = self.profile(y, rho);
         let (dy, d_rho) = (y - foot.0, rho - foot.1);
-        let apart = dy.hypot(d_rho);
+        let apart = hypot(dy, d_rho);
         let direction = if apart > 0.0 {
             let outwards = if rho > 0.0 { d_rho / rho } else { 0.0 };
             (place.axis * dy + across * outwards) * (1.0 / apart)

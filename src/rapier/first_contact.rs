@@ -238,6 +238,7 @@ fn ask(
         times: [0.0, seconds],
         target_distance: options.target_distance,
         stop_at_penetration: true,
+        stop_approach: false,
     };
     let (mut toi, counts) = cast.toi(options).ok()?;
     if flipped {

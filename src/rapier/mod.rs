@@ -2,6 +2,8 @@
 
 pub mod candidates;
 pub mod collider;
+#[cfg(feature = "debug-render")]
+pub mod debug_draw;
 mod effects;
 mod emit;
 mod events;
@@ -13,8 +15,14 @@ mod pairs;
 pub mod pipeline;
 mod recycled;
 pub mod report;
+#[cfg(feature = "serde-serialize")]
+pub mod saved_world;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
+#[cfg(feature = "debug-render")]
+pub use debug_draw::MedialDebugRender;
 pub use effects::{Effect, Effects};
 pub use pipeline::{MedialOptions, MedialPipeline};
 pub use report::StepReport;
+#[cfg(feature = "serde-serialize")]
+pub use saved_world::{SavedWorld, SavedWorldError, load_world, save_world};

@@ -371,7 +371,9 @@ fn several_bodies() {
             (2, 0),
         )
         .volume(ball_volume() * 0.875, 1e-3)
+        .error(0.3)
         .outside(&[[0.0; 3]])
+        .primitives(60)
         .found(|f| f.patches_cavity == 1 && f.triangles_turned > 0),
         case("a copy at 1e-4", ball(1.0).and(ball(0.9998)), (2, 0))
             .volume(ball_volume(), 0.01)

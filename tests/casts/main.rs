@@ -9,3 +9,5 @@ mod oracle;
 mod rng;
 mod rotating;
 mod shapes;
+mod solid;
+mod table;

@@ -2,11 +2,14 @@
 
 #[path = "../common/ccd/mod.rs"]
 mod ccd;
+#[path = "../common/creature.rs"]
+mod creature;
 
 mod bad_input;
 mod batch;
 mod coherence;
 mod distance;
+mod effort;
 mod families;
 mod first_contact;
 mod judge;

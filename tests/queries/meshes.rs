@@ -165,3 +165,40 @@ fn distance_and_contacts_are_those_of_brute_force() {
     }
     assert!(near > 1000 && found_any > 100, "{near} {found_any}");
 }
+
+/// Bodies within the tolerance of each other at the start touch at time 0, however their bounding balls
+/// lie; those further apart do later. Casts that may slide ask for this. Planted gaps.
+#[test]
+fn within_the_tolerance_at_the_start_is_contact_at_once() {
+    let centers = [Vector::ZERO, Vector::Y, Vector::Z];
+    let body = |n: usize| {
+        let spheres = centers[..n].iter().map(|c| MedialSphere::new(*c, 0.25));
+        let (edges, faces) = match n {
+            2 => (vec![[0, 1]], vec![]),
+            3 => (vec![], vec![[0, 1, 2]]),
+            _ => (vec![], vec![]),
+        };
+        MedialMesh::new(spheres.collect(), edges, faces).expect("a medial mesh")
+    };
+    let options = ToiOptions::default();
+    let still = NonlinearRigidMotion::identity();
+    for (n, m) in [(1, 1), (1, 2), (1, 3), (2, 2), (2, 3), (3, 3)] {
+        for gap in [0.5, 2.0, 100.0].map(|k| k * options.tolerance) {
+            let mut moving = NonlinearRigidMotion::identity();
+            moving.start = Pose::translation(0.5 + gap, 0.0, 0.0);
+            moving.linvel = -Vector::X;
+            let toi = first_contact(&body(n), &still, &body(m), &moving, 1.0, &options);
+            // Two ulps of a coordinate of 0.5, in time at speed 1.
+            let close = 2.0 * 0.5 * Real::EPSILON;
+            let (earliest, latest) = match gap > options.tolerance {
+                true => (gap - options.tolerance - close, gap + close),
+                false => (0.0, 0.0),
+            };
+            assert_eq!(toi.status, ToiStatus::Contact, "{n} {m} {gap}: {toi:?}");
+            assert!(
+                earliest <= toi.upper && toi.upper <= latest,
+                "{n} {m} {gap}: {toi:?}"
+            );
+        }
+    }
+}

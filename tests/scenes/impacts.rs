@@ -388,3 +388,36 @@ fn thin_pillars_meet() {
         }
     }
 }
+
+/// A cuboid rests against a bar, then both are torn apart and thrown together: a muted pair that had
+/// contacts before. parry's workspace kept indices of the manifolds that muting had emptied, and the
+/// next request of the pair panicked.
+#[test]
+fn a_pair_that_had_contacts_is_muted_and_unmuted() {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let mut pipeline = attached(&mut world);
+    let bar = world
+        .insert(
+            RigidBodyBuilder::dynamic(),
+            ColliderBuilder::medial_mesh(ball_bar()),
+        )
+        .0;
+    let cuboid = RigidBodyBuilder::dynamic().translation(Vector::new(0.149, 0.0, 0.0));
+    let cuboid = world
+        .insert(cuboid, ColliderBuilder::cuboid(0.1, 0.1, 0.1))
+        .0;
+    let mut muted = 0;
+    // Touching; near, and fast towards each other; touching again.
+    // Each time moved too far for rapier to recycle its contacts.
+    for (x, z, speed) in [(0.149, 0.0, 0.0), (0.152, 0.05, -20.0), (0.149, 0.0, 0.0)] {
+        for (handle, at, v) in [(bar, [0.0; 2], 0.0), (cuboid, [x, z], speed)] {
+            let body = &mut world.bodies[handle];
+            body.set_position(Pose::translation(at[0], 0.0, at[1]), true);
+            body.set_linvel(Vector::new(v, 0.0, 0.0), true);
+            body.set_angvel(Vector::ZERO, true);
+        }
+        muted += pipeline.step(&mut world).muted;
+    }
+    assert!(muted > 0, "the pair was never muted");
+}

@@ -1,10 +1,20 @@
-//! Whole rapier scenes: what rests, what hangs, what must never pass.
+//! Whole rapier scenes: what rests, what hangs, what must never pass; saving, drawing, repeating.
 
 mod bodies;
+mod controls;
+mod determinism;
+#[cfg(feature = "debug-render")]
+mod drawing;
+mod endurance;
 mod fast_pairs;
 mod heaps;
 mod impacts;
 mod oracle;
 mod random;
 mod resting;
+#[allow(dead_code)]
+#[path = "../common/ccd/rng.rs"]
+mod rng;
+#[cfg(feature = "serde-serialize")]
+mod saving;
 mod walls;

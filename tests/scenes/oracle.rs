@@ -7,9 +7,12 @@ use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
 /// Spheres sampled on each cone.
-const PER_CONE: u32 = 6;
-/// Moments sampled in each step.
-const PER_STEP: u32 = 200;
+const PER_CONE: u32 = 10;
+/// Moments sampled in each step: at 240 m/s bodies come 4 cm nearer from one to the next.
+const PER_STEP: u32 = 100;
+/// Distance, in metres, at which each moment is divided further, and into how many: 2 mm.
+const NEAR: Real = 0.15;
+const FINER: u32 = 20;
 /// Steps of a case.
 pub const STEPS: usize = 10;
 
@@ -92,29 +95,37 @@ pub fn least_distance(solids: [&Solid; 2], flights: [&Flight; 2]) -> Real {
         Solid::Medial(mesh) => Solid::spheres(mesh),
         Solid::Cuboid(_) => vec![],
     };
+    let distance = |step: usize, s: Real| {
+        let [p, q] = [0, 1].map(|i: usize| between(&paths[i][step], &paths[i][step + 1], s));
+        if p.translation.distance(q.translation) > 3.0 {
+            return Real::MAX;
+        }
+        let pos21 = q.inv_mul(&p);
+        let to_other = |(center, radius): &(Vector, Real)| {
+            let c = pos21 * *center;
+            let nearest = match solids[1] {
+                Solid::Medial(_) => others
+                    .iter()
+                    .map(|(other, r)| c.distance(*other) - r)
+                    .fold(Real::MAX, Real::min),
+                Solid::Cuboid(half) => {
+                    let d = c.abs() - *half;
+                    d.max(Vector::ZERO).length() + d.max_element().min(0.0)
+                }
+            };
+            nearest - radius
+        };
+        own.iter().map(to_other).fold(Real::MAX, Real::min)
+    };
     let mut least = Real::MAX;
     for step in 0..STEPS {
         for k in 0..PER_STEP {
-            let s = k as Real / PER_STEP as Real;
-            let [p, q] = [0, 1].map(|i: usize| between(&paths[i][step], &paths[i][step + 1], s));
-            if p.translation.distance(q.translation) > 3.0 {
-                continue;
-            }
-            let pos21 = q.inv_mul(&p);
-            for (center, radius) in &own {
-                let c = pos21 * *center;
-                match solids[1] {
-                    Solid::Medial(_) => {
-                        for (other, r) in &others {
-                            least = least.min(c.distance(*other) - radius - r);
-                        }
-                    }
-                    Solid::Cuboid(half) => {
-                        let d = c.abs() - *half;
-                        let outside = d.max(Vector::ZERO).length();
-                        least = least.min(outside + d.max_element().min(0.0) - radius);
-                    }
-                }
+            let at = |fine: u32| (k as Real + fine as Real / FINER as Real) / PER_STEP as Real;
+            let coarse = distance(step, at(0));
+            least = least.min(coarse);
+            if coarse < NEAR {
+                let fine = (1..FINER).map(|f| distance(step, at(f)));
+                least = fine.fold(least, Real::min);
             }
         }
     }

@@ -1,0 +1,113 @@
+//! Where a ray or a point inside a medial mesh leaves it: out of the union, not out of one primitive.
+//!
+//! Every primitive is convex, so a ray is inside it on one stretch ([`crate::medial::chord`], closed
+//! form); the union is left at the end of the stretches that overlap the start, one after the other.
+
+use crate::math::lane::Vec3;
+use crate::math::{Real, Vector};
+use crate::medial::MedialMesh;
+use crate::medial::chord::ChordSolver;
+use crate::medial::exact::{self, Ball};
+use parry3d::bounding_volume::Aabb;
+use parry3d::query::{Ray, RayIntersection};
+use parry3d::shape::FeatureId;
+
+/// Where a ray that starts inside the mesh leaves it, with the normal pointing back inside as parry's
+/// does; `None` if it starts outside. The time is in units of the ray's direction.
+pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
+    if !holds(mesh, ray.origin) {
+        return None;
+    }
+    let length = f64::from(ray.dir.length());
+    let mut stretches = stretches(mesh, ray);
+    stretches.sort_by(|a, b| a.from.total_cmp(&b.from));
+    let mut end: Option<Stretch> = None;
+    for s in stretches {
+        if s.from > end.as_ref().map_or(0.0, |e| e.to) {
+            break;
+        }
+        if s.to > end.as_ref().map_or(0.0, |e| e.to) {
+            end = Some(s);
+        }
+    }
+    let Stretch { to, primitive, .. } = end?;
+    let time = (to / length) as Real;
+    let part = mesh.primitive(primitive as usize);
+    let at = ray.point_at(time);
+    let center = part.interpolate(part.signed_distance(at).weights).center;
+    let normal = (center - at).try_normalize().unwrap_or(-ray.dir);
+    Some(RayIntersection::new(time, normal, FeatureId::Face(0)).with_subshape(primitive))
+}
+
+/// A point of the mesh's surface near a point inside, and its primitive: straight out of the primitive
+/// whose surface is nearest, as far as the union reaches. `None` for a point outside.
+pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> {
+    let inside = |i: &u32| mesh.primitive(*i as usize).signed_distance(point).distance <= 0.0;
+    let ways = holding(mesh, point).filter(inside).filter_map(|i| {
+        let part = mesh.primitive(i as usize);
+        let s = part.interpolate(part.signed_distance(point).weights);
+        let out = (point - s.center).try_normalize();
+        let ray = Ray::new(point, out.unwrap_or(Vector::Y));
+        let hit = exit(mesh, &ray)?;
+        Some((
+            hit.time_of_impact,
+            ray.point_at(hit.time_of_impact),
+            hit.subshape,
+        ))
+    });
+    let nearest = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((nearest.1, nearest.2))
+}
+
+fn holds(mesh: &MedialMesh, point: Vector) -> bool {
+    holding(mesh, point).any(|i| mesh.primitive(i as usize).signed_distance(point).distance <= 0.0)
+}
+
+/// Primitives whose boxes hold a point.
+fn holding(mesh: &MedialMesh, point: Vector) -> impl Iterator<Item = u32> + '_ {
+    let at = Aabb::new(point, point);
+    mesh.bvh()
+        .intersect_aabb(&at)
+        .collect::<Vec<_>>()
+        .into_iter()
+}
+
+/// Where the ray is inside a primitive: lengths from its origin.
+struct Stretch {
+    from: f64,
+    to: f64,
+    primitive: u32,
+}
+
+fn stretches(mesh: &MedialMesh, ray: &Ray) -> Vec<Stretch> {
+    let Some(along) = ray.dir.try_normalize() else {
+        return Vec::new();
+    };
+    let z = Vec3::<f64>::from_vector(along);
+    let z = z * (1.0 / z.length());
+    let across = Vec3::<f64>::from_vector(along.any_orthonormal_vector());
+    let x = across - z * across.dot(z);
+    let x = x * (1.0 / x.length());
+    let y = z.cross(x);
+    let origin = Vec3::from_vector(ray.origin);
+    let seen = |ball: Ball| {
+        let c = ball.center - origin;
+        Ball {
+            center: Vec3::new(c.dot(x), c.dot(y), c.dot(z)),
+            ..ball
+        }
+    };
+    let met = |node: &parry3d::partitioning::BvhNode| node.cast_ray(ray, Real::MAX) < Real::MAX;
+    mesh.bvh()
+        .leaves(met)
+        .filter_map(|primitive| {
+            let balls = exact::balls(&mesh.primitive(primitive as usize)).map(seen);
+            let [from, to] = ChordSolver::new(balls).chord(0.0, 0.0)?;
+            Some(Stretch {
+                from,
+                to,
+                primitive,
+            })
+        })
+        .collect()
+}

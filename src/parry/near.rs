@@ -1,0 +1,193 @@
+//! Distance of a medial mesh to one of parry's shapes at fixed poses, and the contact that attains it.
+//!
+//! The other shape is its surface as swept spheres ([`super::foreign`]), so that the closed forms of two
+//! medial meshes serve; cylinders and cones have their own ([`super::turned`]); a centre inside a closed
+//! body counts as deep as its way out is long ([`super::inside`]). parry's own answers go through GJK,
+//! off by 1e-3 of the distance at times, and are missing for height fields and voxels; its contacts of
+//! composites with half-spaces take the wrong frame.
+
+use super::cast::Unsweepable;
+use super::foreign::{self, Parts};
+use super::inside;
+use super::turned::{NearBall, Place, Turned, unit};
+use crate::math::lane::Vec3;
+use crate::math::{Pose, Real, Vector};
+use crate::medial::tree::Below;
+use crate::medial::{MedialMesh, MedialSphere};
+use crate::pair::first_contact::Counts;
+use crate::pair::{SpherePair, Volumes, nearest_spheres};
+use parry3d::bounding_volume::BoundingVolume;
+use parry3d::shape::Shape;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Slack on the first bound of the distance (a ratio): parry's projections are off by less.
+const SLACK: Real = 1.01;
+
+/// The nearest sphere pair of `mesh` and `other` at relative pose `pos12` (other in mesh), if it is
+/// within `max_distance`; the second primitive index is the other's subshape. For a mesh with a centre
+/// inside the other the distance is minus the length of the way out.
+///
+/// Fails for a shape that is neither medial nor built in.
+pub fn nearest(
+    mesh: &MedialMesh,
+    other: &dyn Shape,
+    pos12: &Pose,
+    max_distance: Real,
+) -> Result<(Option<SpherePair>, Counts), Unsweepable> {
+    if let Some(second) = other.as_shape::<MedialMesh>() {
+        return Ok(nearest_spheres(mesh, second, pos12, max_distance));
+    }
+    if !pos12.is_finite() || max_distance.is_nan() {
+        return Ok((None, Counts::default()));
+    }
+    let pos21 = pos12.inverse();
+    let region =
+        mesh.aabb()
+            .transform_by(&pos21)
+            .loosened(reach(mesh, other, &pos21, max_distance));
+    let mut parts = Parts::default();
+    if !foreign::add_surface(&mut parts, other, &Pose::IDENTITY, &region) {
+        return Err(Unsweepable);
+    }
+    let (mut best, mut counts) = nearest_spheres(mesh, &parts.soup, pos12, max_distance);
+    for pair in best.iter_mut() {
+        pair.primitives[1] = parts.soup_subshape(pair.primitives[1]);
+    }
+    for (index, body) in parts.turned.iter().enumerate() {
+        let limit = best.map_or(max_distance, |b| b.distance);
+        let found = nearest_turned(mesh, body, pos12, limit, &mut counts);
+        if let Some(mut found) = found {
+            found.primitives[1] = parts.turned_subshape(index as u32);
+            best = Some(found);
+        }
+    }
+    if let Some(inside) = way_out(mesh, other, pos12)
+        && best.is_none_or(|b| inside.distance < b.distance)
+    {
+        best = Some(inside);
+    }
+    Ok((best, counts))
+}
+
+/// How far from the mesh the other's surface matters: some sphere's distance bounds that of the mesh.
+fn reach(mesh: &MedialMesh, other: &dyn Shape, pos21: &Pose, max_distance: Real) -> Real {
+    let bounds = mesh.spheres().first().map(|s| {
+        let center = pos21 * s.center;
+        let distance = other.distance_to_local_point(center, true) - s.radius;
+        let size = center.abs().max_element() + s.radius;
+        SLACK * distance.max(0.0) + 64.0 * Real::EPSILON * size
+    });
+    let bound = bounds.filter(|b| b.is_finite()).unwrap_or(Real::MAX);
+    // Infinite boxes do not survive transformations.
+    bound.min(max_distance).clamp(0.0, 1.0e18)
+}
+
+/// The overlap with a closed shape that holds a centre.
+fn way_out(mesh: &MedialMesh, other: &dyn Shape, pos12: &Pose) -> Option<SpherePair> {
+    let pos21 = pos12.inverse();
+    let placed = |s: &MedialSphere| MedialSphere::new(pos21 * s.center, s.radius);
+    let placed: Vec<_> = mesh.spheres().iter().map(placed).collect();
+    let way = inside::way_out(other, &placed)?;
+    let of_sphere = |p: &crate::medial::mesh::Simplex| p.vertices.contains(&(way.sphere as u32));
+    let primitive = mesh.simplices().iter().position(of_sphere).unwrap_or(0);
+    let MedialSphere { center, radius } = placed[way.sphere];
+    Some(SpherePair {
+        primitives: [primitive as u32, 0],
+        feature: 0,
+        distance: -way.depth,
+        normal: pos12.rotation * -way.direction,
+        points: [
+            pos12 * (center - way.direction * radius),
+            center + way.direction * way.to_surface,
+        ],
+    })
+}
+
+/// The nearest sphere to a cylinder or cone, if it is nearer than `limit`: best-first over the mesh's tree.
+fn nearest_turned(
+    mesh: &MedialMesh,
+    body: &Turned,
+    pos12: &Pose,
+    limit: Real,
+    counts: &mut Counts,
+) -> Option<SpherePair> {
+    let pos21 = pos12.inverse();
+    let place = Place {
+        origin: Vec3::from_vector(body.center),
+        axis: unit(Vec3::from_vector(body.axis)),
+    };
+    let border = f64::from(body.border);
+    let ball = |(center, radius): (Vector, Real)| {
+        let center = Vec3::from_vector(pos21 * center) - place.origin;
+        (center, f64::from(radius) + border)
+    };
+    let mut best: Option<(NearBall, u32)> = None;
+    let mut limit = f64::from(limit);
+    let mut heap = BinaryHeap::new();
+    for root in 0..mesh.roots() {
+        heap.push(Reverse(Entry(f64::NEG_INFINITY, root)));
+    }
+    while let Some(Reverse(Entry(bound, node))) = heap.pop() {
+        if bound > limit {
+            break;
+        }
+        counts.nodes += 1;
+        match mesh.below(node) {
+            Below::Nodes(i, j) => heap.extend([i, j].map(|n| {
+                let (center, radius) = mesh.bound(n);
+                let near = body.nearest(&place, &[ball((center, radius))]);
+                let rounding = 8.0 * f64::from(Real::EPSILON) * f64::from(center.length() + radius);
+                Reverse(Entry(out_of(body, &place, &near).1 - rounding, n))
+            })),
+            Below::Primitive(i) => {
+                counts.tests += 1;
+                let (spheres, share) = Volumes::primitive(mesh, i);
+                let balls = spheres.map(|s| ball((s.center, s.radius)));
+                let near = body.nearest(&place, &balls[..share.spheres.clamp(1, 3)]);
+                let (_, distance) = out_of(body, &place, &near);
+                if distance <= limit {
+                    limit = distance;
+                    best = Some((near, i));
+                }
+            }
+        }
+    }
+    let (near, primitive) = best?;
+    let (out, distance) = out_of(body, &place, &near);
+    let (center, radius) = near.ball;
+    let shared = |p: Vec3<f64>| (p + place.origin).to_vector();
+    let first = shared(center - out * (radius - border));
+    let second = shared(center - out * (radius + distance - border));
+    Some(SpherePair {
+        primitives: [primitive, 0],
+        feature: 0,
+        distance: distance as Real,
+        normal: pos12.rotation * -out.to_vector(),
+        points: [pos12 * first, second],
+    })
+}
+
+/// Unit direction from the body to a sphere, and the signed distance; of a centre inside, the way out.
+fn out_of(body: &Turned, place: &Place, near: &NearBall) -> (Vec3<f64>, f64) {
+    if near.apart <= 0.0 {
+        let (out, way) = body.way_out(place, near.ball.0);
+        return (out, -way - near.ball.1);
+    }
+    (unit(near.direction), near.distance())
+}
+
+/// A node by a lower bound of its distance.
+#[derive(PartialEq)]
+struct Entry(f64, u32);
+impl Eq for Entry {}
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0).then(self.1.cmp(&other.1))
+    }
+}

@@ -1,0 +1,220 @@
+//! Worlds with medial colliders, saved and loaded: rapier refuses to write custom shapes. Feature
+//! `serde-serialize`.
+//!
+//! A saved world is rapier's own with a ball in the place of every medial mesh, and beside it each mesh
+//! once, however many colliders share its data. Loading puts the meshes back and clears the marks that
+//! this leaves on the colliders, so that the world continues bit by bit as if it had not been saved:
+//! broad phase, contacts and impulses are rapier's own records.
+
+use crate::medial::MedialMesh;
+use crate::medial::asset::checksum;
+use crate::rapier::MedialSharedShape;
+use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, NarrowPhase, SharedShape};
+use rapier3d::pipeline::{CollisionPipeline, PhysicsWorld};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// First bytes of a saved world, as of a baked mesh.
+pub const MAGIC: [u8; 8] = *b"\x89worlds\n";
+
+/// Version of the bytes that is written and read: this crate's, and rapier 0.36's layout.
+pub const VERSION: u32 = 1;
+
+/// Bytes before the content: magic, version, checksum of the content.
+const HEADER: usize = 20;
+
+/// Why a world is not saved or not loaded.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SavedWorldError {
+    /// Colliders were removed since the last step, and the step that forgets them is not saved with them.
+    #[error("{0} colliders were removed since the last step: step once, then save")]
+    Removed(usize),
+    /// A shape that is neither medial nor rapier's own, or a number that the format cannot hold.
+    #[error("the world cannot be written: {0}")]
+    Unwritable(#[source] postcard::Error),
+    /// The bytes do not start like a saved world.
+    #[error("not a saved world: it starts with {start:?}")]
+    NotAWorld {
+        /// The first bytes, 8 at most.
+        start: Vec<u8>,
+    },
+    /// Another version of this crate wrote it.
+    #[error("saved by version {found}, this reads version {reads}")]
+    Version {
+        /// Version of the bytes.
+        found: u32,
+        /// [`VERSION`].
+        reads: u32,
+    },
+    /// Bytes were changed or are missing.
+    #[error("damaged: the checksum is {computed:#x}, stored is {stored:#x}")]
+    Damaged {
+        /// Of the bytes that are there.
+        computed: u64,
+        /// That was stored when it was saved.
+        stored: u64,
+    },
+    /// The content is no world.
+    #[error("the content is no world: {0}")]
+    Unreadable(#[source] postcard::Error),
+    /// A collider's mesh is not there, or the collider is not.
+    #[error("collider {collider:?} has mesh {mesh}, of {meshes}: one of them is missing")]
+    Missing {
+        /// The collider.
+        collider: ColliderHandle,
+        /// Index of its mesh.
+        mesh: u32,
+        /// How many meshes there are.
+        meshes: usize,
+    },
+}
+
+/// A world in the form that serde writes, in any format that holds rapier's own worlds.
+/// [`save_world`] and [`load_world`] are shorter, and see damage.
+#[derive(Serialize, Deserialize)]
+pub struct SavedWorld {
+    meshes: Vec<MedialMesh>,
+    /// Medial colliders, and which mesh each has.
+    shapes: Vec<(ColliderHandle, u32)>,
+    /// Whether colliders were changed since the last step; their marks say which.
+    changed: bool,
+    world: PhysicsWorld,
+}
+
+impl SavedWorld {
+    /// Takes a copy of the world. Save between steps.
+    ///
+    /// Fails if colliders were removed since the last step.
+    pub fn new(world: &PhysicsWorld) -> Result<Self, SavedWorldError> {
+        let mut colliders = world.colliders.clone();
+        let removed = colliders.take_removed().len();
+        if removed > 0 {
+            return Err(SavedWorldError::Removed(removed));
+        }
+        // What is left in this list are then the colliders that get a ball, and no others.
+        let changed = !colliders.take_modified().is_empty();
+        let mut meshes: Vec<MedialMesh> = Vec::new();
+        let mut known: HashMap<usize, u32> = HashMap::new();
+        let mut shapes = Vec::new();
+        for (handle, collider) in world.colliders.iter() {
+            let Some(mesh) = collider.shape().as_shape::<MedialMesh>() else {
+                continue;
+            };
+            // Meshes that share data share its address, as long as one of them lives.
+            let index = *known
+                .entry(mesh.spheres().as_ptr().addr())
+                .or_insert_with(|| {
+                    meshes.push(mesh.clone());
+                    meshes.len() as u32 - 1
+                });
+            shapes.push((handle, index));
+            if let Some(collider) = colliders.get_mut(handle) {
+                collider.set_shape(SharedShape::ball(1.0));
+            }
+        }
+        let world = PhysicsWorld {
+            gravity: world.gravity,
+            integration_parameters: world.integration_parameters,
+            islands: world.islands.clone(),
+            broad_phase: world.broad_phase.clone(),
+            narrow_phase: world.narrow_phase.clone(),
+            bodies: world.bodies.clone(),
+            colliders,
+            impulse_joints: world.impulse_joints.clone(),
+            multibody_joints: world.multibody_joints.clone(),
+            soft_bodies: world.soft_bodies.clone(),
+            ..PhysicsWorld::default()
+        };
+        Ok(Self {
+            meshes,
+            shapes,
+            changed,
+            world,
+        })
+    }
+
+    /// The world. Attach a pipeline to it ([`crate::MedialPipeline::attach`]) before it steps.
+    ///
+    /// Fails if a collider or its mesh is missing.
+    pub fn into_world(self) -> Result<PhysicsWorld, SavedWorldError> {
+        let Self {
+            meshes,
+            shapes,
+            changed,
+            mut world,
+        } = self;
+        for (handle, index) in shapes {
+            let both = (world.colliders.get_mut(handle), meshes.get(index as usize));
+            let (Some(collider), Some(mesh)) = both else {
+                return Err(SavedWorldError::Missing {
+                    collider: handle,
+                    mesh: index,
+                    meshes: meshes.len(),
+                });
+            };
+            collider.set_shape(SharedShape::medial_mesh(mesh.clone()));
+        }
+        forget_changes(&mut world);
+        if changed {
+            // Lists all colliders as possibly changed; each one's own marks say whether it is.
+            world.colliders.iter_mut().for_each(drop);
+        }
+        Ok(world)
+    }
+}
+
+/// Clears the marks of the listed colliders. Only a step does that: one of collision detection alone,
+/// with copies of all that it changes but the colliders.
+fn forget_changes(world: &mut PhysicsWorld) {
+    CollisionPipeline::new().step(
+        0.0,
+        &mut world.islands.clone(),
+        &mut BroadPhaseBvh::default(),
+        &mut NarrowPhase::new(),
+        &mut world.bodies.clone(),
+        &mut world.colliders,
+        &(),
+        &(),
+    );
+}
+
+/// The world as bytes: [`SavedWorld`] with a checksum. Save between steps.
+///
+/// Fails if colliders were removed since the last step, and for custom shapes other than medial meshes.
+pub fn save_world(world: &PhysicsWorld) -> Result<Vec<u8>, SavedWorldError> {
+    let saved = SavedWorld::new(world)?;
+    let content = postcard::to_stdvec(&saved).map_err(SavedWorldError::Unwritable)?;
+    let mut bytes = Vec::with_capacity(HEADER + content.len());
+    bytes.extend(MAGIC);
+    bytes.extend(VERSION.to_le_bytes());
+    bytes.extend(checksum(&content).to_le_bytes());
+    bytes.extend(content);
+    Ok(bytes)
+}
+
+/// The world of [`save_world`]'s bytes, every mesh in memory once. Attach a pipeline to it
+/// ([`crate::MedialPipeline::attach`]) before it steps.
+///
+/// Fails on bytes that are something else, of another version or damaged.
+pub fn load_world(bytes: &[u8]) -> Result<PhysicsWorld, SavedWorldError> {
+    let not_a_world = || SavedWorldError::NotAWorld {
+        start: bytes.iter().take(MAGIC.len()).copied().collect(),
+    };
+    let rest = bytes.strip_prefix(&MAGIC).ok_or_else(not_a_world)?;
+    let (version, rest) = rest.split_first_chunk::<4>().ok_or_else(not_a_world)?;
+    let found = u32::from_le_bytes(*version);
+    if found != VERSION {
+        return Err(SavedWorldError::Version {
+            found,
+            reads: VERSION,
+        });
+    }
+    let (stored, content) = rest.split_first_chunk::<8>().ok_or_else(not_a_world)?;
+    let (computed, stored) = (checksum(content), u64::from_le_bytes(*stored));
+    if computed != stored {
+        return Err(SavedWorldError::Damaged { computed, stored });
+    }
+    let saved: SavedWorld = postcard::from_bytes(content).map_err(SavedWorldError::Unreadable)?;
+    saved.into_world()
+}

@@ -1,0 +1,134 @@
+//! Rays and point projections of the mesh alone, against dense samples of its solid.
+
+use crate::oracle::{CUTS, FINE_CUTS, ROUNDING, Samples};
+use crate::rng::Rng;
+use crate::rotating::vector;
+use crate::shapes::ring;
+use parry3d::math::Real;
+use parry3d::query::{PointQuery, Ray, RayCast};
+use rapier3d_medial::MedialSphere;
+use rapier3d_medial::medial::MedialPrimitive;
+
+const CASES: usize = 200;
+
+/// Steps along a ray.
+const MOMENTS: usize = 200;
+
+/// Length of a ray, in metres.
+const LENGTH: Real = 5.0;
+
+/// A sphere amid a primitive.
+fn amid(primitive: &MedialPrimitive) -> MedialSphere {
+    primitive.interpolate(match primitive.spheres().len() {
+        1 => [1.0, 0.0, 0.0],
+        2 => [0.6, 0.4, 0.0],
+        _ => [0.4, 0.4, 0.2],
+    })
+}
+
+#[test]
+fn rays_enter_and_leave_the_solid_where_its_surface_is() {
+    let mesh = ring();
+    let fine = Samples::new(&mesh, FINE_CUTS);
+    let coarse = Samples::new(&mesh, CUTS);
+    let mut rng = Rng::new(31);
+    let (mut hits, mut exits) = (0, 0);
+    let mut failures = Vec::new();
+    for case in 0..CASES {
+        // Every other ray starts inside.
+        let s = mesh.primitive(rng.below(mesh.primitive_count()));
+        let inner = amid(&s);
+        let origin = match case % 2 {
+            0 => vector(rng.direction() * 2.0),
+            _ => inner.center + vector(rng.in_ball()) * (0.5 * inner.radius),
+        };
+        let dir = (vector(rng.in_ball()) - origin).normalize();
+        let ray = Ray::new(origin, dir);
+        let inside = |t: Real| fine.distance_to_point(ray.point_at(t));
+        let starts_inside = inside(0.0) < -ROUNDING;
+        for solid in [true, false] {
+            let hit = mesh.cast_local_ray_and_get_normal(&ray, LENGTH, solid);
+            let mut wrong = |what: String| failures.push(format!("{case} {solid}: {what}"));
+            if starts_inside && solid {
+                if hit.is_none_or(|h| h.time_of_impact != 0.0) {
+                    wrong(format!("starts inside, {hit:?}"));
+                }
+                continue;
+            }
+            // Until the hit the ray is on one side.
+            let until = hit.map_or(LENGTH, |h| h.time_of_impact);
+            for k in 1..MOMENTS {
+                let t = until * k as Real / MOMENTS as Real;
+                let d = coarse.distance_to_point(ray.point_at(t));
+                let crossed = if starts_inside {
+                    d > coarse.error + ROUNDING
+                } else {
+                    d < -ROUNDING
+                };
+                if crossed {
+                    wrong(format!("{d} at {t}, before {hit:?}"));
+                    break;
+                }
+            }
+            let Some(hit) = hit else {
+                continue;
+            };
+            hits += 1;
+            exits += usize::from(starts_inside);
+            let d = inside(hit.time_of_impact);
+            if !(-ROUNDING..=fine.error + ROUNDING).contains(&d) {
+                wrong(format!("{d} off at {hit:?}"));
+            }
+            // The normal by differences of the sampled distance, off creases.
+            let at = ray.point_at(hit.time_of_impact);
+            let outward = at + hit.normal * (0.02 * if starts_inside { -1.0 } else { 1.0 });
+            if (hit.normal.length() - 1.0).abs() > 1.0e-4 || fine.distance_to_point(outward) < 0.0 {
+                wrong(format!("normal of {hit:?}"));
+            }
+            if mesh.cast_local_ray(&ray, LENGTH, solid) != Some(hit.time_of_impact) {
+                wrong("two answers".into());
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    assert!(hits > CASES / 2 && exits > CASES / 4, "{hits} {exits}");
+}
+
+#[test]
+fn points_are_projected_on_the_surface() {
+    let mesh = ring();
+    let fine = Samples::new(&mesh, FINE_CUTS);
+    let mut rng = Rng::new(32);
+    let mut within = 0;
+    let mut failures = Vec::new();
+    for case in 0..CASES {
+        let s = mesh.primitive(rng.below(mesh.primitive_count()));
+        let inner = amid(&s);
+        let point = match case % 2 {
+            0 => vector(rng.in_ball() * 2.0),
+            _ => inner.center + vector(rng.in_ball()) * inner.radius,
+        };
+        let d = fine.distance_to_point(point);
+        let inside = d < -ROUNDING;
+        within += usize::from(inside);
+        for solid in [true, false] {
+            let p = mesh.project_local_point(point, solid);
+            let on = fine.distance_to_point(p.point);
+            let far = (p.point - point).length();
+            let off = fine.error + ROUNDING;
+            let right = match (inside, solid) {
+                (true, true) => p.is_inside && p.point == point,
+                // The nearest point of the surface is no nearer than the depth.
+                (true, false) => p.is_inside && on.abs() <= off && far >= -d - off,
+                (false, _) => {
+                    (d < off || !p.is_inside) && on.abs() <= off && (far - d).abs() <= off
+                }
+            };
+            if !right {
+                failures.push(format!("{case} {solid}: {d}, {on} off, {far} away"));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    assert!(within > CASES / 4, "{within}");
+}

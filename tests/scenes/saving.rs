@@ -1,0 +1,155 @@
+//! Saved and loaded worlds go on bit by bit as if nothing had happened.
+
+use crate::bodies::*;
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+use rapier3d_medial::rapier::{SavedWorld, SavedWorldError, load_world, save_world};
+
+const BEFORE: usize = 70;
+const AFTER: usize = 500;
+
+/// Rings on a ground, linked rings, balls, a jointed pair; still moving at the save.
+fn mixed_world() -> (PhysicsWorld, MedialMesh) {
+    let mut world = world_with_ground();
+    let mesh = ring(27, MAJOR, MINOR);
+    for i in 0..6 {
+        let at = Vector::new(0.1 * i as Real, 0.4 + 0.5 * i as Real, -0.07 * i as Real);
+        let turn = Vector::new(0.5 * i as Real, 0.2, 0.9 * (i % 2) as Real);
+        let body = RigidBodyBuilder::dynamic().pose(Pose::new(at, turn));
+        world.insert(
+            body,
+            ColliderBuilder::medial_mesh(mesh.clone()).density(1000.0),
+        );
+        let side = Vector::new(1.5, 0.5 + 0.5 * i as Real, 0.2 * i as Real);
+        let body = RigidBodyBuilder::dynamic().translation(side);
+        world.insert(body, ColliderBuilder::ball(0.2).density(500.0));
+    }
+    let anchor =
+        world.insert_body(RigidBodyBuilder::fixed().translation(Vector::new(-3.0, 4.0, 0.0)));
+    let hung = RigidBodyBuilder::dynamic().translation(Vector::new(-2.0, 4.0, 0.0));
+    let hung = world
+        .insert(hung, ColliderBuilder::medial_mesh(ring(12, 0.3, 0.05)))
+        .0;
+    let joint = SphericalJointBuilder::new().local_anchor2(Vector::new(-1.0, 0.0, 0.0));
+    world.insert_impulse_joint(anchor, hung, joint);
+    (world, mesh)
+}
+
+fn bits(world: &PhysicsWorld) -> Vec<u32> {
+    let mut all = Vec::new();
+    for (handle, b) in world.bodies.iter() {
+        let (t, r, v, w) = (b.translation(), b.rotation(), b.linvel(), b.angvel());
+        all.push(handle.into_raw_parts().0);
+        all.extend([t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(Real::to_bits));
+        all.extend([v.x, v.y, v.z, w.x, w.y, w.z].map(Real::to_bits));
+        all.push(u32::from(b.is_sleeping()));
+    }
+    all
+}
+
+/// Steps both worlds; the first step at which they differ.
+fn first_difference(
+    [a, b]: [&mut PhysicsWorld; 2],
+    [pipeline_a, pipeline_b]: [&mut MedialPipeline; 2],
+) -> Option<usize> {
+    (0..AFTER).find(|_| {
+        pipeline_a.step(a);
+        pipeline_b.step(b);
+        bits(a) != bits(b)
+    })
+}
+
+#[test]
+fn a_loaded_world_goes_on_bit_by_bit() {
+    let (mut world, _) = mixed_world();
+    let mut pipeline = attached(&mut world);
+    for _ in 0..BEFORE {
+        pipeline.step(&mut world);
+    }
+    assert!(world.bodies.iter().any(|(_, b)| b.linvel().length() > 0.1));
+    let bytes = save_world(&world).expect("a world that can be saved");
+    let mut loaded = load_world(&bytes).expect("what was saved");
+    assert_eq!(bits(&world), bits(&loaded));
+    let mut other = MedialPipeline::new(MedialOptions::default());
+    other.attach(&mut loaded);
+    let worlds = [&mut world, &mut loaded];
+    assert_eq!(first_difference(worlds, [&mut pipeline, &mut other]), None);
+    assert_eq!(save_world(&world).ok(), save_world(&loaded).ok());
+}
+
+#[test]
+fn other_formats_hold_what_they_hold_of_rapiers_own_worlds() {
+    let (mut world, _) = mixed_world();
+    let mut pipeline = attached(&mut world);
+    for _ in 0..BEFORE {
+        pipeline.step(&mut world);
+    }
+    let saved = SavedWorld::new(&world).expect("a world that can be saved");
+    let bytes = bincode::serialize(&saved).expect("bincode writes it");
+    let loaded: SavedWorld = bincode::deserialize(&bytes).expect("bincode reads it");
+    let mut loaded = loaded.into_world().expect("all meshes");
+    let mut other = attached(&mut loaded);
+    let worlds = [&mut world, &mut loaded];
+    assert_eq!(first_difference(worlds, [&mut pipeline, &mut other]), None);
+}
+
+#[test]
+fn a_mesh_is_written_once_and_shared_again() {
+    let (mut world, mesh) = mixed_world();
+    let one = save_world(&world).expect("a world").len();
+    for _ in 0..4 {
+        let collider = ColliderBuilder::medial_mesh(mesh.clone());
+        world.insert(RigidBodyBuilder::dynamic(), collider);
+    }
+    let bytes = save_world(&world).expect("a world");
+    let per_collider = (bytes.len() - one) / 4;
+    let of_mesh = mesh.to_bytes().len();
+    assert!(
+        of_mesh > 2 * per_collider,
+        "{per_collider} of {of_mesh} bytes each"
+    );
+    let loaded = load_world(&bytes).expect("what was saved");
+    let meshes: Vec<&MedialMesh> = loaded
+        .colliders
+        .iter()
+        .filter_map(|(_, c)| c.shape().as_shape())
+        .filter(|m: &&MedialMesh| m.spheres().len() == 27)
+        .collect();
+    assert_eq!(meshes.len(), 10);
+    assert!(meshes.iter().all(|m| m.shares_data(meshes[0])));
+}
+
+#[test]
+fn a_world_saved_before_its_first_step_falls_the_same_way() {
+    let (mut world, _) = mixed_world();
+    let mut loaded = load_world(&save_world(&world).expect("a world")).expect("what was saved");
+    let mut pipeline = attached(&mut world);
+    let mut other = attached(&mut loaded);
+    let worlds = [&mut world, &mut loaded];
+    assert_eq!(first_difference(worlds, [&mut pipeline, &mut other]), None);
+}
+
+#[test]
+fn damage_is_refused_and_removals_wait_for_a_step() {
+    let (mut world, _) = mixed_world();
+    let bytes = save_world(&world).expect("a world");
+    for at in (0..bytes.len()).step_by(bytes.len() / 200) {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0x10;
+        assert!(load_world(&damaged).is_err(), "byte {at}");
+        assert!(load_world(&bytes[..at]).is_err(), "cut at {at}");
+    }
+    let is = |e: Option<SavedWorldError>, what: &str| {
+        let text = e.map_or(String::new(), |e| e.to_string());
+        assert!(text.contains(what), "{text}");
+    };
+    is(load_world(b"nothing").err(), "not a saved world");
+    let mut newer = bytes.clone();
+    newer[8] = 9;
+    is(load_world(&newer).err(), "version 9");
+    let first = world.colliders.iter().next().expect("a collider").0;
+    world.remove_collider(first);
+    is(save_world(&world).err(), "1 colliders were removed");
+    world.step();
+    assert!(save_world(&world).is_ok());
+}
