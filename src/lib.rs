@@ -71,7 +71,8 @@ pub use rapier::{
 pub mod prelude {
     pub use crate::{
         BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder, MedialMesh,
-        MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, Progress, Quality, StepReport,
+        MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, Progress, Quality,
+        StepReport,
     };
 }
 

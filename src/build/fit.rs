@@ -71,7 +71,11 @@ impl Collapsed {
         if start == most {
             simplifier.reduce_to(most, watch)?;
             let plain = simplifier.draft();
-            return Ok(Self { fine, start: plain.clone(), plain });
+            return Ok(Self {
+                fine,
+                start: plain.clone(),
+                plain,
+            });
         }
         let mut plain = None;
         if simplifier.primitives() > most {
@@ -121,7 +125,10 @@ pub fn best(
     let mut best = balanced;
     let (share, rounds) = if most <= SMALL { (0.2, 6) } else { (0.1, 2) };
     if most <= SMALL {
-        better(&mut best, grown(collapsed.start.clone(), target, most, watch)?);
+        better(
+            &mut best,
+            grown(collapsed.start.clone(), target, most, watch)?,
+        );
     }
     swap(best, target, most, share, rounds, watch)
 }

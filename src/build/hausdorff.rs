@@ -24,13 +24,13 @@
 
 use super::bounds::{Point, direction};
 use super::draft::Draft;
+use super::options::{Hausdorff, Progress};
 use super::samples::vertex_samples;
 use super::solid::{Cell, Solid};
 use super::subdivide;
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
-use super::options::{Hausdorff, Progress};
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;

@@ -48,7 +48,11 @@ pub fn insert(
     let found = target.residuals(draft, watch)?;
     let size = |i: usize| -> f64 {
         let residual = found.rows[i].residual;
-        if i < found.surface_rows { residual.abs() } else { -residual }
+        if i < found.surface_rows {
+            residual.abs()
+        } else {
+            -residual
+        }
     };
     let mut order: Vec<usize> = (0..found.rows.len())
         .filter(|&i| size(i) > NEGLIGIBLE)
@@ -127,9 +131,7 @@ struct Inserter<'a> {
 
 impl Inserter<'_> {
     fn is_new_place(&self, row: &Row, size: f64) -> bool {
-        let near = |(p, error): &(Point, f64)| {
-            (*p - row.point).length() < 3.0 * error.max(size)
-        };
+        let near = |(p, error): &(Point, f64)| (*p - row.point).length() < 3.0 * error.max(size);
         !self.served[row.primitive as usize] && !self.places.iter().any(near)
     }
 
@@ -154,7 +156,9 @@ impl Inserter<'_> {
                     _ => self.split_slab(corners, ball),
                 };
                 if done {
-                    corners.iter().for_each(|&v| self.touched[v as usize] = true);
+                    corners
+                        .iter()
+                        .for_each(|&v| self.touched[v as usize] = true);
                 }
                 done
             }
@@ -165,9 +169,8 @@ impl Inserter<'_> {
     /// mesh there, else the largest in the surface about the primitive's own.
     fn splitting_ball(&self, row: &Row, touching: Option<Ball>) -> Option<Ball> {
         let own = Ball::interpolate(self.draft.balls_of(row.corners), row.weights);
-        let near = |ball: &Ball| {
-            (ball.center - own.center).length() < 1.5 * own.radius.max(ball.radius)
-        };
+        let near =
+            |ball: &Ball| (ball.center - own.center).length() < 1.5 * own.radius.max(ball.radius);
         touching.filter(near).or_else(|| {
             let signed = self.tree.signed_distance(own.center, own.radius);
             (signed < 0.0).then(|| Ball {
@@ -192,7 +195,10 @@ impl Inserter<'_> {
             ends.truncate(ENDS);
         }
         let cost = |&(gap, v): &(f64, u32)| {
-            (self.bulge(&ball, &self.draft.balls[v as usize]) + 0.1 * gap.max(0.0), v)
+            (
+                self.bulge(&ball, &self.draft.balls[v as usize]) + 0.1 * gap.max(0.0),
+                v,
+            )
         };
         let best = ends.iter().map(cost);
         let best = best.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
@@ -213,7 +219,10 @@ impl Inserter<'_> {
     fn bulge(&self, a: &Ball, b: &Ball) -> f64 {
         let at = |t: f64| {
             let ball = Ball::interpolate([*a, *b, *b], [1.0 - t, t, 0.0]);
-            ball.radius + self.tree.signed_distance(ball.center, ball.radius.max(GUESS))
+            ball.radius
+                + self
+                    .tree
+                    .signed_distance(ball.center, ball.radius.max(GUESS))
         };
         [0.25, 0.5, 0.75].map(at).into_iter().fold(0.0, f64::max)
     }
@@ -249,7 +258,9 @@ impl Inserter<'_> {
         for &k in &faces {
             let face = self.draft.faces[k];
             self.draft.faces[k] = face.map(|w| if w == u { new } else { w });
-            self.draft.faces.push(face.map(|w| if w == v { new } else { w }));
+            self.draft
+                .faces
+                .push(face.map(|w| if w == v { new } else { w }));
         }
         self.draft.edges.retain(|e| *e != [u, v] && *e != [v, u]);
         self.left -= faces.len();

@@ -99,7 +99,11 @@ pub fn reduce_measured(
             continue;
         };
         watch.at((start - simplifier.primitives()) as f64 / (start - target) as f64)?;
-        let Candidate { cost, edge, versions } = candidate;
+        let Candidate {
+            cost,
+            edge,
+            versions,
+        } = candidate;
         let [a, b] = edge;
         if edge.map(|v| simplifier.version(v)) != versions || !simplifier.complex().is_edge(a, b) {
             continue;
@@ -110,7 +114,11 @@ pub fn reduce_measured(
         }
         let (now, ball) = measure.best(simplifier, edge, accepted);
         if now > STALE * cost + 1e-6 {
-            heap.push(Candidate { cost: now, edge, versions });
+            heap.push(Candidate {
+                cost: now,
+                edge,
+                versions,
+            });
             continue;
         }
         accepted = accepted.max(0.7 * now);
@@ -212,7 +220,11 @@ impl<'a> Measure<'a> {
         let of = |v: u32| if v == a { *ball } else { balls[v as usize] };
         let mut worst = 0.0f64;
         for &corners in &after.primitives {
-            let weights = if corners[1] == corners[2] { [0.5, 0.5, 0.0] } else { [1.0 / 3.0; 3] };
+            let weights = if corners[1] == corners[2] {
+                [0.5, 0.5, 0.0]
+            } else {
+                [1.0 / 3.0; 3]
+            };
             let middle = Ball::interpolate(corners.map(of), weights);
             if middle.radius <= worst {
                 continue;
@@ -235,12 +247,15 @@ impl<'a> Measure<'a> {
                 }
                 let p = self.samples[i];
                 let to = |corners: &Corners| signed_distance(p, *corners, corners.map(of)).distance;
-                let mut d = after.primitives.iter().map(to).fold(f64::INFINITY, f64::min);
+                let mut d = after
+                    .primitives
+                    .iter()
+                    .map(to)
+                    .fold(f64::INFINITY, f64::min);
                 if d > self.distance[i] && d > accepted {
                     let around = around.get_or_insert_with(|| after.around(s));
-                    let old = |c: &Corners| {
-                        signed_distance(p, *c, c.map(|v| balls[v as usize])).distance
-                    };
+                    let old =
+                        |c: &Corners| signed_distance(p, *c, c.map(|v| balls[v as usize])).distance;
                     d = around.iter().map(old).fold(d, f64::min);
                 }
                 worst = worst.max(d.abs());
@@ -345,7 +360,12 @@ impl After {
     /// Primitives at the neighbours that stay as they are.
     fn around(&self, s: &Simplifier) -> Vec<Corners> {
         let kept = |c: &Corners| !self.edge.iter().any(|v| c.contains(v));
-        let of = |&v: &u32| s.complex().primitives_at(v).filter(kept).collect::<Vec<_>>();
+        let of = |&v: &u32| {
+            s.complex()
+                .primitives_at(v)
+                .filter(kept)
+                .collect::<Vec<_>>()
+        };
         self.neighbors.iter().flat_map(of).collect()
     }
 }

@@ -187,7 +187,12 @@ impl Source {
         if self.limits.enclose {
             watch.begin("enclose")?;
             before = Some(enclosed.clone());
-            enclose(&mut enclosed, &self.surface, self.limits.allow_uncovered, watch)?;
+            enclose(
+                &mut enclosed,
+                &self.surface,
+                self.limits.allow_uncovered,
+                watch,
+            )?;
         }
         watch.begin("measure")?;
         let hausdorff = measure(&self.surface, &self.tree, &enclosed, watch)?;

@@ -102,7 +102,9 @@ pub fn refit(
             if let Some((_, kept)) = &best {
                 draft.clone_from(kept);
             }
-            damping.iter_mut().for_each(|d| *d = (*d * 10.0).min(MOST_DAMPING));
+            damping
+                .iter_mut()
+                .for_each(|d| *d = (*d * 10.0).min(MOST_DAMPING));
             found = target.examine(draft, &mut hints, &envelope, watch)?;
             energy = energies(&found.rows, n);
         } else if let Some((old, old_energy)) = &before
@@ -158,7 +160,9 @@ fn put_back(
 
 /// One damped step, limited ball by ball.
 fn step(draft: &mut Draft, found: Residuals, damping: &[f64]) {
-    let Residuals { mut rows, largest, .. } = found;
+    let Residuals {
+        mut rows, largest, ..
+    } = found;
     let mut limit = vec![0.0f64; draft.balls.len()];
     for row in &mut rows {
         let size = row.residual.abs();

@@ -146,7 +146,11 @@ pub fn residuals(
             let off = point - tree.closest(point, GUESS);
             let (distance, along) = (off.length(), off.dot(sample.normal));
             // Where the way to the surface is across the normal, growing does not help.
-            let cosine = if distance > 1e-9 { along / distance } else { 1.0 };
+            let cosine = if distance > 1e-9 {
+                along / distance
+            } else {
+                1.0
+            };
             Row {
                 corners,
                 weights: sample.weights,

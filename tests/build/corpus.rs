@@ -8,8 +8,8 @@ use crate::broken::*;
 use crate::meshes::*;
 use crate::oracle;
 use parry3d::math::Vector;
-use rapier3d_medial::build::{Findings, MassSource};
 use rapier3d_medial::Quality;
+use rapier3d_medial::build::{Findings, MassSource};
 use rapier3d_medial::{BuildOptions, MedialMesh, MedialSphere};
 
 /// Primitives of each build. Few, so that errors are large and soon measured.

@@ -80,9 +80,9 @@ fn cleaning_up_reports_in_proportion_to_its_work() {
             &mesh.vertices,
             &mesh.indices,
             &BuildOptions {
-            quality: Quality::Fast,
-            ..Default::default()
-        },
+                quality: Quality::Fast,
+                ..Default::default()
+            },
             &mut |p| {
                 calls += usize::from(p.stage == "surface");
                 match p.stage {
