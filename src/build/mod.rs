@@ -14,6 +14,7 @@ pub mod hausdorff;
 mod inner_balls;
 mod insert;
 mod insertion_order;
+mod largest;
 mod least_squares;
 mod mass;
 mod measured;

@@ -96,16 +96,16 @@ impl Source {
         let collapsed = Collapsed::new(simplifier, most, watch)?;
         let target = fit::target(&self.surface, &self.tree, most);
         let balanced = fit::balanced(&collapsed, &target, most, watch)?;
-        let mut best = self.enclosed(balanced.0.clone(), watch)?;
+        let mut best = self.enclosed(balanced.0.clone(), f64::INFINITY, watch)?;
         let plain = target.residuals(&collapsed.plain, watch)?.largest;
         if target.residuals(&balanced.0, watch)?.largest > CLEARLY_BETTER * plain {
-            best = best.or_better(self.enclosed(collapsed.plain.clone(), watch)?);
+            best = self.or_better(best, collapsed.plain.clone(), watch)?;
         }
         if self.limits.quality == Quality::Best {
             let score = balanced.1;
             let (draft, new) = fit::best(balanced, &collapsed, &target, most, watch)?;
             if new < score {
-                best = best.or_better(self.enclosed(draft, watch)?);
+                best = self.or_better(best, draft, watch)?;
             }
         }
         self.reported(best, watch)
@@ -176,12 +176,17 @@ impl Source {
 
     /// Encloses when asked to, and measures before and after.
     fn finish(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let enclosed = self.enclosed(draft, watch)?;
+        let enclosed = self.enclosed(draft, f64::INFINITY, watch)?;
         self.reported(enclosed, watch)
     }
 
     /// Encloses when asked to, and measures the result.
-    fn enclosed(&self, draft: Draft, watch: &mut Watch) -> Result<Enclosed, BuildError> {
+    fn enclosed(
+        &self,
+        draft: Draft,
+        enough: f64,
+        watch: &mut Watch,
+    ) -> Result<Enclosed, BuildError> {
         let mut before = None;
         let mut enclosed = draft;
         if self.limits.enclose {
@@ -195,7 +200,7 @@ impl Source {
             )?;
         }
         watch.begin("measure")?;
-        let hausdorff = measure(&self.surface, &self.tree, &enclosed, watch)?;
+        let hausdorff = measure(&self.surface, &self.tree, &enclosed, enough, watch)?;
         Ok(Enclosed {
             draft: enclosed,
             hausdorff,
@@ -203,12 +208,24 @@ impl Source {
         })
     }
 
+    /// The better of two; the second is measured only until it is worse.
+    fn or_better(
+        &self,
+        best: Enclosed,
+        other: Draft,
+        watch: &mut Watch,
+    ) -> Result<Enclosed, BuildError> {
+        let error = best.hausdorff.error();
+        let other = self.enclosed(other, f64::from(error), watch)?;
+        Ok(if other.hausdorff.error() < error { other } else { best })
+    }
+
     /// Measures as well what was there before the enclosure.
     fn reported(&self, enclosed: Enclosed, watch: &mut Watch) -> Result<Candidate, BuildError> {
         let mut before = None;
         if let Some(draft) = &enclosed.before {
             watch.begin("measure")?;
-            before = Some(measure(&self.surface, &self.tree, draft, watch)?);
+            before = Some(measure(&self.surface, &self.tree, draft, f64::INFINITY, watch)?);
         }
         Ok(Candidate {
             draft: enclosed.draft,
@@ -224,14 +241,4 @@ struct Enclosed {
     draft: Draft,
     hausdorff: Hausdorff,
     before: Option<Draft>,
-}
-
-impl Enclosed {
-    fn or_better(self, other: Self) -> Self {
-        if other.hausdorff.error() < self.hausdorff.error() {
-            other
-        } else {
-            self
-        }
-    }
 }

@@ -149,6 +149,39 @@ impl<'a> PrimitiveTree<'a> {
         best
     }
 
+    /// As [`Self::nearest`], but `None` where the smallest signed distance is not between `least` and
+    /// `most`.
+    pub fn nearest_between(&self, p: Point, least: f64, most: f64, hint: u32) -> Option<Nearest> {
+        let signed = self.distance_to(hint, p);
+        let mut best = Nearest {
+            signed,
+            primitive: hint,
+        };
+        if signed.distance < least {
+            return None;
+        }
+        self.visit(p, signed.distance.min(most), |signed, primitive| {
+            if signed.distance < best.signed.distance {
+                best = Nearest { signed, primitive };
+            }
+            let lowest = best.signed.distance;
+            (lowest >= least).then_some(lowest.min(most))
+        });
+        (least..=most).contains(&best.signed.distance).then_some(best)
+    }
+
+    /// Whether some signed distance is below `limit`; `hint` is a primitive that may have it.
+    pub fn any_below(&self, p: Point, limit: f64, hint: u32) -> bool {
+        let mut found = self.distance_to(hint, p).distance < limit;
+        if !found {
+            self.visit(p, limit, |signed, _| {
+                found = signed.distance < limit;
+                (!found).then_some(limit)
+            });
+        }
+        found
+    }
+
     /// Calls `see` for primitives whose distance may be below `limit`, nearer groups first; `see`
     /// returns the new limit, or `None` to stop.
     fn visit(&self, p: Point, mut limit: f64, mut see: impl FnMut(Signed, u32) -> Option<f64>) {

@@ -105,9 +105,19 @@ impl<'a> Solid<'a> {
         self.tree.ball(near)
     }
 
-    /// Whether `p` is outside or on the boundary.
+    /// As [`Self::nearest`], if its signed distance is at most `limit` on either side.
+    pub fn nearest_if_near(&self, p: Point, limit: f64, hint: u32) -> Option<Nearest> {
+        self.tree.nearest_between(p, -limit, limit, hint)
+    }
+
+    /// Signed distance of `p` to one primitive.
+    pub fn distance_to(&self, primitive: u32, p: Point) -> f64 {
+        self.tree.distance_to(primitive, p).distance
+    }
+
+    /// Whether `p` is outside or on the boundary; `hint` is a primitive that may hold it.
     pub fn is_out(&self, p: Point, hint: u32) -> bool {
-        self.tree.nearest(p, hint).signed.distance >= -ON_BOUNDARY
+        !self.tree.any_below(p, -ON_BOUNDARY, hint)
     }
 
     /// The point of the nearest ball's surface that is nearest to `p`, if it is on the boundary;

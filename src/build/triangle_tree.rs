@@ -125,6 +125,34 @@ impl TriangleTree {
         self.search(p, f64::INFINITY, false).0.sqrt()
     }
 
+    /// Distance to the surface, and the triangle that gives it; `hint` is a triangle that is likely
+    /// near.
+    pub fn distance_from(&self, p: Point, hint: u32) -> (f64, u32) {
+        let at_hint = self.distance_sq_to(hint, p);
+        let (distance_sq, triangle) = self.search(p, at_hint, false);
+        match distance_sq <= at_hint {
+            true => (distance_sq.sqrt(), triangle),
+            false => (at_hint.sqrt(), hint),
+        }
+    }
+
+    /// A triangle within `distance`, if there is one; `hint` is likely one.
+    pub fn some_within(&self, p: Point, distance: f64, hint: u32) -> Option<u32> {
+        let limit_sq = distance * distance;
+        if distance < 0.0 {
+            return None;
+        }
+        if self.distance_sq_to(hint, p) <= limit_sq {
+            return Some(hint);
+        }
+        let (distance_sq, triangle) = self.search(p, limit_sq, true);
+        (distance_sq < f64::INFINITY).then_some(triangle)
+    }
+
+    fn distance_sq_to(&self, triangle: u32, p: Point) -> f64 {
+        (closest_on_triangle(p, &self.corners[triangle as usize]) - p).length_sq()
+    }
+
     /// Whether some triangle is within `distance`.
     pub fn any_within(&self, p: Point, distance: f64) -> bool {
         let limit_sq = distance * distance;
