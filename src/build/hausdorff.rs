@@ -216,14 +216,18 @@ impl Side for FromBoundary<'_> {
     }
 
     fn look(&mut self, cell: &Cell, rho: f64, _best: f64, allowed: f64) -> Look {
-        if let Some(triangle) = self.tree.some_within(cell.center, allowed, self.triangle) {
-            self.triangle = triangle;
+        // In this order, for the first two settle most and cost least.
+        if self.tree.is_within(self.triangle, cell.center, allowed) {
             return Look::Settled;
         }
         let Some(near) = self.solid.nearest_if_near(cell.center, rho, self.hint) else {
             return Look::Settled;
         };
         self.hint = near.primitive;
+        if let Some(triangle) = self.tree.some_within(cell.center, allowed) {
+            self.triangle = triangle;
+            return Look::Settled;
+        }
         match self.solid.onto_boundary(cell.center, &near) {
             Some(sample) => {
                 let (d, triangle) = self.tree.distance_from(sample, self.triangle);

@@ -120,11 +120,6 @@ impl TriangleTree {
         Ok(())
     }
 
-    /// Distance to the surface.
-    pub fn distance(&self, p: Point) -> f64 {
-        self.search(p, f64::INFINITY, false).0.sqrt()
-    }
-
     /// Distance to the surface, and the triangle that gives it; `hint` is a triangle that is likely
     /// near.
     pub fn distance_from(&self, p: Point, hint: u32) -> (f64, u32) {
@@ -136,16 +131,17 @@ impl TriangleTree {
         }
     }
 
-    /// A triangle within `distance`, if there is one; `hint` is likely one.
-    pub fn some_within(&self, p: Point, distance: f64, hint: u32) -> Option<u32> {
-        let limit_sq = distance * distance;
+    /// Whether a triangle is within `distance`.
+    pub fn is_within(&self, triangle: u32, p: Point, distance: f64) -> bool {
+        distance >= 0.0 && self.distance_sq_to(triangle, p) <= distance * distance
+    }
+
+    /// A triangle within `distance`, if there is one.
+    pub fn some_within(&self, p: Point, distance: f64) -> Option<u32> {
         if distance < 0.0 {
             return None;
         }
-        if self.distance_sq_to(hint, p) <= limit_sq {
-            return Some(hint);
-        }
-        let (distance_sq, triangle) = self.search(p, limit_sq, true);
+        let (distance_sq, triangle) = self.search(p, distance * distance, true);
         (distance_sq < f64::INFINITY).then_some(triangle)
     }
 
@@ -155,8 +151,7 @@ impl TriangleTree {
 
     /// Whether some triangle is within `distance`.
     pub fn any_within(&self, p: Point, distance: f64) -> bool {
-        let limit_sq = distance * distance;
-        distance >= 0.0 && self.search(p, limit_sq, true).0 < f64::INFINITY
+        self.some_within(p, distance).is_some()
     }
 
     /// The point of the surface nearest to `p`, if it is within `limit`.
