@@ -20,7 +20,7 @@
 
 use super::bounds::{Point, direction};
 use super::draft::Draft;
-use super::largest::{Look, Search, Side};
+use super::largest::{Effort, Look, Search, Side};
 use super::options::{Hausdorff, Progress};
 use super::samples::vertex_samples;
 use super::solid::{Cell, Solid};
@@ -49,7 +49,7 @@ pub fn hausdorff(
     let mut watch = Watch::new(&mut proceed);
     let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;
     let draft = Draft::from_medial_mesh(mesh, &surface.frame);
-    let measured = measure(&surface, &tree, &draft, f64::INFINITY, &mut watch)?;
+    let measured = measure(&surface, &tree, &draft, Effort::CLOSE, &mut watch)?;
     Ok(in_unit(measured, surface.frame.scale))
 }
 
@@ -65,13 +65,13 @@ pub(super) fn in_unit(h: Hausdorff, scale: f64) -> Hausdorff {
     }
 }
 
-/// Measures a draft against the surface; lengths are in the builder's frame. Once an error above
-/// `enough` is found the search ends: the result is then below the true error, and above `enough`.
+/// Measures a draft against the surface; lengths are in the builder's frame. Where
+/// [`Effort::enough`] ends the search the result is below the true error, and above that.
 pub(super) fn measure(
     surface: &Surface,
     tree: &TriangleTree,
     draft: &Draft,
-    enough: f64,
+    mut effort: Effort,
     watch: &mut Watch,
 ) -> Result<Hausdorff, BuildError> {
     let solid = Solid::new(draft);
@@ -91,7 +91,7 @@ pub(super) fn measure(
             start = start.max(d);
         }
     }
-    let mut search = Search::new(&mut source, start, enough);
+    let mut search = Search::new(&mut source, start, effort);
     let triangles = surface.all_corners().zip(0..surface.triangles.len() as u32);
     search.in_depth(triangles, |part| watch.at(0.5 * part))?;
     let (outward, slack) = (search.best, search.slack());
@@ -102,8 +102,10 @@ pub(super) fn measure(
         hint: 0,
         triangle: 0,
     };
-    let enough = if outward > enough { 0.0 } else { enough };
-    let mut search = Search::new(&mut boundary, 0.0, enough);
+    if outward > effort.enough {
+        effort.enough = 0.0;
+    }
+    let mut search = Search::new(&mut boundary, 0.0, effort);
     let mut tick = |part| watch.at(0.5 + 0.5 * part);
     let cells = search.in_breadth(vec![solid.whole()], &mut tick)?;
     search.in_depth(cells.into_iter(), tick)?;

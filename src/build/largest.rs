@@ -10,9 +10,6 @@
 
 use crate::error::BuildError;
 
-/// Slack as a share of the largest distance.
-const RESOLUTION: f64 = 0.25;
-
 /// Distances below this (longest side 1) have the slack of this one: nobody needs them closer.
 const SMALL: f64 = 1e-3;
 
@@ -58,13 +55,35 @@ pub trait Side {
     fn cut(&self, piece: Self::Piece, pieces: &mut Vec<Self::Piece>);
 }
 
+/// How closely to look.
+#[derive(Clone, Copy)]
+pub struct Effort {
+    /// Slack as a share of the largest distance.
+    pub slack: f64,
+    /// Once a larger distance is found the search ends.
+    pub enough: f64,
+}
+
+impl Effort {
+    /// For what a build returns.
+    pub const CLOSE: Self = Self {
+        slack: 0.25,
+        enough: f64::INFINITY,
+    };
+
+    /// For what it reports besides: half of the time.
+    pub const ROUGH: Self = Self {
+        slack: 0.5,
+        enough: f64::INFINITY,
+    };
+}
+
 /// A search for the largest distance.
 pub struct Search<'a, S: Side> {
     side: &'a mut S,
     /// The largest distance found.
     pub best: f64,
-    /// Whether more than this does not matter to the caller: the search ends beyond it.
-    enough: f64,
+    effort: Effort,
     /// The piece that gave `best`.
     top: Option<S::Piece>,
     /// Radius of the largest piece that was given up.
@@ -73,12 +92,12 @@ pub struct Search<'a, S: Side> {
 }
 
 impl<'a, S: Side> Search<'a, S> {
-    /// A search that starts with the distance `start` and ends when it has found more than `enough`.
-    pub fn new(side: &'a mut S, start: f64, enough: f64) -> Self {
+    /// A search that starts with the distance `start`.
+    pub fn new(side: &'a mut S, start: f64, effort: Effort) -> Self {
         Self {
             side,
             best: start,
-            enough,
+            effort,
             top: None,
             given_up: 0.0,
             examined: 0,
@@ -92,7 +111,7 @@ impl<'a, S: Side> Search<'a, S> {
 
     fn slack_now(&self) -> f64 {
         let doubled = 1u64 << (self.examined / BUDGET).min(32);
-        RESOLUTION * self.best.max(SMALL) * doubled as f64
+        self.effort.slack * self.best.max(SMALL) * doubled as f64
     }
 
     /// Cuts pieces level by level, until none is left or there are many, which are returned.
@@ -101,7 +120,7 @@ impl<'a, S: Side> Search<'a, S> {
         mut level: Vec<S::Piece>,
         mut tick: impl FnMut(f64) -> Result<(), BuildError>,
     ) -> Result<Vec<S::Piece>, BuildError> {
-        while !level.is_empty() && level.len() <= WIDE && self.best <= self.enough {
+        while !level.is_empty() && level.len() <= WIDE && self.best <= self.effort.enough {
             let mut next = Vec::new();
             for (i, piece) in level.into_iter().enumerate() {
                 if i % 128 == 0 {
@@ -125,7 +144,7 @@ impl<'a, S: Side> Search<'a, S> {
         for (i, piece) in pieces.enumerate() {
             waiting.push(piece);
             while let Some(piece) = waiting.pop() {
-                if self.best > self.enough {
+                if self.best > self.effort.enough {
                     return Ok(());
                 }
                 if self.examined.is_multiple_of(128) {

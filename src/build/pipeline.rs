@@ -4,6 +4,7 @@ use super::draft::Draft;
 use super::enclose::enclose;
 use super::fit::{self, Collapsed};
 use super::hausdorff::measure;
+use super::largest::Effort;
 use super::options::{Hausdorff, Limits, Quality};
 use super::parts::Parts;
 use super::simplify::Simplifier;
@@ -96,7 +97,7 @@ impl Source {
         let collapsed = Collapsed::new(simplifier, most, watch)?;
         let target = fit::target(&self.surface, &self.tree, most);
         let balanced = fit::balanced(&collapsed, &target, most, watch)?;
-        let mut best = self.enclosed(balanced.0.clone(), f64::INFINITY, watch)?;
+        let mut best = self.enclosed(balanced.0.clone(), Effort::CLOSE, watch)?;
         let plain = target.residuals(&collapsed.plain, watch)?.largest;
         if target.residuals(&balanced.0, watch)?.largest > CLEARLY_BETTER * plain {
             best = self.or_better(best, collapsed.plain.clone(), watch)?;
@@ -176,7 +177,7 @@ impl Source {
 
     /// Encloses when asked to, and measures before and after.
     fn finish(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let enclosed = self.enclosed(draft, f64::INFINITY, watch)?;
+        let enclosed = self.enclosed(draft, Effort::CLOSE, watch)?;
         self.reported(enclosed, watch)
     }
 
@@ -184,7 +185,7 @@ impl Source {
     fn enclosed(
         &self,
         draft: Draft,
-        enough: f64,
+        effort: Effort,
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
         let mut before = None;
@@ -200,7 +201,7 @@ impl Source {
             )?;
         }
         watch.begin("measure")?;
-        let hausdorff = measure(&self.surface, &self.tree, &enclosed, enough, watch)?;
+        let hausdorff = measure(&self.surface, &self.tree, &enclosed, effort, watch)?;
         Ok(Enclosed {
             draft: enclosed,
             hausdorff,
@@ -216,8 +217,16 @@ impl Source {
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
         let error = best.hausdorff.error();
-        let other = self.enclosed(other, f64::from(error), watch)?;
-        Ok(if other.hausdorff.error() < error { other } else { best })
+        let effort = Effort {
+            enough: error.into(),
+            ..Effort::CLOSE
+        };
+        let other = self.enclosed(other, effort, watch)?;
+        Ok(if other.hausdorff.error() < error {
+            other
+        } else {
+            best
+        })
     }
 
     /// Measures as well what was there before the enclosure.
@@ -225,7 +234,13 @@ impl Source {
         let mut before = None;
         if let Some(draft) = &enclosed.before {
             watch.begin("measure")?;
-            before = Some(measure(&self.surface, &self.tree, draft, f64::INFINITY, watch)?);
+            before = Some(measure(
+                &self.surface,
+                &self.tree,
+                draft,
+                Effort::ROUGH,
+                watch,
+            )?);
         }
         Ok(Candidate {
             draft: enclosed.draft,

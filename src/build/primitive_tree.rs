@@ -167,7 +167,9 @@ impl<'a> PrimitiveTree<'a> {
             let lowest = best.signed.distance;
             (lowest >= least).then_some(lowest.min(most))
         });
-        (least..=most).contains(&best.signed.distance).then_some(best)
+        (least..=most)
+            .contains(&best.signed.distance)
+            .then_some(best)
     }
 
     /// Whether some signed distance is below `limit`; `hint` is a primitive that may have it.
