@@ -1,44 +1,62 @@
-//! Ten million hard queries, judged by an independent oracle: the certified first contact in `f32`
-//! and in `f64`, beside the paper's iteration (in `f64`, on straight paths).
+//! Ten million hard queries, judged by an independent oracle: the certified first contact in `f32`,
+//! in eight lanes of `f32` (straight paths) and in `f64`, beside the paper's iteration (in `f64`,
+//! straight paths).
 //!
 //! ```text
 //! cargo run --release --example hard_cases [queries]
 //! ```
 //!
 //! One row per family and subject: queries, percent in contact, answers that missed a contact, were
-//! late, false, misnamed or unresolved, how early contacts are told and how wide their brackets are
-//! (median and 99th percentile, as fractions of the step), iterations (mean and most) and time. The
-//! certified rows must show zeros; the program exits with an error when they do not. For the
-//! paper's, late means by more than 1e-3 of the step.
+//! late, false, misnamed or unresolved, how long contacts are told before the bodies touch and before
+//! they are within the tolerance, how wide their brackets are (median and 99th percentile, as fractions
+//! of the step), iterations (mean and most) and time (median, each query on its own clock; in the
+//! lanes, the mean of a batch). The certified rows must show zeros; the program exits with an error
+//! when they do not. For the paper's, late means by more than 1e-3 of the step.
 
 #[path = "../tests/common/ccd/mod.rs"]
 mod ccd;
 
 use ccd::families::Family;
-use ccd::judge::{Tally, Truth};
+use ccd::judge::{Tally, Truth, percentiles};
 use ccd::rng::Rng;
 use ccd::subject::Subject;
 use indicatif::{ProgressBar, ProgressStyle};
+use rapier3d_medial::elementary::many::Lanes;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Queries that one worker takes at a time; a multiple of 9 pairs × 2 motions.
 const CHUNK: usize = 1800;
 
-type Tallies = [Tally; Subject::ALL.len()];
+/// 99 of 100 contacts are told no sooner than this before the tolerance is reached, or before the
+/// bodies touch, in brackets no wider: fractions of the step.
+const SHARP: f32 = 1.0e-3;
+
+/// Largest part of all queries that may end at the cap of the iterations.
+const UNRESOLVED: f64 = 1.0e-5;
+
+const SUBJECTS: [Subject; 4] = [
+    Subject::Single,
+    Subject::Lanes,
+    Subject::Double,
+    Subject::Paper,
+];
+
+type Tallies = [Tally; SUBJECTS.len()];
 
 /// Draws, asks and judges one chunk of a family.
 fn run_chunk(family: Family, chunk: usize) -> Tallies {
     let mut rng = Rng::new(((family as u64) << 32) + chunk as u64);
+    let draw = |k| family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
+    let queries: Vec<_> = (0..CHUNK).map(draw).collect();
+    let truths: Vec<_> = queries.iter().map(|query| Truth::new(query, 0.0)).collect();
     let mut tallies = Tallies::default();
-    for k in 0..CHUNK {
-        let query = family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
-        let truth = Truth::new(&query, 0.0);
-        for (subject, tally) in Subject::ALL.into_iter().zip(&mut tallies) {
-            let options = subject.options(family.size());
-            if let Some(answer) = subject.answer(&query, &options) {
+    for (subject, tally) in SUBJECTS.into_iter().zip(&mut tallies) {
+        let options = subject.options(family.size());
+        for (truth, answer) in truths.iter().zip(subject.answers(&queries, &options)) {
+            if let Some(answer) = answer {
                 let verdict = truth.judge(&answer, options.time_tolerance.into());
-                tally.add(&truth, &answer, &verdict, subject.late_by());
+                tally.add(truth, &answer, &verdict, subject.late_by());
             }
         }
     }
@@ -86,7 +104,8 @@ fn merge(sum: &mut Tallies, tallies: Tallies) {
 }
 
 fn print_row(name: &str, subject: Subject, tally: &mut Tally) {
-    let (early, width) = (tally.early(), tally.width());
+    let (before, early, width) = (tally.before(), tally.early(), tally.width());
+    let [nanoseconds, _] = percentiles(&mut tally.nanoseconds);
     // The paper's iteration does not tell overlap from contact.
     let named = match subject {
         Subject::Paper => "-".to_owned(),
@@ -94,7 +113,7 @@ fn print_row(name: &str, subject: Subject, tally: &mut Tally) {
     };
     let per_query = |sum: f64| sum / tally.queries.max(1) as f64;
     println!(
-        "{name:17}{:7}{:>9} {:5.1} {:>7}{:>7}{:>7}{:>7}{:>7}  {:7.1e} {:7.1e}  {:7.1e} {:7.1e}  {:5.1}{:>5} {:>7.0}",
+        "{name:17}{:7}{:>9} {:5.1} {:>7}{:>7}{:>7}{:>7}{:>7}  {:7.1e} {:7.1e}  {:7.1e} {:7.1e}  {:7.1e} {:7.1e}  {:5.1}{:>5} {:>7.0}",
         format!("{subject:?}"),
         tally.queries,
         100.0 * per_query(tally.hits as f64),
@@ -103,14 +122,45 @@ fn print_row(name: &str, subject: Subject, tally: &mut Tally) {
         tally.false_hits,
         named,
         tally.unresolved,
+        before[0],
+        before[1],
         early[0],
         early[1],
         width[0],
         width[1],
         per_query(tally.iterations as f64),
         tally.most_iterations,
-        per_query(tally.time.as_nanos() as f64),
+        nanoseconds,
     );
+}
+
+/// What a certified subject promises and does not keep, over one family.
+fn broken(family: Family, subject: Subject, tally: &mut Tally) -> Vec<String> {
+    let mut broken = Vec::new();
+    let mut none = |what: &str, count: usize| {
+        if count > 0 {
+            broken.push(format!("{family:?} {subject:?}: {count} {what}"));
+        }
+    };
+    none("missed", tally.missed);
+    none("late", tally.late);
+    none("false", tally.false_hits);
+    none("misnamed", tally.misnamed);
+    none("brackets wider than asked", tally.wide);
+    // Bodies that near each other at less than 0.1 sizes a step are within the tolerance of 1e-4 sizes
+    // for longer than that before they touch, as they should be told.
+    let is_slow = matches!(family, Family::Grazing | Family::NearEqual);
+    let sharp = [
+        ("told early", tally.early()[1], family == Family::Grazing),
+        ("told before contact", tally.before()[1], is_slow),
+        ("wide", tally.width()[1], false),
+    ];
+    for (what, p99, excused) in sharp {
+        if p99 > SHARP && !excused {
+            broken.push(format!("{family:?} {subject:?}: p99 {p99:.1e} {what}"));
+        }
+    }
+    broken
 }
 
 fn main() -> ExitCode {
@@ -125,27 +175,36 @@ fn main() -> ExitCode {
     };
     let mut families = run(queries.div_ceil(CHUNK * Family::ALL.len()));
 
+    println!("Lanes: eight of f32, {}", Lanes::Fastest.path());
     println!(
-        "family           subject  queries  hit%  missed   late  false  named unres.  early50 early99  width50 width99  iterations      ns"
+        "family           subject  queries  hit%  missed   late  false  named unres.  before5 before9  early50 early99  width50 width99  iterations      ns"
     );
+    let mut failures = Vec::new();
     let mut total = Tallies::default();
     for (family, tallies) in Family::ALL.into_iter().zip(&mut families) {
-        for (subject, tally) in Subject::ALL.into_iter().zip(tallies.iter_mut()) {
+        for (subject, tally) in SUBJECTS.into_iter().zip(tallies.iter_mut()) {
             print_row(&format!("{family:?}"), subject, tally);
+            if subject != Subject::Paper {
+                failures.extend(broken(family, subject, tally));
+            }
         }
     }
     families
         .into_iter()
         .for_each(|tallies| merge(&mut total, tallies));
-    for (subject, tally) in Subject::ALL.into_iter().zip(&mut total) {
+    for (subject, tally) in SUBJECTS.into_iter().zip(&mut total) {
         print_row("all", subject, tally);
+        if subject != Subject::Paper && tally.unresolved as f64 > UNRESOLVED * tally.queries as f64
+        {
+            failures.push(format!("{subject:?}: {} unresolved", tally.unresolved));
+        }
     }
-    let broken = |tally: &Tally| {
-        tally.missed + tally.late + tally.false_hits + tally.misnamed + tally.wide > 0
-    };
-    if total[..2].iter().any(broken) {
-        eprintln!("the guarantee is broken");
-        return ExitCode::FAILURE;
+    for failure in &failures {
+        eprintln!("broken: {failure}");
     }
-    ExitCode::SUCCESS
+    if failures.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }

@@ -131,9 +131,28 @@ impl<L: Lane> Running<L> {
     #[inline(always)]
     pub fn new<P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Self {
         let slack = path.scale() * L::splat(SLACK_ULPS * L::EPSILON);
+        let speed = path.speed().max(L::splat(L::TINY));
+        let mut running = Self::at(limits, slack, speed);
+        if !P::CURVED {
+            let c = path.at(limits.start);
+            let remaining = limits.horizon - limits.start;
+            let step = first_step(path, domain, &c, slack, remaining);
+            let proven = Proven::new(limits.start, step);
+            // Without any step nothing is known of the start, which may be the horizon too.
+            let free = L::zero().lt(step) & limits.horizon.le(proven.end);
+            running.bracket.separated = free;
+            running.bracket.lower = L::select(free, limits.horizon, proven.lower);
+            running.active = !free;
+        }
+        running
+    }
+
+    /// Nothing known yet.
+    #[inline(always)]
+    pub(super) fn at(limits: &Limits<L>, slack: L, speed: L) -> Self {
         let none = L::Mask::splat(false);
         let zero = L::zero();
-        let mut running = Self {
+        Self {
             bracket: Bracket {
                 lower: limits.start,
                 upper: limits.horizon,
@@ -155,20 +174,8 @@ impl<L: Lane> Running<L> {
             active: L::Mask::splat(true),
             fresh: L::Mask::splat(true),
             rooted: none,
-            speed: path.speed().max(L::splat(L::TINY)),
-        };
-        if !P::CURVED {
-            let c = path.at(limits.start);
-            let remaining = limits.horizon - limits.start;
-            let step = first_step(path, domain, &c, slack, remaining);
-            let proven = Proven::new(limits.start, step);
-            // Without any step nothing is known of the start, which may be the horizon too.
-            let free = L::zero().lt(step) & limits.horizon.le(proven.end);
-            running.bracket.separated = free;
-            running.bracket.lower = L::select(free, limits.horizon, proven.lower);
-            running.active = !free;
+            speed,
         }
-        running
     }
 
     /// One round of the loop, in the active lanes.

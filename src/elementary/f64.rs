@@ -126,7 +126,7 @@ pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOption
     let origin = a.first().map_or(Vec3::zero(), |s| vec3(s.center));
     match (movers(a, origin), movers(b, origin), limits(options)) {
         (Some(a), Some(b), Some(limits)) => {
-            Toi::from_earliest(&linear(&a, &b, options.target_distance, limits))
+            Toi::from_earliest(&linear([a, b], options.target_distance, limits))
         }
         _ => Toi::bad_input(options),
     }

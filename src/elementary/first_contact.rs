@@ -1,11 +1,13 @@
 //! First contact of one pair of primitives: the earliest over its elementary tests, on straight
 //! paths (paper Eqs. 1 to 3) or in exact rigid motion.
 
-use super::bracket::{Bracket, Limits, bracket, witness};
-use super::distance::{crossing, thinnest};
-use super::path::{LinearPath, Path, RigidPath};
+use super::bracket::Limits;
+use super::distance::thinnest;
+pub use super::earliest::Earliest;
+use super::path::{LinearPath, RigidPath};
+use super::penetration::Ball;
 use super::test_list::{Domain, ElementaryTest, Share, for_each_test};
-use super::{MovingSphere, Toi, ToiOptions, ToiStatus};
+use super::{MovingSphere, Toi, ToiOptions};
 use crate::math::Real;
 use crate::math::lane::{Scalar, Vec3};
 use crate::math::motion::RigidMotion;
@@ -16,205 +18,84 @@ use parry3d::query::NonlinearRigidMotion;
 /// A sphere of a test, in a common frame: centre, displacement over the step, radius.
 pub(crate) type Mover<S> = (Vec3<S>, Vec3<S>, S);
 
-/// The earliest contact over many elementary tests.
-#[derive(Clone, Copy, Debug)]
-pub struct Earliest<S: Scalar> {
-    /// How far and how exact each test is followed.
-    pub limits: Limits<S>,
-    /// What is known so far.
-    pub status: ToiStatus,
-    /// No contact before, over all tests so far.
-    pub lower: S,
-    /// Contact here; the horizon when none was found.
-    pub upper: S,
-    /// Largest contact distance that any test used.
-    pub tolerance: S,
-    /// The test that bounds `upper` (or that stayed unresolved), its bracket, and the primitives.
-    pub found: Option<(ElementaryTest, Bracket<S>, [u32; 2])>,
-    /// Elementary tests executed.
-    pub tests: u32,
-    /// Iterations over all tests.
-    pub iterations: u32,
-}
-
-impl<S: Scalar> Earliest<S> {
-    /// Nothing tested yet.
-    pub fn new(limits: Limits<S>) -> Self {
-        Self {
-            limits,
-            status: ToiStatus::Separated,
-            lower: limits.horizon,
-            upper: limits.horizon,
-            tolerance: limits.tolerance,
-            found: None,
-            tests: 0,
-            iterations: 0,
-        }
-    }
-
-    /// Runs one more test, up to the earliest contact known. Returns whether another test may
-    /// still change the answer.
-    pub fn test<P: Path<S>>(
-        &mut self,
-        test: ElementaryTest,
-        path: &P,
-        primitives: [u32; 2],
-    ) -> bool {
-        let limits = Limits {
-            horizon: self.upper.min(self.limits.horizon),
-            ..self.limits
-        };
-        let b = bracket(path, test.domain, &limits);
-        self.tests += 1;
-        self.take(test, b, limits.start, primitives)
-    }
-
-    /// Takes over what the bracket of a test found from `start` on. Returns whether another test may
-    /// still change the answer.
-    pub fn take(
-        &mut self,
-        test: ElementaryTest,
-        mut b: Bracket<S>,
-        start: S,
-        primitives: [u32; 2],
-    ) -> bool {
-        self.iterations += b.iterations;
-        self.tolerance = self.tolerance.max(b.tolerance);
-        if !b.slack.is_finite() {
-            // Sizes whose squares overflow: nothing can be certified.
-            b.lower = start;
-            b.contact = false;
-            b.separated = false;
-        }
-        if b.separated {
-            return true;
-        }
-        self.lower = self.lower.min(b.lower);
-        if b.contact {
-            let deeper = self.found.is_none_or(|(_, f, _)| {
-                b.upper < self.upper || b.nearest.distance < f.nearest.distance
-            });
-            if deeper {
-                self.found = Some((test, b, primitives));
-            }
-            self.upper = b.upper;
-            if self.status != ToiStatus::Unresolved {
-                self.status = ToiStatus::Contact;
-            }
-            if start == S::zero() && b.start_distance < -b.slack {
-                self.overlap_at_start();
-            }
-        } else {
-            self.status = ToiStatus::Unresolved;
-            self.found = self.found.or(Some((test, b, primitives)));
-        }
-        // After a contact at the start another test may still find that the bodies overlap.
-        self.status != ToiStatus::Overlapping
-    }
-
-    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness. A
-    /// test that is proven free until then may still be nearer than the one that was found.
-    pub fn settle<P: Path<S>>(&mut self, spheres: [usize; 2], path: impl Fn(&ElementaryTest) -> P) {
-        let Some((_, bracket, primitives)) = self.found else {
-            return;
-        };
-        let mut best: Option<(ElementaryTest, Bracket<S>)> = None;
-        let [a, b] = spheres.map(Share::whole);
-        for_each_test(a, b, |test| {
-            let (nearest, normal) = witness(&path(&test), test.domain, self.lower);
-            if best.is_none_or(|(_, old)| nearest.distance < old.nearest.distance) {
-                let mut settled: Bracket<S> = bracket;
-                settled.lower = self.lower;
-                settled.nearest = nearest;
-                settled.normal = normal;
-                best = Some((test, settled));
-            }
-            true
-        });
-        self.found = best.map(|(test, bracket)| (test, bracket, primitives));
-    }
-
-    /// Notes that the bodies overlap at the start.
-    pub fn overlap_at_start(&mut self) {
-        self.status = ToiStatus::Overlapping;
-        self.lower = S::zero();
-        self.upper = S::zero();
-    }
-}
-
-/// First contact of two primitives whose spheres are in a common frame at the start. `path` gives
-/// the motion of a test's corners.
-fn primitives_first_contact<S: Scalar, P: Path<S>>(
-    a: &[(Vec3<S>, S)],
-    b: &[(Vec3<S>, S)],
+/// Two primitives on straight paths, in the precision of `S`.
+pub(super) struct Straight<S> {
+    movers: [Vec<Mover<S>>; 2],
+    start: [Vec<Ball<S>>; 2],
+    /// As asked, or raised to what the primitives' thinnest places allow.
     target_distance: S,
-    limits: Limits<S>,
-    path: impl Fn(&ElementaryTest, S) -> P,
-) -> Earliest<S> {
-    let target_distance = target_distance.max(-thinnest(a, b));
-    let path = |test: &ElementaryTest| path(test, target_distance);
-    let mut earliest = Earliest::new(limits);
-    for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
-        earliest.test(test, &path(&test), [0, 0])
-    });
-    let crossings = [crossing(a, u8::MAX, b), crossing(b, u8::MAX, a)];
-    if crossings
-        .iter()
-        .flatten()
-        .any(|c| -c.radius <= target_distance)
-    {
-        earliest.overlap_at_start();
+}
+
+impl<S: Scalar> Straight<S> {
+    pub(super) fn new(movers: [Vec<Mover<S>>; 2], target_distance: S) -> Self {
+        let rest = |side: &Vec<Mover<S>>| side.iter().map(|m| (m.0, m.2)).collect::<Vec<_>>();
+        let start = movers.each_ref().map(rest);
+        let target_distance = target_distance.max(-thinnest(&start[0], &start[1]));
+        Self {
+            movers,
+            start,
+            target_distance,
+        }
     }
-    earliest.settle([a.len(), b.len()], path);
-    earliest
+
+    pub(super) fn path(&self, test: &ElementaryTest) -> LinearPath<S> {
+        LinearPath::new(test, self.target_distance, |second, i| {
+            self.movers[usize::from(second)][usize::from(i)]
+        })
+    }
+
+    /// Calls `visit` with every test of the two, until it returns `false`.
+    pub(super) fn for_each_test(&self, visit: impl FnMut(ElementaryTest) -> bool) {
+        let [a, b] = self.movers.each_ref().map(|side| Share::whole(side.len()));
+        for_each_test(a, b, visit);
+    }
+
+    pub(super) fn conclude(&self, earliest: &mut Earliest<S>) {
+        let [a, b] = &self.start;
+        earliest.conclude(a, b, self.target_distance, |test| self.path(test));
+    }
 }
 
 /// First contact of two primitives on straight paths, in the precision of `S`.
 pub(crate) fn linear<S: Scalar>(
-    a: &[Mover<S>],
-    b: &[Mover<S>],
+    movers: [Vec<Mover<S>>; 2],
     target_distance: S,
     limits: Limits<S>,
 ) -> Earliest<S> {
-    let rest = |m: &[Mover<S>]| -> Vec<_> { m.iter().map(|m| (m.0, m.2)).collect() };
-    primitives_first_contact(
-        &rest(a),
-        &rest(b),
-        target_distance,
-        limits,
-        |test, target| {
-            LinearPath::new(test, target, |second, i| {
-                if second { b[i as usize] } else { a[i as usize] }
-            })
-        },
-    )
+    let pair = Straight::new(movers, target_distance);
+    let mut earliest = Earliest::new(limits);
+    pair.for_each_test(|test| earliest.test(test, &pair.path(&test), [0, 0]));
+    pair.conclude(&mut earliest);
+    earliest
 }
 
 /// First contact of two primitives in exact rigid motion, in the precision of `S`.
 pub(crate) fn rigid<S: Scalar>(
-    a: &[(Vec3<S>, S)],
-    b: &[(Vec3<S>, S)],
+    a: &[Ball<S>],
+    b: &[Ball<S>],
     motions: &[RigidMotion<S>; 2],
     target_distance: S,
     limits: Limits<S>,
 ) -> Earliest<S> {
-    let start = |side: usize, s: &[(Vec3<S>, S)]| -> Vec<_> {
+    let start = |side: usize, s: &[Ball<S>]| -> Vec<Ball<S>> {
         let turned = motions[side].sin_cos(S::zero());
         s.iter()
             .map(|s| (motions[side].point(s.0).at(S::zero(), turned).position, s.1))
             .collect()
     };
-    primitives_first_contact(
-        &start(0, a),
-        &start(1, b),
-        target_distance,
-        limits,
-        |test, target| {
-            RigidPath::new(test, motions, target, |second, i| {
-                if second { b[i as usize] } else { a[i as usize] }
-            })
-        },
-    )
+    let (start_a, start_b) = (start(0, a), start(1, b));
+    let target_distance = target_distance.max(-thinnest(&start_a, &start_b));
+    let path = |test: &ElementaryTest| {
+        RigidPath::new(test, motions, target_distance, |second, i| {
+            if second { b[i as usize] } else { a[i as usize] }
+        })
+    };
+    let mut earliest = Earliest::new(limits);
+    for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
+        earliest.test(test, &path(&test), [0, 0])
+    });
+    earliest.conclude(&start_a, &start_b, target_distance, path);
+    earliest
 }
 
 pub(crate) fn options_limits<S: Scalar>(options: &ToiOptions) -> Limits<S> {
@@ -246,16 +127,29 @@ fn valid(
 /// of the step. Cost: 1 to 15 elementary tests of 2 iterations each, typically.
 ///
 /// The guarantee is the module's ([`crate::elementary`]). Wrong counts, values that are not finite
-/// or negative radii give [`ToiStatus::Unresolved`] with `lower = 0`.
+/// or negative radii give [`super::ToiStatus::Unresolved`] with `lower = 0`.
 pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions) -> Toi {
+    let Some(movers) = movers(a, b, options) else {
+        return Toi::bad_input(options);
+    };
+    let earliest = linear(movers, options.target_distance, options_limits(options));
+    straight_toi(&earliest, [a, b], options)
+}
+
+/// Both primitives relative to the first sphere, so that large coordinates cost no digits; `None` if
+/// they or the options are refused.
+pub(super) fn movers(
+    a: &[MovingSphere],
+    b: &[MovingSphere],
+    options: &ToiOptions,
+) -> Option<[Vec<Mover<f32>>; 2]> {
     let checks = a.iter().chain(b).map(|s| {
         let finite = s.center.is_finite() && s.displacement.is_finite();
         (finite, s.radius)
     });
     if !valid([a.len(), b.len()], options, checks) {
-        return Toi::bad_input(options);
+        return None;
     }
-    // Positions relative to the first sphere: large coordinates then cost no digits.
     let origin = Vec3::<f32>::from_vector(a[0].center);
     let mover = |s: &MovingSphere| -> Mover<f32> {
         (
@@ -264,14 +158,19 @@ pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOption
             s.radius,
         )
     };
-    let movers = [a, b].map(|side| side.iter().map(mover).collect::<Vec<_>>());
-    let limits = options_limits::<f32>(options);
-    let earliest = linear(&movers[0], &movers[1], options.target_distance, limits);
-    let pose = |side: usize, i: u8, t: f32| {
-        let s = [a, b][side][i as usize];
+    Some([a, b].map(|side| side.iter().map(mover).collect()))
+}
+
+/// Reports a result on straight paths in world space.
+pub(super) fn straight_toi(
+    earliest: &Earliest<f32>,
+    sides: [&[MovingSphere]; 2],
+    options: &ToiOptions,
+) -> Toi {
+    to_toi(earliest, options, |side, i, t| {
+        let s = sides[side][usize::from(i)];
         MedialSphere::new(s.center + s.displacement * t, s.radius)
-    };
-    to_toi(&earliest, options, pose)
+    })
 }
 
 /// First contact of two primitives in exact rigid motion over `seconds`, in `f32`: spheres in their

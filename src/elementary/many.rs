@@ -1,15 +1,18 @@
-//! Many elementary tests on straight paths at once: eight lanes of `f32`, each refilled with the
-//! next query as soon as its own is finished. Without that a group of eight takes as long as its
-//! slowest member, half as long again as the mean.
+//! Many elementary tests on straight paths at once, in eight lanes of `f32`. After each round of
+//! the bracket's loop the lanes are filled anew with queries that are not finished; otherwise a group
+//! of eight takes as long as its slowest member, half as long again as the mean.
 //!
-//! On x86-64 with AVX the lanes are one register (`math::lane_avx`, chosen at run time),
+//! On x86-64 with AVX2 the lanes are one register (`math::lane_avx`, chosen at run time),
 //! elsewhere what [`wide`] makes of them. Both, and the scalar [`super::bracket::bracket`], give the
 //! same bits.
 
 use super::bracket::{Bracket, Limits, Running};
+use super::earliest::Earliest;
+use super::first_contact::{Straight, movers, options_limits, straight_toi};
 use super::path::LinearPath;
 use super::test_list::Domain;
-use crate::math::lane::{Mask, Octet, Vec3};
+use super::{MovingSphere, Toi, ToiOptions};
+use crate::math::lane::{Octet, Vec3};
 use crate::math::nearest::Nearest;
 use wide::f32x8;
 
@@ -21,7 +24,7 @@ const LANES: usize = 8;
 pub enum Lanes {
     /// What any processor of the target has.
     Baseline,
-    /// AVX, if the processor has it; else the baseline.
+    /// AVX2, if the processor has it; else the baseline.
     Fastest,
 }
 
@@ -30,10 +33,66 @@ impl Lanes {
     pub fn path(self) -> &'static str {
         #[cfg(target_arch = "x86_64")]
         if self == Self::Fastest && pulp::x86::V3::is_available() {
-            return "AVX";
+            return "AVX2";
         }
         "baseline"
     }
+}
+
+/// First contacts of many pairs of primitives on straight paths, in their order: each as
+/// [`super::first_contact()`] promises, with all elementary tests of all pairs in the lanes. The times
+/// may differ within the tolerances, since a test is followed here even where another one of its
+/// pair has found an earlier contact.
+pub fn first_contacts(
+    pairs: &[[&[MovingSphere]; 2]],
+    options: &ToiOptions,
+    lanes: Lanes,
+) -> Vec<Toi> {
+    let limits = options_limits(options);
+    let straight: Vec<Option<Straight<f32>>> = pairs
+        .iter()
+        .map(|&[a, b]| {
+            let movers = movers(a, b, options)?;
+            Some(Straight::new(movers, options.target_distance))
+        })
+        .collect();
+    let mut found = Vec::new();
+    for domain in [Domain::Box, Domain::Triangle] {
+        let (mut tests, mut paths) = (Vec::new(), Vec::new());
+        for (index, pair) in straight.iter().enumerate() {
+            let Some(pair) = pair else { continue };
+            pair.for_each_test(|test| {
+                if test.domain == domain {
+                    tests.push((index, test));
+                    paths.push(pair.path(&test));
+                }
+                true
+            });
+        }
+        found.extend(
+            tests
+                .into_iter()
+                .zip(brackets(&paths, domain, &limits, lanes)),
+        );
+    }
+    let mut earliest = vec![Earliest::new(limits); pairs.len()];
+    for contacts in [true, false] {
+        for ((index, test), bracket) in &found {
+            if bracket.contact == contacts {
+                let earliest = &mut earliest[*index];
+                earliest.tests += 1;
+                earliest.take(*test, *bracket, limits.start, [0, 0]);
+            }
+        }
+    }
+    let mut answers = vec![Toi::bad_input(options); pairs.len()];
+    for (index, pair) in straight.iter().enumerate() {
+        if let Some(pair) = pair {
+            pair.conclude(&mut earliest[index]);
+            answers[index] = straight_toi(&earliest[index], pairs[index], options);
+        }
+    }
+    answers
 }
 
 /// Brackets of many tests of one domain, in their order.
@@ -77,6 +136,14 @@ fn by_domain<L: Octet>(
     }
 }
 
+/// A query between two rounds.
+#[derive(Clone, Copy)]
+struct Open {
+    index: usize,
+    /// As [`to_rows`] and [`from_rows`] have it.
+    state: [f32; LANES],
+}
+
 #[inline(always)]
 fn run<L: Octet>(
     paths: &[LinearPath<f32>],
@@ -91,125 +158,225 @@ fn run<L: Octet>(
         horizon: splat(limits.horizon),
         max_iterations: limits.max_iterations,
     };
-    // First what one direction settles, and what each query needs from the whole step.
+    // Rounds are counted in f32, which is exact until then.
+    let cap = splat(limits.max_iterations.min(1 << 24) as f32);
+    // First what needs no iteration.
     let mut results = Vec::with_capacity(paths.len());
-    let mut open: Vec<(usize, f32)> = Vec::with_capacity(paths.len());
+    let mut open = Vec::with_capacity(paths.len());
     for group in paths.chunks(LANES) {
-        let running = Running::new(&side_by_side::<L>(group), domain, &wide_limits);
-        let speeds = running.speed.to_array();
-        for (lane, speed) in speeds.into_iter().enumerate().take(group.len()) {
-            let bracket = lane_of(&running.bracket, lane, 0);
-            if !bracket.separated {
-                open.push((results.len(), speed));
+        let lanes = std::array::from_fn(|lane| &group[lane.min(group.len() - 1)]);
+        let running = Running::new(&side_by_side::<L>(lanes), domain, &wide_limits);
+        let active = L::bits(running.active);
+        let states = to_rows(&running, L::zero());
+        for (lane, state) in states.into_iter().enumerate().take(group.len()) {
+            let is_open = active >> lane & 1 == 1;
+            let index = results.len();
+            results.push(waiting(&state, !is_open));
+            if is_open && limits.max_iterations > 0 {
+                open.push(Open { index, state });
             }
-            results.push(bracket);
         }
     }
-    // Then the rest, each lane on its own clock.
-    let Some(first) = open.first() else {
-        return results;
-    };
-    let mut path = side_by_side::<L>(std::slice::from_ref(&paths[first.0]));
-    let mut running = Running::new(&path, domain, &wide_limits);
-    running.active = L::Mask::splat(false);
-    let mut waiting = open.into_iter();
-    let mut slots = [None; LANES];
-    let mut rounds = [0; LANES];
-    loop {
-        let still = L::bits(running.active);
-        for lane in 0..LANES {
-            if still >> lane & 1 == 1 && rounds[lane] < limits.max_iterations {
-                continue;
-            }
-            if let Some(index) = slots[lane].take() {
-                results[index] = lane_of(&running.bracket, lane, rounds[lane]);
-            }
-            L::set_mask(&mut running.active, lane, false);
-            if let Some((index, speed)) = waiting.next() {
-                slots[lane] = Some(index);
-                rounds[lane] = 0;
-                replace(&mut path, lane, &paths[index]);
-                restart(&mut running, &results[index], speed, lane);
-            }
-        }
-        if L::bits(running.active) == 0 {
-            return results;
-        }
+    // Then rounds of the last eight that are open; those still open after a round go back.
+    while let Some(&last) = open.last() {
+        let count = open.len().min(LANES);
+        let mut group = [last; LANES];
+        group[..count].copy_from_slice(&open[open.len() - count..]);
+        open.truncate(open.len() - count);
+        let path = side_by_side::<L>(group.each_ref().map(|query| &paths[query.index]));
+        let (mut running, rounds) = from_rows::<L>(group.map(|query| query.state), &wide_limits);
         running.advance(&path, domain, &wide_limits);
-        for round in &mut rounds {
-            *round += 1;
+        let rounds = rounds + L::one();
+        let again = L::bits(running.active & rounds.lt(cap));
+        let states = to_rows(&running, rounds);
+        for lane in (0..count).filter(|lane| again >> lane & 1 == 1) {
+            open.push(Open {
+                state: states[lane],
+                ..group[lane]
+            });
         }
+        let finished = (0..count).filter(|lane| again >> lane & 1 == 0);
+        finish(&running, &states, finished, &group, &mut results);
     }
+    results
 }
 
-/// Up to eight paths side by side, member by member; the last path fills the lanes left over.
+// Not `array::map` in the functions below: it is not always inlined, and what is not inlined is not
+// compiled for AVX.
+
+/// Members of each lane together.
 #[inline(always)]
-fn side_by_side<L: Octet>(group: &[LinearPath<f32>]) -> LinearPath<L> {
-    let last = group.len() - 1;
-    let lanes: [&LinearPath<f32>; LANES] = std::array::from_fn(|lane| &group[lane.min(last)]);
-    let all = |member: &dyn Fn(&LinearPath<f32>) -> f32| L::from_array(lanes.map(member));
-    let vector = |of: &dyn Fn(&LinearPath<f32>) -> Vec3<f32>| {
-        Vec3::new(all(&|p| of(p).x), all(&|p| of(p).y), all(&|p| of(p).z))
-    };
-    LinearPath {
-        start: std::array::from_fn(|k| vector(&|p| p.start[k])),
-        rate: std::array::from_fn(|k| vector(&|p| p.rate[k])),
-        radius: std::array::from_fn(|k| all(&|p| p.radius[k])),
-    }
+fn columns<L: Octet>(rows: [L; LANES]) -> [[f32; LANES]; LANES] {
+    let [a, b, c, d, e, f, g, h] = L::transpose(rows);
+    [
+        a.to_array(),
+        b.to_array(),
+        c.to_array(),
+        d.to_array(),
+        e.to_array(),
+        f.to_array(),
+        g.to_array(),
+        h.to_array(),
+    ]
 }
 
-/// Replaces the path of one lane.
+/// The reverse of [`columns`].
 #[inline(always)]
-fn replace<L: Octet>(all: &mut LinearPath<L>, lane: usize, one: &LinearPath<f32>) {
-    let set = |v: &mut Vec3<L>, to: Vec3<f32>| {
-        v.x.set(lane, to.x);
-        v.y.set(lane, to.y);
-        v.z.set(lane, to.z);
-    };
-    for k in 0..4 {
-        set(&mut all.start[k], one.start[k]);
-        set(&mut all.rate[k], one.rate[k]);
-        all.radius[k].set(lane, one.radius[k]);
-    }
+fn rows_of<L: Octet>(columns: [[f32; LANES]; LANES]) -> [L; LANES] {
+    let [a, b, c, d, e, f, g, h] = columns;
+    L::transpose([
+        L::from_array(a),
+        L::from_array(b),
+        L::from_array(c),
+        L::from_array(d),
+        L::from_array(e),
+        L::from_array(f),
+        L::from_array(g),
+        L::from_array(h),
+    ])
 }
 
-/// Puts a query that [`Running::new`] left open into a lane.
+/// What passes from round to round, query by query.
 #[inline(always)]
-fn restart<L: Octet>(running: &mut Running<L>, from: &Bracket<f32>, speed: f32, lane: usize) {
-    let b = &mut running.bracket;
-    b.lower.set(lane, from.lower);
-    b.upper.set(lane, from.upper);
-    b.tolerance.set(lane, from.tolerance);
-    b.slack.set(lane, from.slack);
-    running.speed.set(lane, speed);
-    L::set_mask(&mut b.contact, lane, false);
-    L::set_mask(&mut b.separated, lane, false);
-    L::set_mask(&mut running.active, lane, true);
-    L::set_mask(&mut running.fresh, lane, true);
-    L::set_mask(&mut running.rooted, lane, false);
+fn to_rows<L: Octet>(running: &Running<L>, rounds: L) -> [[f32; LANES]; LANES] {
+    let b = &running.bracket;
+    let rooted = L::select(running.rooted, L::one(), L::zero());
+    columns([
+        b.lower,
+        b.upper,
+        b.tolerance,
+        b.slack,
+        running.speed,
+        b.start_distance,
+        rooted,
+        rounds,
+    ])
 }
 
+/// Queries as [`to_rows`] left them, and their rounds so far.
 #[inline(always)]
-fn lane_of<L: Octet>(b: &Bracket<L>, lane: usize, iterations: u32) -> Bracket<f32> {
-    let get = |v: L| v.to_array()[lane];
-    let is_set = |mask: L::Mask| L::bits(mask) >> lane & 1 == 1;
-    let vector = |v: Vec3<L>| Vec3::new(get(v.x), get(v.y), get(v.z));
+fn from_rows<L: Octet>(rows: [[f32; LANES]; LANES], limits: &Limits<L>) -> (Running<L>, L) {
+    let [
+        lower,
+        upper,
+        tolerance,
+        slack,
+        speed,
+        start_distance,
+        rooted,
+        rounds,
+    ] = rows_of::<L>(rows);
+    let mut running = Running::at(limits, slack, speed);
+    running.bracket.lower = lower;
+    running.bracket.upper = upper;
+    running.bracket.tolerance = tolerance;
+    running.bracket.start_distance = start_distance;
+    running.rooted = L::zero().lt(rooted);
+    running.fresh = rounds.le(L::zero());
+    (running, rounds)
+}
+
+/// A query before its first round, with its state.
+fn waiting(state: &[f32; LANES], separated: bool) -> Bracket<f32> {
+    let &[lower, upper, tolerance, slack, ..] = state;
     Bracket {
-        lower: get(b.lower),
-        upper: get(b.upper),
-        contact: is_set(b.contact),
-        separated: is_set(b.separated),
-        tolerance: get(b.tolerance),
-        slack: get(b.slack),
-        start_distance: get(b.start_distance),
+        lower,
+        upper,
+        contact: false,
+        separated,
+        tolerance,
+        slack,
+        start_distance: 0.0,
         nearest: Nearest {
-            alpha: get(b.nearest.alpha),
-            beta: get(b.nearest.beta),
-            distance: get(b.nearest.distance),
-            y: vector(b.nearest.y),
-            length: get(b.nearest.length),
+            alpha: 0.0,
+            beta: 0.0,
+            distance: 0.0,
+            y: Vec3::zero(),
+            length: 0.0,
         },
-        normal: vector(b.normal),
-        iterations,
+        normal: Vec3::zero(),
+        iterations: 0,
+    }
+}
+
+/// Writes the results of the lanes that are finished.
+#[inline(always)]
+fn finish<L: Octet>(
+    running: &Running<L>,
+    states: &[[f32; LANES]; LANES],
+    finished: impl Iterator<Item = usize>,
+    group: &[Open; LANES],
+    results: &mut [Bracket<f32>],
+) {
+    let Bracket {
+        nearest: s,
+        normal: n,
+        ..
+    } = &running.bracket;
+    let rows = [
+        s.alpha, s.beta, s.distance, s.y.x, s.y.y, s.y.z, s.length, n.x,
+    ];
+    let rows = columns(rows);
+    let rest = [n.y.to_array(), n.z.to_array()];
+    let contact = L::bits(running.bracket.contact);
+    let separated = L::bits(running.bracket.separated);
+    for lane in finished {
+        let [lower, upper, tolerance, slack, _, start_distance, _, rounds] = states[lane];
+        let [alpha, beta, distance, x, y, z, length, normal] = rows[lane];
+        results[group[lane].index] = Bracket {
+            lower,
+            upper,
+            contact: contact >> lane & 1 == 1,
+            separated: separated >> lane & 1 == 1,
+            tolerance,
+            slack,
+            start_distance,
+            nearest: Nearest {
+                alpha,
+                beta,
+                distance,
+                y: Vec3::new(x, y, z),
+                length,
+            },
+            normal: Vec3::new(normal, rest[0][lane], rest[1][lane]),
+            iterations: rounds as u32,
+        };
+    }
+}
+
+/// Eight paths side by side, member by member.
+#[inline(always)]
+fn side_by_side<L: Octet>(paths: [&LinearPath<f32>; LANES]) -> LinearPath<L> {
+    let eight = |row: fn(&LinearPath<f32>) -> [f32; LANES]| rows_of::<L>(paths.map(row));
+    let [x0, y0, z0, x1, y1, z1, x2, y2] = eight(|p| {
+        let [a, b, c, _] = p.start;
+        [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y]
+    });
+    let [z2, x3, y3, z3, r0, r1, r2, r3] = eight(|p| {
+        let ([_, _, c, d], r) = (p.start, p.radius);
+        [c.z, d.x, d.y, d.z, r[0], r[1], r[2], r[3]]
+    });
+    let [dx0, dy0, dz0, dx1, dy1, dz1, dx2, dy2] = eight(|p| {
+        let [a, b, c, _] = p.rate;
+        [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y]
+    });
+    let [dz2, dx3, dy3, dz3, ..] = eight(|p| {
+        let [_, _, c, d] = p.rate;
+        [c.z, d.x, d.y, d.z, 0.0, 0.0, 0.0, 0.0]
+    });
+    LinearPath {
+        start: [
+            Vec3::new(x0, y0, z0),
+            Vec3::new(x1, y1, z1),
+            Vec3::new(x2, y2, z2),
+            Vec3::new(x3, y3, z3),
+        ],
+        rate: [
+            Vec3::new(dx0, dy0, dz0),
+            Vec3::new(dx1, dy1, dz1),
+            Vec3::new(dx2, dy2, dz2),
+            Vec3::new(dx3, dy3, dz3),
+        ],
+        radius: [r0, r1, r2, r3],
     }
 }

@@ -26,6 +26,7 @@ pub mod bracket;
 pub mod certificate;
 pub mod cone_cone;
 pub mod distance;
+pub mod earliest;
 pub mod f64;
 pub mod first_contact;
 pub mod many;

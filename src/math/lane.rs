@@ -78,7 +78,7 @@ pub trait Scalar: Lane<Mask = bool> + PartialOrd {
     fn to_f64(self) -> f64;
 }
 
-/// Eight lanes of `f32` whose members can be read and replaced.
+/// Eight lanes of `f32` whose members can be read.
 pub trait Octet: Lane {
     /// From its members.
     fn from_array(values: [f32; 8]) -> Self;
@@ -86,40 +86,9 @@ pub trait Octet: Lane {
     fn to_array(self) -> [f32; 8];
     /// Truth values as bits, lane 0 lowest.
     fn bits(mask: Self::Mask) -> u8;
-    /// Truth values whose bit patterns are given: all bits of a lane set, or none.
-    fn mask(self) -> Self::Mask;
-    /// The bit patterns of truth values.
-    fn from_mask(mask: Self::Mask) -> Self;
-
-    /// Truth of one lane alone.
-    #[inline(always)]
-    fn only(lane: usize) -> Self::Mask {
-        Self::from_array(ONLY[lane]).mask()
-    }
-    /// Replaces one member. By a blend: a member written through memory would stall the load of
-    /// all eight that follows.
-    #[inline(always)]
-    fn set(&mut self, lane: usize, value: f32) {
-        *self = Self::select(Self::only(lane), Self::splat(value.into()), *self);
-    }
-    /// Replaces one truth value.
-    #[inline(always)]
-    fn set_mask(mask: &mut Self::Mask, lane: usize, value: bool) {
-        let only = Self::only(lane);
-        *mask = if value { *mask | only } else { *mask & !only };
-    }
+    /// Lane `i` of row `k` becomes lane `k` of row `i`.
+    fn transpose(rows: [Self; 8]) -> [Self; 8];
 }
-
-/// Bit patterns of the masks with one lane true.
-const ONLY: [[f32; 8]; 8] = {
-    let mut only = [[0.0; 8]; 8];
-    let mut lane = 0;
-    while lane < 8 {
-        only[lane][lane] = f32::from_bits(u32::MAX);
-        lane += 1;
-    }
-    only
-};
 
 impl Octet for f32x8 {
     #[inline(always)]
@@ -135,12 +104,8 @@ impl Octet for f32x8 {
         mask.to_bitmask() as u8
     }
     #[inline(always)]
-    fn mask(self) -> f32x8 {
-        self
-    }
-    #[inline(always)]
-    fn from_mask(mask: f32x8) -> Self {
-        mask
+    fn transpose(rows: [Self; 8]) -> [Self; 8] {
+        f32x8::transpose(rows)
     }
 }
 
@@ -307,6 +272,11 @@ impl<L: Lane> Vec3<L> {
     #[inline(always)]
     pub fn length_sq(self) -> L {
         self.dot(self)
+    }
+    /// Sum of the members' sizes.
+    #[inline(always)]
+    pub fn taxicab(self) -> L {
+        self.x.abs() + self.y.abs() + self.z.abs()
     }
     /// Length.
     #[inline(always)]

@@ -126,11 +126,49 @@ impl Octet for F32x8Avx {
         simd().avx._mm256_movemask_ps(mask.0) as u8
     }
     #[inline(always)]
-    fn mask(self) -> MaskAvx {
-        MaskAvx(self.0)
+    fn transpose(rows: [Self; 8]) -> [Self; 8] {
+        // Pairs of rows, then quartets, then halves.
+        let [a, b, c, d, e, f, g, h] = rows;
+        let (ab, cd) = (a.interleave(b), c.interleave(d));
+        let (ef, gh) = (e.interleave(f), g.interleave(h));
+        let top = [ab[0].pairs(cd[0]), ab[1].pairs(cd[1])];
+        let bottom = [ef[0].pairs(gh[0]), ef[1].pairs(gh[1])];
+        let ([r0, r4], [r1, r5]) = (
+            top[0][0].halves(bottom[0][0]),
+            top[0][1].halves(bottom[0][1]),
+        );
+        let ([r2, r6], [r3, r7]) = (
+            top[1][0].halves(bottom[1][0]),
+            top[1][1].halves(bottom[1][1]),
+        );
+        [r0, r1, r2, r3, r4, r5, r6, r7]
+    }
+}
+
+/// Steps of the transposition; each half of a register on its own but in the last.
+impl F32x8Avx {
+    #[inline(always)]
+    fn interleave(self, other: Self) -> [Self; 2] {
+        let avx = simd().avx;
+        [
+            Self(avx._mm256_unpacklo_ps(self.0, other.0)),
+            Self(avx._mm256_unpackhi_ps(self.0, other.0)),
+        ]
     }
     #[inline(always)]
-    fn from_mask(mask: MaskAvx) -> Self {
-        Self(mask.0)
+    fn pairs(self, other: Self) -> [Self; 2] {
+        let avx = simd().avx;
+        [
+            Self(avx._mm256_shuffle_ps::<0b01_00_01_00>(self.0, other.0)),
+            Self(avx._mm256_shuffle_ps::<0b11_10_11_10>(self.0, other.0)),
+        ]
+    }
+    #[inline(always)]
+    fn halves(self, other: Self) -> [Self; 2] {
+        let avx = simd().avx;
+        [
+            Self(avx._mm256_permute2f128_ps::<0x20>(self.0, other.0)),
+            Self(avx._mm256_permute2f128_ps::<0x31>(self.0, other.0)),
+        ]
     }
 }

@@ -40,6 +40,25 @@ pub struct PointPath<S> {
     pub jerk: S,
 }
 
+/// Pose of a body at one time of its motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<S> {
+    /// Position of the centre of rotation.
+    pub center: Vec3<S>,
+    /// Columns of the rotation.
+    columns: [Vec3<S>; 3],
+    /// Centre of rotation in the body's frame.
+    local_center: Vec3<S>,
+}
+
+impl<S: Scalar> Frame<S> {
+    /// From the centre of rotation to a point given in the body's frame.
+    #[inline]
+    pub fn arm(&self, local: Vec3<S>) -> Vec3<S> {
+        rotate(&self.columns, local - self.local_center)
+    }
+}
+
 /// Position, velocity and acceleration of a point, per step.
 #[derive(Clone, Copy, Debug)]
 pub struct PointState<S> {
@@ -111,10 +130,29 @@ impl<S: Scalar> RigidMotion<S> {
     }
 
     /// A direction given in the body's frame, turned until the time of [`Self::sin_cos`].
-    pub fn direction(&self, local: Vec3<S>, (sin, cos): (S, S)) -> Vec3<S> {
-        let rho = rotate(&self.columns, local);
+    pub fn direction(&self, local: Vec3<S>, turned: (S, S)) -> Vec3<S> {
+        self.turn(rotate(&self.columns, local), turned)
+    }
+
+    /// A vector turned about the axis.
+    fn turn(&self, rho: Vec3<S>, (sin, cos): (S, S)) -> Vec3<S> {
         let along = self.axis * self.axis.dot(rho);
         along + (rho - along) * cos + self.axis.cross(rho) * sin
+    }
+
+    /// Where the body is at `t`.
+    pub fn frame(&self, t: S) -> Frame<S> {
+        let turned = self.sin_cos(t);
+        Frame {
+            center: self.center + self.displacement * t,
+            columns: self.columns.map(|column| self.turn(column, turned)),
+            local_center: self.local_center,
+        }
+    }
+
+    /// Length of the acceleration of a point, given its [`Frame::arm`] at any time, per step squared.
+    pub fn acceleration(&self, arm: Vec3<S>) -> S {
+        self.angle * self.angle * self.axis.cross(arm).length()
     }
 
     /// Angular velocity, in radians per step.

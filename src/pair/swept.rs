@@ -4,10 +4,12 @@
 use super::apart::Balls;
 use super::volumes::Volumes;
 use crate::math::lane::Vec3;
-use crate::math::motion::RigidMotion;
+use crate::math::motion::{Frame, RigidMotion};
 use crate::medial::tree::Below;
+use std::ops::Range;
 
-/// Chord of a node's centre over a piece, and the radius around it that covers the node.
+/// Chord of a node's centre over a piece, and the radius around it that covers the node, rounding
+/// included.
 #[derive(Clone, Copy)]
 pub(super) struct Swept {
     pub(super) start: Vec3<f64>,
@@ -26,7 +28,8 @@ pub(super) struct Side<'a, V> {
     pub(super) body: &'a V,
     motion: RigidMotion<f64>,
     times: [f64; 2],
-    turned: [(f64, f64); 2],
+    /// At the start and the end of the piece.
+    frames: [Frame<f64>; 2],
     nodes: Vec<Swept>,
     balls: Vec<Balls>,
 }
@@ -37,16 +40,16 @@ impl<'a, V: Volumes> Side<'a, V> {
             body,
             motion,
             times: [0.0; 2],
-            turned: [(0.0, 1.0); 2],
-            nodes: Vec::new(),
-            balls: Vec::new(),
+            frames: [motion.frame(0.0); 2],
+            nodes: Vec::with_capacity(256),
+            balls: Vec::with_capacity(64),
         }
     }
 
     /// Turns to the piece between two times, with its roots swept: the first of [`Self::node`].
     pub(super) fn begin(&mut self, start: f64, end: f64) {
         self.times = [start, end];
-        self.turned = self.times.map(|t| self.motion.sin_cos(t));
+        self.frames = self.times.map(|t| self.motion.frame(t));
         self.nodes.clear();
         self.balls.clear();
         for root in 0..self.body.roots() {
@@ -58,21 +61,24 @@ impl<'a, V: Volumes> Side<'a, V> {
         &self.nodes[at as usize]
     }
 
-    /// Where the two children of a swept node are; `None` if it is a leaf.
-    pub(super) fn split(&mut self, at: u32) -> Option<[u32; 2]> {
+    /// Where the two children of a swept node are; itself if it is a leaf, or not to be split.
+    pub(super) fn parts(&mut self, at: u32, split: bool) -> Range<u32> {
         let Swept { below, next, .. } = *self.node(at);
         let Below::Nodes(first, second) = below else {
-            return None;
+            return at..at + 1;
         };
+        if !split {
+            return at..at + 1;
+        }
         if next != NOT_YET {
-            return Some([next, next + 1]);
+            return next..next + 2;
         }
         let new = self.nodes.len() as u32;
         for child in [first, second] {
             self.nodes.push(self.sweep(child));
         }
         self.nodes[at as usize].next = new;
-        Some([new, new + 1])
+        new..new + 2
     }
 
     /// Sweeps the spheres of a leaf's primitive; where they are for [`Self::balls`].
@@ -99,19 +105,28 @@ impl<'a, V: Volumes> Side<'a, V> {
 
     /// Position of a point at the start of the piece, the chord of its path, and the sagitta.
     fn chord(&self, local: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>, f64) {
-        let path = self.motion.point(local);
-        let [from, to] = [0, 1].map(|k| path.at(self.times[k], self.turned[k]).position);
+        let [from, to] = &self.frames;
+        let arms = [from.arm(local), to.arm(local)];
         let length = self.times[1] - self.times[0];
-        (from, to - from, path.acceleration * (length * length) / 8.0)
+        let acceleration = self.motion.acceleration(arms[0]);
+        (
+            from.center + arms[0],
+            (to.center - from.center) + (arms[1] - arms[0]),
+            acceleration * (length * length) / 8.0,
+        )
     }
 
     fn sweep(&self, node: u32) -> Swept {
         let (center, radius) = self.body.bound(node);
         let (start, chord, sagitta) = self.chord(Vec3::from_vector(center));
+        let radius = f64::from(radius) + sagitta;
+        // Rounding of positions, chords and the time at which they meet: a few ulps of the numbers in
+        // play.
+        let size = start.taxicab() + chord.taxicab() + radius;
         Swept {
             start,
             chord,
-            radius: f64::from(radius) + sagitta,
+            radius: radius + 64.0 * f64::EPSILON * size,
             below: self.body.below(node),
             next: NOT_YET,
         }

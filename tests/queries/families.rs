@@ -34,8 +34,7 @@ fn hits_come_in_the_share_intended() {
             Family::TouchApproaching => within(start, 30.0, 70.0) && within(later, 30.0, 70.0),
             Family::Overlapping => start > 99.0,
             Family::TwoContacts => start + later > 99.0 && later > 50.0,
-            // Mostly apart: planned for the middle of a step of length zero.
-            Family::ZeroStep => within(start, 5.0, 70.0) && later == 0.0,
+            Family::ZeroStep => within(start, 30.0, 70.0) && later == 0.0,
             _ => within(start + later, 30.0, 75.0) && later > 20.0,
         };
         assert!(

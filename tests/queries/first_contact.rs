@@ -56,11 +56,13 @@ fn permuted(query: &Query) -> Query {
 /// Returns the tallies of all subjects.
 fn guarantee(family: Family) -> [Tally; 3] {
     let mut rng = Rng::new(1000 + family as u64);
+    // The lanes are judged in batches, in `lanes.rs`.
+    let subjects = [Subject::Single, Subject::Double, Subject::Paper];
     let mut tallies: [Tally; 3] = Default::default();
     for k in 0..QUERIES {
         let query = family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
         let truth = Truth::new(&query, 0.0);
-        for (subject, tally) in Subject::ALL.into_iter().zip(&mut tallies) {
+        for (subject, tally) in subjects.into_iter().zip(&mut tallies) {
             judge(subject, family, &query, 0.0, &truth, tally);
         }
         if k % 10 == 0 {
@@ -82,6 +84,9 @@ fn guarantee(family: Family) -> [Tally; 3] {
             tally.early()[1] <= width && tally.width()[1] <= width,
             "{family:?} {tally:?}"
         );
+        // Bodies that near each other slowly are within the tolerance for long before they touch.
+        let is_slow = matches!(family, Family::Grazing | Family::NearEqual);
+        assert!(is_slow || tally.before()[1] <= 1.0e-3, "{family:?}");
     }
     // Near-equal bodies that turn together, nearly touching: each one's own turning bounds the step,
     // and steps get short. Measured over 9,000 queries: 3 in single, 43 in double precision, at a

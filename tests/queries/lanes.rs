@@ -1,13 +1,17 @@
 //! Eight lanes at once give the bits of the scalar kernel, on either path, whatever the others in
-//! their group do.
+//! their group do; and whole queries in lanes keep the guarantee.
 
 use crate::ccd::families::Family;
+use crate::ccd::judge::{Tally, Truth};
 use crate::ccd::rng::Rng;
+use crate::ccd::subject::Subject;
 use rapier3d_medial::elementary::bracket::{Bracket, Limits, bracket};
-use rapier3d_medial::elementary::many::{Lanes, brackets};
+use rapier3d_medial::elementary::many::{Lanes, brackets, first_contacts};
 use rapier3d_medial::elementary::path::LinearPath;
 use rapier3d_medial::elementary::test_list::{Domain, ElementaryTest};
+use rapier3d_medial::elementary::{MovingSphere, ToiOptions, ToiStatus, first_contact};
 use rapier3d_medial::math::lane::Vec3;
+use rapier3d_medial::math::{Real, Vector};
 
 /// One test of each straight query of the family that has spheres enough for it.
 fn paths(family: Family, domain: Domain) -> Vec<LinearPath<f32>> {
@@ -71,4 +75,62 @@ fn lanes_give_the_bits_of_the_scalar_kernel() {
         "{contacts} {separated}"
     );
     assert!(brackets(&[], Domain::Box, &limits, Lanes::Fastest).is_empty());
+}
+
+/// Many queries at once, judged by the oracle like the others.
+#[test]
+fn many_keep_the_guarantee() {
+    for family in Family::ALL {
+        let mut rng = Rng::new(5000 + family as u64);
+        let queries: Vec<_> = (0..900)
+            .map(|k| family.query([1 + k % 3, 1 + k / 3 % 3], false, &mut rng))
+            .collect();
+        let options = Subject::Lanes.options(family.size());
+        let answers = Subject::Lanes.answers(&queries, &options);
+        let mut tally = Tally::default();
+        for (query, answer) in queries.iter().zip(answers) {
+            let (truth, answer) = (Truth::new(query, 0.0), answer.unwrap());
+            let verdict = truth.judge(&answer, options.time_tolerance.into());
+            tally.add(&truth, &answer, &verdict, 0.0);
+        }
+        let guilty = [
+            tally.missed,
+            tally.late,
+            tally.false_hits,
+            tally.misnamed,
+            tally.wide,
+        ];
+        assert_eq!(guilty, [0; 5], "{family:?}");
+        assert_eq!((tally.queries, tally.unresolved), (900, 0), "{family:?}");
+    }
+}
+
+/// Refused input is told for its own pair only.
+#[test]
+fn bad_pairs_leave_the_others_alone() {
+    let sphere = |x, radius| MovingSphere {
+        center: Vector::new(x, 0.0, 0.0),
+        radius,
+        displacement: Vector::new(-x, 0.0, 0.0),
+    };
+    let (still, flying) = ([sphere(0.0, 1.0)], [sphere(4.0, 1.0)]);
+    let (negative, nan) = ([sphere(4.0, -1.0)], [sphere(Real::NAN, 1.0)]);
+    let pairs = [
+        [&still[..], &flying[..]],
+        [&still, &negative],
+        [&nan, &flying],
+        [&still, &[]],
+        [&flying, &still],
+    ];
+    let options = ToiOptions::default();
+    let answers = first_contacts(&pairs, &options, Lanes::Fastest);
+    for (k, (answer, [a, b])) in answers.iter().zip(pairs).enumerate() {
+        let alone = first_contact(a, b, &options);
+        assert_eq!(*answer, alone, "{k}");
+        let bad = (1..=3).contains(&k);
+        let lower = if bad { 0.0 } else { 0.5 };
+        assert_eq!(answer.status == ToiStatus::Unresolved, bad, "{k}");
+        assert!((answer.lower - lower).abs() < 1.0e-4, "{k}: {answer:?}");
+    }
+    assert!(first_contacts(&[], &options, Lanes::Fastest).is_empty());
 }

@@ -22,7 +22,7 @@ pub enum Family {
     SmallRotation,
     /// Rotation by 0.3 rad to a full turn.
     LargeRotation,
-    /// Passing at a distance of ±1e-7 to ±0.1 sizes, tangentially.
+    /// Passing at a distance of 0 (a quarter) or ±1e-7 to ±0.1 sizes, tangentially.
     Grazing,
     /// Touching within ±1e-4 sizes at the start, then separating.
     TouchSeparating,
@@ -123,7 +123,8 @@ impl Family {
             Self::LargeRotation => plan.angle = rng.range(0.3, TAU),
             Self::Grazing => {
                 plan.angle = half_turns;
-                plan.gap = rng.sign() * rng.log_range(1.0e-7, 0.1);
+                plan.gap =
+                    [0.0, 1.0, 1.0, 1.0][rng.below(4)] * rng.sign() * rng.log_range(1.0e-7, 0.1);
                 plan.rate = Some(0.0);
             }
             Self::TouchSeparating | Self::TouchApproaching => {
@@ -160,7 +161,10 @@ impl Family {
                 plan.travel = [0.0, rng.log_range(1.0e-6, 1.0)][rng.below(2)];
                 plan.gap = rng.sign() * rng.log_range(1.0e-7, 1.0);
             }
-            Self::ZeroStep => plan.gap = rng.sign() * rng.log_range(1.0e-6, 1.0),
+            Self::ZeroStep => {
+                plan.time = 0.0;
+                plan.gap = rng.sign() * rng.log_range(1.0e-6, 1.0);
+            }
             Self::Coincident => plan.crossing = rng.chance(0.3),
             Self::Translation => {}
             _ => plan.angle = half_turns,

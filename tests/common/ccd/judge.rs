@@ -81,6 +81,12 @@ impl Truth {
             ToiStatus::Contact => {
                 verdict.false_hit = gap(answer.upper).0 > answer.tolerance;
                 verdict.early = Some(self.early(answer));
+                let before = |contact: f64| (contact - answer.lower).max(0.0);
+                let contact = self
+                    .contact
+                    .contact_at
+                    .filter(|_| start.0 > answer.tolerance);
+                verdict.before = contact.map(before);
                 verdict.width = Some(answer.upper - answer.lower);
                 verdict.wide = answer.upper - answer.lower > width;
                 verdict.misnamed = deep_at_start;
@@ -127,6 +133,10 @@ pub struct Verdict {
     pub unresolved: bool,
     /// By how much `lower` precedes the time at which the tolerance is reached.
     pub early: Option<f64>,
+    /// By how much `lower` precedes the true contact, where there is one and the bodies are not within
+    /// the tolerance from the start on. A body that nears another at speed `v` is within the
+    /// tolerance by `tolerance / v` before it touches, and contact may be told from then on.
+    pub before: Option<f64>,
     /// Width of the bracket.
     pub width: Option<f64>,
 }
@@ -150,14 +160,15 @@ pub struct Tally {
     pub wide: usize,
     /// See [`Verdict`].
     pub unresolved: usize,
-    /// Time spent on answers.
-    pub time: Duration,
     /// Sum of iterations.
     pub iterations: u64,
     /// Most iterations.
     pub most_iterations: u32,
     early: Vec<f32>,
+    before: Vec<f32>,
     width: Vec<f32>,
+    /// Time of each answer.
+    pub nanoseconds: Vec<f32>,
 }
 
 impl Tally {
@@ -171,16 +182,17 @@ impl Tally {
         self.misnamed += other.misnamed;
         self.wide += other.wide;
         self.unresolved += other.unresolved;
-        self.time += other.time;
         self.iterations += other.iterations;
         self.most_iterations = self.most_iterations.max(other.most_iterations);
         self.early.extend(other.early);
+        self.before.extend(other.before);
         self.width.extend(other.width);
+        self.nanoseconds.extend(other.nanoseconds);
     }
 
     /// Adds a verdict; an answer counts as late beyond `late_by`.
     pub fn add(&mut self, truth: &Truth, answer: &Answer, verdict: &Verdict, late_by: f64) {
-        self.time += answer.time;
+        self.nanoseconds.push(answer.time.as_nanos() as f32);
         self.queries += 1;
         self.hits += usize::from(truth.is_hit());
         self.missed += usize::from(verdict.missed);
@@ -192,7 +204,13 @@ impl Tally {
         self.iterations += u64::from(answer.iterations);
         self.most_iterations = self.most_iterations.max(answer.iterations);
         self.early.extend(verdict.early.map(|x| x as f32));
+        self.before.extend(verdict.before.map(|x| x as f32));
         self.width.extend(verdict.width.map(|x| x as f32));
+    }
+
+    /// Median and 99th percentile of how long before true contacts `lower` is.
+    pub fn before(&mut self) -> [f32; 2] {
+        percentiles(&mut self.before)
     }
 
     /// Median and 99th percentile of how early contacts are told.
@@ -206,8 +224,9 @@ impl Tally {
     }
 }
 
-fn percentiles(values: &mut [f32]) -> [f32; 2] {
-    values.sort_by(f32::total_cmp);
+/// Median and 99th percentile; 0 of nothing.
+pub fn percentiles(values: &mut [f32]) -> [f32; 2] {
+    values.sort_unstable_by(f32::total_cmp);
     let last = values.len().saturating_sub(1);
     [0.5, 0.99].map(|p| {
         values

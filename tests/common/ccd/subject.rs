@@ -5,6 +5,7 @@ use super::motion::{Ball, Motion, Query, Rigid};
 use nalgebra::Vector3;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d_medial::MedialSphere;
+use rapier3d_medial::elementary::many::{Lanes, first_contacts};
 use rapier3d_medial::elementary::{self, MovingSphere, Toi, ToiOptions};
 use rapier3d_medial::math::{Pose, Rotation, Vector};
 use std::time::{Duration, Instant};
@@ -16,19 +17,18 @@ pub enum Subject {
     Single,
     /// The certified query in double precision.
     Double,
+    /// The certified query in single precision, many at once; straight paths only.
+    Lanes,
     /// The paper's iteration in double precision; straight paths only.
     Paper,
 }
 
 impl Subject {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Single, Self::Double, Self::Paper];
-
     /// The tolerances it is asked for, with bodies of the given length. For the paper's iteration
     /// it is the distance at which it stops.
     pub fn options(self, size: f64) -> ToiOptions {
         let (tolerance, time_tolerance) = match self {
-            Self::Single => (1.0e-4, 1.0e-6),
+            Self::Single | Self::Lanes => (1.0e-4, 1.0e-6),
             Self::Double => (1.0e-9, 1.0e-10),
             Self::Paper => (1.0e-6, 1.0e-6),
         };
@@ -41,23 +41,45 @@ impl Subject {
     /// By how much its contact time may exceed the true one: nothing where that is guaranteed.
     pub fn late_by(self) -> f64 {
         match self {
-            Self::Single | Self::Double => 0.0,
+            Self::Single | Self::Lanes | Self::Double => 0.0,
             Self::Paper => 1.0e-3,
         }
     }
 
+    /// The answers to queries. `None` where the subject does not take such queries.
+    pub fn answers(self, queries: &[Query], options: &ToiOptions) -> Vec<Option<Answer>> {
+        if self != Self::Lanes {
+            return queries
+                .iter()
+                .map(|query| self.answer(query, options))
+                .collect();
+        }
+        let is_straight = |query: &&Query| query.motion == Motion::Straight;
+        let sides: Vec<[Vec<MovingSphere>; 2]> = queries
+            .iter()
+            .filter(is_straight)
+            .map(|query| query.balls.each_ref().map(|balls| each(balls, single)))
+            .collect();
+        let pairs: Vec<_> = sides.iter().map(|[a, b]| [&a[..], &b[..]]).collect();
+        let (tois, time) = timed(|| first_contacts(&pairs, options, Lanes::Fastest));
+        let time = time / pairs.len().max(1) as u32;
+        let mut tois = tois.iter();
+        let mut next = || tois.next().map(|toi| answer(toi, time));
+        queries
+            .iter()
+            .map(|query| is_straight(&query).then(&mut next).flatten())
+            .collect()
+    }
+
     /// The answer to a query. `None` where the subject does not take such queries.
     pub fn answer(self, query: &Query, options: &ToiOptions) -> Option<Answer> {
-        if self == Self::Single {
-            let (toi, time) = single_toi(query, options);
-            return Some(Answer {
-                status: toi.status,
-                lower: toi.lower.into(),
-                upper: toi.upper.into(),
-                tolerance: toi.tolerance.into(),
-                iterations: toi.iterations,
-                time,
-            });
+        match self {
+            Self::Single => {
+                let (toi, time) = single_toi(query, options);
+                return Some(answer(&toi, time));
+            }
+            Self::Lanes => return self.answers(std::slice::from_ref(query), options)[0],
+            Self::Double | Self::Paper => {}
         }
         let [a, b] = &query.balls;
         let options = widen(options);
@@ -86,6 +108,17 @@ impl Subject {
             iterations: toi.iterations,
             time,
         })
+    }
+}
+
+fn answer(toi: &Toi, time: Duration) -> Answer {
+    Answer {
+        status: toi.status,
+        lower: toi.lower.into(),
+        upper: toi.upper.into(),
+        tolerance: toi.tolerance.into(),
+        iterations: toi.iterations,
+        time,
     }
 }
 
