@@ -8,7 +8,8 @@
 //! ends a collapse that the quadrics began.
 
 use super::bounds::Point;
-use super::draft::{Ball, Corners, signed_distance};
+use super::draft::{Ball, Corners, Signed};
+use super::prepared::Prepared;
 use super::simplify::Simplifier;
 use super::solid::Solid;
 use super::triangle_tree::TriangleTree;
@@ -237,7 +238,12 @@ impl<'a> Measure<'a> {
             }
         }
         let (mut squares, mut count) = (0.0, 0usize);
-        let mut around: Option<Vec<Corners>> = None;
+        let prepared: Vec<Prepared> = after
+            .primitives
+            .iter()
+            .map(|c| Prepared::new(*c, c.map(of)))
+            .collect();
+        let mut around: Option<Vec<Prepared>> = None;
         for &v in after.neighbors.iter().chain(&after.edge) {
             for &i in &self.of_ball[v as usize] {
                 let i = i as usize;
@@ -246,17 +252,11 @@ impl<'a> Measure<'a> {
                     continue;
                 }
                 let p = self.samples[i];
-                let to = |corners: &Corners| signed_distance(p, *corners, corners.map(of)).distance;
-                let mut d = after
-                    .primitives
-                    .iter()
-                    .map(to)
-                    .fold(f64::INFINITY, f64::min);
+                let to = |primitive: &Prepared| primitive.signed_distance(p).distance;
+                let mut d = prepared.iter().map(to).fold(f64::INFINITY, f64::min);
                 if d > self.distance[i] && d > accepted {
                     let around = around.get_or_insert_with(|| after.around(s));
-                    let old =
-                        |c: &Corners| signed_distance(p, *c, c.map(|v| balls[v as usize])).distance;
-                    d = around.iter().map(old).fold(d, f64::min);
+                    d = around.iter().map(to).fold(d, f64::min);
                 }
                 worst = worst.max(d.abs());
                 squares += d * d;
@@ -283,29 +283,31 @@ impl<'a> Measure<'a> {
     /// Gives samples their primitives after edge `ab` was merged into `a`.
     fn assign(&mut self, s: &Simplifier, [a, b]: [u32; 2], samples: Vec<u32>) {
         let complex = s.complex();
-        let own: Vec<Corners> = complex.primitives_at(a).collect();
-        let around: Vec<Corners> = complex
+        let prepare = |corners: Corners| {
+            let balls = corners.map(|v| complex.balls[v as usize]);
+            (Prepared::new(corners, balls), corners)
+        };
+        let own: Vec<_> = complex.primitives_at(a).map(prepare).collect();
+        let around: Vec<_> = complex
             .neighbors(a)
             .iter()
             .flat_map(|&v| complex.primitives_at(v))
             .filter(|c| !c.contains(&a))
+            .map(prepare)
             .collect();
         for i in samples {
             let at = i as usize;
             let p = self.samples[at];
-            let to = |corners: Corners| {
-                let balls = corners.map(|v| complex.balls[v as usize]);
-                (signed_distance(p, corners, balls), corners)
+            let to =
+                |(prepared, corners): &(Prepared, Corners)| (prepared.signed_distance(p), *corners);
+            let nearer = |x: &(Signed, Corners), y: &(Signed, Corners)| {
+                x.0.distance.total_cmp(&y.0.distance)
             };
             let changed = |c: &Corners| c.contains(&a) || c.contains(&b);
             let lost = changed(&self.primitive[at]);
-            let nearer = |x: &(_, _), y: &(_, _)| {
-                let d = |z: &(super::draft::Signed, Corners)| z.0.distance;
-                d(x).total_cmp(&d(y))
-            };
-            let kept = (!lost).then(|| to(self.primitive[at]));
+            let kept = (!lost).then(|| prepare(self.primitive[at]));
             let others = if lost { around.as_slice() } else { &[] };
-            let candidates = own.iter().chain(others).copied().map(to).chain(kept);
+            let candidates = own.iter().chain(others).chain(&kept).map(to);
             if let Some((signed, corners)) = candidates.min_by(nearer) {
                 self.distance[at] = signed.distance;
                 self.primitive[at] = corners;
@@ -358,14 +360,12 @@ impl After {
     }
 
     /// Primitives at the neighbours that stay as they are.
-    fn around(&self, s: &Simplifier) -> Vec<Corners> {
+    fn around(&self, s: &Simplifier) -> Vec<Prepared> {
         let kept = |c: &Corners| !self.edge.iter().any(|v| c.contains(v));
-        let of = |&v: &u32| {
-            s.complex()
-                .primitives_at(v)
-                .filter(kept)
-                .collect::<Vec<_>>()
-        };
-        self.neighbors.iter().flat_map(of).collect()
+        let complex = s.complex();
+        let at = |&v: &u32| complex.primitives_at(v).filter(kept);
+        let balls = |c: Corners| c.map(|v| complex.balls[v as usize]);
+        let all = self.neighbors.iter().flat_map(at);
+        all.map(|c| Prepared::new(c, balls(c))).collect()
     }
 }

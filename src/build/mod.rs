@@ -25,6 +25,7 @@ mod orient;
 mod parts;
 mod patches;
 mod pipeline;
+mod prepared;
 mod primitive_tree;
 mod quadric;
 mod random;

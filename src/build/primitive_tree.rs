@@ -6,7 +6,8 @@
 //! largest radius.
 
 use super::bounds::{Bounds, Point, coordinate};
-use super::draft::{Ball, Corners, Draft, Signed, signed_distance};
+use super::draft::{Ball, Corners, Draft, Signed};
+use super::prepared::Prepared;
 
 /// Primitives in a leaf.
 const LEAF: usize = 1;
@@ -42,6 +43,7 @@ pub struct Nearest {
 pub struct PrimitiveTree<'a> {
     draft: &'a Draft,
     primitives: Vec<Corners>,
+    prepared: Vec<Prepared>,
     /// Primitives in the order of the leaves.
     order: Vec<u32>,
     nodes: Vec<Node>,
@@ -53,8 +55,10 @@ impl<'a> PrimitiveTree<'a> {
         let primitives = draft.primitives();
         let middle = |c: &Corners| Ball::interpolate(draft.balls_of(*c), [1.0 / 3.0; 3]);
         let mut items: Vec<(Ball, u32)> = primitives.iter().map(middle).zip(0u32..).collect();
+        let prepare = |c: &Corners| Prepared::new(*c, draft.balls_of(*c));
         let mut tree = Self {
             draft,
+            prepared: primitives.iter().map(prepare).collect(),
             primitives,
             order: Vec::new(),
             nodes: Vec::with_capacity(items.len()),
@@ -128,8 +132,7 @@ impl<'a> PrimitiveTree<'a> {
     /// Signed distance of `p` to one primitive.
     #[inline]
     pub fn distance_to(&self, primitive: u32, p: Point) -> Signed {
-        let corners = self.primitives[primitive as usize];
-        signed_distance(p, corners, self.draft.balls_of(corners))
+        self.prepared[primitive as usize].signed_distance(p)
     }
 
     /// The primitive of smallest signed distance. `hint` is a primitive that is likely near, as the
