@@ -23,12 +23,16 @@ const FINEST: f64 = 1e-4;
 /// Levels of more pieces than this are searched in depth.
 const WIDE: usize = 8_192;
 
-/// After the search, the piece that gave the largest distance is searched until the distance is
+/// After the search, the pieces that gave the largest distances are searched until the distance is
 /// certain to within this share there.
 const POLISH: f64 = 0.02;
 
 /// Pieces examined at most for that.
 const POLISH_BUDGET: usize = 4_000;
+
+/// How many pieces that is, and the share of the largest distance that each must reach.
+const LEADERS: usize = 32;
+const LEADING: f64 = 0.8;
 
 /// What the centre of a piece tells.
 pub enum Look {
@@ -71,9 +75,9 @@ impl Effort {
         enough: f64::INFINITY,
     };
 
-    /// For what it reports besides: half of the time.
+    /// For what it reports besides: a quarter of the time.
     pub const ROUGH: Self = Self {
-        slack: 0.5,
+        slack: 1.0,
         enough: f64::INFINITY,
     };
 }
@@ -84,8 +88,8 @@ pub struct Search<'a, S: Side> {
     /// The largest distance found.
     pub best: f64,
     effort: Effort,
-    /// The piece that gave `best`.
-    top: Option<S::Piece>,
+    /// Pieces that gave large distances.
+    leaders: Vec<(f64, S::Piece)>,
     /// Radius of the largest piece that was given up.
     given_up: f64,
     examined: usize,
@@ -98,7 +102,7 @@ impl<'a, S: Side> Search<'a, S> {
             side,
             best: start,
             effort,
-            top: None,
+            leaders: Vec::new(),
             given_up: 0.0,
             examined: 0,
         }
@@ -133,7 +137,7 @@ impl<'a, S: Side> Search<'a, S> {
         Ok(level)
     }
 
-    /// Settles piece after piece, and then looks closer at the one that gave the most.
+    /// Settles piece after piece, and then looks closer at those that gave the most.
     pub fn in_depth(
         &mut self,
         pieces: impl ExactSizeIterator<Item = S::Piece>,
@@ -153,12 +157,20 @@ impl<'a, S: Side> Search<'a, S> {
                 self.examine(piece, self.slack_now(), &mut waiting);
             }
         }
-        waiting.extend(self.top);
+        self.keep_leaders();
+        waiting.extend(self.leaders.iter().rev().map(|leader| leader.1));
         for _ in 0..POLISH_BUDGET {
             let Some(piece) = waiting.pop() else { break };
             self.examine(piece, POLISH * self.best, &mut waiting);
         }
         Ok(())
+    }
+
+    /// Keeps the pieces of the largest distances, those first.
+    fn keep_leaders(&mut self) {
+        // A stable sort: ties stay in the order of the search.
+        self.leaders.sort_by(|x, y| y.0.total_cmp(&x.0));
+        self.leaders.truncate(LEADERS);
     }
 
     /// Looks at a piece; cuts it unless it can be dropped.
@@ -174,7 +186,12 @@ impl<'a, S: Side> Search<'a, S> {
         };
         if sample > self.best {
             self.best = sample;
-            self.top = Some(piece);
+        }
+        if sample > LEADING * self.best {
+            self.leaders.push((sample, piece));
+            if self.leaders.len() > 8 * LEADERS {
+                self.keep_leaders();
+            }
         }
         if bound <= self.best + slack - rho {
             return;

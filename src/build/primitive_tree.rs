@@ -10,7 +10,7 @@ use super::draft::{Ball, Corners, Draft, Signed};
 use super::prepared::Prepared;
 
 /// Primitives in a leaf.
-const LEAF: usize = 1;
+const LEAF: usize = 2;
 
 struct Node {
     volume: Bounds,
@@ -23,8 +23,13 @@ struct Node {
 }
 
 impl Node {
-    fn lower_bound(&self, p: Point) -> f64 {
+    /// A lower bound of the signed distance; the first one found that reaches `limit`.
+    #[inline]
+    fn lower_bound(&self, p: Point, limit: f64) -> f64 {
         let volume = self.volume.signed_distance(p);
+        if volume >= limit {
+            return volume;
+        }
         let centers = self.centers.distance_sq(p).sqrt() - self.largest_radius;
         volume.max(centers)
     }
@@ -193,7 +198,7 @@ impl<'a> PrimitiveTree<'a> {
         // Halving keeps the depth below 32, and each level leaves one node waiting.
         let mut stack = [(0.0, 0u32); 64];
         let mut len = 1;
-        stack[0] = (self.nodes[0].lower_bound(p), 0);
+        stack[0] = (self.nodes[0].lower_bound(p, limit), 0);
         while len > 0 {
             len -= 1;
             let (bound, index) = stack[len];
@@ -211,16 +216,18 @@ impl<'a> PrimitiveTree<'a> {
                 }
                 continue;
             }
-            let left = (self.nodes[first].lower_bound(p), first as u32);
-            let right = (self.nodes[first + 1].lower_bound(p), first as u32 + 1);
-            let (near, far) = if left.0 <= right.0 {
-                (left, right)
-            } else {
-                (right, left)
+            let bound = |child: usize| (self.nodes[child].lower_bound(p, limit), child as u32);
+            let (left, right) = (bound(first), bound(first + 1));
+            let (near, far) = match left.0 <= right.0 {
+                true => (left, right),
+                false => (right, left),
             };
-            stack[len] = far;
-            stack[len + 1] = near;
-            len += 2;
+            for child in [far, near] {
+                if child.0 < limit {
+                    stack[len] = child;
+                    len += 1;
+                }
+            }
         }
     }
 }
