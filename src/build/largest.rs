@@ -11,7 +11,7 @@
 use crate::error::BuildError;
 
 /// Distances below this (longest side 1) have the slack of this one: nobody needs them closer.
-const SMALL: f64 = 1e-3;
+const SMALL: f64 = 2e-3;
 
 /// The slack doubles each time that so many pieces were examined: about a quarter of a second.
 /// Uniform errors, from which no piece stands out, need it.

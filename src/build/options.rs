@@ -69,7 +69,7 @@ pub struct Hausdorff {
     /// How far the solid sticks out of the source surface, at the points examined.
     pub bloat: Real,
     /// No point of either surface exceeds its distance above by more than this: a quarter of the
-    /// error, or more where the error is below a thousandth of the size.
+    /// error, or more where the error is below two thousandths of the size.
     pub sampling: Real,
 }
 
