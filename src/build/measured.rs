@@ -27,6 +27,9 @@ const QUADRIC: f64 = 1e-3;
 /// A cost that rose by less than this since it was pushed is still taken.
 const STALE: f64 = 1.1;
 
+/// Bulges below this (longest side 1) cost nothing: far below any error worth a primitive.
+const BULGE: f64 = 2e-4;
+
 /// Positions other than the quadrics' are tried below this many primitives; with more, edges are
 /// short and it makes no difference.
 const FEW: usize = 600;
@@ -220,23 +223,6 @@ impl<'a> Measure<'a> {
         let [a, b] = after.edge;
         let of = |v: u32| if v == a { *ball } else { balls[v as usize] };
         let mut worst = 0.0f64;
-        for &corners in &after.primitives {
-            let weights = if corners[1] == corners[2] {
-                [0.5, 0.5, 0.0]
-            } else {
-                [1.0 / 3.0; 3]
-            };
-            let middle = Ball::interpolate(corners.map(of), weights);
-            if middle.radius <= worst {
-                continue;
-            }
-            if let Some(signed) = self.tree.signed_within(middle.center, middle.radius) {
-                worst = worst.max(middle.radius + signed);
-            }
-            if worst > enough {
-                return worst;
-            }
-        }
         let (mut squares, mut count) = (0.0, 0usize);
         let prepared: Vec<Prepared> = after
             .primitives
@@ -261,6 +247,25 @@ impl<'a> Measure<'a> {
                 worst = worst.max(d.abs());
                 squares += d * d;
                 count += 1;
+            }
+            if worst > enough {
+                return worst;
+            }
+        }
+        for &corners in &after.primitives {
+            let weights = if corners[1] == corners[2] {
+                [0.5, 0.5, 0.0]
+            } else {
+                [1.0 / 3.0; 3]
+            };
+            let middle = Ball::interpolate(corners.map(of), weights);
+            // Only what bulges by more than that counts; from near the medial axis the rest is dear.
+            let within = middle.radius - worst.max(BULGE);
+            if within <= 0.0 {
+                continue;
+            }
+            if let Some(signed) = self.tree.signed_within(middle.center, within) {
+                worst = worst.max(middle.radius + signed);
             }
             if worst > enough {
                 return worst;

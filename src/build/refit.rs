@@ -34,6 +34,9 @@ const STEP: f64 = 0.9;
 /// Envelope samples move with their balls and are taken anew every so many iterations.
 const REFRESH: usize = 3;
 
+/// Short fits and insertion have envelope samples this much farther apart.
+const COARSE: f64 = 1.4;
+
 /// Least radius of a ball (longest side 1).
 const LEAST_RADIUS: f64 = 1e-4;
 
@@ -50,7 +53,7 @@ pub struct Target<'a> {
 impl Target<'_> {
     /// Rows of a draft, with fresh envelope samples.
     pub fn residuals(&self, draft: &Draft, watch: &mut Watch) -> Result<Residuals, BuildError> {
-        let envelope = envelope_samples(&Solid::new(draft), self.spacing, watch)?;
+        let envelope = envelope_samples(&Solid::new(draft), COARSE * self.spacing, watch)?;
         let mut hints = vec![0; self.samples.len()];
         self.examine(draft, &mut hints, &envelope, watch)
     }
@@ -81,11 +84,13 @@ pub fn refit(
     let mut hints = vec![0; target.samples.len()];
     let mut envelope = Vec::new();
     let mut failures = 0;
+    let short = iterations <= 2;
+    let spacing = target.spacing * if short { COARSE } else { 1.0 };
     for iteration in 0..=iterations {
         // The last score of a long fit must not rest on samples that have moved far.
-        let last = iteration == iterations && iterations > 2;
+        let last = iteration == iterations && !short;
         if iteration % REFRESH == 0 || last {
-            envelope = envelope_samples(&Solid::new(draft), target.spacing, watch)?;
+            envelope = envelope_samples(&Solid::new(draft), spacing, watch)?;
         }
         let mut found = target.examine(draft, &mut hints, &envelope, watch)?;
         if best.as_ref().is_none_or(|b| found.score < b.0) {

@@ -70,8 +70,13 @@ pub fn envelope_samples(
 ) -> Result<Vec<EnvelopeSample>, BuildError> {
     // A shell of cells one radius wide on both sides holds √3 cells per square of their side.
     let side = spacing * 3f64.sqrt().sqrt();
-    let mut cells: Vec<(Cell, u32)> = vec![(solid.whole(), 0)];
-    while cells.first().is_some_and(|c| c.0.side() > side) {
+    let whole = solid.whole();
+    let mut start = whole.with_side(side);
+    while start.side() < whole.side() {
+        start = start.with_side(2.0 * start.side());
+    }
+    let mut cells: Vec<(Cell, u32)> = vec![(start, 0)];
+    while cells.first().is_some_and(|c| c.0.side() > 1.5 * side) {
         cells = map_chunks(&cells, watch, |chunk| {
             let mut children = Vec::new();
             for &(cell, hint) in chunk {

@@ -37,6 +37,14 @@ impl Cell {
         2.0 * self.half_side
     }
 
+    /// The cube of another side about the same middle.
+    pub fn with_side(&self, side: f64) -> Self {
+        Self {
+            center: self.center,
+            half_side: 0.5 * side,
+        }
+    }
+
     /// The eight cubes of half the side.
     pub fn children(&self) -> impl Iterator<Item = Cell> + use<> {
         let Cell { center, half_side } = *self;
