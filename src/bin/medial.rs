@@ -4,6 +4,9 @@
 //! Results go to standard output, progress and errors to standard error. Exit code 1 with one line
 //! on failure, 2 for arguments that make no sense.
 
+#[cfg(feature = "gpu")]
+#[path = "medial/calibrate.rs"]
+mod calibrate;
 #[path = "medial/jobs.rs"]
 mod jobs;
 
@@ -49,6 +52,9 @@ enum Command {
     Bake(BakeArguments),
     /// Describe a medial mesh (.ma or baked).
     Info(InfoArguments),
+    /// Measure from which batch sizes on the GPU pays, for `Backend::Auto`.
+    #[cfg(feature = "gpu")]
+    Calibrate(calibrate::CalibrateArguments),
 }
 
 #[derive(Args)]
@@ -150,6 +156,9 @@ enum Failure {
     Mesh(#[from] MeshError),
     #[error(transparent)]
     Plan(#[from] PlanError),
+    #[cfg(feature = "gpu")]
+    #[error(transparent)]
+    Calibrate(#[from] calibrate::Failure),
     #[error("{failed} of {all} meshes failed")]
     SomeFailed { failed: usize, all: usize },
     #[error("standard output: {0}")]
@@ -161,6 +170,11 @@ fn main() -> ExitCode {
         Command::Build(arguments) => build(&arguments),
         Command::Bake(arguments) => bake(&arguments),
         Command::Info(arguments) => info(&arguments),
+        #[cfg(feature = "gpu")]
+        Command::Calibrate(arguments) => load(&arguments.mesh)
+            .map_err(Failure::from)
+            .and_then(|mesh| Ok(calibrate::calibrate(&arguments, &mesh)?))
+            .and_then(|text| Ok(write!(io::stdout(), "{text}")?)),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

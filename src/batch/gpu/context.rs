@@ -145,6 +145,11 @@ impl Context {
         });
     }
 
+    /// Takes an error as if it had been reported.
+    pub fn fail(&self, error: GpuError) {
+        self.fault.set(error);
+    }
+
     /// Most bytes of a buffer: those that are only copied need not fit a binding.
     fn limit(&self, usage: BufferUsages) -> u64 {
         if usage.intersects(BufferUsages::MAP_READ | BufferUsages::MAP_WRITE) {

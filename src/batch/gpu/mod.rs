@@ -39,8 +39,10 @@ const MOST_RUNS: u32 = 4;
 /// Work of the device since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpuCounts {
-    /// Submissions; each has one map.
+    /// Submissions.
     pub submissions: u64,
+    /// Times that answers were mapped and waited for.
+    pub maps: u64,
     /// Of these, batches asked for again because a list had no room.
     pub reruns: u64,
     /// Cluster pairs whose bounds meet, in the last batch.
@@ -144,6 +146,7 @@ impl Gpu {
         self.propose(&[sweep], &mut Vec::new()).await?;
         self.meshes.remove(&mesh);
         self.counts = GpuCounts::default();
+        self.down.maps = 0;
         Ok(())
     }
 
@@ -160,6 +163,7 @@ impl Gpu {
     /// Work done so far.
     pub fn counts(&self) -> GpuCounts {
         GpuCounts {
+            maps: self.down.maps,
             buffers_made: self.context.buffers_made,
             meshes: self.meshes.len(),
             ..self.counts
@@ -176,7 +180,14 @@ impl Gpu {
         self.context.lose();
     }
 
-    /// Drops a mesh; returns whether it was there.
+    /// Behaves from now on as if the driver had reported this, to rehearse what no test can bring
+    /// about.
+    pub fn fail(&self, error: GpuError) {
+        self.context.fail(error);
+    }
+
+    /// Drops a mesh; returns whether it was there. Not needed for meshes that no one else holds: they
+    /// go by themselves.
     pub fn remove(&mut self, mesh: &MedialMesh) -> bool {
         self.meshes.remove(mesh)
     }
