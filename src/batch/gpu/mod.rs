@@ -6,6 +6,7 @@
 //! One submission and one map per batch; nothing is allocated on the device in a step like those
 //! before. Whatever goes wrong is a [`GpuError`], and the CPU has the work.
 
+mod clock;
 mod context;
 mod cull;
 mod elementary;
@@ -98,6 +99,7 @@ pub struct Gpu {
     /// Where each pair comes from.
     asked: Vec<Piece>,
     survivors: Vec<Survivor>,
+    stages: [f64; clock::STAGES],
     counts: GpuCounts,
 }
 
@@ -114,6 +116,7 @@ impl Gpu {
             pairs: Vec::new(),
             asked: Vec::new(),
             survivors: Vec::new(),
+            stages: [0.0; clock::STAGES],
             counts: GpuCounts::default(),
             context,
         };
@@ -155,6 +158,11 @@ impl Gpu {
         self.context.name()
     }
 
+    /// The driver and its version, as far as it tells.
+    pub fn driver(&self) -> &str {
+        self.context.driver()
+    }
+
     /// Whether the adapter is more than code on the CPU.
     pub fn is_hardware(&self) -> bool {
         self.context.is_hardware()
@@ -168,6 +176,12 @@ impl Gpu {
             meshes: self.meshes.len(),
             ..self.counts
         }
+    }
+
+    /// Seconds that each stage of the last batch took on the device, in the order of
+    /// [`shaders::MODULES`]' stages; zeros without [`GpuOptions::timed`], or where it cannot tell.
+    pub fn stage_seconds(&self) -> [f64; 5] {
+        self.stages
     }
 
     /// The first error of the device, if any; after one it is of no more use.
@@ -211,7 +225,8 @@ impl Gpu {
         self.context.check()?;
         let transfers = [&mut self.up, &mut self.down];
         self.counts.submissions += 1;
-        self.elementary
+        self.stages = self
+            .elementary
             .run(
                 &mut self.context,
                 transfers,
@@ -220,7 +235,8 @@ impl Gpu {
                 tolerance,
                 bounds,
             )
-            .await
+            .await?;
+        Ok(())
     }
 
     /// Proposes for many mesh pairs, in their order.
@@ -266,6 +282,7 @@ impl Gpu {
                 }
                 other => other?,
             };
+            self.stages = found.stages;
             let [tiles, near, survivors] = found.counts;
             self.counts.cluster_pairs = tiles;
             self.counts.primitive_pairs = near;
