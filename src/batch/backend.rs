@@ -140,7 +140,7 @@ impl Batch {
     }
 }
 
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
 fn options(backend: Backend) -> GpuOptions {
     GpuOptions {
         software: backend == Backend::Gpu,
