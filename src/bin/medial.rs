@@ -7,14 +7,14 @@
 #[path = "medial/jobs.rs"]
 mod jobs;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use jobs::{Job, PlanError, plan};
 use rapier3d_medial::build::mesh_file::{self, TriangleMesh};
 use rapier3d_medial::build::{Hausdorff, hausdorff};
 use rapier3d_medial::math::Vector;
 use rapier3d_medial::medial::asset;
-use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, MedialPrimitive, MeshError};
+use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, MedialPrimitive, MeshError, Quality};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::fs::File;
@@ -67,12 +67,37 @@ struct BuildArguments {
     /// Largest two-sided Hausdorff error, as a fraction of the longest side of the mesh's box.
     #[arg(short = 'e', long, value_name = "E", value_parser = positive)]
     max_error: Option<f32>,
+    /// How much work to spend on a small error.
+    #[arg(short, long, value_enum, default_value_t)]
+    quality: QualityArgument,
     /// Fit the surface on both sides instead of enclosing it.
     #[arg(long)]
     no_enclose: bool,
     /// Print the report as JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// [`Quality`], as an argument.
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum QualityArgument {
+    /// Edge collapse alone.
+    Fast,
+    /// Then a fit to the surface.
+    #[default]
+    Balanced,
+    /// Then several starts and swaps.
+    Best,
+}
+
+impl From<QualityArgument> for Quality {
+    fn from(argument: QualityArgument) -> Self {
+        match argument {
+            QualityArgument::Fast => Self::Fast,
+            QualityArgument::Balanced => Self::Balanced,
+            QualityArgument::Best => Self::Best,
+        }
+    }
 }
 
 #[derive(Args)]
@@ -252,6 +277,7 @@ fn build_one(
     let mut options = BuildOptions {
         enclose: !arguments.no_enclose,
         max_error: arguments.max_error,
+        quality: arguments.quality.into(),
         ..Default::default()
     };
     if arguments.primitives.is_some() || arguments.max_error.is_some() {

@@ -11,6 +11,10 @@ pub struct StepReport {
     /// Of these, the pairs whose contacts were computed in the batch; the others had moved too
     /// little, and rapier recycles theirs.
     pub jobs: usize,
+    /// Jobs that the GPU proved free, which the CPU has not looked at.
+    pub settled_by_gpu: u64,
+    /// Batches that a GPU was to have and could not take; [`crate::MedialPipeline::batch`] says why.
+    pub fallbacks: u64,
     /// Sphere pairs that the batch found within the prediction distance.
     pub contacts: usize,
     /// Manifold requests of the narrow phase that the batch had answered.
