@@ -107,7 +107,7 @@ fn scene() -> Result<Scene, String> {
         start: RigidBodyBuilder::fixed(),
         color: SLATE,
     });
-    Ok(Scene { actors })
+    Ok(Scene::new(actors))
 }
 
 /// An arm out of the column, bent upwards at its end; the last post is the column.

@@ -6,7 +6,7 @@
 //! cargo run --release --example falling_rings -- --mesh my.obj
 //! ```
 //! Options: `--mesh FILE` (drops 15 of your own instead, scaled to the rings' size), `--steps N` (at most; default 1500), `--out DIR` (where the pictures go; default
-//! target/falling_rings), `--quick` (5 rings, small pictures).
+//! target/falling_rings), `--backend cpu|auto|gpu` (where batches are computed; feature `gpu`), `--quick` (5 rings, small pictures).
 //!
 //! Exits with 1 when a check fails: all rings stay above the ground, none passes through another or
 //! the creature, all sleep in the end. The checks work on the formulas and triangles that the
@@ -25,6 +25,7 @@ use common::scene_strip::{SLATE, View, rainbow};
 use common::scene_table::table;
 use common::skeleton::Skeleton;
 use rapier3d::prelude::*;
+use rapier3d_medial::Backend;
 use rapier3d_medial::build::mesh_file;
 use std::f32::consts::TAU;
 use std::num::NonZeroUsize;
@@ -39,6 +40,7 @@ struct Options {
     mesh: Option<PathBuf>,
     steps: usize,
     out: PathBuf,
+    backend: Backend,
     quick: bool,
 }
 
@@ -50,6 +52,12 @@ fn main() -> ExitCode {
             out: arguments
                 .value("--out")?
                 .unwrap_or("target/falling_rings".into()),
+            backend: match arguments.value::<String>("--backend")?.as_deref() {
+                None | Some("cpu") => Backend::Cpu,
+                Some("auto") => Backend::Auto,
+                Some("gpu") => Backend::Gpu,
+                Some(other) => return Err(format!("--backend cannot be `{other}`")),
+            },
             quick: arguments.flag("--quick"),
         })
     };
@@ -65,7 +73,8 @@ fn falling_rings(options: Options) -> Result<(), String> {
     mesh.check_closed()?;
     let medial = build("build the creature", &mesh, 700)?;
     let creature = Model::new(mesh, skeleton, medial);
-    let scene = scene(ring, creature, if options.quick { 5 } else { 15 });
+    let mut scene = scene(ring, creature, if options.quick { 5 } else { 15 });
+    scene.backend = options.backend;
 
     let [medial, hulls] =
         [Kind::Medial, Kind::Hulls].map(|kind| scene.run(kind, options.steps, |_, _| ()));
@@ -114,7 +123,7 @@ fn scene(ring: Arc<Model>, creature: Arc<Model>, count: usize) -> Scene {
         start: RigidBodyBuilder::fixed(),
         color: SLATE,
     });
-    Scene { actors }
+    Scene::new(actors)
 }
 
 /// Rings: 27 primitives for 1,200 triangles, as in the paper.

@@ -60,7 +60,7 @@ pub mod rapier;
 pub use batch::Backend;
 pub use build::{BuildOptions, BuildReport, Progress, Quality};
 pub use elementary::{AlternatingStart, InitialContact, Toi, ToiOptions, ToiStatus};
-pub use error::{AssetError, BuildError, GpuError, MeshError};
+pub use error::{AssetError, BuildError, CalibrationError, GpuError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
 pub use parry::MedialDispatcher;
 pub use rapier::{

@@ -80,6 +80,8 @@ pub struct Actor {
 pub struct Scene {
     /// The bodies.
     pub actors: Vec<Actor>,
+    /// Where the batches of a medial run are computed.
+    pub backend: Backend,
 }
 
 /// What a run of the scene gave.
@@ -141,6 +143,14 @@ impl Stage {
 }
 
 impl Scene {
+    /// A scene of these bodies, on the CPU.
+    pub fn new(actors: Vec<Actor>) -> Self {
+        Self {
+            actors,
+            backend: Backend::Cpu,
+        }
+    }
+
     /// A world in which the actors collide as told.
     pub fn stage(&self, kind: Kind) -> Stage {
         let mut world = PhysicsWorld::default();
@@ -148,8 +158,9 @@ impl Scene {
         world.insert_collider(ground, None);
         let place = |actor: &Actor| world.insert(actor.start.clone(), kind.collider(&actor.model));
         let bodies = self.actors.iter().map(place).collect();
-        let mut pipeline =
-            (kind == Kind::Medial).then(|| MedialPipeline::new(MedialOptions::default()));
+        let mut options = MedialOptions::default();
+        options.backend = self.backend;
+        let mut pipeline = (kind == Kind::Medial).then(|| MedialPipeline::new(options));
         if let Some(pipeline) = &mut pipeline {
             pipeline.attach(&mut world);
         }
