@@ -7,16 +7,16 @@ use crate::random::Random;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
-type Loop = Vec<[f64; 3]>;
+pub type Loop = Vec<[f64; 3]>;
 
 /// Centre line of a loop at a pose.
-fn line(mesh: &MedialMesh, pose: &Pose) -> Loop {
+pub fn line(mesh: &MedialMesh, pose: &Pose) -> Loop {
     let world = |s: &MedialSphere| (*pose * s.center).to_array().map(f64::from);
     mesh.spheres().iter().map(world).collect()
 }
 
 /// Linking number of two polygons: half the signed crossings seen along a direction that no edge has.
-fn linking(a: &Loop, b: &Loop) -> i32 {
+pub fn linking(a: &Loop, b: &Loop) -> i32 {
     // A fixed rotation, so that no edge is seen end on.
     let seen = |p: &[f64; 3]| {
         let [x, y, z] = *p;

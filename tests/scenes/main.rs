@@ -5,11 +5,13 @@ mod controls;
 mod determinism;
 #[cfg(feature = "debug-render")]
 mod drawing;
+mod driven;
 mod endurance;
 mod fast_pairs;
 mod heaps;
 mod impacts;
 mod oracle;
+mod partners;
 mod random;
 mod resting;
 #[allow(dead_code)]
