@@ -315,3 +315,25 @@ pub enum GpuError {
         message: String,
     },
 }
+
+/// Why a calibration of the GPU cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CalibrationError {
+    /// A line that says nothing known.
+    #[error(
+        "line {number} of the calibration is `{text}`, not `adapter = NAME`, `jobs = N` or `tests = N`"
+    )]
+    Line {
+        /// Number of the line, from 1.
+        number: usize,
+        /// The line.
+        text: String,
+    },
+    /// A line that is not there.
+    #[error("the calibration has no line `{what} = …`")]
+    Missing {
+        /// How it would start.
+        what: &'static str,
+    },
+}

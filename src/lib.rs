@@ -58,9 +58,9 @@ pub mod parry;
 pub mod rapier;
 
 pub use batch::Backend;
-pub use build::{BuildOptions, BuildReport, Progress};
+pub use build::{BuildOptions, BuildReport, Progress, Quality};
 pub use elementary::{AlternatingStart, InitialContact, Toi, ToiOptions, ToiStatus};
-pub use error::{AssetError, BuildError, GpuError, MeshError};
+pub use error::{AssetError, BuildError, CalibrationError, GpuError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
 pub use parry::MedialDispatcher;
 pub use rapier::{
@@ -72,7 +72,8 @@ pub use rapier::{
 pub mod prelude {
     pub use crate::{
         Backend, BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder, MedialMesh,
-        MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, Progress, StepReport,
+        MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, Progress, Quality,
+        StepReport,
     };
 }
 

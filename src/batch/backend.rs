@@ -2,6 +2,8 @@
 //! all others go to the CPU as if there were no device. So answers are the same on either backend,
 //! but for the counts of work, and a device that fails costs time only.
 
+#[cfg(feature = "gpu")]
+use super::calibration::Calibration;
 use super::cpu;
 #[cfg(feature = "gpu")]
 use super::gpu::{Bound, Gpu, GpuCounts, GpuOptions, Proposal, layout};
@@ -24,14 +26,22 @@ pub enum Backend {
     Gpu,
 }
 
-/// Fewest jobs for which [`Backend::Auto`] asks a GPU. Estimated, not measured on one: the way there
-/// and back should take some 100 µs, as a few first contacts do. Wrong, it costs time only.
+/// Fewest jobs, and elementary tests, for which [`Backend::Auto`] asks a GPU before it is told by a
+/// [`Calibration`]. Estimated, not measured on one: the way there and back should take some 100 µs,
+/// as a few first contacts do, and a test takes 0.2 µs on one core. Wrong, it costs time only.
 #[cfg(feature = "gpu")]
-const AUTO_JOBS: usize = 64;
+const ESTIMATED: Least = Least {
+    jobs: Some(64),
+    tests: Some(1 << 14),
+};
 
-/// The same for elementary tests, at 0.2 µs each on one core; an estimate too.
+/// Sizes from which a GPU is asked; `None`: never.
 #[cfg(feature = "gpu")]
-const AUTO_TESTS: usize = 1 << 14;
+#[derive(Clone, Copy)]
+struct Least {
+    jobs: Option<usize>,
+    tests: Option<usize>,
+}
 
 /// What a [`Batch`] has done since it was made.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,6 +50,14 @@ pub struct BatchReport {
     pub settled_by_gpu: u64,
     /// Those that the CPU answered, asked about on the GPU before or not.
     pub settled_by_cpu: u64,
+    /// Jobs asked of the GPU that it cannot take, as their poses or sizes are not finite or too large.
+    pub unfit: u64,
+    /// Submissions to the GPU: one a batch, more where a list had to grow.
+    pub submissions: u64,
+    /// Times that the CPU waited for answers of the GPU: one a submission.
+    pub maps: u64,
+    /// Primitive pairs that the GPU could not prove free.
+    pub survivors: u64,
     /// Batches that a GPU was to have and could not take.
     pub fallbacks: u64,
     /// Why the last of them, or the device as a whole, was not used.
@@ -57,6 +75,8 @@ pub struct Batch {
     proposals: Vec<Proposal>,
     #[cfg(feature = "gpu")]
     bounds: Vec<Bound>,
+    #[cfg(feature = "gpu")]
+    calibrated: Option<Least>,
     report: BatchReport,
 }
 
@@ -120,7 +140,7 @@ impl Batch {
     }
 }
 
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
 fn options(backend: Backend) -> GpuOptions {
     GpuOptions {
         software: backend == Backend::Gpu,
@@ -160,9 +180,33 @@ impl Batch {
         self.gpu.as_ref().map(Gpu::counts).unwrap_or_default()
     }
 
-    fn asks_gpu(&self, size: usize, least: usize) -> bool {
-        let large = self.backend == Backend::Gpu || size >= least;
+    /// From now on [`Backend::Auto`] goes by these sizes. False, and nothing changes, where they were
+    /// measured on another adapter than this, or there is none.
+    pub fn calibrate(&mut self, calibration: &Calibration) -> bool {
+        let Calibration {
+            adapter,
+            jobs,
+            tests,
+        } = calibration;
+        let same = self.gpu.as_ref().is_some_and(|gpu| gpu.name() == adapter);
+        if same {
+            let (jobs, tests) = (*jobs, *tests);
+            self.calibrated = Some(Least { jobs, tests });
+        }
+        same
+    }
+
+    fn asks_gpu(&self, size: usize, least: fn(Least) -> Option<usize>) -> bool {
+        let least = least(self.calibrated.unwrap_or(ESTIMATED));
+        let large = self.backend == Backend::Gpu || least.is_some_and(|n| size >= n);
         self.gpu.is_some() && large && size > 0
+    }
+
+    /// Adds what the device did since it had counted so much.
+    fn count(&mut self, before: GpuCounts) {
+        let now = self.gpu_counts();
+        self.report.submissions += now.submissions - before.submissions;
+        self.report.maps += now.maps - before.maps;
     }
 
     /// The batch goes to the CPU; a device that may still serve is kept.
@@ -176,7 +220,7 @@ impl Batch {
 
     /// As [`Self::run`], without blocking while the device works.
     pub async fn run_async<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
-        if !self.asks_gpu(jobs.len(), AUTO_JOBS) {
+        if !self.asks_gpu(jobs.len(), |least| least.jobs) {
             return self.run_on_cpu(jobs);
         }
         let (asked, sweeps): (Vec<usize>, Vec<_>) = jobs
@@ -185,13 +229,22 @@ impl Batch {
             .filter_map(|(index, job)| Some((index, job.sweep()?)))
             .unzip();
         let mut proposals = std::mem::take(&mut self.proposals);
+        let before = self.gpu_counts();
         let outcome = match &mut self.gpu {
             Some(gpu) => gpu.propose(&sweeps, &mut proposals).await,
             None => Ok(()),
         };
-        if let Err(error) = outcome {
-            proposals.clear();
-            self.fall_back(error);
+        self.count(before);
+        match outcome {
+            Ok(()) => {
+                let taken = proposals.iter().filter_map(|p| p.survivors);
+                self.report.survivors += taken.clone().map(u64::from).sum::<u64>();
+                self.report.unfit += (jobs.len() - taken.count()) as u64;
+            }
+            Err(error) => {
+                proposals.clear();
+                self.fall_back(error);
+            }
         }
         let mut answers: Vec<Option<J::Answer>> = jobs.iter().map(|_| None).collect();
         for (index, proposal) in asked.into_iter().zip(&proposals) {
@@ -221,10 +274,11 @@ impl Batch {
         limits: &Limits<f32>,
     ) -> Vec<Bracket<f32>> {
         let whole = limits.start == 0.0 && limits.horizon == 1.0 && limits.tolerance.is_finite();
-        if !whole || !self.asks_gpu(paths.len(), AUTO_TESTS) {
+        if !whole || !self.asks_gpu(paths.len(), |least| least.tests) {
             return self.brackets_on_cpu(paths, domain, limits);
         }
         let mut bounds = std::mem::take(&mut self.bounds);
+        let before = self.gpu_counts();
         let outcome = match &mut self.gpu {
             Some(gpu) => {
                 gpu.bounds(paths, domain, limits.tolerance, &mut bounds)
@@ -232,6 +286,7 @@ impl Batch {
             }
             None => Ok(()),
         };
+        self.count(before);
         if let Err(error) = outcome {
             self.fall_back(error);
             return self.brackets_on_cpu(paths, domain, limits);

@@ -2,10 +2,14 @@
 //! answer per job out, in the order of the jobs.
 
 mod backend;
+#[cfg(feature = "gpu")]
+mod calibration;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod job;
 
 pub use backend::{Backend, Batch, BatchReport};
+#[cfg(feature = "gpu")]
+pub use calibration::Calibration;
 pub use job::{Job, PairJob, PairResult, Sweep, ToiJob, ToiResult};

@@ -89,6 +89,22 @@ impl Complex {
         &self.faces
     }
 
+    /// Faces at a ball.
+    pub fn faces_at(&self, v: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let faces = self.faces_of[v as usize].iter();
+        faces.map(|&f| self.faces[f as usize])
+    }
+
+    /// Primitives at a ball.
+    pub fn primitives_at(&self, v: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let cone = move |&&u: &&u32| self.opposite(v, u).next().is_none();
+        let cones = self.neighbors[v as usize].iter().filter(cone);
+        let lone = self.is_lone(v).then_some([v; 3]);
+        self.faces_at(v)
+            .chain(cones.map(move |&u| [v, u, u]))
+            .chain(lone)
+    }
+
     /// The third balls of the faces at an edge.
     pub fn opposite(&self, a: u32, b: u32) -> impl Iterator<Item = u32> + '_ {
         self.faces_of[a as usize].iter().filter_map(move |&f| {

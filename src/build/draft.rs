@@ -4,7 +4,6 @@
 use super::bounds::Point;
 use super::surface::Frame;
 use crate::error::MeshError;
-use crate::math::nearest::{Family, edge_minimum, nearest_in_triangle};
 use crate::math::{Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 use std::collections::HashSet;
@@ -138,41 +137,5 @@ fn round_up(value: f64) -> Real {
         rounded.next_up()
     } else {
         rounded
-    }
-}
-
-/// Signed distance of `p` to the primitive spanned by `balls`; equal corners make it a cone or a
-/// ball (see [`Corners`]).
-#[inline]
-pub fn signed_distance(p: Point, corners: Corners, balls: [Ball; 3]) -> Signed {
-    let [a, b, c] = balls;
-    if corners[1] != corners[2] {
-        let family = Family {
-            w: a.center - p,
-            u: b.center - a.center,
-            v: c.center - a.center,
-            r0: a.radius,
-            da: b.radius - a.radius,
-            db: c.radius - a.radius,
-        };
-        let nearest = nearest_in_triangle(&family);
-        let (x, y) = (nearest.alpha, nearest.beta);
-        return Signed {
-            distance: nearest.distance,
-            weights: [1.0 - x - y, x, y],
-        };
-    }
-    let to = a.center - p;
-    if corners[0] == corners[1] {
-        return Signed {
-            distance: to.length() - a.radius,
-            weights: [1.0, 0.0, 0.0],
-        };
-    }
-    let (axis, growth) = (b.center - a.center, b.radius - a.radius);
-    let x = edge_minimum(to, axis, growth);
-    Signed {
-        distance: (to + axis * x).length() - a.radius - growth * x,
-        weights: [1.0 - x, x, 0.0],
     }
 }

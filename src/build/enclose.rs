@@ -40,13 +40,24 @@ const CERTIFICATE_PASSES: usize = 12;
 /// Growth beyond what a piece needs (longest side 1), so that rounding does not ask again.
 const MARGIN: f64 = 1e-9;
 
-/// Raises radii until every triangle of the surface is proven inside.
-pub fn enclose(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(), BuildError> {
+/// Raises radii until every triangle of the surface is proven to stick out of the solid by at most
+/// `allowed`: to lie in the solid whose radii are all larger by that.
+pub fn enclose(
+    draft: &mut Draft,
+    surface: &Surface,
+    allowed: f64,
+    watch: &mut Watch,
+) -> Result<(), BuildError> {
+    let before: Vec<f64> = draft.balls.iter().map(|b| b.radius).collect();
+    // The certificate is about welded vertices; the source's own are this near.
+    let slack = (allowed - surface.welded).max(0.0);
+    let welded = (surface.welded - allowed).max(0.0);
+    draft.balls.iter_mut().for_each(|b| b.radius += slack);
     dilate(draft, surface, watch)?;
     certify(draft, surface, watch)?;
-    // The certificate is about welded vertices; the source's own are this near.
-    for ball in &mut draft.balls {
-        ball.radius += surface.welded;
+    for (ball, before) in draft.balls.iter_mut().zip(before) {
+        // Taking the slack back must not shrink, by rounding, what never grew.
+        ball.radius = (ball.radius - slack).max(before) + welded;
     }
     Ok(())
 }

@@ -38,6 +38,11 @@ impl<'a> Parts<'a> {
         })
     }
 
+    /// The solid part, if it is all there is.
+    pub fn only_solid(&mut self) -> Option<&mut Simplifier<'a>> {
+        (self.sheets.primitives() == 0).then_some(&mut self.solid)
+    }
+
     /// Number of primitives now.
     pub fn primitives(&self) -> usize {
         self.solid.primitives() + self.sheet_primitives()

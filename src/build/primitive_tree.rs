@@ -6,10 +6,11 @@
 //! largest radius.
 
 use super::bounds::{Bounds, Point, coordinate};
-use super::draft::{Ball, Corners, Draft, Signed, signed_distance};
+use super::draft::{Ball, Corners, Draft, Signed};
+use super::prepared::Prepared;
 
 /// Primitives in a leaf.
-const LEAF: usize = 1;
+const LEAF: usize = 2;
 
 struct Node {
     volume: Bounds,
@@ -22,8 +23,13 @@ struct Node {
 }
 
 impl Node {
-    fn lower_bound(&self, p: Point) -> f64 {
+    /// A lower bound of the signed distance; the first one found that reaches `limit`.
+    #[inline]
+    fn lower_bound(&self, p: Point, limit: f64) -> f64 {
         let volume = self.volume.signed_distance(p);
+        if volume >= limit {
+            return volume;
+        }
         let centers = self.centers.distance_sq(p).sqrt() - self.largest_radius;
         volume.max(centers)
     }
@@ -42,6 +48,7 @@ pub struct Nearest {
 pub struct PrimitiveTree<'a> {
     draft: &'a Draft,
     primitives: Vec<Corners>,
+    prepared: Vec<Prepared>,
     /// Primitives in the order of the leaves.
     order: Vec<u32>,
     nodes: Vec<Node>,
@@ -53,8 +60,10 @@ impl<'a> PrimitiveTree<'a> {
         let primitives = draft.primitives();
         let middle = |c: &Corners| Ball::interpolate(draft.balls_of(*c), [1.0 / 3.0; 3]);
         let mut items: Vec<(Ball, u32)> = primitives.iter().map(middle).zip(0u32..).collect();
+        let prepare = |c: &Corners| Prepared::new(*c, draft.balls_of(*c));
         let mut tree = Self {
             draft,
+            prepared: primitives.iter().map(prepare).collect(),
             primitives,
             order: Vec::new(),
             nodes: Vec::with_capacity(items.len()),
@@ -128,8 +137,7 @@ impl<'a> PrimitiveTree<'a> {
     /// Signed distance of `p` to one primitive.
     #[inline]
     pub fn distance_to(&self, primitive: u32, p: Point) -> Signed {
-        let corners = self.primitives[primitive as usize];
-        signed_distance(p, corners, self.draft.balls_of(corners))
+        self.prepared[primitive as usize].signed_distance(p)
     }
 
     /// The primitive of smallest signed distance. `hint` is a primitive that is likely near, as the
@@ -149,13 +157,48 @@ impl<'a> PrimitiveTree<'a> {
         best
     }
 
+    /// As [`Self::nearest`], but `None` where the smallest signed distance is not between `least` and
+    /// `most`.
+    pub fn nearest_between(&self, p: Point, least: f64, most: f64, hint: u32) -> Option<Nearest> {
+        let signed = self.distance_to(hint, p);
+        let mut best = Nearest {
+            signed,
+            primitive: hint,
+        };
+        if signed.distance < least {
+            return None;
+        }
+        self.visit(p, signed.distance.min(most), |signed, primitive| {
+            if signed.distance < best.signed.distance {
+                best = Nearest { signed, primitive };
+            }
+            let lowest = best.signed.distance;
+            (lowest >= least).then_some(lowest.min(most))
+        });
+        (least..=most)
+            .contains(&best.signed.distance)
+            .then_some(best)
+    }
+
+    /// Whether some signed distance is below `limit`; `hint` is a primitive that may have it.
+    pub fn any_below(&self, p: Point, limit: f64, hint: u32) -> bool {
+        let mut found = self.distance_to(hint, p).distance < limit;
+        if !found {
+            self.visit(p, limit, |signed, _| {
+                found = signed.distance < limit;
+                (!found).then_some(limit)
+            });
+        }
+        found
+    }
+
     /// Calls `see` for primitives whose distance may be below `limit`, nearer groups first; `see`
     /// returns the new limit, or `None` to stop.
     fn visit(&self, p: Point, mut limit: f64, mut see: impl FnMut(Signed, u32) -> Option<f64>) {
         // Halving keeps the depth below 32, and each level leaves one node waiting.
         let mut stack = [(0.0, 0u32); 64];
         let mut len = 1;
-        stack[0] = (self.nodes[0].lower_bound(p), 0);
+        stack[0] = (self.nodes[0].lower_bound(p, limit), 0);
         while len > 0 {
             len -= 1;
             let (bound, index) = stack[len];
@@ -173,16 +216,18 @@ impl<'a> PrimitiveTree<'a> {
                 }
                 continue;
             }
-            let left = (self.nodes[first].lower_bound(p), first as u32);
-            let right = (self.nodes[first + 1].lower_bound(p), first as u32 + 1);
-            let (near, far) = if left.0 <= right.0 {
-                (left, right)
-            } else {
-                (right, left)
+            let bound = |child: usize| (self.nodes[child].lower_bound(p, limit), child as u32);
+            let (left, right) = (bound(first), bound(first + 1));
+            let (near, far) = match left.0 <= right.0 {
+                true => (left, right),
+                false => (right, left),
             };
-            stack[len] = far;
-            stack[len + 1] = near;
-            len += 2;
+            for child in [far, near] {
+                if child.0 < limit {
+                    stack[len] = child;
+                    len += 1;
+                }
+            }
         }
     }
 }

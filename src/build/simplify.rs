@@ -167,11 +167,27 @@ impl<'a> Simplifier<'a> {
         {
             (_, ball) = self.cheapest(a, b, None);
         }
+        self.collapse(a, b, ball);
+        self.progressed = true;
+        self.push_around(a, |_| true);
+    }
+
+    /// Merges ball `b` into `a`, which becomes `ball`.
+    pub(super) fn collapse(&mut self, a: u32, b: u32, ball: Ball) {
         self.quadrics[a as usize] = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
         self.complex.collapse(a, b, ball);
         self.versions[a as usize] += 1;
-        self.progressed = true;
-        self.push_around(a, |_| true);
+        self.versions[b as usize] += 1;
+    }
+
+    /// The medial mesh as a complex.
+    pub(super) fn complex(&self) -> &Complex {
+        &self.complex
+    }
+
+    /// How often a ball has changed.
+    pub(super) fn version(&self, v: u32) -> u32 {
+        self.versions[v as usize]
     }
 
     /// Puts blocked edges back once something around them may have changed, or the count demands
@@ -189,7 +205,7 @@ impl<'a> Simplifier<'a> {
     }
 
     /// Whether the solid has no hole where collapsing an edge would close one.
-    fn may_collapse(&self, a: u32, b: u32) -> bool {
+    pub(super) fn may_collapse(&self, a: u32, b: u32) -> bool {
         let c = &self.complex;
         if c.keeps_topology(a, b) {
             return true;
@@ -226,7 +242,7 @@ impl<'a> Simplifier<'a> {
     }
 
     /// Cost of merging two balls, and the ball that they become.
-    fn merge(&self, a: u32, b: u32) -> (f64, Ball) {
+    pub(super) fn merge(&self, a: u32, b: u32) -> (f64, Ball) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
         let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
         let middle = middle(&ball_a, &ball_b);

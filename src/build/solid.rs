@@ -6,7 +6,7 @@
 //! the solid, which is what marching steps need.
 
 use super::bounds::{Bounds, Point, direction};
-use super::draft::{Ball, Draft};
+use super::draft::{Ball, Corners, Draft};
 use super::primitive_tree::{Nearest, PrimitiveTree};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -30,6 +30,19 @@ impl Cell {
     /// Distance from the middle to a corner.
     pub fn radius(&self) -> f64 {
         self.half_side * 3f64.sqrt()
+    }
+
+    /// Length of a side.
+    pub fn side(&self) -> f64 {
+        2.0 * self.half_side
+    }
+
+    /// The cube of another side about the same middle.
+    pub fn with_side(&self, side: f64) -> Self {
+        Self {
+            center: self.center,
+            half_side: 0.5 * side,
+        }
     }
 
     /// The eight cubes of half the side.
@@ -90,14 +103,29 @@ impl<'a> Solid<'a> {
         self.tree.nearest(p, hint)
     }
 
+    /// Its primitives, in the order of the indices that [`Self::nearest`] gives.
+    pub fn primitives(&self) -> &[Corners] {
+        self.tree.primitives()
+    }
+
     /// The ball of a primitive that is nearest to the point asked for.
     pub fn ball(&self, near: &Nearest) -> Ball {
         self.tree.ball(near)
     }
 
-    /// Whether `p` is outside or on the boundary.
+    /// As [`Self::nearest`], if its signed distance is at most `limit` on either side.
+    pub fn nearest_if_near(&self, p: Point, limit: f64, hint: u32) -> Option<Nearest> {
+        self.tree.nearest_between(p, -limit, limit, hint)
+    }
+
+    /// Signed distance of `p` to one primitive.
+    pub fn distance_to(&self, primitive: u32, p: Point) -> f64 {
+        self.tree.distance_to(primitive, p).distance
+    }
+
+    /// Whether `p` is outside or on the boundary; `hint` is a primitive that may hold it.
     pub fn is_out(&self, p: Point, hint: u32) -> bool {
-        self.tree.nearest(p, hint).signed.distance >= -ON_BOUNDARY
+        !self.tree.any_below(p, -ON_BOUNDARY, hint)
     }
 
     /// The point of the nearest ball's surface that is nearest to `p`, if it is on the boundary;

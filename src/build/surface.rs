@@ -184,7 +184,7 @@ impl Surface {
     }
 
     /// Corners of all triangles, in order.
-    pub fn all_corners(&self) -> impl Iterator<Item = [Point; 3]> + '_ {
+    pub fn all_corners(&self) -> impl ExactSizeIterator<Item = [Point; 3]> + '_ {
         (0..self.triangles.len()).map(|i| self.corners(i))
     }
 }

@@ -6,7 +6,7 @@
 //! Clouds" (2018): seen from afar, a group of triangles is one dipole at its centroid, whose
 //! moment is the sum of its area vectors.
 
-use super::bounds::{Bounds, Point, coordinate};
+use super::bounds::{Bounds, Point, coordinate, direction};
 use super::watch::Watch;
 use crate::error::BuildError;
 
@@ -120,21 +120,108 @@ impl TriangleTree {
         Ok(())
     }
 
-    /// Distance to the surface.
-    pub fn distance(&self, p: Point) -> f64 {
-        self.search(p, f64::INFINITY, false).sqrt()
+    /// Distance to the surface, and the triangle that gives it; `hint` is a triangle that is likely
+    /// near.
+    pub fn distance_from(&self, p: Point, hint: u32) -> (f64, u32) {
+        let at_hint = self.distance_sq_to(hint, p);
+        let (distance_sq, triangle) = self.search(p, at_hint, false);
+        match distance_sq <= at_hint {
+            true => (distance_sq.sqrt(), triangle),
+            false => (at_hint.sqrt(), hint),
+        }
+    }
+
+    /// Whether a triangle is within `distance`.
+    pub fn is_within(&self, triangle: u32, p: Point, distance: f64) -> bool {
+        distance >= 0.0 && self.distance_sq_to(triangle, p) <= distance * distance
+    }
+
+    /// A triangle within `distance`, if there is one.
+    pub fn some_within(&self, p: Point, distance: f64) -> Option<u32> {
+        if distance < 0.0 {
+            return None;
+        }
+        let (distance_sq, triangle) = self.search(p, distance * distance, true);
+        (distance_sq < f64::INFINITY).then_some(triangle)
+    }
+
+    fn distance_sq_to(&self, triangle: u32, p: Point) -> f64 {
+        (closest_on_triangle(p, &self.corners[triangle as usize]) - p).length_sq()
     }
 
     /// Whether some triangle is within `distance`.
     pub fn any_within(&self, p: Point, distance: f64) -> bool {
-        let limit_sq = distance * distance;
-        distance >= 0.0 && self.search(p, limit_sq, true) < f64::INFINITY
+        self.some_within(p, distance).is_some()
     }
 
-    /// Squared distance to the nearest triangle within the squared distance `limit_sq`, infinite
-    /// if there is none; with `any`, to the first one found.
-    fn search(&self, p: Point, mut limit_sq: f64, any: bool) -> f64 {
-        let mut found = f64::INFINITY;
+    /// The point of the surface nearest to `p`, if it is within `limit`.
+    pub fn closest_within(&self, p: Point, limit: f64) -> Option<Point> {
+        let (distance_sq, triangle) = self.search(p, limit * limit, false);
+        (distance_sq < f64::INFINITY)
+            .then(|| closest_on_triangle(p, &self.corners[triangle as usize]))
+    }
+
+    /// The point of the surface nearest to `p`; `guess` is its likely distance, and only the time
+    /// depends on it.
+    pub fn closest(&self, p: Point, guess: f64) -> Point {
+        self.closest_within(p, guess)
+            .or_else(|| self.closest_within(p, f64::INFINITY))
+            .unwrap_or(p)
+    }
+
+    /// Signed distance to the surface: negative behind the nearest triangle. Near an edge several
+    /// are equally near; the one seen most from above decides. A wrong sign can only happen within
+    /// rounding of such a tie, or where the surface is open.
+    pub fn signed_distance(&self, p: Point, guess: f64) -> f64 {
+        self.signed_within(p, guess)
+            .or_else(|| self.signed_within(p, f64::INFINITY))
+            .unwrap_or(f64::INFINITY)
+    }
+
+    /// [`Self::signed_distance`], if the surface is within `limit`.
+    pub fn signed_within(&self, p: Point, limit: f64) -> Option<f64> {
+        let distance = (self.closest_within(p, limit)? - p).length();
+        let mut height = 0.0f64;
+        self.each_within(p, distance * (1.0 + 1e-9) + 1e-12, |corners| {
+            let [a, b, c] = *corners;
+            let h = direction((b - a).cross(c - a)).dot(p - closest_on_triangle(p, corners));
+            if h.abs() > height.abs() {
+                height = h;
+            }
+        });
+        Some(if height <= 0.0 { -distance } else { distance })
+    }
+
+    /// Calls `see` for all triangles within `distance` of `p`.
+    fn each_within(&self, p: Point, distance: f64, mut see: impl FnMut(&[Point; 3])) {
+        let limit_sq = distance * distance;
+        let mut stack = [0u32; 64];
+        let mut len = 1;
+        while len > 0 {
+            len -= 1;
+            let node = &self.nodes[stack[len] as usize];
+            if node.bounds.distance_sq(p) > limit_sq {
+                continue;
+            }
+            let first = node.first as usize;
+            if node.count == 0 {
+                stack[len] = first as u32;
+                stack[len + 1] = first as u32 + 1;
+                len += 2;
+                continue;
+            }
+            for corners in &self.corners[first..first + node.count as usize] {
+                if (closest_on_triangle(p, corners) - p).length_sq() <= limit_sq {
+                    see(corners);
+                }
+            }
+        }
+    }
+
+    /// Squared distance to the nearest triangle within the squared distance `limit_sq` and its
+    /// index, infinite if there is none; with `any`, of the first one found.
+    fn search(&self, p: Point, mut limit_sq: f64, any: bool) -> (f64, u32) {
+        let mut found = (f64::INFINITY, 0);
         // Halving keeps the depth below 32, and each level leaves one node waiting.
         let mut stack = [(0.0, 0u32); 64];
         let mut len = 1;
@@ -148,11 +235,12 @@ impl TriangleTree {
             let node = &self.nodes[index as usize];
             let first = node.first as usize;
             if node.count > 0 {
-                for corners in &self.corners[first..first + node.count as usize] {
+                for triangle in first..first + node.count as usize {
+                    let corners = &self.corners[triangle];
                     let distance_sq = (closest_on_triangle(p, corners) - p).length_sq();
                     if distance_sq <= limit_sq {
                         limit_sq = distance_sq;
-                        found = distance_sq;
+                        found = (distance_sq, triangle as u32);
                         if any {
                             return found;
                         }

@@ -1,6 +1,6 @@
 //! Progress and cancellation: stages report through one object, which also times them.
 
-use super::Progress;
+use super::options::Progress;
 use crate::error::BuildError;
 use crate::math::Real;
 use std::ops::ControlFlow;
@@ -8,15 +8,18 @@ use web_time::Instant;
 
 /// The stages of a build and the share of its time that each takes, measured on meshes of 5k to
 /// 30k triangles at 500 primitives. Only the progress bar's evenness depends on them.
-const STAGES: [(&str, f64); 9] = [
-    ("surface", 0.04),
-    ("samples", 0.03),
-    ("delaunay", 0.08),
-    ("inner balls", 0.03),
+const STAGES: [(&str, f64); 12] = [
+    ("surface", 0.01),
+    ("samples", 0.01),
+    ("delaunay", 0.04),
+    ("inner balls", 0.01),
     ("sheets", 0.01),
-    ("simplify", 0.25),
-    ("enclose", 0.15),
-    ("measure", 0.40),
+    ("simplify", 0.12),
+    ("refit", 0.29),
+    ("insert", 0.05),
+    ("swaps", 0.20),
+    ("enclose", 0.05),
+    ("measure", 0.20),
     ("mass", 0.01),
 ];
 
@@ -75,6 +78,11 @@ impl<'a> Watch<'a> {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(BuildError::Cancelled { stage: self.stage }),
         }
+    }
+
+    /// Reports again where the build is, so that the caller may stop it.
+    pub fn again(&mut self) -> Result<(), BuildError> {
+        self.at(0.0)
     }
 
     /// Reports at each [`EVERY`]th item, so that the caller may stop a long loop over small ones.

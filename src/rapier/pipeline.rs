@@ -158,8 +158,13 @@ impl MedialPipeline {
         let found = candidates::find(parameters, bodies, colliders, &mut self.recycled);
         let before = self.batch.report().clone();
         let results = self.batch.run(&found.jobs);
-        report.settled_by_gpu = self.batch.report().settled_by_gpu - before.settled_by_gpu;
-        report.fallbacks = self.batch.report().fallbacks - before.fallbacks;
+        let after = self.batch.report();
+        report.settled_by_gpu = after.settled_by_gpu - before.settled_by_gpu;
+        report.unfit = after.unfit - before.unfit;
+        report.submissions = after.submissions - before.submissions;
+        report.maps = after.maps - before.maps;
+        report.survivors = after.survivors - before.survivors;
+        report.fallbacks = after.fallbacks - before.fallbacks;
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();
         for (job, result) in found.jobs.iter().zip(&results) {

@@ -3,12 +3,14 @@
 use crate::meshes::*;
 use crate::solid_distance;
 use parry3d::math::Vector;
+use rapier3d_medial::Quality;
 use rapier3d_medial::{BuildError, BuildOptions, BuildReport, MedialMesh};
 
 type Built = Result<(MedialMesh, BuildReport), BuildError>;
 
 fn attempt(mesh: &Mesh) -> Built {
     let mut options = BuildOptions::default();
+    options.quality = Quality::Fast;
     options.primitives = Some(30);
     // Enclosing an open or crowded surface is covered by the flat cards.
     options.enclose = mesh.indices.len() <= 4;
@@ -218,6 +220,7 @@ fn options_out_of_range() {
     let mesh = unit_box();
     let with = |primitives, max_error| {
         let mut options = BuildOptions::default();
+        options.quality = Quality::Fast;
         options.primitives = primitives;
         options.max_error = max_error;
         MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options)

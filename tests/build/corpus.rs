@@ -8,6 +8,7 @@ use crate::broken::*;
 use crate::meshes::*;
 use crate::oracle;
 use parry3d::math::Vector;
+use rapier3d_medial::Quality;
 use rapier3d_medial::build::{Findings, MassSource};
 use rapier3d_medial::{BuildOptions, MedialMesh, MedialSphere};
 
@@ -79,6 +80,7 @@ impl Case {
 
     fn check(&self) -> Result<(), String> {
         let mut options = BuildOptions::default();
+        options.quality = Quality::Fast;
         options.primitives = Some(self.primitives);
         let Mesh { vertices, indices } = &self.mesh;
         let (medial, report) =
@@ -464,6 +466,7 @@ fn combinations(seeds: std::ops::Range<u64>) {
     for seed in seeds {
         let mesh = combined(seed);
         let mut options = BuildOptions::default();
+        options.quality = Quality::Fast;
         options.primitives = Some(PRIMITIVES);
         let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
         let (medial, report) = built.unwrap_or_else(|e| panic!("seed {seed}: {e}"));

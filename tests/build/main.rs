@@ -15,11 +15,13 @@ mod scale;
 mod shapes;
 
 use meshes::Mesh;
+use rapier3d_medial::Quality;
 use rapier3d_medial::{BuildOptions, BuildReport, MedialMesh};
 
 /// Builds with a number of primitives, with enclosure or without.
 fn build(mesh: &Mesh, primitives: usize, enclose: bool) -> (MedialMesh, BuildReport) {
     let mut options = BuildOptions::default();
+    options.quality = Quality::Fast;
     options.primitives = Some(primitives);
     options.enclose = enclose;
     MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options)

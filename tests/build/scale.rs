@@ -2,6 +2,7 @@
 //! `cargo test --release --test build scale -- --ignored --nocapture --test-threads 1`.
 
 use crate::meshes::*;
+use rapier3d_medial::Quality;
 use rapier3d_medial::{BuildOptions, MedialMesh};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -39,7 +40,10 @@ fn by_hand(around: u32, across: u32, open: bool) {
     let built = MedialMesh::from_trimesh_with_progress(
         &mesh.vertices,
         &mesh.indices,
-        &BuildOptions::default(),
+        &BuildOptions {
+            quality: Quality::Fast,
+            ..Default::default()
+        },
         &mut |p| {
             let gap = last.elapsed();
             let of_stage = gaps.entry(before.0).or_default();
@@ -75,7 +79,10 @@ fn cleaning_up_reports_in_proportion_to_its_work() {
         let built = MedialMesh::from_trimesh_with_progress(
             &mesh.vertices,
             &mesh.indices,
-            &BuildOptions::default(),
+            &BuildOptions {
+                quality: Quality::Fast,
+                ..Default::default()
+            },
             &mut |p| {
                 calls += usize::from(p.stage == "surface");
                 match p.stage {

@@ -157,4 +157,91 @@ fn poses_that_are_not_finite_go_to_the_cpu() {
     }
     assert!(batch.report().settled_by_gpu > 0);
     assert_eq!(batch.report().fallbacks, 0);
+    assert_eq!(batch.report().unfit, 10);
+}
+
+/// Set for the copy of this program that [`without_a_driver_the_cpu_serves`] starts: what the machine
+/// lacks there.
+const LACKING: &str = "MEDIAL_TEST_LACKING";
+
+/// Runs in that copy.
+#[test]
+fn lacking() {
+    let Ok(lacking) = std::env::var(LACKING) else {
+        return;
+    };
+    let mut batch = Batch::new(Backend::Gpu);
+    let error = batch.report().error.clone();
+    assert!(
+        matches!(error, Some(GpuError::NoAdapter { .. })),
+        "without {lacking}: {error:?}"
+    );
+    assert_complete(&mut batch);
+    assert_eq!(batch.report().settled_by_gpu, 0);
+    println!("served without {lacking}");
+}
+
+/// The same machine without a driver, and with a loader that cannot be loaded.
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_driver_the_cpu_serves() {
+    let folder = std::env::temp_dir().join(format!("medial-no-loader-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for name in ["libvulkan.so.1", "libvulkan.so"] {
+        std::fs::write(folder.join(name), "").expect("an empty file");
+    }
+    let program = std::env::current_exe().expect("this program");
+    for (lacking, variable, value) in [
+        ("a driver", "VK_DRIVER_FILES", folder.join("none.json")),
+        ("a loader", "LD_LIBRARY_PATH", folder.clone()),
+    ] {
+        let output = std::process::Command::new(&program)
+            .args(["--exact", "failures::lacking", "--nocapture"])
+            .env(LACKING, lacking)
+            .env(variable, value)
+            .output()
+            .expect("this program again");
+        let said = String::from_utf8_lossy(&output.stdout);
+        let expected = format!("served without {lacking}");
+        assert!(
+            output.status.success() && said.contains(&expected),
+            "{said}"
+        );
+    }
+    std::fs::remove_dir_all(&folder).expect("the folder goes");
+}
+
+/// No driver here runs out of memory when asked to, so what it would say is put in its mouth.
+#[test]
+fn a_device_without_memory_is_given_up() {
+    let Some(mut batch) = open(scene::options()) else {
+        return;
+    };
+    assert_complete(&mut batch);
+    let error = GpuError::OutOfMemory {
+        message: "rehearsed".to_owned(),
+    };
+    batch.gpu().expect("a device").fail(error.clone());
+    assert_complete(&mut batch);
+    assert_eq!(batch.report().error, Some(error));
+    assert_eq!(batch.report().fallbacks, 1);
+    assert!(batch.gpu().is_none());
+}
+
+/// Meshes that nobody else holds make room.
+#[test]
+fn meshes_of_bodies_that_are_gone_go_too() {
+    let Some(mut batch) = open(scene::options()) else {
+        return;
+    };
+    for round in 0..4 {
+        let jobs = pair_jobs(30);
+        let expected = cpu::run(&jobs);
+        for (answer, expected) in batch.run(&jobs).iter().zip(&expected) {
+            assert_eq!(answer.contacts, expected.contacts);
+        }
+        // New meshes each time, those of the round before gone.
+        assert_eq!(batch.gpu_counts().meshes, 3, "round {round}");
+    }
+    assert_eq!(batch.report().fallbacks, 0);
 }

@@ -9,6 +9,7 @@
 mod ccd;
 
 mod batch;
+mod calibration;
 mod culling;
 mod elementary;
 mod failures;

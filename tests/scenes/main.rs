@@ -8,6 +8,12 @@ mod drawing;
 mod driven;
 mod endurance;
 mod fast_pairs;
+#[cfg_attr(
+    not(feature = "enhanced-determinism"),
+    allow(dead_code, reason = "the golden holds with that feature only")
+)]
+#[path = "../common/golden.rs"]
+mod golden;
 mod heaps;
 mod impacts;
 mod oracle;

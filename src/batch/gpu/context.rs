@@ -1,11 +1,12 @@
 //! The device and what goes wrong with it. No call panics: errors that the graphics library reports
 //! out of turn are kept, and the next check returns them.
 
+use super::clock::Clock;
 use crate::error::GpuError;
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{
-    Backends, Buffer, BufferUsages, Device, DeviceDescriptor, DeviceType, Error, Instance,
-    InstanceDescriptor, Limits, PollType, PowerPreference, Queue, RequestAdapterOptions,
+    Backends, Buffer, BufferUsages, Device, DeviceDescriptor, DeviceType, Error, Features,
+    Instance, InstanceDescriptor, Limits, PollType, PowerPreference, Queue, RequestAdapterOptions,
 };
 
 /// Which device to take and how much of it.
@@ -15,6 +16,8 @@ pub struct GpuOptions {
     pub software: bool,
     /// Most bytes of a buffer that shaders see; what the device allows if that is less.
     pub binding_bytes: u64,
+    /// Whether stages are timed, where the device can.
+    pub timed: bool,
     /// Entries that each list has room for at first; they grow as needed.
     pub list_capacity: u32,
 }
@@ -23,6 +26,7 @@ impl Default for GpuOptions {
     fn default() -> Self {
         Self {
             software: false,
+            timed: false,
             // The portable limit.
             binding_bytes: 128 << 20,
             list_capacity: 1 << 14,
@@ -49,11 +53,14 @@ impl Fault {
 pub struct Context {
     pub(super) device: Device,
     pub(super) queue: Queue,
+    /// Where stages are timed.
+    pub(super) clock: Option<Clock>,
     pub(super) options: GpuOptions,
     fault: Fault,
     /// Buffers made so far: none are in a step like those before.
     pub(super) buffers_made: u64,
     name: String,
+    driver: String,
     hardware: bool,
 }
 
@@ -76,7 +83,10 @@ impl Context {
         if !hardware && !options.software {
             return Err(GpuError::Software { name: info.name });
         }
+        let clock = Features::TIMESTAMP_QUERY;
+        let timed = options.timed && adapter.features().contains(clock);
         let descriptor = DeviceDescriptor {
+            required_features: if timed { clock } else { Features::empty() },
             required_limits: Limits::default(),
             ..Default::default()
         };
@@ -99,23 +109,35 @@ impl Context {
                 _ => GpuError::Refused { message },
             });
         }));
-        Ok(Self {
+        let mut context = Self {
             device,
             queue,
+            clock: None,
             options: GpuOptions {
                 binding_bytes: options.binding_bytes.min(most),
+                timed,
                 ..options
             },
             fault,
             buffers_made: 0,
             name: format!("{} ({:?})", info.name, info.backend),
+            driver: format!("{} {}", info.driver, info.driver_info),
             hardware,
-        })
+        };
+        if timed {
+            context.clock = Some(Clock::new(&mut context)?);
+        }
+        Ok(context)
     }
 
     /// Name of the adapter and of the interface it is reached by.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The driver and its version.
+    pub fn driver(&self) -> &str {
+        &self.driver
     }
 
     /// Whether the adapter is more than code on the CPU.
@@ -143,6 +165,11 @@ impl Context {
         self.fault.set(GpuError::Lost {
             message: "given up".to_owned(),
         });
+    }
+
+    /// Takes an error as if it had been reported.
+    pub fn fail(&self, error: GpuError) {
+        self.fault.set(error);
     }
 
     /// Most bytes of a buffer: those that are only copied need not fit a binding.

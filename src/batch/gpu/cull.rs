@@ -1,6 +1,7 @@
 //! Mesh pairs to primitive pairs: stages, lists and their growth. A list that overflows is never
 //! cut: it is made as long as its counter says, and the step is asked for again.
 
+use super::clock::{Clock, STAGES};
 use super::context::{Context, Growing};
 use super::layout::{
     CLUSTER, COUNTERS, Cluster, CullParams, NEAR, Pair, Primitive, SURVIVORS, Survivor, TILES, Tile,
@@ -53,6 +54,8 @@ pub(super) struct Found {
     pub(super) counts: [u32; 3],
     /// Whether all had room.
     pub(super) complete: bool,
+    /// Seconds of each stage.
+    pub(super) stages: [f64; STAGES],
 }
 
 const ENTRY: [usize; 3] = [size_of::<Tile>(), size_of::<Tile>(), size_of::<Survivor>()];
@@ -173,26 +176,34 @@ impl Cull {
         let counted = 4 * COUNTERS;
         let listed = self.room[SURVIVORS] as usize * ENTRY[SURVIVORS];
         up.begin(context, &items.map(|i| i.0.len())).await?;
-        down.begin(context, &[counted, listed]).await?;
+        let timed = Clock::bytes(context.clock.as_ref());
+        down.begin(context, &[counted, listed, timed]).await?;
         let mut encoder = context.device.create_command_encoder(&Default::default());
         for (bytes, buffer, at) in items {
             up.send(&mut encoder, bytes, self.buffer(buffer), at as u64)?;
         }
         encoder.clear_buffer(self.buffer(COUNTS), 0, None);
         let groups = self.buffer(GROUPS);
-        self.stages[0].run(&mut encoder, cluster_pairs.div_ceil(CLUSTER as u32));
-        self.stages[1].run(&mut encoder, 1);
-        self.stages[2].run_indirect(&mut encoder, groups, 0);
-        self.stages[3].run(&mut encoder, 1);
-        self.stages[4].run_indirect(&mut encoder, groups, 12);
+        self.stages[0].run(
+            context,
+            &mut encoder,
+            cluster_pairs.div_ceil(CLUSTER as u32),
+        );
+        self.stages[1].run(context, &mut encoder, 1);
+        self.stages[2].run_indirect(context, &mut encoder, groups, 0);
+        self.stages[3].run(context, &mut encoder, 1);
+        self.stages[4].run_indirect(context, &mut encoder, groups, 12);
         down.receive(&mut encoder, self.buffer(COUNTS), counted);
         down.receive(&mut encoder, self.buffer(LISTS[SURVIVORS]), listed);
+        if let Some(clock) = &context.clock {
+            clock.receive(&mut encoder, down, STAGES as u32);
+        }
         up.hand_over();
         context.queue.submit([encoder.finish()]);
         up.take_back();
         down.take_back();
         meshes.sent = (meshes.clusters.len(), meshes.primitives.len());
-        let mut counts = [0u32; COUNTERS];
+        let (mut counts, mut stages) = ([0u32; COUNTERS], [0.0; STAGES]);
         down.read(context, |bytes| {
             let (head, list) = bytes.split_at(counted);
             bytemuck::bytes_of_mut(&mut counts).copy_from_slice(head);
@@ -201,10 +212,17 @@ impl Cull {
             let to: &mut [u8] = bytemuck::cast_slice_mut(survivors);
             let size = to.len();
             to.copy_from_slice(&list[..size]);
+            if let Some(clock) = &context.clock {
+                stages = clock.seconds(&list[listed..], STAGES);
+            }
         })
         .await?;
         let counts = [counts[TILES], counts[NEAR], counts[SURVIVORS]];
         let complete = (0..3).all(|k| counts[k] <= self.room[k]);
-        Ok(Found { counts, complete })
+        Ok(Found {
+            counts,
+            complete,
+            stages,
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! Many elementary tests on straight paths: what the device proves free, and for the rest a time
 //! before which there is no contact.
 
+use super::clock::{Clock, STAGES};
 use super::context::{Context, Growing};
 use super::layout::{Bound, CLUSTER, ElementaryParams, Query};
 use super::shaders::ELEMENTARY;
@@ -48,6 +49,7 @@ impl Elementary {
 
     /// One submission and one map. The tolerance counts as contact: what is called separated stays
     /// further apart, from the start of the step to its end.
+    /// Returns the seconds of its stage.
     pub(super) async fn run(
         &mut self,
         context: &mut Context,
@@ -56,10 +58,11 @@ impl Elementary {
         domain: Domain,
         tolerance: f32,
         bounds: &mut Vec<Bound>,
-    ) -> Result<(), GpuError> {
+    ) -> Result<[f64; STAGES], GpuError> {
+        let mut stages = [0.0; STAGES];
         bounds.clear();
         if paths.is_empty() {
-            return Ok(());
+            return Ok(stages);
         }
         self.packed.clear();
         let packed = paths.iter().map(|path| pack(path, tolerance));
@@ -82,21 +85,31 @@ impl Elementary {
             self.bound = true;
         }
         up.begin(context, &[params.len(), queries.len()]).await?;
-        down.begin(context, &[answers]).await?;
+        let timed = Clock::bytes(context.clock.as_ref());
+        down.begin(context, &[answers, timed]).await?;
         let mut encoder = context.device.create_command_encoder(&Default::default());
         up.send(&mut encoder, params, &self.params.buffer, 0)?;
         up.send(&mut encoder, queries, &self.queries.buffer, 0)?;
         self.stage
-            .run(&mut encoder, paths.len().div_ceil(CLUSTER) as u32);
+            .run(context, &mut encoder, paths.len().div_ceil(CLUSTER) as u32);
         down.receive(&mut encoder, &self.bounds.buffer, answers);
+        if let Some(clock) = &context.clock {
+            clock.receive(&mut encoder, down, 1);
+        }
         up.hand_over();
         context.queue.submit([encoder.finish()]);
         up.take_back();
         down.take_back();
         bounds.resize(paths.len(), Bound::default());
         let to: &mut [u8] = bytemuck::cast_slice_mut(bounds);
-        down.read(context, |bytes| to.copy_from_slice(&bytes[..answers]))
-            .await
+        down.read(context, |bytes| {
+            to.copy_from_slice(&bytes[..answers]);
+            if let Some(clock) = &context.clock {
+                stages = clock.seconds(&bytes[answers..], 1);
+            }
+        })
+        .await?;
+        Ok(stages)
     }
 }
 

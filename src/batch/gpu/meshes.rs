@@ -42,9 +42,18 @@ impl Meshes {
         self.residents.len()
     }
 
-    /// Before a batch: what is asked for until the next call counts as used.
+    /// Before a batch: what is asked for until the next call counts as used. Meshes that no one else
+    /// holds go when they are half of all: earlier, each body that is removed would have all others
+    /// sent again.
     pub(super) fn begin(&mut self) {
         self.batch += 1;
+        let orphan = |r: &Resident| r.mesh.owners() == 1;
+        let orphans = self.residents.values().filter(|r| orphan(r));
+        let orphaned: usize = orphans.map(|r| r.mesh.primitive_count()).sum();
+        if orphaned > 0 && 2 * orphaned >= self.primitives.len() {
+            self.residents.retain(|_, r| !orphan(r));
+            self.pack();
+        }
     }
 
     /// Where the mesh lies; it is added if it is new.

@@ -6,6 +6,7 @@
 //! One submission and one map per batch; nothing is allocated on the device in a step like those
 //! before. Whatever goes wrong is a [`GpuError`], and the CPU has the work.
 
+mod clock;
 mod context;
 mod cull;
 mod elementary;
@@ -39,8 +40,10 @@ const MOST_RUNS: u32 = 4;
 /// Work of the device since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpuCounts {
-    /// Submissions; each has one map.
+    /// Submissions.
     pub submissions: u64,
+    /// Times that answers were mapped and waited for.
+    pub maps: u64,
     /// Of these, batches asked for again because a list had no room.
     pub reruns: u64,
     /// Cluster pairs whose bounds meet, in the last batch.
@@ -96,6 +99,7 @@ pub struct Gpu {
     /// Where each pair comes from.
     asked: Vec<Piece>,
     survivors: Vec<Survivor>,
+    stages: [f64; clock::STAGES],
     counts: GpuCounts,
 }
 
@@ -112,6 +116,7 @@ impl Gpu {
             pairs: Vec::new(),
             asked: Vec::new(),
             survivors: Vec::new(),
+            stages: [0.0; clock::STAGES],
             counts: GpuCounts::default(),
             context,
         };
@@ -144,12 +149,18 @@ impl Gpu {
         self.propose(&[sweep], &mut Vec::new()).await?;
         self.meshes.remove(&mesh);
         self.counts = GpuCounts::default();
+        self.down.maps = 0;
         Ok(())
     }
 
     /// Name of the adapter and of the interface it is reached by.
     pub fn name(&self) -> &str {
         self.context.name()
+    }
+
+    /// The driver and its version, as far as it tells.
+    pub fn driver(&self) -> &str {
+        self.context.driver()
     }
 
     /// Whether the adapter is more than code on the CPU.
@@ -160,10 +171,17 @@ impl Gpu {
     /// Work done so far.
     pub fn counts(&self) -> GpuCounts {
         GpuCounts {
+            maps: self.down.maps,
             buffers_made: self.context.buffers_made,
             meshes: self.meshes.len(),
             ..self.counts
         }
+    }
+
+    /// Seconds that each stage of the last batch took on the device, in the order of
+    /// [`shaders::MODULES`]' stages; zeros without [`GpuOptions::timed`], or where it cannot tell.
+    pub fn stage_seconds(&self) -> [f64; 5] {
+        self.stages
     }
 
     /// The first error of the device, if any; after one it is of no more use.
@@ -176,7 +194,14 @@ impl Gpu {
         self.context.lose();
     }
 
-    /// Drops a mesh; returns whether it was there.
+    /// Behaves from now on as if the driver had reported this, to rehearse what no test can bring
+    /// about.
+    pub fn fail(&self, error: GpuError) {
+        self.context.fail(error);
+    }
+
+    /// Drops a mesh; returns whether it was there. Not needed for meshes that no one else holds: they
+    /// go by themselves.
     pub fn remove(&mut self, mesh: &MedialMesh) -> bool {
         self.meshes.remove(mesh)
     }
@@ -200,7 +225,8 @@ impl Gpu {
         self.context.check()?;
         let transfers = [&mut self.up, &mut self.down];
         self.counts.submissions += 1;
-        self.elementary
+        self.stages = self
+            .elementary
             .run(
                 &mut self.context,
                 transfers,
@@ -209,7 +235,8 @@ impl Gpu {
                 tolerance,
                 bounds,
             )
-            .await
+            .await?;
+        Ok(())
     }
 
     /// Proposes for many mesh pairs, in their order.
@@ -255,6 +282,7 @@ impl Gpu {
                 }
                 other => other?,
             };
+            self.stages = found.stages;
             let [tiles, near, survivors] = found.counts;
             self.counts.cluster_pairs = tiles;
             self.counts.primitive_pairs = near;

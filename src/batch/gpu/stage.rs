@@ -11,6 +11,8 @@ use wgpu::{
 /// One entry point of a shader.
 pub(super) struct Stage {
     pipeline: ComputePipeline,
+    /// Its place in the module.
+    index: u32,
     bound: Option<BindGroup>,
 }
 
@@ -21,7 +23,8 @@ impl Stage {
             label: Some(module.name),
             source: ShaderSource::Wgsl(module.source().into()),
         });
-        let stage = |name: &&'static str| Self {
+        let stage = |(index, name): (usize, &&'static str)| Self {
+            index: index as u32,
             pipeline: context
                 .device
                 .create_compute_pipeline(&ComputePipelineDescriptor {
@@ -34,7 +37,7 @@ impl Stage {
                 }),
             bound: None,
         };
-        module.stages.iter().map(stage).collect()
+        module.stages.iter().enumerate().map(stage).collect()
     }
 
     /// Binds buffers; they stay bound until the next call.
@@ -55,22 +58,36 @@ impl Stage {
     }
 
     /// Runs it over so many groups, folded into two dimensions.
-    pub(super) fn run(&self, encoder: &mut CommandEncoder, groups: u32) {
+    pub(super) fn run(&self, context: &Context, encoder: &mut CommandEncoder, groups: u32) {
         let x = groups.min(MAX_GROUPS);
-        self.record(encoder, |pass| {
+        self.record(context, encoder, |pass| {
             pass.dispatch_workgroups(x, groups.div_ceil(x.max(1)), 1);
         });
     }
 
     /// Runs it over as many groups as a buffer says, `at` bytes in.
-    pub(super) fn run_indirect(&self, encoder: &mut CommandEncoder, groups: &Buffer, at: u64) {
-        self.record(encoder, |pass| {
+    pub(super) fn run_indirect(
+        &self,
+        context: &Context,
+        encoder: &mut CommandEncoder,
+        groups: &Buffer,
+        at: u64,
+    ) {
+        self.record(context, encoder, |pass| {
             pass.dispatch_workgroups_indirect(groups, at)
         });
     }
 
-    fn record(&self, encoder: &mut CommandEncoder, run: impl FnOnce(&mut wgpu::ComputePass<'_>)) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    fn record(
+        &self,
+        context: &Context,
+        encoder: &mut CommandEncoder,
+        run: impl FnOnce(&mut wgpu::ComputePass<'_>),
+    ) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes: context.clock.as_ref().map(|c| c.writes(self.index)),
+        });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, self.bound.as_ref(), &[]);
         run(&mut pass);

@@ -47,6 +47,8 @@ pub(super) struct Transfer {
     mode: MapMode,
     signal: Signal,
     used: usize,
+    /// Times that the host asked for it back.
+    pub(super) maps: u64,
 }
 
 impl Transfer {
@@ -60,6 +62,7 @@ impl Transfer {
             mode: MapMode::Write,
             signal,
             used: 0,
+            maps: 0,
         })
     }
 
@@ -71,6 +74,7 @@ impl Transfer {
             mode: MapMode::Read,
             signal: Signal::default(),
             used: 0,
+            maps: 0,
         })
     }
 
@@ -125,7 +129,8 @@ impl Transfer {
     }
 
     /// Asks for the buffer back, after the submission.
-    pub(super) fn take_back(&self) {
+    pub(super) fn take_back(&mut self) {
+        self.maps += 1;
         self.signal.reset();
         let signal = self.signal.clone();
         let done = move |result: Result<(), _>| signal.set(result.is_ok());

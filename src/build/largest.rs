@@ -1,0 +1,205 @@
+//! Branch and bound: the largest distance over a surface that comes in pieces.
+//!
+//! The distance to a set changes by at most the way one moves. So a piece with centre `c` and radius
+//! `ρ` holds no point farther than `d(c) + ρ`. Pieces that could exceed the largest distance found so
+//! far, `h`, by more than a slack are cut, the others dropped. What is left in the end: a distance `h`
+//! reached at a sample, and the certainty that no point exceeds it by more than the slack.
+//!
+//! The first levels are searched in breadth, which soon finds most of `h`, the rest in depth, where
+//! neighbouring pieces follow each other, share hints and need no memory.
+
+use crate::error::BuildError;
+
+/// Distances below this (longest side 1) have the slack of this one: nobody needs them closer.
+const SMALL: f64 = 2e-3;
+
+/// The slack doubles each time that so many pieces were examined: about a quarter of a second.
+/// Uniform errors, from which no piece stands out, need it.
+const BUDGET: usize = 400_000;
+
+/// Pieces smaller than this (longest side 1) are not cut, whatever they may hide.
+const FINEST: f64 = 1e-4;
+
+/// Levels of more pieces than this are searched in depth.
+const WIDE: usize = 8_192;
+
+/// After the search, the pieces that gave the largest distances are searched until the distance is
+/// certain to within this share there.
+const POLISH: f64 = 0.02;
+
+/// Pieces examined at most for that.
+const POLISH_BUDGET: usize = 4_000;
+
+/// How many pieces that is, and the share of the largest distance that each must reach.
+const LEADERS: usize = 32;
+const LEADING: f64 = 0.8;
+
+/// What the centre of a piece tells.
+pub enum Look {
+    /// Nothing in the piece can matter.
+    Settled,
+    /// Its distance to the other surface, reached by a sample there.
+    Distance(f64),
+    /// A sample near it has the first distance; its own is at most the second.
+    Near(f64, f64),
+    /// It gives no sample of its own, but other points of the piece may.
+    Hidden,
+}
+
+/// A surface in pieces, to find the largest distance over.
+pub trait Side {
+    /// A piece of it.
+    type Piece: Copy;
+    /// Distance from a piece's centre to its farthest point.
+    fn radius(&self, piece: &Self::Piece) -> f64;
+    /// Examines the centre of a piece of radius `rho`: `best` is the largest distance so far, and a
+    /// distance up to `allowed` at the centre settles the piece.
+    fn look(&mut self, piece: &Self::Piece, rho: f64, best: f64, allowed: f64) -> Look;
+    /// Cuts a piece into smaller ones.
+    fn cut(&self, piece: Self::Piece, pieces: &mut Vec<Self::Piece>);
+}
+
+/// How closely to look.
+#[derive(Clone, Copy)]
+pub struct Effort {
+    /// Slack as a share of the largest distance.
+    pub slack: f64,
+    /// Once a larger distance is found the search ends.
+    pub enough: f64,
+}
+
+impl Effort {
+    /// For what a build returns.
+    pub const CLOSE: Self = Self {
+        slack: 0.25,
+        enough: f64::INFINITY,
+    };
+
+    /// For what it reports besides: a quarter of the time.
+    pub const ROUGH: Self = Self {
+        slack: 1.0,
+        enough: f64::INFINITY,
+    };
+}
+
+/// A search for the largest distance.
+pub struct Search<'a, S: Side> {
+    side: &'a mut S,
+    /// The largest distance found.
+    pub best: f64,
+    effort: Effort,
+    /// Pieces that gave large distances.
+    leaders: Vec<(f64, S::Piece)>,
+    /// Radius of the largest piece that was given up.
+    given_up: f64,
+    examined: usize,
+}
+
+impl<'a, S: Side> Search<'a, S> {
+    /// A search that starts with the distance `start`.
+    pub fn new(side: &'a mut S, start: f64, effort: Effort) -> Self {
+        Self {
+            side,
+            best: start,
+            effort,
+            leaders: Vec::new(),
+            given_up: 0.0,
+            examined: 0,
+        }
+    }
+
+    /// By how much a distance may exceed the best, unless it ended early.
+    pub fn slack(&self) -> f64 {
+        self.slack_now().max(self.given_up)
+    }
+
+    fn slack_now(&self) -> f64 {
+        let doubled = 1u64 << (self.examined / BUDGET).min(32);
+        self.effort.slack * self.best.max(SMALL) * doubled as f64
+    }
+
+    /// Cuts pieces level by level, until none is left or there are many, which are returned.
+    pub fn in_breadth(
+        &mut self,
+        mut level: Vec<S::Piece>,
+        mut tick: impl FnMut(f64) -> Result<(), BuildError>,
+    ) -> Result<Vec<S::Piece>, BuildError> {
+        while !level.is_empty() && level.len() <= WIDE && self.best <= self.effort.enough {
+            let mut next = Vec::new();
+            for (i, piece) in level.into_iter().enumerate() {
+                if i % 128 == 0 {
+                    tick(0.0)?;
+                }
+                self.examine(piece, self.slack_now(), &mut next);
+            }
+            level = next;
+        }
+        Ok(level)
+    }
+
+    /// Settles piece after piece, and then looks closer at those that gave the most.
+    pub fn in_depth(
+        &mut self,
+        pieces: impl ExactSizeIterator<Item = S::Piece>,
+        mut tick: impl FnMut(f64) -> Result<(), BuildError>,
+    ) -> Result<(), BuildError> {
+        let count = pieces.len().max(1) as f64;
+        let mut waiting = Vec::new();
+        for (i, piece) in pieces.enumerate() {
+            waiting.push(piece);
+            while let Some(piece) = waiting.pop() {
+                if self.best > self.effort.enough {
+                    return Ok(());
+                }
+                if self.examined.is_multiple_of(128) {
+                    tick(i as f64 / count)?;
+                }
+                self.examine(piece, self.slack_now(), &mut waiting);
+            }
+        }
+        self.keep_leaders();
+        waiting.extend(self.leaders.iter().rev().map(|leader| leader.1));
+        for _ in 0..POLISH_BUDGET {
+            let Some(piece) = waiting.pop() else { break };
+            self.examine(piece, POLISH * self.best, &mut waiting);
+        }
+        Ok(())
+    }
+
+    /// Keeps the pieces of the largest distances, those first.
+    fn keep_leaders(&mut self) {
+        // A stable sort: ties stay in the order of the search.
+        self.leaders.sort_by(|x, y| y.0.total_cmp(&x.0));
+        self.leaders.truncate(LEADERS);
+    }
+
+    /// Looks at a piece; cuts it unless it can be dropped.
+    fn examine(&mut self, piece: S::Piece, slack: f64, pieces: &mut Vec<S::Piece>) {
+        self.examined += 1;
+        let rho = self.side.radius(&piece);
+        let allowed = self.best + slack - rho;
+        let (sample, bound) = match self.side.look(&piece, rho, self.best, allowed) {
+            Look::Settled => return,
+            Look::Hidden => (0.0, f64::INFINITY),
+            Look::Distance(d) => (d, d),
+            Look::Near(sample, bound) => (sample, bound),
+        };
+        if sample > self.best {
+            self.best = sample;
+        }
+        if sample > LEADING * self.best {
+            self.leaders.push((sample, piece));
+            if self.leaders.len() > 8 * LEADERS {
+                self.keep_leaders();
+            }
+        }
+        if bound <= self.best + slack - rho {
+            return;
+        }
+        if rho > FINEST {
+            self.side.cut(piece, pieces);
+        } else {
+            self.given_up = self.given_up.max(rho);
+        }
+    }
+}

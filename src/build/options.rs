@@ -1,0 +1,167 @@
+//! What a build is asked for, and what it reports.
+
+use super::findings::Findings;
+use crate::error::BuildError;
+use crate::math::Real;
+
+/// How much work a build spends on a small error.
+///
+/// A higher one never gives a larger error (the larger direction of [`BuildReport::hausdorff`],
+/// within its sampling): it compares its result with the lower one's and keeps the better.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quality {
+    /// Edge collapse by quadric error (Q-MAT).
+    Fast,
+    /// Then collapse by measured error, insertion where it is largest, least-squares refit.
+    #[default]
+    Balanced,
+    /// Then several starts for small counts, and rounds of swaps.
+    Best,
+}
+
+/// What to build.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BuildOptions {
+    /// Largest number of primitives (slabs, cones that belong to no slab, lone spheres).
+    pub primitives: Option<usize>,
+    /// Largest two-sided Hausdorff error, as a fraction of the longest side of the bounding box.
+    /// With `primitives` as well, what comes first ends the build.
+    pub max_error: Option<Real>,
+    /// How much work to spend.
+    pub quality: Quality,
+    /// Enlarge radii until the solid provably covers the whole source surface.
+    pub enclose: bool,
+    /// How far the source surface may stick out of the enclosed solid, as a fraction of the longest
+    /// side of the bounding box. Enclosure then proves this instead: bloat falls by up to as much.
+    pub allow_uncovered: Real,
+}
+
+impl Default for BuildOptions {
+    fn default() -> Self {
+        Self {
+            primitives: Some(500),
+            max_error: None,
+            quality: Quality::default(),
+            enclose: true,
+            allow_uncovered: 0.0,
+        }
+    }
+}
+
+/// How far a build is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Name of the running stage.
+    pub stage: &'static str,
+    /// Of the whole build, in [0, 1].
+    pub fraction: Real,
+}
+
+/// Two-sided distance between a source surface and the solid's boundary, in the user's unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hausdorff {
+    /// Largest distance from the source surface to the solid's boundary.
+    pub surface_to_envelope: Real,
+    /// Largest distance from the solid's boundary to the source surface.
+    pub envelope_to_surface: Real,
+    /// How far the source surface sticks out of the solid.
+    pub uncovered: Real,
+    /// How far the solid sticks out of the source surface, at the points examined.
+    pub bloat: Real,
+    /// No point of either surface exceeds its distance above by more than this: a quarter of the
+    /// error, or more where the error is below two thousandths of the size.
+    pub sampling: Real,
+}
+
+impl Hausdorff {
+    /// The two-sided distance: the larger of both directions.
+    pub fn error(&self) -> Real {
+        self.surface_to_envelope.max(self.envelope_to_surface)
+    }
+}
+
+/// What a build did, measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct BuildReport {
+    /// Error of the result.
+    pub hausdorff: Hausdorff,
+    /// Error before the enclosure, when one was asked for.
+    pub hausdorff_before_enclosure: Option<Hausdorff>,
+    /// Longest side of the source's bounding box: errors are usually quoted in it.
+    pub longest_side: Real,
+    /// Primitives of the result.
+    pub primitives: usize,
+    /// Euler number of the result's complex: spheres − edges + faces. 1 for a ball, 0 for a ring.
+    pub euler: i64,
+    /// Whether the result keeps every limit asked for. The count is always kept.
+    pub target_reached: bool,
+    /// What was found in the input and what was done about it, counted.
+    pub findings: Findings,
+    /// The same in words, and which limit bound.
+    pub notes: Vec<String>,
+    /// Seconds per stage, in order.
+    pub seconds: Vec<(&'static str, f64)>,
+}
+
+/// The options, checked, in double precision.
+pub(super) struct Limits {
+    pub primitives: Option<usize>,
+    pub max_error: Option<f64>,
+    pub quality: Quality,
+    pub enclose: bool,
+    pub allow_uncovered: f64,
+}
+
+impl Limits {
+    pub fn new(options: &BuildOptions) -> Result<Self, BuildError> {
+        if options.primitives == Some(0) {
+            return Err(BuildError::Option {
+                option: "primitives",
+                value: 0.0,
+                must: "at least 1",
+            });
+        }
+        let max_error = options.max_error.map(f64::from);
+        if let Some(value) = max_error.filter(|e| !(*e > 0.0 && e.is_finite())) {
+            return Err(BuildError::Option {
+                option: "max_error",
+                value,
+                must: "above 0 and finite",
+            });
+        }
+        let allow_uncovered = f64::from(options.allow_uncovered);
+        if !(allow_uncovered >= 0.0 && allow_uncovered.is_finite()) {
+            return Err(BuildError::Option {
+                option: "allow_uncovered",
+                value: allow_uncovered,
+                must: "at least 0 and finite",
+            });
+        }
+        let unlimited = options.primitives.is_none() && max_error.is_none();
+        let default = BuildOptions::default().primitives;
+        Ok(Self {
+            primitives: if unlimited {
+                default
+            } else {
+                options.primitives
+            },
+            max_error,
+            quality: options.quality,
+            enclose: options.enclose,
+            allow_uncovered,
+        })
+    }
+
+    /// Samples of the surface that the medial mesh starts from: three for each primitive wanted, or
+    /// neighbours at about twice the error allowed.
+    pub fn samples(&self, area: f64) -> usize {
+        const LEAST: usize = 10_000;
+        const MOST: usize = 200_000;
+        let by_count = self.primitives.map_or(0, |n| n.saturating_mul(3));
+        let by_error = self.max_error.map_or(0.0, |e| area / (4.0 * e * e));
+        by_count
+            .max((by_error as usize).min(6 * LEAST))
+            .clamp(LEAST, MOST)
+    }
+}

@@ -1,0 +1,259 @@
+//! The pipeline: from a checked surface to the best draft that the limits allow, stage by stage.
+
+use super::draft::Draft;
+use super::enclose::enclose;
+use super::fit::{self, Collapsed};
+use super::hausdorff::measure;
+use super::largest::Effort;
+use super::options::{Hausdorff, Limits, Quality};
+use super::parts::Parts;
+use super::simplify::Simplifier;
+use super::start::{Start, start};
+use super::surface::Surface;
+use super::triangle_tree::TriangleTree;
+use super::watch::Watch;
+use crate::error::BuildError;
+
+/// Counts tried when the error is the limit shrink by this factor from one to the next.
+const LADDER: f64 = 0.8;
+
+/// A finished medial mesh and what was measured on it, in the builder's frame.
+pub struct Candidate {
+    pub draft: Draft,
+    pub hausdorff: Hausdorff,
+    pub before: Option<Hausdorff>,
+    pub notes: Vec<String>,
+}
+
+impl Candidate {
+    fn error(&self) -> f64 {
+        f64::from(self.hausdorff.error())
+    }
+
+    /// Whether the error is within a limit.
+    pub fn keeps(&self, max_error: Option<f64>) -> bool {
+        max_error.is_none_or(|limit| self.error() <= limit)
+    }
+}
+
+/// A fit whose largest residual is below this share of the plain collapse's is better without
+/// measuring both.
+const CLEARLY_BETTER: f64 = 0.75;
+
+/// The checked surface, its tree, and what to build from it.
+pub struct Source {
+    pub surface: Surface,
+    pub tree: TriangleTree,
+    pub limits: Limits,
+}
+
+impl Source {
+    /// Balls inside where the surface bounds matter, slabs where it is a sheet.
+    pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        let count = self.limits.samples(self.surface.area);
+        let mut findings = std::mem::take(&mut self.surface.findings);
+        let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
+        self.surface.findings = findings;
+        self.candidate(start, watch)
+    }
+
+    /// Simplifies and fits to the limits, encloses and measures.
+    fn candidate(&self, start: Start, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        watch.begin("simplify")?;
+        let mut parts = Parts::new(start, &self.tree, watch)?;
+        let most = self.limits.primitives.unwrap_or(usize::MAX);
+        let mut candidate = if let Some(error) = self.limits.max_error {
+            parts.reduce_to(most, watch)?;
+            self.coarsest(&mut parts, error, watch)?
+        } else if let Some(simplifier) = self.fittable(&mut parts) {
+            self.fitted(simplifier, most, watch)?
+        } else {
+            parts.reduce_to(most, watch)?;
+            self.finish(parts.draft(), watch)?
+        };
+        if parts.broke_topology() {
+            candidate
+                .notes
+                .push("holes or parts were given up to reach the count".into());
+        }
+        Ok(candidate)
+    }
+
+    /// The simplifier of what a fit can improve: solids without sheets or overlaps, whose surface
+    /// tells inside from outside at each point.
+    fn fittable<'p, 's>(&self, parts: &'p mut Parts<'s>) -> Option<&'p mut Simplifier<'s>> {
+        let wanted = self.limits.quality > Quality::Fast && self.surface.simple;
+        parts.only_solid().filter(|_| wanted)
+    }
+
+    /// The best of the plain collapse, the balanced fit and, if asked for, the best fit, by the
+    /// error that is reported: a higher quality has the lower one's result among its own.
+    fn fitted(
+        &self,
+        simplifier: &mut Simplifier,
+        most: usize,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
+        let collapsed = Collapsed::new(simplifier, most, watch)?;
+        let target = fit::target(&self.surface, &self.tree, most);
+        let balanced = fit::balanced(&collapsed, &target, most, watch)?;
+        let mut best = self.enclosed(balanced.0.clone(), Effort::CLOSE, watch)?;
+        let plain = target.residuals(&collapsed.plain, watch)?.largest;
+        if target.residuals(&balanced.0, watch)?.largest > CLEARLY_BETTER * plain {
+            best = self.or_better(best, collapsed.plain.clone(), watch)?;
+        }
+        if self.limits.quality == Quality::Best {
+            let score = balanced.1;
+            let (draft, new) = fit::best(balanced, &collapsed, &target, most, watch)?;
+            if new < score {
+                best = self.or_better(best, draft, watch)?;
+            }
+        }
+        self.reported(best, watch)
+    }
+
+    /// A rung of the ladder as the quality wants it: fitted where it is above [`Quality::Fast`].
+    fn rung(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        if self.limits.quality == Quality::Fast || !self.surface.simple {
+            return self.finish(draft, watch);
+        }
+        let target = fit::target(&self.surface, &self.tree, draft.primitives().len());
+        let (draft, _) = fit::refitted(draft, &target, watch)?;
+        self.finish(draft, watch)
+    }
+
+    /// The fewest primitives whose error is at most `max_error`, among counts in ratio [`LADDER`].
+    fn coarsest(
+        &self,
+        simplifier: &mut Parts,
+        max_error: f64,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
+        let mut rungs = vec![simplifier.draft()];
+        while simplifier.primitives() > 1 {
+            watch.begin("simplify")?;
+            let next = (simplifier.primitives() as f64 * LADDER) as usize;
+            let before = simplifier.primitives();
+            simplifier.reduce_to(next, watch)?;
+            if simplifier.primitives() == before {
+                break;
+            }
+            rungs.push(simplifier.draft());
+        }
+        let finest = rungs[0].primitives().len();
+        let mut best: Option<Candidate> = None;
+        // Rungs below `fine` keep the limit, rungs from `coarse` on break it.
+        let (mut fine, mut coarse) = (0, rungs.len());
+        while fine < coarse {
+            let middle = fine + (coarse - fine) / 2;
+            let candidate = self.rung(rungs[middle].clone(), watch)?;
+            if candidate.error() <= max_error {
+                fine = middle + 1;
+                best = Some(candidate);
+            } else {
+                coarse = middle;
+            }
+        }
+        let (mut candidate, binding) = match best {
+            Some(candidate) => (candidate, "max_error"),
+            None => (self.rung(rungs.swap_remove(0), watch)?, "primitives"),
+        };
+        let count = candidate.draft.primitives().len();
+        let error = candidate.error();
+        candidate.notes.push(match (binding, self.limits.primitives) {
+            ("max_error", _) if count < finest => {
+                format!("max_error {max_error} bound first: {count} primitives, error {error:.5}")
+            }
+            ("max_error", _) => format!("error {error:.5} is within max_error {max_error}"),
+            (_, Some(most)) => format!(
+                "primitives {most} bound first: error {error:.5} is above max_error {max_error}"
+            ),
+            (_, None) => format!(
+                "max_error {max_error} is out of reach: error {error:.5} with all {count} primitives"
+            ),
+        });
+        Ok(candidate)
+    }
+
+    /// Encloses when asked to, and measures before and after.
+    fn finish(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        let enclosed = self.enclosed(draft, Effort::CLOSE, watch)?;
+        self.reported(enclosed, watch)
+    }
+
+    /// Encloses when asked to, and measures the result.
+    fn enclosed(
+        &self,
+        draft: Draft,
+        effort: Effort,
+        watch: &mut Watch,
+    ) -> Result<Enclosed, BuildError> {
+        let mut before = None;
+        let mut enclosed = draft;
+        if self.limits.enclose {
+            watch.begin("enclose")?;
+            before = Some(enclosed.clone());
+            enclose(
+                &mut enclosed,
+                &self.surface,
+                self.limits.allow_uncovered,
+                watch,
+            )?;
+        }
+        watch.begin("measure")?;
+        let hausdorff = measure(&self.surface, &self.tree, &enclosed, effort, watch)?;
+        Ok(Enclosed {
+            draft: enclosed,
+            hausdorff,
+            before,
+        })
+    }
+
+    /// The better of two; the second is measured only until it is worse.
+    fn or_better(
+        &self,
+        best: Enclosed,
+        other: Draft,
+        watch: &mut Watch,
+    ) -> Result<Enclosed, BuildError> {
+        let error = best.hausdorff.error();
+        let effort = Effort {
+            enough: error.into(),
+            ..Effort::CLOSE
+        };
+        let other = self.enclosed(other, effort, watch)?;
+        Ok(if other.hausdorff.error() < error {
+            other
+        } else {
+            best
+        })
+    }
+
+    /// Measures as well what was there before the enclosure.
+    fn reported(&self, enclosed: Enclosed, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        let mut before = None;
+        if let Some(draft) = &enclosed.before {
+            watch.begin("measure")?;
+            before = Some(measure(
+                &self.surface,
+                &self.tree,
+                draft,
+                Effort::ROUGH,
+                watch,
+            )?);
+        }
+        Ok(Candidate {
+            draft: enclosed.draft,
+            hausdorff: enclosed.hausdorff,
+            before,
+            notes: Vec::new(),
+        })
+    }
+}
+
+/// A draft after enclosure, its error, and the draft before.
+struct Enclosed {
+    draft: Draft,
+    hausdorff: Hausdorff,
+    before: Option<Draft>,
+}

@@ -1,0 +1,181 @@
+//! How far a draft is from the surface, sample by sample, and which balls answer for it.
+//!
+//! A surface sample belongs to the primitive nearest to it; its residual is the signed distance.
+//! An envelope sample is a point of the solid's boundary; its residual is minus the signed distance
+//! to the surface: negative where the solid bulges out. To first order
+//! ```text
+//! d(residual) = −Σ αₖ (n·Δcₖ + Δrₖ)
+//! ```
+//! with the weights `α` of the primitive's balls there and the outward normal `n`, because the
+//! derivative of a minimum over `α` is that of its argument at the minimum (envelope theorem).
+//! Sources of the terms: signed distance, paper Eq. (2); one-sided residuals both ways as in Thiery
+//! et al., "Sphere-Meshes" (2013), §5.
+
+use super::bounds::{Point, direction};
+use super::chunks::map_chunks;
+use super::draft::{Ball, Corners, Draft};
+use super::samples::Sample;
+use super::solid::{Cell, Solid};
+use super::triangle_tree::TriangleTree;
+use super::watch::Watch;
+use crate::error::BuildError;
+
+/// First guess of an envelope sample's distance (longest side 1); only time depends on it.
+pub const GUESS: f64 = 0.004;
+
+/// A sample, the balls that answer for it, and what is wrong there.
+#[derive(Clone, Copy)]
+pub struct Row {
+    /// Balls of its primitive.
+    pub corners: Corners,
+    /// Their weights; sum 1.
+    pub weights: [f64; 3],
+    /// Outward unit normal of the solid.
+    pub normal: Point,
+    /// By how much the solid should grow there.
+    pub residual: f64,
+    /// Weight of its square.
+    pub weight: f64,
+    /// Where it is.
+    pub point: Point,
+    /// Index of its primitive.
+    pub primitive: u32,
+}
+
+/// A point of the solid's boundary, by the ball that it lies on: it moves with the ball.
+#[derive(Clone, Copy)]
+pub struct EnvelopeSample {
+    primitive: u32,
+    weights: [f64; 3],
+    normal: Point,
+}
+
+/// All rows of a draft: surface samples first, then envelope samples.
+pub struct Residuals {
+    /// The rows.
+    pub rows: Vec<Row>,
+    /// How many of them are surface samples.
+    pub surface_rows: usize,
+    /// Largest residual of either kind.
+    pub largest: f64,
+    /// What fits are compared by: the largest residual plus twice the root mean square.
+    pub score: f64,
+}
+
+/// Points of the boundary of the solid, about `spacing` apart.
+pub fn envelope_samples(
+    solid: &Solid,
+    spacing: f64,
+    watch: &mut Watch,
+) -> Result<Vec<EnvelopeSample>, BuildError> {
+    // A shell of cells one radius wide on both sides holds √3 cells per square of their side.
+    let side = spacing * 3f64.sqrt().sqrt();
+    let whole = solid.whole();
+    let mut start = whole.with_side(side);
+    while start.side() < whole.side() {
+        start = start.with_side(2.0 * start.side());
+    }
+    let mut cells: Vec<(Cell, u32)> = vec![(start, 0)];
+    while cells.first().is_some_and(|c| c.0.side() > 1.5 * side) {
+        cells = map_chunks(&cells, watch, |chunk| {
+            let mut children = Vec::new();
+            for &(cell, hint) in chunk {
+                let near = solid.nearest(cell.center, hint);
+                if near.signed.distance.abs() <= cell.radius() {
+                    children.extend(cell.children().map(|child| (child, near.primitive)));
+                }
+            }
+            children
+        })?;
+    }
+    map_chunks(&cells, watch, |chunk| {
+        let mut samples = Vec::new();
+        for &(cell, hint) in chunk {
+            let near = solid.nearest(cell.center, hint);
+            if near.signed.distance.abs() > cell.radius() {
+                continue;
+            }
+            if let Some(point) = solid.onto_boundary(cell.center, &near) {
+                samples.push(EnvelopeSample {
+                    primitive: near.primitive,
+                    weights: near.signed.weights,
+                    normal: direction(point - solid.ball(&near).center),
+                });
+            }
+        }
+        samples
+    })
+}
+
+/// Examines a draft at surface samples, each with the primitive it had last, and at envelope
+/// samples.
+pub fn residuals(
+    draft: &Draft,
+    tree: &TriangleTree,
+    samples: &[Sample],
+    hints: &mut [u32],
+    envelope: &[EnvelopeSample],
+    watch: &mut Watch,
+) -> Result<Residuals, BuildError> {
+    let solid = Solid::new(draft);
+    let paired: Vec<(Point, u32)> = samples
+        .iter()
+        .map(|s| s.point)
+        .zip(hints.iter().copied())
+        .collect();
+    let mut rows = map_chunks(&paired, watch, |chunk| {
+        let row = |&(point, hint): &(Point, u32)| {
+            let near = solid.nearest(point, hint);
+            Row {
+                corners: solid.primitives()[near.primitive as usize],
+                weights: near.signed.weights,
+                normal: direction(point - solid.ball(&near).center),
+                residual: near.signed.distance,
+                weight: 1.0,
+                point,
+                primitive: near.primitive,
+            }
+        };
+        chunk.iter().map(row).collect()
+    })?;
+    for (hint, row) in hints.iter_mut().zip(&rows) {
+        *hint = row.primitive;
+    }
+    let surface_rows = rows.len();
+    let share = surface_rows as f64 / envelope.len().max(1) as f64;
+    rows.extend(map_chunks(envelope, watch, |chunk| {
+        let row = |sample: &EnvelopeSample| {
+            let corners = solid.primitives()[sample.primitive as usize];
+            let ball = Ball::interpolate(draft.balls_of(corners), sample.weights);
+            let point = ball.center + sample.normal * ball.radius;
+            let off = point - tree.closest(point, GUESS);
+            let (distance, along) = (off.length(), off.dot(sample.normal));
+            // Where the way to the surface is across the normal, growing does not help.
+            let cosine = if distance > 1e-9 {
+                along / distance
+            } else {
+                1.0
+            };
+            Row {
+                corners,
+                weights: sample.weights,
+                normal: sample.normal,
+                residual: if along > 0.0 { -distance } else { distance },
+                weight: share * cosine * cosine,
+                point,
+                primitive: sample.primitive,
+            }
+        };
+        chunk.iter().map(row).collect()
+    })?);
+    let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
+    let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();
+    let squares = sum(|r| r.weight * r.residual * r.residual);
+    let rms = (squares / sum(|r| r.weight).max(f64::MIN_POSITIVE)).sqrt();
+    Ok(Residuals {
+        rows,
+        surface_rows,
+        largest,
+        score: largest + 2.0 * rms,
+    })
+}
