@@ -11,7 +11,7 @@ use rapier3d_medial::prelude::*;
 const SURE: [Real; 2] = [-0.02, 0.02];
 
 /// An open hook, thick at one end and thin at the other.
-fn hook() -> MedialMesh {
+pub fn hook() -> MedialMesh {
     let count = 9;
     let spheres = (0..count).map(|i| {
         let s = i as Real / (count - 1) as Real;
@@ -38,7 +38,7 @@ pub fn link() -> MedialMesh {
     MedialMesh::new(spheres, edges, vec![]).expect("a link")
 }
 
-fn rod() -> MedialMesh {
+pub fn rod() -> MedialMesh {
     let ends = [-0.5, 0.5].map(|z| MedialSphere::new(Vector::new(0.0, 0.0, z), 0.05));
     MedialMesh::new(ends.to_vec(), vec![[0, 1]], vec![]).expect("a rod")
 }

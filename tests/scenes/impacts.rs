@@ -314,7 +314,7 @@ fn another_length_unit() {
 #[test]
 fn darts_fly_through_the_hole_of_a_ring() {
     let mut random = Random(4242);
-    for case in 0..40 {
+    for case in 0..160 {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         let mut pipeline = attached(&mut world);

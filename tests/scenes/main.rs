@@ -2,6 +2,7 @@
 
 mod bodies;
 mod controls;
+mod crowds;
 mod determinism;
 #[cfg(feature = "debug-render")]
 mod drawing;
