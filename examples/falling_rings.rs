@@ -6,7 +6,7 @@
 //! cargo run --release --example falling_rings -- --mesh my.obj
 //! ```
 //! Options: `--mesh FILE` (drops 15 of your own instead, scaled to the rings' size), `--steps N` (at most; default 1500), `--out DIR` (where the pictures go; default
-//! target/falling_rings), `--quick` (5 rings, small pictures).
+//! target/falling_rings), `--backend cpu|auto|gpu` (where batches are computed; feature `gpu`), `--quick` (5 rings, small pictures).
 //!
 //! Exits with 1 when a check fails: all rings stay above the ground, none passes through another or
 //! the creature, all sleep in the end. The checks work on the formulas and triangles that the
@@ -39,6 +39,7 @@ struct Options {
     mesh: Option<PathBuf>,
     steps: usize,
     out: PathBuf,
+    backend: Backend,
     quick: bool,
 }
 
@@ -50,6 +51,12 @@ fn options() -> Result<Options, String> {
         out: arguments
             .value("--out")?
             .unwrap_or("target/falling_rings".into()),
+        backend: match arguments.value::<String>("--backend")?.as_deref() {
+            None | Some("cpu") => Backend::Cpu,
+            Some("auto") => Backend::Auto,
+            Some("gpu") => Backend::Gpu,
+            Some(other) => return Err(format!("--backend cannot be `{other}`")),
+        },
         quick: arguments.flag("--quick"),
     };
     arguments.finish().map(|()| options)
@@ -83,7 +90,7 @@ fn falling_rings(options: &Options) -> Result<(), String> {
     let creature = Model::new(mesh, skeleton);
     let scene = Scene::new(ring, creature, if options.quick { 5 } else { 15 });
 
-    let medial = medial_meshes(&scene, medial_ring, medial_creature);
+    let medial = medial_meshes(&scene, medial_ring, medial_creature, options.backend);
     let medial = simulate("simulate medial meshes", &scene, medial, options.steps);
     let hulls = convex_hulls(&scene);
     let hulls = simulate("simulate convex hulls", &scene, hulls, options.steps);
@@ -162,10 +169,17 @@ fn medial_meshes(
     scene: &Scene,
     ring: MedialMesh,
     creature: MedialMesh,
+    backend: Backend,
 ) -> (Stage, impl FnMut(&mut PhysicsWorld) -> u64) {
     let collider = ColliderBuilder::medial_mesh;
     let mut stage = scene.stage(&collider(ring), &collider(creature));
-    let mut pipeline = MedialPipeline::new(MedialOptions::default());
+    let mut options = MedialOptions::default();
+    options.backend = backend;
+    let mut pipeline = MedialPipeline::new(options);
+    match &pipeline.batch().report().error {
+        Some(reason) => println!("batches on the CPU: {reason}"),
+        None => println!("batches: {backend:?}"),
+    }
     pipeline.attach(&mut stage.world);
     let step = move |world: &mut PhysicsWorld| pipeline.step(world).elementary_tests;
     (stage, step)

@@ -1,4 +1,4 @@
-//! Every input that can be refused, with the item and its value.
+//! Every input that can be refused, with the item and its value, and why a GPU was not used.
 
 use std::path::PathBuf;
 
@@ -257,4 +257,83 @@ pub enum BuildError {
     /// The result is no medial mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+}
+
+/// Why a batch, or part of it, was computed on the CPU. Nothing is lost by any of these.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// The crate was built without feature `gpu`.
+    #[error("built without feature `gpu`")]
+    NotBuilt,
+    /// No loader, no driver, or no adapter.
+    #[error("no GPU adapter: {message}")]
+    NoAdapter {
+        /// What the graphics library says.
+        message: String,
+    },
+    /// The only adapter computes on the CPU, which `Backend::Auto` does better itself.
+    #[error("adapter {name} is not a GPU")]
+    Software {
+        /// Its name.
+        name: String,
+    },
+    /// The adapter gives no device with the portable limits.
+    #[error("adapter {name} gives no device: {message}")]
+    NoDevice {
+        /// Name of the adapter.
+        name: String,
+        /// What it says.
+        message: String,
+    },
+    /// The device is gone; a new one needs a new batch object.
+    #[error("GPU device lost: {message}")]
+    Lost {
+        /// What the driver says.
+        message: String,
+    },
+    /// No memory on the device.
+    #[error("out of GPU memory: {message}")]
+    OutOfMemory {
+        /// What the driver says.
+        message: String,
+    },
+    /// More than one binding of this device holds.
+    #[error("{what} take {bytes} bytes, a binding holds {limit}")]
+    TooLarge {
+        /// What does not fit.
+        what: &'static str,
+        /// How much it takes.
+        bytes: u64,
+        /// How much there is.
+        limit: u64,
+    },
+    /// A call that the device refused.
+    #[error("GPU call failed: {message}")]
+    Refused {
+        /// What it says.
+        message: String,
+    },
+}
+
+/// Why a calibration of the GPU cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CalibrationError {
+    /// A line that says nothing known.
+    #[error(
+        "line {number} of the calibration is `{text}`, not `adapter = NAME`, `jobs = N` or `tests = N`"
+    )]
+    Line {
+        /// Number of the line, from 1.
+        number: usize,
+        /// The line.
+        text: String,
+    },
+    /// A line that is not there.
+    #[error("the calibration has no line `{what} = …`")]
+    Missing {
+        /// How it would start.
+        what: &'static str,
+    },
 }

@@ -57,9 +57,10 @@ pub mod pair;
 pub mod parry;
 pub mod rapier;
 
+pub use batch::Backend;
 pub use build::{BuildOptions, BuildReport, Progress, Quality};
 pub use elementary::{AlternatingStart, InitialContact, Toi, ToiOptions, ToiStatus};
-pub use error::{AssetError, BuildError, MeshError};
+pub use error::{AssetError, BuildError, CalibrationError, GpuError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
 pub use parry::MedialDispatcher;
 pub use rapier::{
@@ -70,7 +71,7 @@ pub use rapier::{
 /// What a rapier app needs: `use rapier3d_medial::prelude::*;`.
 pub mod prelude {
     pub use crate::{
-        BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder, MedialMesh,
+        Backend, BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder, MedialMesh,
         MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, Progress, Quality,
         StepReport,
     };

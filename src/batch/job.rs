@@ -1,6 +1,7 @@
 //! What a batch is asked and what it answers, whatever computes it.
 
-use crate::elementary::{Toi, ToiOptions};
+use crate::elementary::{InitialContact, Toi, ToiOptions};
+use crate::math::tolerance::MAX_ITERATIONS;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
@@ -15,6 +16,38 @@ pub trait Job: Sync {
     const PER_THREAD: usize;
     /// Answers this job on the CPU.
     fn answer(&self) -> Self::Answer;
+    /// What a device may be asked about it; `None` leaves it to the CPU.
+    fn sweep(&self) -> Option<Sweep<'_>>;
+    /// The answer where nothing comes within the sweep's reach: that of [`Self::answer`], but for
+    /// the work it took.
+    fn free(&self) -> Self::Answer;
+}
+
+impl<J: Job> Job for &J {
+    type Answer = J::Answer;
+    const PER_THREAD: usize = J::PER_THREAD;
+    fn answer(&self) -> Self::Answer {
+        J::answer(self)
+    }
+    fn sweep(&self) -> Option<Sweep<'_>> {
+        J::sweep(self)
+    }
+    fn free(&self) -> Self::Answer {
+        J::free(self)
+    }
+}
+
+/// A question of the kind: do these come within `reach` of each other in the step?
+#[derive(Clone, Copy, Debug)]
+pub struct Sweep<'a> {
+    /// The two meshes.
+    pub meshes: [&'a MedialMesh; 2],
+    /// Their motions, world space, velocities per second.
+    pub motions: [NonlinearRigidMotion; 2],
+    /// Length of the step in seconds; 0 for bodies at rest.
+    pub seconds: Real,
+    /// Distance that counts as contact, a length; negative lets them overlap that deep.
+    pub reach: f64,
 }
 
 /// Asks for the sphere pairs of two meshes at fixed poses.
@@ -46,6 +79,17 @@ impl Job for PairJob {
         let (contacts, counts) =
             crate::pair::contacts(&self.mesh1, &self.mesh2, &self.pos12, self.prediction);
         PairResult { contacts, counts }
+    }
+    fn sweep(&self) -> Option<Sweep<'_>> {
+        Some(Sweep {
+            meshes: [&self.mesh1, &self.mesh2],
+            motions: [Pose::IDENTITY, self.pos12].map(NonlinearRigidMotion::constant_position),
+            seconds: 0.0,
+            reach: self.prediction.into(),
+        })
+    }
+    fn free(&self) -> PairResult {
+        PairResult::default()
     }
 }
 
@@ -89,5 +133,27 @@ impl Job for ToiJob {
             &self.options,
         );
         ToiResult { toi, counts }
+    }
+    fn sweep(&self) -> Option<Sweep<'_>> {
+        let options = &self.options;
+        // Under a lower cap a miss may stay unresolved.
+        let sure = options.max_iterations >= MAX_ITERATIONS && options.time_tolerance.is_finite();
+        let target = match options.initial_contact {
+            InitialContact::Stop => options.target_distance.max(0.0),
+            InitialContact::Deepen { .. } => options.target_distance,
+        };
+        let finite = options.target_distance.is_finite();
+        (sure && finite).then(|| Sweep {
+            meshes: [&self.mesh1, &self.mesh2],
+            motions: [self.motion1, self.motion2],
+            seconds: self.seconds,
+            reach: f64::from(target) + f64::from(options.tolerance),
+        })
+    }
+    fn free(&self) -> ToiResult {
+        ToiResult {
+            toi: Toi::separated(&self.options),
+            counts: Counts::default(),
+        }
     }
 }

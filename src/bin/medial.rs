@@ -4,17 +4,23 @@
 //! Results go to standard output, progress and errors to standard error. Exit code 1 with one line
 //! on failure, 2 for arguments that make no sense.
 
+#[cfg(feature = "gpu")]
+#[path = "medial/calibrate.rs"]
+mod calibrate;
+#[path = "medial/describe.rs"]
+mod describe;
 #[path = "medial/jobs.rs"]
 mod jobs;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use describe::{Description, Errors, describe, relative};
 use indicatif::{ProgressBar, ProgressStyle};
 use jobs::{Job, PlanError, plan};
+use rapier3d_medial::build::hausdorff;
 use rapier3d_medial::build::mesh_file::{self, TriangleMesh};
-use rapier3d_medial::build::{Hausdorff, hausdorff};
 use rapier3d_medial::math::Vector;
 use rapier3d_medial::medial::asset;
-use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, MedialPrimitive, MeshError, Quality};
+use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, MeshError, Quality};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::fs::File;
@@ -49,6 +55,9 @@ enum Command {
     Bake(BakeArguments),
     /// Describe a medial mesh (.ma or baked).
     Info(InfoArguments),
+    /// Measure from which batch sizes on the GPU pays, for `Backend::Auto`.
+    #[cfg(feature = "gpu")]
+    Calibrate(calibrate::CalibrateArguments),
 }
 
 #[derive(Args)]
@@ -121,28 +130,6 @@ struct InfoArguments {
     json: bool,
 }
 
-/// Both Hausdorff distances, as fractions of the longest side of the source's box.
-#[derive(Serialize)]
-struct Errors {
-    surface_to_envelope: f32,
-    envelope_to_surface: f32,
-    uncovered: f32,
-}
-
-/// What a medial mesh is made of. Lengths in the file's unit.
-#[derive(Serialize)]
-struct Description {
-    spheres: usize,
-    primitives: usize,
-    slabs: usize,
-    cones: usize,
-    lone_spheres: usize,
-    volume: f32,
-    box_min: [f32; 3],
-    box_max: [f32; 3],
-    thickness: f32,
-}
-
 /// What `info` found.
 #[derive(Serialize)]
 struct InfoSummary {
@@ -177,6 +164,9 @@ enum Failure {
     Mesh(#[from] MeshError),
     #[error(transparent)]
     Plan(#[from] PlanError),
+    #[cfg(feature = "gpu")]
+    #[error(transparent)]
+    Calibrate(#[from] calibrate::Failure),
     #[error("{failed} of {all} meshes failed")]
     SomeFailed { failed: usize, all: usize },
     #[error("standard output: {0}")]
@@ -188,6 +178,11 @@ fn main() -> ExitCode {
         Command::Build(arguments) => build(&arguments),
         Command::Bake(arguments) => bake(&arguments),
         Command::Info(arguments) => info(&arguments),
+        #[cfg(feature = "gpu")]
+        Command::Calibrate(arguments) => load(&arguments.mesh)
+            .map_err(Failure::from)
+            .and_then(|mesh| Ok(calibrate::calibrate(&arguments, &mesh)?))
+            .and_then(|text| Ok(write!(io::stdout(), "{text}")?)),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -359,58 +354,6 @@ fn measure(mesh: &MedialMesh, source: &TriangleMesh) -> Result<Errors, BuildErro
         (lo.min(p), hi.max(p))
     });
     Ok(relative(&measured, (hi - lo).max_element()))
-}
-
-fn describe(mesh: &MedialMesh) -> Description {
-    let count = |kind: fn(&MedialPrimitive) -> bool| mesh.primitives().filter(kind).count();
-    let aabb = mesh.aabb();
-    Description {
-        spheres: mesh.spheres().len(),
-        primitives: mesh.primitive_count(),
-        slabs: count(|p| matches!(p, MedialPrimitive::Slab(_))),
-        cones: count(|p| matches!(p, MedialPrimitive::Cone(_))),
-        lone_spheres: count(|p| matches!(p, MedialPrimitive::Sphere(_))),
-        volume: mesh.volume(),
-        box_min: aabb.mins.to_array(),
-        box_max: aabb.maxs.to_array(),
-        thickness: mesh.thickness(),
-    }
-}
-
-fn relative(hausdorff: &Hausdorff, longest_side: f32) -> Errors {
-    Errors {
-        surface_to_envelope: hausdorff.surface_to_envelope / longest_side,
-        envelope_to_surface: hausdorff.envelope_to_surface / longest_side,
-        uncovered: hausdorff.uncovered / longest_side,
-    }
-}
-
-impl Description {
-    fn text(&self) -> String {
-        let [lo, hi] = [self.box_min, self.box_max].map(|[x, y, z]| format!("({x}, {y}, {z})"));
-        format!(
-            "spheres     {}\nprimitives  {}: slabs {}, cones {}, lone spheres {}\n\
-             volume      {}\nbox         {lo} to {hi}\nthickness   {}\n",
-            self.spheres,
-            self.primitives,
-            self.slabs,
-            self.cones,
-            self.lone_spheres,
-            self.volume,
-            self.thickness,
-        )
-    }
-}
-
-impl Errors {
-    fn text(&self, title: &str) -> String {
-        format!(
-            "{title} (longest side of the source's box = 1)\n\
-             \x20 surface to envelope  {:.5}\n  envelope to surface  {:.5}\n\
-             \x20 uncovered            {:.5}\n",
-            self.surface_to_envelope, self.envelope_to_surface, self.uncovered,
-        )
-    }
 }
 
 impl BuildSummary {

@@ -109,10 +109,10 @@ fn place(row: &Row, sticks_out: bool, on_surface: bool) -> Place {
             return Place::Cone;
         }
     } else {
-        let small = (0..3).filter(|&k| w[k] <= MIDDLE_OF_SLAB);
+        let mut small = (0..3).filter(|&k| w[k] <= MIDDLE_OF_SLAB);
         match small.clone().count() {
             0 => return Place::Slab,
-            1 => return small.last().map_or(Place::Slab, Place::Edge),
+            1 => return small.next_back().map_or(Place::Slab, Place::Edge),
             _ => {}
         }
     }

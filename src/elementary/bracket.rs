@@ -20,6 +20,8 @@ use super::certificate::{ActiveFace, first_step, fixed_step, turning_step};
 use super::path::Path;
 use super::test_list::Domain;
 use super::{cone_cone, sphere_slab};
+#[cfg(feature = "gpu")]
+use crate::math::lane::Scalar;
 use crate::math::lane::{Lane, Mask, Vec3};
 use crate::math::nearest::{Family, Nearest};
 use crate::math::tolerance::{NEVER, SLACK_ULPS, STEP_ULPS, TOLERANCE_PER_SLACK};
@@ -63,6 +65,32 @@ pub struct Bracket<L: Lane> {
     pub normal: Vec3<L>,
     /// Iterations, of the slowest lane.
     pub iterations: u32,
+}
+
+#[cfg(feature = "gpu")]
+impl<S: Scalar> Bracket<S> {
+    /// Of a test that something else has proven free: no nearest spheres.
+    pub(crate) fn free(limits: &Limits<S>) -> Self {
+        let zero = S::zero();
+        Self {
+            lower: limits.horizon,
+            upper: limits.horizon,
+            contact: S::Mask::splat(false),
+            separated: S::Mask::splat(true),
+            tolerance: limits.tolerance,
+            slack: zero,
+            start_distance: zero,
+            nearest: Nearest {
+                alpha: zero,
+                beta: zero,
+                distance: zero,
+                y: Vec3::zero(),
+                length: zero,
+            },
+            normal: Vec3::zero(),
+            iterations: 0,
+        }
+    }
 }
 
 #[inline(always)]

@@ -40,3 +40,11 @@ pub const TURNING_REGULARISATION: f64 = 1.0e-6;
 
 /// Stands for "no root in the step"; any number above 1 serves.
 pub const NEVER: f64 = 4.0;
+
+/// Rounding slack of a bound computed on a GPU, in units of `EPSILON × scale` (no unit).
+///
+/// WGSL lets a device reassociate, fuse, divide to 2.5 ulps and flush what is subnormal. `scale` is
+/// the sum of the lengths in play; the worst error measured over four orders of summation was 3
+/// half-ulps of the terms' sum, at most some ten times `scale`. Too small, and a device may call
+/// free what is not; larger only sends more to the CPU.
+pub const GPU_SLACK_ULPS: f64 = 32.0;

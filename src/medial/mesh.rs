@@ -225,6 +225,12 @@ impl MedialMesh {
         self.id
     }
 
+    /// How many clones share the data, this one included.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn owners(&self) -> usize {
+        Arc::strong_count(&self.data)
+    }
+
     /// The same data under an instance id of its own.
     pub fn instance(&self) -> Self {
         Self {

@@ -8,7 +8,7 @@ use super::pairs::Rules;
 use super::recycled::Recycled;
 use super::report::StepReport;
 use super::{candidates, muting};
-use crate::batch;
+use crate::batch::{Backend, Batch};
 use crate::math::{Real, Vector};
 use crate::parry::{Answers, MedialDispatcher};
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
@@ -33,6 +33,8 @@ pub const RECYCLE_DISTANCE: Real = 0.01;
 pub struct MedialOptions {
     /// What the scene calls for.
     pub effects: Effects,
+    /// Where batches are computed; the world is the same on each, bit by bit.
+    pub backend: Backend,
 }
 
 /// Steps a world whose medial colliders meet each other: finds their near pairs, computes all
@@ -44,6 +46,7 @@ pub struct MedialOptions {
 /// composite shapes.
 #[derive(Default)]
 pub struct MedialPipeline {
+    batch: Batch,
     answers: Arc<Answers>,
     recycled: Recycled,
     effects: Wanted,
@@ -51,11 +54,25 @@ pub struct MedialPipeline {
 }
 
 impl MedialPipeline {
-    /// A pipeline for one world.
+    /// A pipeline for one world. Opens a device where the backend asks for one; without it the CPU
+    /// serves, and [`Self::batch`] says why. In a browser use [`Self::with_batch`].
     pub fn new(options: MedialOptions) -> Self {
-        let mut pipeline = Self::default();
+        Self::with_batch(options, Batch::new(options.backend))
+    }
+
+    /// A pipeline whose batches go to a backend that was opened before, whatever the options say of it.
+    pub fn with_batch(options: MedialOptions, batch: Batch) -> Self {
+        let mut pipeline = Self {
+            batch,
+            ..Self::default()
+        };
         pipeline.effects.scene = options.effects;
         pipeline
+    }
+
+    /// The backend: what it has done since it was opened, and why it was not used where it was not.
+    pub fn batch(&self) -> &Batch {
+        &self.batch
     }
 
     /// What a collider calls for, whatever the scene does; [`Effects::default`] leaves it to the scene.
@@ -139,7 +156,15 @@ impl MedialPipeline {
         let clock = Instant::now();
         report.medial_colliders = candidates::make_unique(colliders);
         let found = candidates::find(parameters, bodies, colliders, &mut self.recycled);
-        let results = batch::cpu::run(&found.jobs);
+        let before = self.batch.report().clone();
+        let results = self.batch.run(&found.jobs);
+        let after = self.batch.report();
+        report.settled_by_gpu = after.settled_by_gpu - before.settled_by_gpu;
+        report.unfit = after.unfit - before.unfit;
+        report.submissions = after.submissions - before.submissions;
+        report.maps = after.maps - before.maps;
+        report.survivors = after.survivors - before.survivors;
+        report.fallbacks = after.fallbacks - before.fallbacks;
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();
         for (job, result) in found.jobs.iter().zip(&results) {

@@ -11,6 +11,18 @@ pub struct StepReport {
     /// Of these, the pairs whose contacts were computed in the batch; the others had moved too
     /// little, and rapier recycles theirs.
     pub jobs: usize,
+    /// Jobs that the GPU proved free, which the CPU has not looked at.
+    pub settled_by_gpu: u64,
+    /// Jobs asked of the GPU that it cannot take; the CPU has them.
+    pub unfit: u64,
+    /// Submissions to the GPU.
+    pub submissions: u64,
+    /// Times that the step waited for answers of the GPU.
+    pub maps: u64,
+    /// Primitive pairs that the GPU could not prove free.
+    pub survivors: u64,
+    /// Batches that a GPU was to have and could not take; [`crate::MedialPipeline::batch`] says why.
+    pub fallbacks: u64,
     /// Sphere pairs that the batch found within the prediction distance.
     pub contacts: usize,
     /// Manifold requests of the narrow phase that the batch had answered.

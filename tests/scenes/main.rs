@@ -7,6 +7,12 @@ mod determinism;
 mod drawing;
 mod endurance;
 mod fast_pairs;
+#[cfg_attr(
+    not(feature = "enhanced-determinism"),
+    allow(dead_code, reason = "the golden holds with that feature only")
+)]
+#[path = "../common/golden.rs"]
+mod golden;
 mod heaps;
 mod impacts;
 mod oracle;

@@ -1,0 +1,312 @@
+//! Which backend runs a batch. The device proposes: jobs that it proves free are answered at once,
+//! all others go to the CPU as if there were no device. So answers are the same on either backend,
+//! but for the counts of work, and a device that fails costs time only.
+
+#[cfg(feature = "gpu")]
+use super::calibration::Calibration;
+use super::cpu;
+#[cfg(feature = "gpu")]
+use super::gpu::{Bound, Gpu, GpuCounts, GpuOptions, Proposal, layout};
+use super::job::Job;
+use crate::elementary::bracket::{Bracket, Limits};
+use crate::elementary::many::{Lanes, brackets};
+use crate::elementary::path::LinearPath;
+use crate::elementary::test_list::Domain;
+use crate::error::GpuError;
+
+/// Where batches are computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backend {
+    /// On a GPU if there is one, for batches large enough; else on the CPU.
+    Auto,
+    /// On the CPU.
+    #[default]
+    Cpu,
+    /// Every batch through the GPU, be it code on the CPU.
+    Gpu,
+}
+
+/// Fewest jobs, and elementary tests, for which [`Backend::Auto`] asks a GPU before it is told by a
+/// [`Calibration`]. Estimated, not measured on one: the way there and back should take some 100 µs,
+/// as a few first contacts do, and a test takes 0.2 µs on one core. Wrong, it costs time only.
+#[cfg(feature = "gpu")]
+const ESTIMATED: Least = Least {
+    jobs: Some(64),
+    tests: Some(1 << 14),
+};
+
+/// Sizes from which a GPU is asked; `None`: never.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy)]
+struct Least {
+    jobs: Option<usize>,
+    tests: Option<usize>,
+}
+
+/// What a [`Batch`] has done since it was made.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BatchReport {
+    /// Jobs and elementary tests that the GPU settled.
+    pub settled_by_gpu: u64,
+    /// Those that the CPU answered, asked about on the GPU before or not.
+    pub settled_by_cpu: u64,
+    /// Jobs asked of the GPU that it cannot take, as their poses or sizes are not finite or too large.
+    pub unfit: u64,
+    /// Submissions to the GPU: one a batch, more where a list had to grow.
+    pub submissions: u64,
+    /// Times that the CPU waited for answers of the GPU: one a submission.
+    pub maps: u64,
+    /// Primitive pairs that the GPU could not prove free.
+    pub survivors: u64,
+    /// Batches that a GPU was to have and could not take.
+    pub fallbacks: u64,
+    /// Why the last of them, or the device as a whole, was not used.
+    pub error: Option<GpuError>,
+}
+
+/// A backend with the meshes that it holds; the CPU by default.
+#[derive(Default)]
+pub struct Batch {
+    #[cfg(feature = "gpu")]
+    backend: Backend,
+    #[cfg(feature = "gpu")]
+    gpu: Option<Gpu>,
+    #[cfg(feature = "gpu")]
+    proposals: Vec<Proposal>,
+    #[cfg(feature = "gpu")]
+    bounds: Vec<Bound>,
+    #[cfg(feature = "gpu")]
+    calibrated: Option<Least>,
+    report: BatchReport,
+}
+
+impl Batch {
+    /// On the CPU, or on a GPU opened here, which takes a moment. Never fails: without a device
+    /// the CPU serves, and the report says why. In a browser this gives the CPU; use
+    /// `open_async` there.
+    pub fn new(backend: Backend) -> Self {
+        #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+        return pollster::block_on(Self::open_async(backend, options(backend)));
+        #[cfg(not(all(feature = "gpu", not(target_arch = "wasm32"))))]
+        {
+            let mut batch = Self::default();
+            if backend != Backend::Cpu {
+                batch.report.error = Some(GpuError::NotBuilt);
+            }
+            batch
+        }
+    }
+
+    /// What it has done.
+    pub fn report(&self) -> &BatchReport {
+        &self.report
+    }
+
+    /// Answers all jobs, in their order.
+    pub fn run<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
+        #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+        return pollster::block_on(self.run_async(jobs));
+        #[cfg(not(all(feature = "gpu", not(target_arch = "wasm32"))))]
+        self.run_on_cpu(jobs)
+    }
+
+    fn run_on_cpu<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
+        self.report.settled_by_cpu += jobs.len() as u64;
+        cpu::run(jobs)
+    }
+
+    /// Brackets of many elementary tests, in their order. One that the GPU proves free has no
+    /// nearest spheres.
+    pub fn brackets(
+        &mut self,
+        paths: &[LinearPath<f32>],
+        domain: Domain,
+        limits: &Limits<f32>,
+    ) -> Vec<Bracket<f32>> {
+        #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+        return pollster::block_on(self.brackets_async(paths, domain, limits));
+        #[cfg(not(all(feature = "gpu", not(target_arch = "wasm32"))))]
+        self.brackets_on_cpu(paths, domain, limits)
+    }
+
+    fn brackets_on_cpu(
+        &mut self,
+        paths: &[LinearPath<f32>],
+        domain: Domain,
+        limits: &Limits<f32>,
+    ) -> Vec<Bracket<f32>> {
+        self.report.settled_by_cpu += paths.len() as u64;
+        brackets(paths, domain, limits, Lanes::Fastest)
+    }
+}
+
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+fn options(backend: Backend) -> GpuOptions {
+    GpuOptions {
+        software: backend == Backend::Gpu,
+        ..GpuOptions::default()
+    }
+}
+
+#[cfg(feature = "gpu")]
+impl Batch {
+    /// As [`Self::new`] with a choice of device, without blocking.
+    pub async fn open_async(backend: Backend, options: GpuOptions) -> Self {
+        let mut batch = Self {
+            backend,
+            ..Self::default()
+        };
+        if backend != Backend::Cpu {
+            match Gpu::open(options).await {
+                Ok(gpu) => batch.gpu = Some(gpu),
+                Err(error) => batch.report.error = Some(error),
+            }
+        }
+        batch
+    }
+
+    /// The device, while it serves.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.gpu.as_ref()
+    }
+
+    /// The device, to drop meshes that are gone.
+    pub fn gpu_mut(&mut self) -> Option<&mut Gpu> {
+        self.gpu.as_mut()
+    }
+
+    /// Work of the device.
+    pub fn gpu_counts(&self) -> GpuCounts {
+        self.gpu.as_ref().map(Gpu::counts).unwrap_or_default()
+    }
+
+    /// From now on [`Backend::Auto`] goes by these sizes. False, and nothing changes, where they were
+    /// measured on another adapter than this, or there is none.
+    pub fn calibrate(&mut self, calibration: &Calibration) -> bool {
+        let Calibration {
+            adapter,
+            jobs,
+            tests,
+        } = calibration;
+        let same = self.gpu.as_ref().is_some_and(|gpu| gpu.name() == adapter);
+        if same {
+            let (jobs, tests) = (*jobs, *tests);
+            self.calibrated = Some(Least { jobs, tests });
+        }
+        same
+    }
+
+    fn asks_gpu(&self, size: usize, least: fn(Least) -> Option<usize>) -> bool {
+        let least = least(self.calibrated.unwrap_or(ESTIMATED));
+        let large = self.backend == Backend::Gpu || least.is_some_and(|n| size >= n);
+        self.gpu.is_some() && large && size > 0
+    }
+
+    /// Adds what the device did since it had counted so much.
+    fn count(&mut self, before: GpuCounts) {
+        let now = self.gpu_counts();
+        self.report.submissions += now.submissions - before.submissions;
+        self.report.maps += now.maps - before.maps;
+    }
+
+    /// The batch goes to the CPU; a device that may still serve is kept.
+    fn fall_back(&mut self, error: GpuError) {
+        self.report.fallbacks += 1;
+        if !matches!(error, GpuError::TooLarge { .. }) {
+            self.gpu = None;
+        }
+        self.report.error = Some(error);
+    }
+
+    /// As [`Self::run`], without blocking while the device works.
+    pub async fn run_async<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
+        if !self.asks_gpu(jobs.len(), |least| least.jobs) {
+            return self.run_on_cpu(jobs);
+        }
+        let (asked, sweeps): (Vec<usize>, Vec<_>) = jobs
+            .iter()
+            .enumerate()
+            .filter_map(|(index, job)| Some((index, job.sweep()?)))
+            .unzip();
+        let mut proposals = std::mem::take(&mut self.proposals);
+        let before = self.gpu_counts();
+        let outcome = match &mut self.gpu {
+            Some(gpu) => gpu.propose(&sweeps, &mut proposals).await,
+            None => Ok(()),
+        };
+        self.count(before);
+        match outcome {
+            Ok(()) => {
+                let taken = proposals.iter().filter_map(|p| p.survivors);
+                self.report.survivors += taken.clone().map(u64::from).sum::<u64>();
+                self.report.unfit += (jobs.len() - taken.count()) as u64;
+            }
+            Err(error) => {
+                proposals.clear();
+                self.fall_back(error);
+            }
+        }
+        let mut answers: Vec<Option<J::Answer>> = jobs.iter().map(|_| None).collect();
+        for (index, proposal) in asked.into_iter().zip(&proposals) {
+            if proposal.is_free() {
+                answers[index] = Some(jobs[index].free());
+            }
+        }
+        self.proposals = proposals;
+        let open: Vec<&J> = jobs
+            .iter()
+            .zip(&answers)
+            .filter_map(|(job, answer)| answer.is_none().then_some(job))
+            .collect();
+        self.report.settled_by_gpu += (jobs.len() - open.len()) as u64;
+        let mut rest = self.run_on_cpu(&open).into_iter();
+        answers
+            .into_iter()
+            .filter_map(|answer| answer.or_else(|| rest.next()))
+            .collect()
+    }
+
+    /// As [`Self::brackets`], without blocking while the device works.
+    pub async fn brackets_async(
+        &mut self,
+        paths: &[LinearPath<f32>],
+        domain: Domain,
+        limits: &Limits<f32>,
+    ) -> Vec<Bracket<f32>> {
+        let whole = limits.start == 0.0 && limits.horizon == 1.0 && limits.tolerance.is_finite();
+        if !whole || !self.asks_gpu(paths.len(), |least| least.tests) {
+            return self.brackets_on_cpu(paths, domain, limits);
+        }
+        let mut bounds = std::mem::take(&mut self.bounds);
+        let before = self.gpu_counts();
+        let outcome = match &mut self.gpu {
+            Some(gpu) => {
+                gpu.bounds(paths, domain, limits.tolerance, &mut bounds)
+                    .await
+            }
+            None => Ok(()),
+        };
+        self.count(before);
+        if let Err(error) = outcome {
+            self.fall_back(error);
+            return self.brackets_on_cpu(paths, domain, limits);
+        }
+        let is_free = |b: &Bound| b.status == layout::SEPARATED;
+        let open: Vec<LinearPath<f32>> = paths
+            .iter()
+            .zip(&bounds)
+            .filter_map(|(path, bound)| (!is_free(bound)).then_some(*path))
+            .collect();
+        self.report.settled_by_gpu += (paths.len() - open.len()) as u64;
+        let mut rest = self.brackets_on_cpu(&open, domain, limits).into_iter();
+        let answers = bounds
+            .iter()
+            .filter_map(|bound| match is_free(bound) {
+                true => Some(Bracket::free(limits)),
+                false => rest.next(),
+            })
+            .collect();
+        self.bounds = bounds;
+        answers
+    }
+}

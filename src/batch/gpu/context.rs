@@ -1,0 +1,238 @@
+//! The device and what goes wrong with it. No call panics: errors that the graphics library reports
+//! out of turn are kept, and the next check returns them.
+
+use super::clock::Clock;
+use crate::error::GpuError;
+use std::sync::{Arc, Mutex, PoisonError};
+use wgpu::{
+    Backends, Buffer, BufferUsages, Device, DeviceDescriptor, DeviceType, Error, Features,
+    Instance, InstanceDescriptor, Limits, PollType, PowerPreference, Queue, RequestAdapterOptions,
+};
+
+/// Which device to take and how much of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GpuOptions {
+    /// Whether an adapter that computes on the CPU will do.
+    pub software: bool,
+    /// Most bytes of a buffer that shaders see; what the device allows if that is less.
+    pub binding_bytes: u64,
+    /// Whether stages are timed, where the device can.
+    pub timed: bool,
+    /// Entries that each list has room for at first; they grow as needed.
+    pub list_capacity: u32,
+}
+
+impl Default for GpuOptions {
+    fn default() -> Self {
+        Self {
+            software: false,
+            timed: false,
+            // The portable limit.
+            binding_bytes: 128 << 20,
+            list_capacity: 1 << 14,
+        }
+    }
+}
+
+/// The first thing that went wrong.
+#[derive(Clone, Debug, Default)]
+struct Fault(Arc<Mutex<Option<GpuError>>>);
+
+impl Fault {
+    fn set(&self, error: GpuError) {
+        let mut first = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        first.get_or_insert(error);
+    }
+    fn get(&self) -> Option<GpuError> {
+        let first = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        first.clone()
+    }
+}
+
+/// A device with its queue.
+pub struct Context {
+    pub(super) device: Device,
+    pub(super) queue: Queue,
+    /// Where stages are timed.
+    pub(super) clock: Option<Clock>,
+    pub(super) options: GpuOptions,
+    fault: Fault,
+    /// Buffers made so far: none are in a step like those before.
+    pub(super) buffers_made: u64,
+    name: String,
+    driver: String,
+    hardware: bool,
+}
+
+impl Context {
+    /// Opens the fastest adapter, with the limits that every one has.
+    pub async fn open(options: GpuOptions) -> Result<Self, GpuError> {
+        let mut descriptor = InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = Backends::PRIMARY;
+        let instance = Instance::new(descriptor);
+        let request = RequestAdapterOptions {
+            power_preference: PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let adapter = instance.request_adapter(&request).await;
+        let adapter = adapter.map_err(|e| GpuError::NoAdapter {
+            message: e.to_string(),
+        })?;
+        let info = adapter.get_info();
+        let hardware = info.device_type != DeviceType::Cpu;
+        if !hardware && !options.software {
+            return Err(GpuError::Software { name: info.name });
+        }
+        let clock = Features::TIMESTAMP_QUERY;
+        let timed = options.timed && adapter.features().contains(clock);
+        let descriptor = DeviceDescriptor {
+            required_features: if timed { clock } else { Features::empty() },
+            required_limits: Limits::default(),
+            ..Default::default()
+        };
+        let opened = adapter.request_device(&descriptor).await;
+        let (device, queue) = opened.map_err(|e| GpuError::NoDevice {
+            name: info.name.clone(),
+            message: e.to_string(),
+        })?;
+        let limits = device.limits();
+        let most = limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size);
+        let fault = Fault::default();
+        let (lost, refused) = (fault.clone(), fault.clone());
+        device.set_device_lost_callback(move |_, message| lost.set(GpuError::Lost { message }));
+        device.on_uncaptured_error(Arc::new(move |error: Error| {
+            let message = error.to_string();
+            refused.set(match error {
+                Error::OutOfMemory { .. } => GpuError::OutOfMemory { message },
+                _ => GpuError::Refused { message },
+            });
+        }));
+        let mut context = Self {
+            device,
+            queue,
+            clock: None,
+            options: GpuOptions {
+                binding_bytes: options.binding_bytes.min(most),
+                timed,
+                ..options
+            },
+            fault,
+            buffers_made: 0,
+            name: format!("{} ({:?})", info.name, info.backend),
+            driver: format!("{} {}", info.driver, info.driver_info),
+            hardware,
+        };
+        if timed {
+            context.clock = Some(Clock::new(&mut context)?);
+        }
+        Ok(context)
+    }
+
+    /// Name of the adapter and of the interface it is reached by.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The driver and its version.
+    pub fn driver(&self) -> &str {
+        &self.driver
+    }
+
+    /// Whether the adapter is more than code on the CPU.
+    pub fn is_hardware(&self) -> bool {
+        self.hardware
+    }
+
+    /// The first error there was, if any. It stays: what follows an error is not to be trusted.
+    pub fn check(&self) -> Result<(), GpuError> {
+        self.fault.get().map_or(Ok(()), Err)
+    }
+
+    /// Waits until the device has done all it was given; on WebGPU it does nothing, there the event
+    /// loop calls back.
+    pub(super) fn poll(&self) -> Result<(), GpuError> {
+        let done = self.device.poll(PollType::wait_indefinitely());
+        self.check()?;
+        done.map_err(|e| super::transfer::refused(&e.to_string()))?;
+        Ok(())
+    }
+
+    /// Gives the device up as a driver does that resets it.
+    pub fn lose(&self) {
+        self.device.destroy();
+        self.fault.set(GpuError::Lost {
+            message: "given up".to_owned(),
+        });
+    }
+
+    /// Takes an error as if it had been reported.
+    pub fn fail(&self, error: GpuError) {
+        self.fault.set(error);
+    }
+
+    /// Most bytes of a buffer: those that are only copied need not fit a binding.
+    fn limit(&self, usage: BufferUsages) -> u64 {
+        if usage.intersects(BufferUsages::MAP_READ | BufferUsages::MAP_WRITE) {
+            return self.device.limits().max_buffer_size;
+        }
+        self.options.binding_bytes
+    }
+
+    pub(super) fn buffer(
+        &mut self,
+        what: &'static str,
+        bytes: u64,
+        usage: BufferUsages,
+    ) -> Result<Buffer, GpuError> {
+        let limit = self.limit(usage);
+        if bytes > limit {
+            return Err(GpuError::TooLarge { what, bytes, limit });
+        }
+        self.buffers_made += 1;
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(what),
+            size: bytes.max(16).next_multiple_of(16),
+            usage,
+            mapped_at_creation: usage.contains(BufferUsages::MAP_WRITE),
+        });
+        self.check()?;
+        Ok(buffer)
+    }
+}
+
+/// A buffer that is made anew when it has become too small.
+pub(super) struct Growing {
+    pub(super) buffer: Buffer,
+    what: &'static str,
+    usage: BufferUsages,
+}
+
+impl Growing {
+    pub(super) fn new(
+        context: &mut Context,
+        what: &'static str,
+        bytes: u64,
+        usage: BufferUsages,
+    ) -> Result<Self, GpuError> {
+        let buffer = context.buffer(what, bytes, usage)?;
+        Ok(Self {
+            buffer,
+            what,
+            usage,
+        })
+    }
+
+    /// Makes room; returns whether the buffer is a new one, its contents gone.
+    pub(super) fn reserve(&mut self, context: &mut Context, bytes: u64) -> Result<bool, GpuError> {
+        if bytes <= self.buffer.size() {
+            return Ok(false);
+        }
+        // Half as much again, so that a slowly growing need does not make one each step.
+        let limit = context.limit(self.usage);
+        let room = bytes.max((bytes + bytes / 2).min(limit));
+        self.buffer = context.buffer(self.what, room, self.usage)?;
+        Ok(true)
+    }
+}

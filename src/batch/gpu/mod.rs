@@ -1,0 +1,351 @@
+//! The device proposes, the CPU disposes. The device gets what moves and gives back which pairs are
+//! proven free and, for the others, primitive pairs and times before which they are free; nothing
+//! that it computes reaches the physics. Bounds carry a slack for the rounding of any conforming
+//! device ([`crate::math::tolerance::GPU_SLACK_ULPS`]).
+//!
+//! One submission and one map per batch; nothing is allocated on the device in a step like those
+//! before. Whatever goes wrong is a [`GpuError`], and the CPU has the work.
+
+mod clock;
+mod context;
+mod cull;
+mod elementary;
+pub mod layout;
+mod meshes;
+pub mod shaders;
+mod stage;
+mod sweep;
+mod transfer;
+
+pub use context::GpuOptions;
+pub use layout::{Bound, Survivor};
+
+use crate::batch::job::Sweep;
+use crate::elementary::path::LinearPath;
+use crate::elementary::test_list::Domain;
+use crate::error::GpuError;
+use crate::math::lane::Vec3;
+use crate::medial::MedialMesh;
+use context::Context;
+use cull::{Asked, Cull};
+use elementary::Elementary;
+use layout::Pair;
+use meshes::Meshes;
+use transfer::Transfer;
+
+/// Runs of one batch, at most: each of the three lists can overflow once, as each is counted in
+/// full only when the one before it had room.
+const MOST_RUNS: u32 = 4;
+
+/// Work of the device since it was opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GpuCounts {
+    /// Submissions.
+    pub submissions: u64,
+    /// Times that answers were mapped and waited for.
+    pub maps: u64,
+    /// Of these, batches asked for again because a list had no room.
+    pub reruns: u64,
+    /// Cluster pairs whose bounds meet, in the last batch.
+    pub cluster_pairs: u32,
+    /// Primitive pairs whose bounds meet, in the last batch.
+    pub primitive_pairs: u32,
+    /// Primitive pairs that are not proven free, in the last batch.
+    pub survivors: u32,
+    /// Buffers made since the device was opened: constant in steps like those before.
+    pub buffers_made: u64,
+    /// Meshes on the device.
+    pub meshes: usize,
+}
+
+/// What the device says of one [`Sweep`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Proposal {
+    /// Primitive pairs that are not proven free, over all pieces of the step. 0: the two meshes are
+    /// free throughout. `None`: the sweep was not fit for the device.
+    pub survivors: Option<u32>,
+    /// The meshes are free before this fraction of the step.
+    pub lower: f32,
+}
+
+impl Proposal {
+    const UNKNOWN: Self = Self {
+        survivors: None,
+        lower: 0.0,
+    };
+
+    /// Whether the two meshes are proven free in the whole step.
+    pub fn is_free(&self) -> bool {
+        self.survivors == Some(0)
+    }
+}
+
+/// A sweep, and the part of its step that a pair on the device stands for.
+#[derive(Clone, Copy)]
+struct Piece {
+    sweep: u32,
+    times: [f64; 2],
+}
+
+/// A device with the meshes that it holds.
+pub struct Gpu {
+    context: Context,
+    up: Transfer,
+    down: Transfer,
+    elementary: Elementary,
+    cull: Cull,
+    meshes: Meshes,
+    pairs: Vec<Pair>,
+    /// Where each pair comes from.
+    asked: Vec<Piece>,
+    survivors: Vec<Survivor>,
+    stages: [f64; clock::STAGES],
+    counts: GpuCounts,
+}
+
+impl Gpu {
+    /// Opens a device, builds the pipelines and runs each once: the first dispatch compiles.
+    pub async fn open(options: GpuOptions) -> Result<Self, GpuError> {
+        let mut context = Context::open(options).await?;
+        let mut gpu = Self {
+            up: Transfer::upload(&mut context)?,
+            down: Transfer::readback(&mut context)?,
+            elementary: Elementary::new(&mut context)?,
+            cull: Cull::new(&mut context)?,
+            meshes: Meshes::default(),
+            pairs: Vec::new(),
+            asked: Vec::new(),
+            survivors: Vec::new(),
+            stages: [0.0; clock::STAGES],
+            counts: GpuCounts::default(),
+            context,
+        };
+        gpu.context.check()?;
+        gpu.warm_up().await?;
+        Ok(gpu)
+    }
+
+    async fn warm_up(&mut self) -> Result<(), GpuError> {
+        let apart = LinearPath {
+            start: [Vec3::new(1.0, 0.0, 0.0); 4],
+            rate: [Vec3::zero(); 4],
+            radius: [0.0; 4],
+        };
+        let mut bounds = Vec::new();
+        for domain in [Domain::Box, Domain::Triangle] {
+            self.bounds(&[apart], domain, 0.0, &mut bounds).await?;
+        }
+        let ball = crate::medial::MedialSphere::new(crate::math::Vector::ZERO, 1.0);
+        let Ok(mesh) = MedialMesh::new(vec![ball], vec![], vec![]) else {
+            return Ok(());
+        };
+        let still = parry3d::query::NonlinearRigidMotion::identity();
+        let sweep = Sweep {
+            meshes: [&mesh; 2],
+            motions: [still; 2],
+            seconds: 0.0,
+            reach: 0.0,
+        };
+        self.propose(&[sweep], &mut Vec::new()).await?;
+        self.meshes.remove(&mesh);
+        self.counts = GpuCounts::default();
+        self.down.maps = 0;
+        Ok(())
+    }
+
+    /// Name of the adapter and of the interface it is reached by.
+    pub fn name(&self) -> &str {
+        self.context.name()
+    }
+
+    /// The driver and its version, as far as it tells.
+    pub fn driver(&self) -> &str {
+        self.context.driver()
+    }
+
+    /// Whether the adapter is more than code on the CPU.
+    pub fn is_hardware(&self) -> bool {
+        self.context.is_hardware()
+    }
+
+    /// Work done so far.
+    pub fn counts(&self) -> GpuCounts {
+        GpuCounts {
+            maps: self.down.maps,
+            buffers_made: self.context.buffers_made,
+            meshes: self.meshes.len(),
+            ..self.counts
+        }
+    }
+
+    /// Seconds that each stage of the last batch took on the device, in the order of
+    /// [`shaders::MODULES`]' stages; zeros without [`GpuOptions::timed`], or where it cannot tell.
+    pub fn stage_seconds(&self) -> [f64; 5] {
+        self.stages
+    }
+
+    /// The first error of the device, if any; after one it is of no more use.
+    pub fn check(&self) -> Result<(), GpuError> {
+        self.context.check()
+    }
+
+    /// Gives the device up, as a driver does that resets it: every later call fails.
+    pub fn lose(&self) {
+        self.context.lose();
+    }
+
+    /// Behaves from now on as if the driver had reported this, to rehearse what no test can bring
+    /// about.
+    pub fn fail(&self, error: GpuError) {
+        self.context.fail(error);
+    }
+
+    /// Drops a mesh; returns whether it was there. Not needed for meshes that no one else holds: they
+    /// go by themselves.
+    pub fn remove(&mut self, mesh: &MedialMesh) -> bool {
+        self.meshes.remove(mesh)
+    }
+
+    /// Primitive pairs of the last [`Self::propose`] that are not proven free, in no order; `pair` is
+    /// the index of the sweep. A step with fast turns is asked in pieces, and a primitive pair
+    /// comes once for each in which it is not.
+    pub fn survivors(&self) -> &[Survivor] {
+        &self.survivors
+    }
+
+    /// Proposes for many elementary tests, in their order; paths are over the step `[0, 1]`, and
+    /// what comes within the tolerance counts as contact. More than a binding holds is refused.
+    pub async fn bounds(
+        &mut self,
+        paths: &[LinearPath<f32>],
+        domain: Domain,
+        tolerance: f32,
+        bounds: &mut Vec<Bound>,
+    ) -> Result<(), GpuError> {
+        self.context.check()?;
+        let transfers = [&mut self.up, &mut self.down];
+        self.counts.submissions += 1;
+        self.stages = self
+            .elementary
+            .run(
+                &mut self.context,
+                transfers,
+                paths,
+                domain,
+                tolerance,
+                bounds,
+            )
+            .await?;
+        Ok(())
+    }
+
+    /// Proposes for many mesh pairs, in their order.
+    pub async fn propose(
+        &mut self,
+        sweeps: &[Sweep<'_>],
+        proposals: &mut Vec<Proposal>,
+    ) -> Result<(), GpuError> {
+        self.context.check()?;
+        proposals.clear();
+        proposals.resize(sweeps.len(), Proposal::UNKNOWN);
+        self.survivors.clear();
+        self.meshes.begin();
+        let mut cluster_pairs = self.gather(sweeps)?;
+        if self.pairs.is_empty() {
+            return Ok(());
+        }
+        let mut lists = [0; 3];
+        for run in 0..MOST_RUNS {
+            self.counts.submissions += 1;
+            self.counts.reruns += u64::from(run > 0);
+            let transfers = [&mut self.up, &mut self.down];
+            let outcome = self
+                .cull
+                .run(
+                    &mut self.context,
+                    transfers,
+                    &mut self.meshes,
+                    Asked {
+                        pairs: &self.pairs,
+                        cluster_pairs,
+                        lists,
+                    },
+                    &mut self.survivors,
+                )
+                .await;
+            let found = match outcome {
+                // Meshes of bodies long gone may fill the device.
+                Err(GpuError::TooLarge { .. }) if run == 0 => {
+                    self.meshes.drop_unused();
+                    cluster_pairs = self.gather(sweeps)?;
+                    continue;
+                }
+                other => other?,
+            };
+            self.stages = found.stages;
+            let [tiles, near, survivors] = found.counts;
+            self.counts.cluster_pairs = tiles;
+            self.counts.primitive_pairs = near;
+            self.counts.survivors = survivors;
+            if found.complete {
+                self.settle(proposals);
+                return Ok(());
+            }
+            lists = found.counts.map(|n| n.saturating_add(n / 2));
+        }
+        Err(transfer::refused("lists kept overflowing"))
+    }
+
+    /// Packs what is fit for the device; returns the number of cluster pairs.
+    fn gather(&mut self, sweeps: &[Sweep<'_>]) -> Result<u32, GpuError> {
+        self.pairs.clear();
+        self.asked.clear();
+        let mut cluster_pairs = 0u64;
+        for (index, sweep) in sweeps.iter().enumerate() {
+            let places = sweep.meshes.map(|mesh| self.meshes.place(mesh));
+            let kept = self.pairs.len();
+            for times in sweep.pieces() {
+                let Some(pair) = sweep.pair(places, times) else {
+                    self.pairs.truncate(kept);
+                    self.asked.truncate(kept);
+                    break;
+                };
+                self.pairs.push(pair);
+                self.asked.push(Piece {
+                    sweep: index as u32,
+                    times,
+                });
+            }
+            for pair in &mut self.pairs[kept..] {
+                // Checked below.
+                pair.first = cluster_pairs as u32;
+                cluster_pairs += u64::from(places[0].clusters) * u64::from(places[1].clusters);
+            }
+        }
+        u32::try_from(cluster_pairs).map_err(|_| GpuError::TooLarge {
+            what: "cluster pairs",
+            bytes: cluster_pairs,
+            limit: u32::MAX.into(),
+        })
+    }
+
+    fn settle(&mut self, proposals: &mut [Proposal]) {
+        for piece in &self.asked {
+            proposals[piece.sweep as usize] = Proposal {
+                survivors: Some(0),
+                lower: 1.0,
+            };
+        }
+        for survivor in &mut self.survivors {
+            let Piece { sweep, times } = self.asked[survivor.pair as usize];
+            let [start, end] = times;
+            // Down, so that rounding keeps the promise.
+            let lower = (start + (end - start) * f64::from(survivor.lower)) as f32;
+            survivor.lower = lower.next_down().max(0.0);
+            survivor.pair = sweep;
+            let proposal = &mut proposals[sweep as usize];
+            proposal.survivors = proposal.survivors.map(|n| n + 1);
+            proposal.lower = proposal.lower.min(survivor.lower);
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! The shaders: one file per stage and per shared maths file, put together without a preprocessor.
+//! They need no GPU to be read, so a test parses, validates and translates each of them.
+
+use super::layout::{STRUCTS, constants};
+
+/// Source of one module and its entry points.
+pub struct Module {
+    /// Name of the stage's file.
+    pub name: &'static str,
+    files: &'static [&'static str],
+    /// Entry points.
+    pub stages: &'static [&'static str],
+}
+
+impl Module {
+    /// The whole WGSL text: constants, structs, shared maths, stage.
+    pub fn source(&self) -> String {
+        constants() + STRUCTS + &self.files.concat()
+    }
+}
+
+/// A batch of elementary tests.
+pub const ELEMENTARY: Module = Module {
+    name: "elementary",
+    files: &[
+        include_str!("../../../shaders/nearest.wgsl"),
+        include_str!("../../../shaders/certificate.wgsl"),
+        include_str!("../../../shaders/elementary.wgsl"),
+    ],
+    stages: &["elementary"],
+};
+
+/// Mesh pairs to primitive pairs that are not proven free.
+pub const CULL: Module = Module {
+    name: "cull",
+    files: &[
+        include_str!("../../../shaders/swept.wgsl"),
+        include_str!("../../../shaders/cull.wgsl"),
+    ],
+    stages: &[
+        "cull_clusters",
+        "arrange_primitives",
+        "cull_primitives",
+        "arrange_proofs",
+        "prove",
+    ],
+};
+
+/// All of them.
+pub const MODULES: [Module; 2] = [ELEMENTARY, CULL];

@@ -1,0 +1,90 @@
+//! Two bodies over a step as the device gets them: placed in double precision in the pair's own
+//! frame, so that large coordinates cost no digits, and with a slack for all that is rounded after.
+
+use super::layout::{Pair, Side};
+use super::meshes::Place;
+use crate::batch::job::Sweep;
+use crate::elementary::first_contact::motion_is_finite;
+use crate::math::Vector;
+use crate::math::lane::Vec3;
+use crate::math::motion::RigidMotion;
+use crate::math::tolerance::GPU_SLACK_ULPS;
+
+/// Lengths above this, in the user's unit, stay on the CPU: their squares would overflow.
+const LARGEST: f64 = 1.0e15;
+
+/// Angle in radians that a body turns in a piece at most: the sagitta is then below 3 % of the lever
+/// arm. Larger pieces leave more survivors, smaller ones cost a pair each.
+const PIECE_ANGLE: f64 = 0.5;
+
+/// Most pieces of a step; a body that turns further is culled less well.
+const MAX_PIECES: f64 = 32.0;
+
+impl Sweep<'_> {
+    /// The times of its pieces, as the device gets them.
+    pub(super) fn pieces(&self) -> Vec<[f64; 2]> {
+        let angle = |m: &RigidMotion<f64>| m.angle() / PIECE_ANGLE;
+        let most = self.paths().iter().map(angle).fold(1.0, f64::max);
+        let count = most.ceil().min(MAX_PIECES);
+        (0..count as u32)
+            .map(|k| [k, k + 1].map(|k| f64::from(k) / count))
+            .collect()
+    }
+
+    fn paths(&self) -> [RigidMotion<f64>; 2] {
+        let [m1, m2] = &self.motions;
+        RigidMotion::pair(m1, m2, self.seconds.into())
+    }
+
+    /// A piece as the device gets it; `None` where a number is not finite or too large.
+    pub(super) fn pair(&self, places: [Place; 2], [start, end]: [f64; 2]) -> Option<Pair> {
+        let motions = self.paths();
+        let mut sides = [Side::default(); 2];
+        let mut scale = self.reach.abs();
+        for (k, side) in sides.iter_mut().enumerate() {
+            let motion = &motions[k];
+            side.start = rows(motion, start);
+            side.end = rows(motion, end);
+            let center = self.motions[k].local_center;
+            let angle = motion.angle() * (end - start);
+            // Rounded up: a sagitta must not shrink.
+            let sagitta = angle * angle * (0.125 * (1.0 + 1.0e-6));
+            side.turn = [center.x, center.y, center.z, sagitta as f32];
+            side.first_cluster = places[k].first_cluster;
+            side.clusters = places[k].clusters;
+            let root = &self.meshes[k].tree().nodes()[0];
+            let extent = f64::from((root.center - center).length() + root.radius);
+            let lever = f64::from(center.length()) + extent;
+            let away = |rows: &[[f32; 4]; 3]| {
+                let square = rows.iter().map(|r| f64::from(r[3]).powi(2));
+                square.sum::<f64>().sqrt()
+            };
+            scale += away(&side.start) + away(&side.end) + 2.0 * lever + sagitta * extent;
+        }
+        let reach = self.reach + scale * GPU_SLACK_ULPS * f64::from(f32::EPSILON);
+        // Also false for what is not a number, which a device may take for anything.
+        let plain = |side: &Side| {
+            let turned = side.start.iter().chain(&side.end).flatten();
+            let mut numbers = turned.chain(&side.turn);
+            numbers.all(|x| f64::from(*x).abs() < LARGEST)
+        };
+        let finite = self.motions.iter().all(motion_is_finite);
+        let sound = finite && scale < LARGEST && sides.iter().all(plain);
+        sound.then(|| Pair {
+            sides,
+            reach: (reach as f32).next_up(),
+            first: 0,
+            pad: [0; 2],
+        })
+    }
+}
+
+/// Rows of a body's placement at a time: where the origin and the axes go.
+fn rows(motion: &RigidMotion<f64>, time: f64) -> [[f32; 4]; 3] {
+    let turned = motion.sin_cos(time);
+    let to = |v: Vector| motion.point(Vec3::from_vector(v)).at(time, turned).position;
+    let origin = to(Vector::ZERO);
+    let [x, y, z] = [Vector::X, Vector::Y, Vector::Z].map(|axis| to(axis) - origin);
+    let row = |of: fn(&Vec3<f64>) -> f64| [&x, &y, &z, &origin].map(|v| of(v) as f32);
+    [row(|v| v.x), row(|v| v.y), row(|v| v.z)]
+}

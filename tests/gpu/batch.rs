@@ -1,0 +1,107 @@
+//! Whole batches: answers on the GPU backend are those of the CPU, bit by bit.
+
+use crate::ccd::rng::Rng;
+use crate::scene;
+use pollster::block_on;
+use rapier3d_medial::MedialMesh;
+use rapier3d_medial::batch::{Backend, Batch, PairJob, ToiJob, cpu};
+use rapier3d_medial::elementary::{Toi, ToiOptions, ToiStatus};
+use rapier3d_medial::math::Pose;
+
+pub fn meshes(rng: &mut Rng) -> Vec<MedialMesh> {
+    [6, 20, 70].map(|links| scene::mesh(rng, links)).to_vec()
+}
+
+pub fn toi_jobs(count: usize) -> Vec<ToiJob> {
+    let mut rng = Rng::new(91);
+    let meshes = meshes(&mut rng);
+    (0..count)
+        .map(|k| ToiJob {
+            mesh1: meshes[k % 3].clone(),
+            motion1: scene::motion(&mut rng, 0.0, 0.0, 1.0),
+            mesh2: meshes[k / 3 % 3].clone(),
+            motion2: scene::motion(&mut rng, 1.0 + (k % 5) as f32 * 0.5, 60.0, 40.0),
+            seconds: 1.0 / 60.0,
+            options: ToiOptions::default(),
+        })
+        .collect()
+}
+
+pub fn pair_jobs(count: usize) -> Vec<PairJob> {
+    let mut rng = Rng::new(92);
+    let meshes = meshes(&mut rng);
+    (0..count)
+        .map(|k| {
+            let start = scene::motion(&mut rng, 0.2 + (k % 7) as f32 * 0.15, 0.0, 0.0).start;
+            PairJob {
+                mesh1: meshes[k % 3].clone(),
+                mesh2: meshes[k / 3 % 3].clone(),
+                pos12: Pose::new(start.translation, start.rotation.to_scaled_axis()),
+                prediction: 0.02,
+            }
+        })
+        .collect()
+}
+
+/// All that reaches the physics: the work it took may differ.
+pub fn essence(toi: &Toi) -> Toi {
+    Toi {
+        iterations: 0,
+        ..*toi
+    }
+}
+
+#[test]
+fn answers_are_those_of_the_cpu() {
+    if scene::gpu(scene::options()).is_none() {
+        return;
+    }
+    let mut batch = block_on(Batch::open_async(Backend::Gpu, scene::options()));
+    let jobs = toi_jobs(300);
+    let expected = cpu::run(&jobs);
+    let separated = |s: ToiStatus| expected.iter().filter(|e| e.toi.status == s).count();
+    assert!(separated(ToiStatus::Separated) > 60 && separated(ToiStatus::Contact) > 60);
+    for (answer, expected) in batch.run(&jobs).iter().zip(&expected) {
+        assert_eq!(essence(&answer.toi), essence(&expected.toi));
+    }
+    let free = separated(ToiStatus::Separated) as u64;
+    let settled = batch.report().settled_by_gpu;
+    println!("{settled} of {free} separated pairs settled by the GPU");
+    assert!(settled * 10 > free * 9 && settled <= free);
+    let before = batch.report().clone();
+
+    let jobs = pair_jobs(300);
+    let expected = cpu::run(&jobs);
+    let free = expected.iter().filter(|e| e.contacts.is_empty()).count() as u64;
+    assert!((60..240).contains(&free), "{free}");
+    for (answer, expected) in batch.run(&jobs).iter().zip(&expected) {
+        assert_eq!(answer.contacts, expected.contacts);
+    }
+    let settled = batch.report().settled_by_gpu - before.settled_by_gpu;
+    println!("{settled} of {free} pairs without contacts settled by the GPU");
+    assert!(settled * 10 > free * 9 && settled <= free);
+    assert_eq!(batch.report().fallbacks, 0);
+    assert_eq!(batch.gpu_counts().submissions, 2);
+}
+
+/// A scene of pairs that move a little each step: one submission a step, no buffer made.
+#[test]
+fn steps_make_no_buffers() {
+    if scene::gpu(scene::options()).is_none() {
+        return;
+    }
+    let mut batch = block_on(Batch::open_async(Backend::Gpu, scene::options()));
+    let mut jobs = toi_jobs(200);
+    batch.run(&jobs);
+    let first = batch.gpu_counts();
+    for _ in 0..20 {
+        for job in &mut jobs {
+            job.motion2.start.translation.x += 1.0e-3;
+        }
+        batch.run(&jobs);
+    }
+    let last = batch.gpu_counts();
+    assert_eq!(last.submissions, first.submissions + 20);
+    assert_eq!(last.buffers_made, first.buffers_made);
+    assert_eq!(last.reruns, first.reruns);
+}

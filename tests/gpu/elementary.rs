@@ -1,0 +1,146 @@
+//! The batch of elementary tests, judged by the oracle: nothing that the device calls free meets.
+
+use crate::ccd::contact::first_contact;
+use crate::ccd::families::Family;
+use crate::ccd::motion::{Paths, Query};
+use crate::ccd::rng::Rng;
+use crate::scene;
+use pollster::block_on;
+use rapier3d_medial::batch::gpu::layout::SEPARATED;
+use rapier3d_medial::elementary::path::LinearPath;
+use rapier3d_medial::elementary::test_list::{Domain, ElementaryTest};
+use rapier3d_medial::math::lane::Vec3;
+
+/// Queries of a family and a domain; `MEDIAL_GPU_QUERIES` asks for more.
+fn queries() -> usize {
+    let asked = std::env::var("MEDIAL_GPU_QUERIES").ok();
+    asked.and_then(|n| n.parse().ok()).unwrap_or(300)
+}
+
+/// Differences are formed in double precision and rounded once.
+fn path(query: &Query, test: &ElementaryTest) -> LinearPath<f32> {
+    let exact = LinearPath::<f64>::new(test, 0.0, |second, i| {
+        let ball = &query.balls[usize::from(second)][usize::from(i)];
+        let [c, d] = [ball.center, ball.displacement].map(|v| Vec3::new(v.x, v.y, v.z));
+        (c, d, ball.radius)
+    });
+    let vector = |v: Vec3<f64>| Vec3::new(v.x as f32, v.y as f32, v.z as f32);
+    LinearPath {
+        start: exact.start.map(vector),
+        rate: exact.rate.map(vector),
+        radius: exact.radius.map(|r| r as f32),
+    }
+}
+
+/// Every family of hard queries, cones and slabs: none missed, none late. Of those that stay ten
+/// tolerances apart most are settled, or the device would be of no use.
+#[test]
+fn what_the_device_calls_free_is_free() {
+    let Some(mut gpu) = scene::gpu(scene::options()) else {
+        return;
+    };
+    let (mut asked, mut apart, mut settled) = (0, 0, 0);
+    let mut bounds = Vec::new();
+    for family in Family::ALL {
+        let tolerance = 1.0e-4 * family.size();
+        for domain in [Domain::Box, Domain::Triangle] {
+            let (counts, test) = match domain {
+                Domain::Box => ([2, 2], ElementaryTest::cone_cone([0, 1], [0, 1])),
+                Domain::Triangle => ([1, 3], ElementaryTest::sphere_slab(0)),
+            };
+            let mut rng = Rng::new(7100 + family as u64);
+            let drawn: Vec<Query> = (0..queries())
+                .map(|_| family.query(counts, false, &mut rng))
+                .collect();
+            let paths: Vec<_> = drawn.iter().map(|q| path(q, &test)).collect();
+            block_on(gpu.bounds(&paths, domain, tolerance as f32, &mut bounds)).expect("bounds");
+            assert_eq!(bounds.len(), paths.len());
+            for (query, bound) in drawn.iter().zip(&bounds) {
+                let exact = Paths::new(query);
+                let contact = first_contact(&exact, 0.0).contact_at;
+                let free = bound.status == SEPARATED;
+                assert!(
+                    !free || contact.is_none(),
+                    "{family:?} {bound:?}\n{query:?}"
+                );
+                let time = contact.unwrap_or(1.0);
+                let lower = f64::from(bound.lower);
+                assert!(lower <= time, "{family:?} {bound:?}, {time}\n{query:?}");
+                asked += 1;
+                if first_contact(&exact, 10.0 * tolerance).free_until >= 1.0 {
+                    apart += 1;
+                    settled += usize::from(free);
+                }
+            }
+        }
+    }
+    println!(
+        "{asked} asked on {}, {apart} apart, {settled} settled",
+        gpu.name()
+    );
+    assert!(apart > asked / 10 && settled * 10 > apart * 8);
+}
+
+/// What is not finite, or whose squares would overflow, is never called free.
+#[test]
+fn numbers_out_of_range_are_left_to_the_cpu() {
+    let Some(mut gpu) = scene::gpu(scene::options()) else {
+        return;
+    };
+    let good = LinearPath {
+        start: [Vec3::new(3.0, 0.0, 0.0); 4],
+        rate: [Vec3::zero(); 4],
+        radius: [0.5; 4],
+    };
+    let mut paths = vec![good];
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0e30] {
+        for k in 0..3 {
+            let mut path = good;
+            match k {
+                0 => path.start[1].y = bad,
+                1 => path.rate[2].z = bad,
+                _ => path.radius[0] = bad,
+            }
+            paths.push(path);
+        }
+    }
+    let mut bounds = Vec::new();
+    block_on(gpu.bounds(&paths, Domain::Box, 1.0e-4, &mut bounds)).expect("bounds");
+    assert_eq!(bounds[0].status, SEPARATED);
+    for bound in &bounds[1..] {
+        assert!(bound.status != SEPARATED && bound.lower == 0.0, "{bound:?}");
+    }
+}
+
+/// More tests than groups of one dimension hold, apart but for a few planted ones.
+#[test]
+fn large_batches_lose_none() {
+    let Some(mut gpu) = scene::gpu(scene::options()) else {
+        return;
+    };
+    let count = 1_000_003;
+    let mut paths = vec![
+        LinearPath {
+            start: [Vec3::new(3.0, 0.0, 0.0); 4],
+            rate: [Vec3::new(-1.0, 0.0, 0.0); 4],
+            radius: [0.5; 4],
+        };
+        count
+    ];
+    let planted = [0, 1, 63, 64, 65_535, 524_287, 999_999, count - 1];
+    for k in planted {
+        paths[k].rate = [Vec3::new(-4.0, 0.0, 0.0); 4];
+    }
+    let before = gpu.counts();
+    let mut bounds = Vec::new();
+    block_on(gpu.bounds(&paths, Domain::Box, 1.0e-4, &mut bounds)).expect("bounds");
+    assert_eq!(gpu.counts().submissions, before.submissions + 1);
+    let open: Vec<_> = (0..count)
+        .filter(|&k| bounds[k].status != SEPARATED)
+        .collect();
+    assert_eq!(open, planted);
+    for k in planted {
+        // Planted: distance 2.5 is covered at speed 4.
+        assert!((bounds[k].lower - 0.625).abs() < 1.0e-3, "{:?}", bounds[k]);
+    }
+}

@@ -1,0 +1,18 @@
+//! Shaders and batches on a GPU. Without an adapter only the shaders are read, as text, and the
+//! others say SKIP; `MEDIAL_REQUIRE_GPU=1` makes a missing adapter a failure.
+
+#[allow(
+    dead_code,
+    reason = "the judge of the queries' tests; here its queries and its oracle serve"
+)]
+#[path = "../common/ccd/mod.rs"]
+mod ccd;
+
+mod batch;
+mod calibration;
+mod culling;
+mod elementary;
+mod failures;
+mod scene;
+mod shaders;
+mod worlds;

@@ -1,0 +1,104 @@
+//! Worlds stepped with batches on the GPU end as those on the CPU do, bit by bit.
+
+use crate::scene::{gpu, options};
+use rapier3d::prelude::*;
+use rapier3d_medial::batch::Batch;
+use rapier3d_medial::prelude::*;
+
+const STEPS: usize = 600;
+
+/// Rings and frames that fall on each other, some fast, beside balls and a sleeping one far away.
+fn mixed_world() -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    world.insert_collider(ColliderBuilder::cuboid(20.0, 0.5, 20.0), None);
+    let ring = MedialMesh::torus(0.5, 0.1, 16).expect("a ring");
+    let frame = MedialMesh::rectangle_frame(0.4, 0.3, 0.06).expect("a frame");
+    for i in 0..14 {
+        let x = 0.17 * (i % 3) as Real;
+        let at = Vector::new(x, 1.0 + 0.45 * i as Real, -0.11 * (i % 4) as Real);
+        let turn = Vector::new(0.4 * i as Real, 0.1, 0.7 * (i % 2) as Real);
+        let mesh = if i % 3 == 0 { &frame } else { &ring };
+        let body = RigidBodyBuilder::dynamic().pose(Pose::new(at, turn));
+        let body = body.linvel(Vector::new(0.0, -(i as Real), 0.0));
+        world.insert(body, ColliderBuilder::medial_mesh(mesh.clone()));
+    }
+    for i in 0..4 {
+        let at = Vector::new(0.2 * i as Real, 9.0 + i as Real, 0.0);
+        let body = RigidBodyBuilder::dynamic().translation(at);
+        world.insert(body, ColliderBuilder::ball(0.2));
+    }
+    for side in [-1.0, 1.0] {
+        let at = Vector::new(6.0 * side, 3.0, 0.0);
+        let body = RigidBodyBuilder::dynamic().translation(at);
+        let body = body.linvel(Vector::new(-120.0 * side, 0.0, 0.0));
+        world.insert(body, ColliderBuilder::medial_mesh(ring.clone()));
+    }
+    world
+}
+
+fn bits(world: &PhysicsWorld) -> Vec<u32> {
+    let each = |b: &RigidBody| {
+        let (t, r, v, w) = (b.translation(), b.rotation(), b.linvel(), b.angvel());
+        let all = [
+            t.x, t.y, t.z, r.x, r.y, r.z, r.w, v.x, v.y, v.z, w.x, w.y, w.z,
+        ];
+        all.map(Real::to_bits)
+    };
+    world.bodies.iter().flat_map(|(_, b)| each(b)).collect()
+}
+
+#[test]
+fn worlds_are_the_same_on_either_backend() {
+    if gpu(options()).is_none() {
+        return;
+    }
+    let [mut on_cpu, mut on_gpu] = [mixed_world(), mixed_world()];
+    let pipeline = |backend| {
+        let mut options = MedialOptions::default();
+        options.backend = backend;
+        MedialPipeline::new(options)
+    };
+    let [mut cpu, mut device] = [Backend::Cpu, Backend::Gpu].map(pipeline);
+    cpu.attach(&mut on_cpu);
+    device.attach(&mut on_gpu);
+    let (mut jobs, mut settled, mut events) = (0, 0, 0);
+    for step in 0..STEPS {
+        let report = cpu.step(&mut on_cpu);
+        assert_eq!((report.settled_by_gpu, report.fallbacks), (0, 0));
+        let report = device.step(&mut on_gpu);
+        assert_eq!(report.fallbacks, 0, "{:?}", device.batch().report().error);
+        jobs += report.jobs;
+        settled += report.settled_by_gpu;
+        events += report.events;
+        assert_eq!(bits(&on_cpu), bits(&on_gpu), "step {step}");
+    }
+    assert!(
+        jobs > 1000 && settled > 100 && events > 0,
+        "{jobs} {settled} {events}"
+    );
+}
+
+#[test]
+fn a_world_goes_on_when_the_device_is_lost() {
+    if gpu(options()).is_none() {
+        return;
+    }
+    let [mut on_cpu, mut on_gpu] = [mixed_world(), mixed_world()];
+    let batch = Batch::new(Backend::Gpu);
+    let mut device = MedialPipeline::with_batch(MedialOptions::default(), batch);
+    let mut cpu = MedialPipeline::new(MedialOptions::default());
+    cpu.attach(&mut on_cpu);
+    device.attach(&mut on_gpu);
+    let mut fallbacks = 0;
+    for step in 0..120 {
+        if step == 60
+            && let Some(gpu) = device.batch().gpu()
+        {
+            gpu.lose();
+        }
+        cpu.step(&mut on_cpu);
+        fallbacks += device.step(&mut on_gpu).fallbacks;
+        assert_eq!(bits(&on_cpu), bits(&on_gpu), "step {step}");
+    }
+    assert!(fallbacks > 0 && device.batch().report().error.is_some());
+}
