@@ -18,4 +18,5 @@ pub mod skeleton;
 pub mod strip;
 pub mod surface_error;
 pub mod table;
+pub mod torus_table;
 pub mod triangle_toi;
