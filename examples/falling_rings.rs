@@ -14,26 +14,27 @@
 
 mod common;
 
-use common::arguments::Arguments;
+use common::arguments::{Arguments, example, verdict};
+use common::build::build;
 use common::creature::creature;
 use common::mesh::{Mesh, ring};
-use common::progress::bar;
-use common::scene::{Model, Run, Scene, Stage};
-use common::scene_strip::draw;
+use common::random::Random;
+use common::render::Camera;
+use common::scene::{Actor, Kind, Model, Scene};
+use common::scene_strip::{SLATE, View, rainbow};
 use common::scene_table::table;
 use common::skeleton::Skeleton;
 use rapier3d::prelude::*;
+use rapier3d_medial::Backend;
 use rapier3d_medial::build::mesh_file;
-use rapier3d_medial::{Progress, prelude::*};
+use std::f32::consts::TAU;
 use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Radii of a ring's centre circle and of its tube, in metres.
 const RING: (Real, Real) = (0.5, 0.1);
-/// The steps that the strip of pictures shows; the last picture is of the end.
-const SHOWN: [usize; 4] = [45, 80, 120, usize::MAX];
 
 struct Options {
     mesh: Option<PathBuf>,
@@ -43,82 +44,101 @@ struct Options {
     quick: bool,
 }
 
-fn options() -> Result<Options, String> {
-    let mut arguments = Arguments::from_env();
-    let options = Options {
-        steps: arguments.value("--steps")?.map_or(1500, NonZeroUsize::get),
-        mesh: arguments.value("--mesh")?,
-        out: arguments
-            .value("--out")?
-            .unwrap_or("target/falling_rings".into()),
-        backend: match arguments.value::<String>("--backend")?.as_deref() {
-            None | Some("cpu") => Backend::Cpu,
-            Some("auto") => Backend::Auto,
-            Some("gpu") => Backend::Gpu,
-            Some(other) => return Err(format!("--backend cannot be `{other}`")),
-        },
-        quick: arguments.flag("--quick"),
-    };
-    arguments.finish().map(|()| options)
-}
-
 fn main() -> ExitCode {
-    let options = match options() {
-        Ok(options) => options,
-        Err(message) => {
-            eprintln!("{message}");
-            return ExitCode::from(2);
-        }
+    let options = |arguments: &mut Arguments| {
+        Ok(Options {
+            steps: arguments.value("--steps")?.map_or(1500, NonZeroUsize::get),
+            mesh: arguments.value("--mesh")?,
+            out: arguments
+                .value("--out")?
+                .unwrap_or("target/falling_rings".into()),
+            backend: match arguments.value::<String>("--backend")?.as_deref() {
+                None | Some("cpu") => Backend::Cpu,
+                Some("auto") => Backend::Auto,
+                Some("gpu") => Backend::Gpu,
+                Some(other) => return Err(format!("--backend cannot be `{other}`")),
+            },
+            quick: arguments.flag("--quick"),
+        })
     };
-    match falling_rings(&options) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("FAILED: {message}");
-            ExitCode::FAILURE
-        }
-    }
+    example(options, falling_rings)
 }
 
-fn falling_rings(options: &Options) -> Result<(), String> {
-    let (ring, medial_ring) = match &options.mesh {
+fn falling_rings(options: Options) -> Result<(), String> {
+    let ring = match &options.mesh {
         None => rings()?,
         Some(file) => users_mesh(file)?,
     };
     let (mesh, skeleton) = creature();
     mesh.check_closed()?;
-    let medial_creature = build("build the creature", &mesh, 700)?;
-    let creature = Model::new(mesh, skeleton);
-    let scene = Scene::new(ring, creature, if options.quick { 5 } else { 15 });
+    let medial = build("build the creature", &mesh, 700)?;
+    let creature = Model::new(mesh, skeleton, medial);
+    let mut scene = scene(ring, creature, if options.quick { 5 } else { 15 });
+    scene.backend = options.backend;
 
-    let medial = medial_meshes(&scene, medial_ring, medial_creature, options.backend);
-    let medial = simulate("simulate medial meshes", &scene, medial, options.steps);
-    let hulls = convex_hulls(&scene);
-    let hulls = simulate("simulate convex hulls", &scene, hulls, options.steps);
+    let [medial, hulls] =
+        [Kind::Medial, Kind::Hulls].map(|kind| scene.run(kind, options.steps, |_, _| ()));
 
-    let runs = [("MEDIAL MESHES", &medial), ("CONVEX HULLS", &hulls)];
-    let strip = draw(&scene, &runs, &SHOWN, if options.quick { 240 } else { 480 });
+    let width = if options.quick { 240 } else { 480 };
+    let view = View {
+        camera: Camera {
+            eye: Vector::new(3.4, 4.4, 7.6),
+            target: Vector::new(0.1, 1.2, 0.1),
+            field_of_view: 0.66,
+            shadows: 4.5,
+        },
+        tile: [width, width * 5 / 6],
+        steps: &[45, 80, 120, usize::MAX],
+        ghost: 0.0,
+    };
+    let strip = view.strip(&scene, &[&medial, &hulls]);
     let path = options.out.join("falling_rings.png");
-    let failed = |e| format!("cannot write {}: {e}", path.display());
-    strip.save(&path).map_err(failed)?;
-    println!("{}\n\n{}", path.display(), table(&runs));
-    match medial.failures()[..] {
-        [] => Ok(()),
-        ref failures => Err(failures.join("; ")),
-    }
+    strip.save(&path)?;
+    println!("{}\n\n{}", path.display(), table(&[&medial, &hulls]));
+    verdict(medial.failures())
+}
+
+/// `count` rings on a spiral above the creature, every next one higher, turned and spun at random,
+/// the same way in every run.
+fn scene(ring: Arc<Model>, creature: Arc<Model>, count: usize) -> Scene {
+    let mut random = Random(9);
+    let rings = (0..count).map(|k| {
+        let angle = TAU * 0.618_034 * k as Real;
+        let out = 1.35 * ((k as Real + 0.6) / count as Real).sqrt();
+        let place = Vector::new(out * angle.cos(), 3.2 + 0.55 * k as Real, out * angle.sin());
+        let tilt = random.direction() * random.between(0.0, 1.2);
+        let spin = random.direction() * random.between(0.0, 3.0);
+        Actor {
+            model: Arc::clone(&ring),
+            start: RigidBodyBuilder::dynamic()
+                .pose(Pose::new(place, tilt))
+                .angvel(spin)
+                .angular_damping(0.5),
+            color: rainbow(k as Real / count as Real),
+        }
+    });
+    let mut actors: Vec<Actor> = rings.collect();
+    actors.push(Actor {
+        model: creature,
+        start: RigidBodyBuilder::fixed(),
+        color: SLATE,
+    });
+    Scene::new(actors)
 }
 
 /// Rings: 27 primitives for 1,200 triangles, as in the paper.
-fn rings() -> Result<(Model, MedialMesh), String> {
+fn rings() -> Result<Arc<Model>, String> {
     let (major, minor) = RING;
     let mesh = ring(major, minor, 40, 15);
     mesh.check_closed()?;
     let medial = build("build the ring", &mesh, 27)?;
-    Ok((Model::new(mesh, Skeleton::ring(major, minor, 40)), medial))
+    let skeleton = Skeleton::ring(major, minor, 40);
+    Ok(Model::new(mesh, skeleton, medial))
 }
 
 /// The user's mesh, scaled to the size of a ring. No formula is known for its inner lines: they are
 /// those of the medial mesh, as far as they are thick.
-fn users_mesh(file: &Path) -> Result<(Model, MedialMesh), String> {
+fn users_mesh(file: &Path) -> Result<Arc<Model>, String> {
     let read = mesh_file::read(file).map_err(|e| e.to_string())?;
     let size = 2.0 * (RING.0 + RING.1);
     let mesh = Mesh {
@@ -128,82 +148,5 @@ fn users_mesh(file: &Path) -> Result<(Model, MedialMesh), String> {
     let mesh = mesh.fitted(size);
     let medial = build("build your mesh", &mesh, 100)?;
     let skeleton = Skeleton::of_medial(&medial, 0.02 * size);
-    Ok((Model::new(mesh, skeleton), medial))
-}
-
-/// Triangle mesh in, medial mesh of so many primitives out.
-fn build(name: &'static str, mesh: &Mesh, primitives: usize) -> Result<MedialMesh, String> {
-    let options = BuildOptions {
-        primitives: Some(primitives),
-        ..Default::default()
-    };
-    let bar = bar(name, 100);
-    let mut show = |progress: Progress| {
-        bar.set_position((100.0 * progress.fraction) as u64);
-        ControlFlow::Continue(())
-    };
-    let built =
-        MedialMesh::from_trimesh_with_progress(&mesh.vertices, &mesh.indices, &options, &mut show);
-    let (medial, report) = built.map_err(|e| format!("cannot {name}: {e}"))?;
-    bar.finish();
-    let error = report
-        .hausdorff
-        .surface_to_envelope
-        .max(report.hausdorff.envelope_to_surface);
-    println!(
-        "{name}: {} triangles, {} primitives, {:.2} % off at most, {:.1} s",
-        mesh.indices.len(),
-        report.primitives,
-        100.0 * error / report.longest_side,
-        report
-            .seconds
-            .iter()
-            .map(|(_, seconds)| seconds)
-            .sum::<f64>(),
-    );
-    Ok(medial)
-}
-
-/// The scene with medial meshes: another collider, and another line for the step.
-fn medial_meshes(
-    scene: &Scene,
-    ring: MedialMesh,
-    creature: MedialMesh,
-    backend: Backend,
-) -> (Stage, impl FnMut(&mut PhysicsWorld) -> u64) {
-    let collider = ColliderBuilder::medial_mesh;
-    let mut stage = scene.stage(&collider(ring), &collider(creature));
-    let mut options = MedialOptions::default();
-    options.backend = backend;
-    let mut pipeline = MedialPipeline::new(options);
-    match &pipeline.batch().report().error {
-        Some(reason) => println!("batches on the CPU: {reason}"),
-        None => println!("batches: {backend:?}"),
-    }
-    pipeline.attach(&mut stage.world);
-    let step = move |world: &mut PhysicsWorld| pipeline.step(world).elementary_tests;
-    (stage, step)
-}
-
-/// The scene with convex hulls: plain rapier.
-fn convex_hulls(scene: &Scene) -> (Stage, impl FnMut(&mut PhysicsWorld) -> u64) {
-    let hull = |model: &Model| ColliderBuilder::convex_hull(&model.mesh.vertices).expect("a solid");
-    let stage = scene.stage(&hull(&scene.ring), &hull(&scene.creature));
-    let step = |world: &mut PhysicsWorld| {
-        world.step();
-        0
-    };
-    (stage, step)
-}
-
-fn simulate(
-    name: &'static str,
-    scene: &Scene,
-    (stage, step): (Stage, impl FnMut(&mut PhysicsWorld) -> u64),
-    steps: usize,
-) -> Run {
-    let bar = bar(name, steps);
-    let run = scene.run(stage, steps, step, || bar.inc(1));
-    bar.finish();
-    run
+    Ok(Model::new(mesh, skeleton, medial))
 }

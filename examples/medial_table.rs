@@ -15,7 +15,7 @@
 
 mod common;
 
-use common::arguments::Arguments;
+use common::arguments::{Arguments, example};
 use common::creature::creature;
 use common::mesh::{Mesh, ring};
 use common::progress::bar;
@@ -51,32 +51,43 @@ const HEAD: &str = "\
 |---|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
-fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("medial_table: {message}");
-            ExitCode::FAILURE
-        }
-    }
+struct Options {
+    folder: Option<PathBuf>,
+    sizes: Vec<usize>,
+    quality: Quality,
+    out: PathBuf,
 }
 
-fn run() -> Result<(), String> {
-    let mut arguments = Arguments::from_env();
-    let folder: Option<PathBuf> = arguments.value("--folder")?;
-    let sizes = match arguments.value::<String>("--sizes")? {
-        Some(list) => parsed(&list)?,
-        None => SIZES.to_vec(),
-    };
-    let quality = match arguments.value::<String>("--quality")?.as_deref() {
-        Some("fast") => Quality::Fast,
-        None | Some("balanced") => Quality::Balanced,
-        Some("best") => Quality::Best,
-        Some(other) => return Err(format!("--quality cannot be `{other}`")),
-    };
-    let out: Option<PathBuf> = arguments.value("--out")?;
-    let out = out.unwrap_or("target/medial_table/table.md".into());
-    arguments.finish()?;
+fn main() -> ExitCode {
+    example(options, run)
+}
+
+fn options(arguments: &mut Arguments) -> Result<Options, String> {
+    Ok(Options {
+        folder: arguments.value("--folder")?,
+        sizes: match arguments.value::<String>("--sizes")? {
+            Some(list) => parsed(&list)?,
+            None => SIZES.to_vec(),
+        },
+        quality: match arguments.value::<String>("--quality")?.as_deref() {
+            Some("fast") => Quality::Fast,
+            None | Some("balanced") => Quality::Balanced,
+            Some("best") => Quality::Best,
+            Some(other) => return Err(format!("--quality cannot be `{other}`")),
+        },
+        out: arguments
+            .value("--out")?
+            .unwrap_or("target/medial_table/table.md".into()),
+    })
+}
+
+fn run(options: Options) -> Result<(), String> {
+    let Options {
+        folder,
+        sizes,
+        quality,
+        out,
+    } = options;
     let mut models = vec![
         ("ring (in code)".into(), ring(0.5, 0.12, 48, 16)),
         ("creature (in code)".into(), creature().0),

@@ -1,5 +1,7 @@
-//! Command line options of an example, without a parser crate.
+//! Command line options and exit code of an example, without a parser crate.
 
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::str::FromStr;
 
 /// What stands behind the program's name and was not taken yet.
@@ -38,4 +40,40 @@ impl Arguments {
             Some(unknown) => Err(format!("unknown argument `{unknown}`")),
         }
     }
+}
+
+/// Runs an example: exits with 2 on arguments that it cannot take, with 1 on a check that failed.
+pub fn example<Options>(
+    options: impl FnOnce(&mut Arguments) -> Result<Options, String>,
+    work: impl FnOnce(Options) -> Result<(), String>,
+) -> ExitCode {
+    let mut arguments = Arguments::from_env();
+    let options = options(&mut arguments).and_then(|options| arguments.finish().map(|()| options));
+    match options.map(work) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(failed)) => {
+            eprintln!("FAILED: {failed}");
+            ExitCode::FAILURE
+        }
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Runs an example whose one option is `--out DIR`: where its pictures go, else `folder`.
+pub fn example_with_out(folder: &str, work: impl FnOnce(&Path) -> Result<(), String>) -> ExitCode {
+    let out = |arguments: &mut Arguments| arguments.value("--out");
+    example(out, |out: Option<PathBuf>| {
+        work(&out.unwrap_or(folder.into()))
+    })
+}
+
+/// Fails with all that failed.
+pub fn verdict(failures: Vec<String>) -> Result<(), String> {
+    if failures.is_empty() {
+        return Ok(());
+    }
+    Err(failures.join("; "))
 }

@@ -2,10 +2,10 @@
 
 use super::scene::{Scene, Stage};
 use rapier3d::parry::query;
-use rapier3d::prelude::{ContactPair, Pose, Real};
+use rapier3d::prelude::{Pose, Real, RigidBodyType, Vector};
 
-/// Bodies that touch are no further apart, on their true surfaces, than this share of a ring's
-/// longest side.
+/// Bodies that touch are no further apart, on their true surfaces, than this share of the longest
+/// side of the smaller.
 const APART_SHARE: Real = 0.01;
 
 /// Findings over all steps of a run.
@@ -17,14 +17,14 @@ pub struct Audit {
     pub ghosts: usize,
     /// Contacts and ghosts in the last step.
     pub last: (usize, usize),
-    /// Rings that touch nothing in the end: not the ground, no other body.
+    /// Moving bodies that touch nothing in the end: not the ground, no other body.
     pub floating: usize,
     /// How often the inner lines of two bodies crossed within a step: one body passed into or
     /// through another.
     pub crossings: usize,
     /// Deepest overlap of two bodies, as a share of their two radii (1: inner lines meet).
     pub deepest: Real,
-    /// Lowest vertex of a ring; the ground is at 0.
+    /// Lowest vertex of a moving body; the ground is at 0.
     pub lowest: Real,
     /// No pose was infinite or not a number.
     pub finite: bool,
@@ -45,60 +45,83 @@ impl Default for Audit {
     }
 }
 
+/// Contacts of one step between bodies whose true surfaces are apart, in world space.
+pub struct Ghosts(pub Vec<Vector>);
+
 impl Audit {
     /// Looks at one step, from the poses before it to those after it.
-    pub fn look(&mut self, scene: &Scene, stage: &Stage, before: &[Pose], after: &[Pose]) {
+    pub fn look(
+        &mut self,
+        scene: &Scene,
+        stage: &Stage,
+        before: &[Pose],
+        after: &[Pose],
+    ) -> Ghosts {
         self.finite &= after.iter().all(|pose| pose.is_finite());
         if !self.finite {
-            return;
+            return Ghosts(Vec::new());
         }
-        for (ring, pose) in after.iter().enumerate().take(scene.starts.len()) {
-            self.lowest = self.lowest.min(scene.lowest(ring, pose));
+        for (body, pose) in after.iter().enumerate().filter(|(b, _)| scene.moves(*b)) {
+            self.lowest = self.lowest.min(scene.lowest(body, pose));
         }
         for body2 in 1..after.len() {
-            for body1 in 0..body2 {
-                let (lines1, lines2) = (&scene.model(body1).skeleton, &scene.model(body2).skeleton);
+            for body1 in (0..body2).filter(|b| scene.moves(*b) || scene.moves(body2)) {
+                let [lines1, lines2] = [body1, body2].map(|b| &scene.actors[b].model.skeleton);
                 let paths = [body1, body2].map(|b| [before[b], after[b]]);
                 self.crossings += lines1.crosses(paths[0], lines2, paths[1]) as usize;
                 let overlap = lines1.overlap(&after[body1], lines2, &after[body2]);
                 self.deepest = self.deepest.max(overlap);
             }
         }
-        self.count_ghosts(scene, stage, before);
+        self.find_ghosts(scene, stage, before)
     }
 
     /// The narrow phase worked on the poses before the step.
-    fn count_ghosts(&mut self, scene: &Scene, stage: &Stage, before: &[Pose]) {
+    fn find_ghosts(&mut self, scene: &Scene, stage: &Stage, before: &[Pose]) -> Ghosts {
         self.last = (0, 0);
-        for pair in stage
-            .world
-            .narrow_phase
-            .contact_pairs()
-            .filter(|p| touches(p))
-        {
-            let bodies = [pair.collider1, pair.collider2].map(|c| stage.body_of(c));
-            let [Some(body1), Some(body2)] = bodies else {
+        let mut ghosts = Vec::new();
+        for pair in stage.world.narrow_phase.contact_pairs() {
+            let handles = [pair.collider1, pair.collider2];
+            let [Some(body1), Some(body2)] = handles.map(|c| stage.actor_of(c)) else {
                 continue;
             };
-            let ghost = !scene.near(body1, &before[body1], body2, &before[body2]);
+            let Some(collider) = stage.world.colliders.get(pair.collider1) else {
+                continue;
+            };
+            let place = collider
+                .position_wrt_parent()
+                .map_or(before[body1], |local| before[body1] * *local);
+            let points = pair.manifolds().iter().flat_map(|manifold| {
+                let pose = manifold
+                    .subshape_pos1()
+                    .map_or(place, |local| place * local);
+                let deep = manifold.points.iter().filter(|point| point.dist <= 0.0);
+                deep.map(move |point| pose.transform_point(point.local_p1))
+            });
+            let points: Vec<Vector> = points.collect();
+            if points.is_empty() {
+                continue;
+            }
             self.last.0 += 1;
-            self.last.1 += ghost as usize;
+            if !scene.near(body1, &before[body1], body2, &before[body2]) {
+                self.last.1 += 1;
+                ghosts.extend(points);
+            }
         }
         self.contacts += self.last.0;
         self.ghosts += self.last.1;
+        Ghosts(ghosts)
     }
 
-    /// Counts the rings that touch nothing. To be called with the last poses.
+    /// Counts the moving bodies that touch nothing. To be called with the last poses.
     pub fn count_floating(&mut self, scene: &Scene, poses: &[Pose]) {
-        let floats = |ring: &usize| {
-            let lowest = scene.lowest(*ring, &poses[*ring]);
-            let others = (0..poses.len()).filter(|other| other != ring);
-            lowest > scene.touching_distance()
-                && !others
-                    .into_iter()
-                    .any(|other| scene.near(*ring, &poses[*ring], other, &poses[other]))
+        let floats = |&body: &usize| {
+            let mut others = (0..poses.len()).filter(|other| *other != body);
+            scene.moves(body)
+                && scene.lowest(body, &poses[body]) > scene.touching_distance(body)
+                && !others.any(|other| scene.near(body, &poses[body], other, &poses[other]))
         };
-        self.floating = (0..scene.starts.len()).filter(floats).count();
+        self.floating = (0..poses.len()).filter(floats).count();
     }
 
     /// The checks that failed, in words: all bodies above the ground, none through another.
@@ -108,10 +131,10 @@ impl Audit {
             failures.push("a body has a pose that is not finite".to_string());
         }
         if self.lowest < -0.02 {
-            failures.push(format!("a ring is {} m under the ground", -self.lowest));
+            failures.push(format!("a body is {} m under the ground", -self.lowest));
         }
         if self.floating > 0 {
-            failures.push(format!("{} rings float in the air", self.floating));
+            failures.push(format!("{} bodies float in the air", self.floating));
         }
         if self.deepest > 0.5 {
             let share = 100.0 * self.deepest;
@@ -125,27 +148,30 @@ impl Audit {
 }
 
 impl Scene {
+    /// Whether a body is dynamic.
+    fn moves(&self, body: usize) -> bool {
+        self.actors[body].start.body_type == RigidBodyType::Dynamic
+    }
+
     /// Height of a body's lowest vertex.
     fn lowest(&self, body: usize, pose: &Pose) -> Real {
-        let vertices = self.model(body).mesh.vertices.iter();
+        let vertices = self.actors[body].model.mesh.vertices.iter();
         let heights = vertices.map(|v| pose.transform_point(*v).y);
         heights.fold(Real::MAX, Real::min)
     }
 
-    fn touching_distance(&self) -> Real {
-        let (low, high) = self.ring.mesh.bounds();
+    fn touching_distance(&self, body: usize) -> Real {
+        let (low, high) = self.actors[body].model.mesh.bounds();
         APART_SHARE * (high - low).max_element()
     }
 
     /// Whether the triangles of two bodies are near enough to touch.
-    fn near(&self, body1: usize, pose1: &Pose, body2: usize, pose2: &Pose) -> bool {
-        let [surface1, surface2] = [body1, body2].map(|b| &self.model(b).surface);
-        let contact = query::contact(pose1, surface1, pose2, surface2, self.touching_distance());
+    pub fn near(&self, body1: usize, pose1: &Pose, body2: usize, pose2: &Pose) -> bool {
+        let [surface1, surface2] = [body1, body2].map(|b| &self.actors[b].model.surface);
+        let limit = self
+            .touching_distance(body1)
+            .min(self.touching_distance(body2));
+        let contact = query::contact(pose1, surface1, pose2, surface2, limit);
         contact.expect("triangle meshes are supported").is_some()
     }
-}
-
-fn touches(pair: &ContactPair) -> bool {
-    let mut points = pair.manifolds().iter().flat_map(|m| &m.points);
-    points.any(|point| point.dist <= 0.0)
 }

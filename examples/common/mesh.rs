@@ -134,3 +134,31 @@ pub fn ring(major: Real, minor: Real, around: u32, across: u32) -> Mesh {
         .collect();
     Mesh { vertices, indices }
 }
+
+/// A ball about the origin, `around` quads round its axis and half as many from pole to pole.
+pub fn ball(radius: Real, around: u32) -> Mesh {
+    let rows = around / 2;
+    let point = |k: u32| {
+        let (row, column) = (k / around + 1, k % around);
+        let (down, round) = (
+            TAU / 2.0 * row as Real / rows as Real,
+            TAU * column as Real / around as Real,
+        );
+        let out = down.sin();
+        Vector::new(out * round.cos(), down.cos(), -out * round.sin()) * radius
+    };
+    let inner = (rows - 1) * around;
+    let mut vertices: Vec<Vector> = (0..inner).map(point).collect();
+    vertices.extend([Vector::Y * radius, Vector::NEG_Y * radius]);
+    let next = |k: u32| k / around * around + (k + 1) % around;
+    let caps = (0..around).flat_map(|k| {
+        let last = inner - around + k;
+        [[inner, k, next(k)], [inner + 1, next(last), last]]
+    });
+    let sides = (0..inner - around).flat_map(|k| {
+        let below = k + around;
+        [[k, below, next(below)], [k, next(below), next(k)]]
+    });
+    let indices = caps.chain(sides).collect();
+    Mesh { vertices, indices }
+}

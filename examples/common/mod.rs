@@ -4,19 +4,23 @@
 
 pub mod arguments;
 pub mod audit;
+pub mod build;
 pub mod creature;
 pub mod font;
 pub mod isosurface;
 pub mod light;
 pub mod mesh;
 pub mod progress;
+pub mod random;
 pub mod render;
 pub mod scene;
 pub mod scene_strip;
 pub mod scene_table;
 pub mod skeleton;
+pub mod skin;
 pub mod strip;
 pub mod surface_error;
 pub mod table;
+pub mod threading;
 pub mod torus_table;
 pub mod triangle_toi;

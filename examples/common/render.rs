@@ -18,6 +18,8 @@ pub struct Camera {
     pub target: Vector,
     /// Vertical opening angle, in radians.
     pub field_of_view: Real,
+    /// How far from the target shadows fall.
+    pub shadows: Real,
 }
 
 /// A picture, rows from the top.
@@ -74,7 +76,7 @@ pub fn render(camera: &Camera, facets: &[Facet], width: usize, height: usize) ->
         });
     }
 
-    let lights = Lights::new(facets, camera.target, 4.5);
+    let lights = Lights::new(facets, camera.target, camera.shadows);
     let color_of = |sample: usize| {
         if let Some((facet, weights)) = seen[sample] {
             let blend = |v: [Vector; 3]| (0..3).map(|k| v[k] * weights[k]).sum::<Vector>();

@@ -1,11 +1,13 @@
-//! Bodies that fall on a creature: set up, stepped, timed and audited. What the bodies collide as
-//! is the caller's choice, and so is the step.
+//! Bodies above the ground y = 0, played with one kind of collider after another: set up, stepped,
+//! timed and audited.
 
-use super::audit::Audit;
+use super::audit::{Audit, Ghosts};
 use super::mesh::Mesh;
+use super::progress::bar;
 use super::skeleton::Skeleton;
 use rapier3d::prelude::*;
-use std::f32::consts::TAU;
+use rapier3d_medial::prelude::*;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A body's true shape.
@@ -16,37 +18,84 @@ pub struct Model {
     pub surface: TriMesh,
     /// Its inner lines.
     pub skeleton: Skeleton,
+    /// What it collides as.
+    pub medial: MedialMesh,
 }
 
 impl Model {
-    /// Pairs a mesh with its skeleton.
-    pub fn new(mesh: Mesh, skeleton: Skeleton) -> Self {
-        Self {
+    /// Pairs a mesh with its skeleton and its collider.
+    pub fn new(mesh: Mesh, skeleton: Skeleton, medial: MedialMesh) -> Arc<Self> {
+        Arc::new(Self {
             surface: mesh.to_parry(),
             mesh,
             skeleton,
+            medial,
+        })
+    }
+}
+
+/// What bodies collide as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Medial meshes, stepped by this crate.
+    Medial,
+    /// Convex hulls of the true meshes: plain rapier.
+    Hulls,
+    /// The true meshes: plain rapier.
+    Triangles,
+}
+
+impl Kind {
+    /// Its name on pictures and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Medial => "MEDIAL MESHES",
+            Self::Hulls => "CONVEX HULLS",
+            Self::Triangles => "TRIANGLE MESHES",
+        }
+    }
+
+    fn collider(self, model: &Model) -> ColliderBuilder {
+        let Mesh { vertices, indices } = &model.mesh;
+        match self {
+            Self::Medial => ColliderBuilder::medial_mesh(model.medial.clone()),
+            Self::Hulls => ColliderBuilder::convex_hull(vertices).expect("a solid"),
+            Self::Triangles => ColliderBuilder::trimesh(vertices.clone(), indices.clone())
+                .expect("a mesh with triangles"),
         }
     }
 }
 
-/// Equal bodies above a creature that stands on the ground y = 0.
+/// One body of a scene.
+pub struct Actor {
+    /// Its true shape.
+    pub model: Arc<Model>,
+    /// How it starts.
+    pub start: RigidBodyBuilder,
+    /// Red, green, blue.
+    pub color: Vector,
+}
+
+/// Bodies and where they start. The ground is a fixed box, and none of the actors.
 pub struct Scene {
-    /// What falls.
-    pub ring: Model,
-    /// What it falls on, at the origin.
-    pub creature: Model,
-    /// Where each ring starts, and how fast it spins.
-    pub starts: Vec<(Pose, Vector)>,
+    /// The bodies.
+    pub actors: Vec<Actor>,
+    /// Where the batches of a medial run are computed.
+    pub backend: Backend,
 }
 
 /// What a run of the scene gave.
 pub struct Run {
+    /// What the bodies collided as.
+    pub kind: Kind,
     /// Milliseconds of each step.
     pub milliseconds: Vec<f64>,
     /// Elementary tests of all steps together.
     pub elementary_tests: u64,
-    /// Poses of the rings, then of the creature: before the first step and after each.
+    /// Poses of the actors: before the first step and after each.
     pub history: Vec<Vec<Pose>>,
+    /// Ghost contacts of each step, in world space.
+    pub ghosts: Vec<Vec<Vector>>,
     /// After how many steps all slept.
     pub asleep_after: Option<usize>,
     /// What the true shapes say.
@@ -57,89 +106,13 @@ pub struct Run {
 pub struct Stage {
     /// The world to step.
     pub world: PhysicsWorld,
-    bodies: Vec<(RigidBodyHandle, ColliderHandle)>,
-}
-
-impl Scene {
-    /// `count` rings on a spiral above the creature, every next one higher, turned and spun at
-    /// random, the same way in every run.
-    pub fn new(ring: Model, creature: Model, count: usize) -> Self {
-        let mut random = Random(9);
-        let starts = (0..count).map(|k| {
-            let angle = TAU * 0.618_034 * k as Real;
-            let out = 1.35 * ((k as Real + 0.6) / count as Real).sqrt();
-            let place = Vector::new(out * angle.cos(), 3.2 + 0.55 * k as Real, out * angle.sin());
-            let tilt = random.direction() * random.between(0.0, 1.2);
-            let spin = random.direction() * random.between(0.0, 3.0);
-            (Pose::new(place, tilt), spin)
-        });
-        Self {
-            starts: starts.collect(),
-            ring,
-            creature,
-        }
-    }
-
-    /// A world in which the rings and the creature collide as told.
-    pub fn stage(&self, ring: &ColliderBuilder, creature: &ColliderBuilder) -> Stage {
-        let mut world = PhysicsWorld::default();
-        let ground = ColliderBuilder::cuboid(50.0, 0.5, 50.0).translation(Vector::NEG_Y * 0.5);
-        world.insert_collider(ground, None);
-        let mut bodies = Vec::new();
-        for (pose, spin) in &self.starts {
-            let body = RigidBodyBuilder::dynamic()
-                .pose(*pose)
-                .angvel(*spin)
-                .angular_damping(0.5);
-            bodies.push(world.insert(body, ring.clone()));
-        }
-        bodies.push(world.insert(RigidBodyBuilder::fixed(), creature.clone()));
-        Stage { world, bodies }
-    }
-
-    /// The true shape of a body: rings first, then the creature.
-    pub fn model(&self, body: usize) -> &Model {
-        if body < self.starts.len() {
-            &self.ring
-        } else {
-            &self.creature
-        }
-    }
-
-    /// Steps until all sleep, at most `steps` times. `step` returns its number of elementary tests;
-    /// only it is timed. `progress` is called after each.
-    pub fn run(
-        &self,
-        mut stage: Stage,
-        steps: usize,
-        mut step: impl FnMut(&mut PhysicsWorld) -> u64,
-        progress: impl Fn(),
-    ) -> Run {
-        let mut run = Run {
-            milliseconds: Vec::new(),
-            elementary_tests: 0,
-            history: vec![stage.poses()],
-            asleep_after: None,
-            audit: Audit::default(),
-        };
-        while run.asleep_after.is_none() && run.milliseconds.len() < steps {
-            let start = Instant::now();
-            run.elementary_tests += step(&mut stage.world);
-            run.milliseconds.push(1.0e3 * start.elapsed().as_secs_f64());
-            let (before, after) = (&run.history[run.history.len() - 1], stage.poses());
-            run.audit.look(self, &stage, before, &after);
-            run.history.push(after);
-            run.asleep_after = stage.all_sleep().then_some(run.milliseconds.len());
-            progress();
-        }
-        run.audit
-            .count_floating(self, &run.history[run.milliseconds.len()]);
-        run
-    }
+    /// The actors in it.
+    pub bodies: Vec<(RigidBodyHandle, ColliderHandle)>,
+    pipeline: Option<MedialPipeline>,
 }
 
 impl Stage {
-    /// Poses of the rings, then of the creature.
+    /// Poses of the actors.
     pub fn poses(&self) -> Vec<Pose> {
         let bodies = self.bodies.iter();
         bodies
@@ -147,14 +120,92 @@ impl Stage {
             .collect()
     }
 
-    /// Which body a collider belongs to, in the order of `poses`; `None` for the ground.
-    pub fn body_of(&self, collider: ColliderHandle) -> Option<usize> {
+    /// Which actor a collider belongs to; `None` for the ground.
+    pub fn actor_of(&self, collider: ColliderHandle) -> Option<usize> {
         self.bodies.iter().position(|(_, c)| *c == collider)
+    }
+
+    /// Steps the world: with this crate where bodies are medial, else with rapier alone.
+    pub fn step(&mut self) -> StepReport {
+        match &mut self.pipeline {
+            Some(pipeline) => pipeline.step(&mut self.world),
+            None => {
+                self.world.step();
+                StepReport::default()
+            }
+        }
     }
 
     fn all_sleep(&self) -> bool {
         let mut bodies = self.world.bodies.iter();
-        bodies.all(|(_, body)| body.is_sleeping() || body.is_fixed())
+        bodies.all(|(_, body)| body.is_sleeping() || !body.is_dynamic())
+    }
+}
+
+impl Scene {
+    /// A scene of these bodies, on the CPU.
+    pub fn new(actors: Vec<Actor>) -> Self {
+        Self {
+            actors,
+            backend: Backend::Cpu,
+        }
+    }
+
+    /// A world in which the actors collide as told.
+    pub fn stage(&self, kind: Kind) -> Stage {
+        let mut world = PhysicsWorld::default();
+        let ground = ColliderBuilder::cuboid(50.0, 0.5, 50.0).translation(Vector::NEG_Y * 0.5);
+        world.insert_collider(ground, None);
+        let place = |actor: &Actor| world.insert(actor.start.clone(), kind.collider(&actor.model));
+        let bodies = self.actors.iter().map(place).collect();
+        let mut options = MedialOptions::default();
+        options.backend = self.backend;
+        let mut pipeline = (kind == Kind::Medial).then(|| MedialPipeline::new(options));
+        if let Some(pipeline) = &mut pipeline {
+            pipeline.attach(&mut world);
+        }
+        Stage {
+            world,
+            bodies,
+            pipeline,
+        }
+    }
+
+    /// Steps until all sleep, at most `steps` times. `before_step` may act on the stage, and gets
+    /// the number of steps taken. Only the steps themselves are timed.
+    pub fn run(
+        &self,
+        kind: Kind,
+        steps: usize,
+        mut before_step: impl FnMut(&mut Stage, usize),
+    ) -> Run {
+        let bar = bar(kind.name(), steps);
+        let mut stage = self.stage(kind);
+        let mut run = Run {
+            kind,
+            milliseconds: Vec::new(),
+            elementary_tests: 0,
+            history: vec![stage.poses()],
+            ghosts: vec![Vec::new()],
+            asleep_after: None,
+            audit: Audit::default(),
+        };
+        while run.asleep_after.is_none() && run.milliseconds.len() < steps {
+            before_step(&mut stage, run.milliseconds.len());
+            let start = Instant::now();
+            run.elementary_tests += stage.step().elementary_tests;
+            run.milliseconds.push(1.0e3 * start.elapsed().as_secs_f64());
+            let (before, after) = (&run.history[run.history.len() - 1], stage.poses());
+            let Ghosts(ghosts) = run.audit.look(self, &stage, before, &after);
+            run.ghosts.push(ghosts);
+            run.history.push(after);
+            run.asleep_after = stage.all_sleep().then_some(run.milliseconds.len());
+            bar.inc(1);
+        }
+        let last = &run.history[run.milliseconds.len()];
+        run.audit.count_floating(self, last);
+        bar.finish();
+        run
     }
 }
 
@@ -166,7 +217,7 @@ impl Run {
         sorted[((sorted.len() - 1) as f64 * share).round() as usize]
     }
 
-    /// The checks that failed, in words: all rings above the ground, none through another body, all
+    /// The checks that failed, in words: all bodies above the ground, none through another, all
     /// on something and asleep in the end.
     pub fn failures(&self) -> Vec<String> {
         let mut failures = self.audit.failures();
@@ -182,26 +233,5 @@ impl Run {
     /// Poses after a step, or at the end where there were fewer.
     pub fn poses_after(&self, step: usize) -> &[Pose] {
         &self.history[step.min(self.history.len() - 1)]
-    }
-}
-
-/// SplitMix64 (Steele, Lea, Flood 2014): small, and the same numbers everywhere.
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: Real, high: Real) -> Real {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        let share = ((z ^ (z >> 31)) >> 40) as Real / (1u64 << 24) as Real;
-        low + (high - low) * share
-    }
-
-    fn direction(&mut self) -> Vector {
-        let y = self.between(-1.0, 1.0);
-        let (sin, cos) = self.between(0.0, TAU).sin_cos();
-        let across = (1.0 - y * y).sqrt();
-        Vector::new(across * cos, y, across * sin)
     }
 }

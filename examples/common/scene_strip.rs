@@ -1,60 +1,89 @@
-//! The scene in pictures: a column for each moment, a row for each run.
+//! Runs of a scene in pictures: a column for each moment, a row for each run.
 
 use super::light::{Facet, facets};
+use super::mesh::ball;
 use super::progress::bar;
 use super::render::{Camera, Image, render};
 use super::scene::{Run, Scene};
 use super::strip::tile;
-use rapier3d::prelude::{Real, Vector};
+use rapier3d::prelude::{Pose, Real, Vector};
 use std::f32::consts::TAU;
 use std::thread;
 
-/// Draws the true meshes after the steps `shown` (or at the end, where a run had fewer), tiles
-/// `width` pixels wide.
-pub fn draw(scene: &Scene, runs: &[(&str, &Run)], shown: &[usize], width: usize) -> Image {
-    let bar = bar("render", runs.len() * shown.len());
-    let row = |(name, run): &(&str, &Run)| {
-        let moments = shown.iter().map(|step| {
-            let image = picture(scene, name, run, *step, width);
-            bar.inc(1);
-            image
+/// Dark, for what stands.
+pub const SLATE: Vector = Vector::new(0.20, 0.22, 0.27);
+/// Of ghost contacts.
+const GHOST: Vector = Vector::new(1.0, 0.05, 0.03);
+
+/// How a scene is seen.
+#[derive(Clone, Copy)]
+pub struct View<'a> {
+    /// From where.
+    pub camera: Camera,
+    /// Width and height of a tile, in pixels.
+    pub tile: [usize; 2],
+    /// The moments to show, in steps; a run that was over earlier shows its end.
+    pub steps: &'a [usize],
+    /// Radius of the red balls that mark ghost contacts; 0 for none.
+    pub ghost: Real,
+}
+
+impl View<'_> {
+    /// Draws the true meshes: a row for each run, or the runs side by side where one moment is shown.
+    pub fn strip(&self, scene: &Scene, runs: &[&Run]) -> Image {
+        let bar = bar("render", runs.len() * self.steps.len());
+        let row = |run: &Run| {
+            let moments = self.steps.iter().map(|step| {
+                let image = self.picture(scene, run, *step);
+                bar.inc(1);
+                image
+            });
+            moments.collect()
+        };
+        let rows: Vec<Vec<Image>> = thread::scope(|scope| {
+            let threads: Vec<_> = runs.iter().map(|run| scope.spawn(|| row(run))).collect();
+            let joined = threads.into_iter().map(|t| t.join().expect("a drawn row"));
+            joined.collect()
         });
-        moments.collect()
-    };
-    let rows: Vec<Vec<Image>> = thread::scope(|scope| {
-        let threads: Vec<_> = runs.iter().map(|run| scope.spawn(|| row(run))).collect();
-        let joined = threads.into_iter().map(|t| t.join().expect("a drawn row"));
-        joined.collect()
-    });
-    bar.finish();
-    tile(&rows)
-}
-
-fn picture(scene: &Scene, name: &str, run: &Run, step: usize, width: usize) -> Image {
-    let camera = Camera {
-        eye: Vector::new(3.4, 4.4, 7.6),
-        target: Vector::new(0.1, 1.2, 0.1),
-        field_of_view: 0.66,
-    };
-    let bodies = run.poses_after(step).iter().enumerate();
-    let seen: Vec<Facet> = bodies
-        .flat_map(|(body, pose)| facets(&scene.model(body).mesh, *pose, color(scene, body)))
-        .collect();
-    let mut image = render(&camera, &seen, width, width * 5 / 6);
-    let dot = width / 240;
-    image.label(name, [6 * dot, 6 * dot], dot);
-    let step = step.min(run.milliseconds.len());
-    image.label(&format!("STEP {step}"), [6 * dot, 15 * dot], dot);
-    image
-}
-
-/// Rings in the colours of the rainbow, the creature in slate.
-fn color(scene: &Scene, body: usize) -> Vector {
-    let rings = scene.starts.len();
-    if body == rings {
-        return Vector::new(0.20, 0.22, 0.27);
+        bar.finish();
+        match self.steps {
+            [_] => tile(&[rows.concat()]),
+            _ => tile(&rows),
+        }
     }
-    let hue = TAU * body as Real / rings as Real;
-    let share = |k: Real| (0.45 + 0.45 * (hue - k * TAU / 3.0).cos()).powf(1.5);
-    Vector::new(share(0.0), share(1.0), share(2.0))
+
+    fn picture(&self, scene: &Scene, run: &Run, step: usize) -> Image {
+        let step = step.min(run.milliseconds.len());
+        let mut seen = seen(scene, run.poses_after(step));
+        let mark = ball(self.ghost, 12);
+        let marks = run.ghosts[step].iter().filter(|_| self.ghost > 0.0);
+        seen.extend(marks.flat_map(|p| facets(&mark, Pose::from_translation(*p), GHOST)));
+        self.labelled(&seen, &[run.kind.name(), &format!("STEP {step}")])
+    }
+
+    /// Draws facets under some lines of text.
+    pub fn labelled(&self, seen: &[Facet], lines: &[&str]) -> Image {
+        let [width, height] = self.tile;
+        let mut image = render(&self.camera, seen, width, height);
+        let dot = (width / 240).max(1);
+        for (number, line) in lines.iter().enumerate() {
+            image.label(line, [6 * dot, (6 + 9 * number) * dot], dot);
+        }
+        image
+    }
+}
+
+/// The true meshes of all actors, somewhere.
+pub fn seen(scene: &Scene, poses: &[Pose]) -> Vec<Facet> {
+    let actors = scene.actors.iter().zip(poses);
+    actors
+        .flat_map(|(actor, pose)| facets(&actor.model.mesh, *pose, actor.color))
+        .collect()
+}
+
+/// The colours of the rainbow, `share` in [0, 1] of the way round.
+pub fn rainbow(share: Real) -> Vector {
+    let hue = TAU * share;
+    let part = |k: Real| (0.45 + 0.45 * (hue - k * TAU / 3.0).cos()).powf(1.5);
+    Vector::new(part(0.0), part(1.0), part(2.0))
 }

@@ -5,13 +5,13 @@ use super::table::Table;
 
 /// A column for each run. Times are over the steps that all runs have, so that a run is not
 /// cheaper for lying still longer.
-pub fn table(runs: &[(&str, &Run)]) -> Table {
+pub fn table(runs: &[&Run]) -> Table {
     let mut table = Table::default();
-    table.row("", runs.iter().map(|(name, _)| name.to_lowercase()));
+    table.row("", runs.iter().map(|run| run.kind.name().to_lowercase()));
     let mut row = |name: &str, cell: &dyn Fn(&Run) -> String| {
-        table.row(name, runs.iter().map(|(_, run)| cell(run)));
+        table.row(name, runs.iter().map(|run| cell(run)));
     };
-    let common = runs.iter().map(|(_, run)| run.milliseconds.len()).min();
+    let common = runs.iter().map(|run| run.milliseconds.len()).min();
     let common = common.unwrap_or(0);
     let per_step = |run: &Run, count: usize| count as f64 / run.milliseconds.len() as f64;
     row(
@@ -32,7 +32,7 @@ pub fn table(runs: &[(&str, &Run)]) -> Table {
         format!("{:.1}", per_step(run, run.audit.contacts))
     });
     row(
-        "ghosts per step: the true meshes are over 1 % of a ring apart",
+        "ghosts per step: the true meshes are over 1 % of their size apart",
         &|run| format!("{:.1}", per_step(run, run.audit.ghosts)),
     );
     row("ghosts among the touching pairs in the end", &|run| {

@@ -137,7 +137,8 @@ impl Skeleton {
     ///
     /// No point moves further than the path bound, so lines that are further apart than half of it
     /// in the middle of an interval do not meet in it; an interval that fails is halved, until its
-    /// paths are shorter than a hundredth of a millimetre (in units of the bodies' metres).
+    /// paths are shorter than a hundredth of a millimetre (in units of the bodies' metres), or than
+    /// what `f32` resolves so far out.
     pub fn crosses(&self, poses1: [Pose; 2], other: &Self, poses2: [Pose; 2]) -> bool {
         let middle1 = poses1[0].lerp(&poses1[1], 0.5);
         let middle2 = poses2[0].lerp(&poses2[1], 0.5);
@@ -149,7 +150,8 @@ impl Skeleton {
         if apart {
             return false;
         }
-        path < 1.0e-5
+        let [out1, out2] = [middle1, middle2].map(|pose| pose.translation.length());
+        path < 1.0e-5 * (1.0 + out1.max(out2))
             || self.crosses([poses1[0], middle1], other, [poses2[0], middle2])
             || self.crosses([middle1, poses1[1]], other, [middle2, poses2[1]])
     }
@@ -172,6 +174,8 @@ fn segment_distance(bone1: &Bone, bone2: &Bone) -> (Real, Real) {
 
 /// Upper bound on the path of any point within `reach` of a body's origin, from pose to pose.
 fn path_bound(poses: [Pose; 2], reach: Real) -> Real {
-    let turn = poses[0].rotation.angle_between(poses[1].rotation);
+    // Not by the angle's cosine: that resolves no turn below half a milliradian.
+    let turn = poses[0].rotation.inverse() * poses[1].rotation;
+    let turn = 2.0 * turn.xyz().length().atan2(turn.w.abs());
     poses[0].translation.distance(poses[1].translation) + turn * reach
 }

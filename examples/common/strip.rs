@@ -67,7 +67,12 @@ impl Image {
     }
 
     /// Writes the picture as PNG, and the folders above it where there are none.
-    pub fn save(&self, path: &Path) -> io::Result<()> {
+    pub fn save(&self, path: &Path) -> Result<(), String> {
+        let saved = self.write(path);
+        saved.map_err(|e| format!("cannot write {}: {e}", path.display()))
+    }
+
+    fn write(&self, path: &Path) -> io::Result<()> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }

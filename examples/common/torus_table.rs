@@ -59,7 +59,12 @@ pub fn torus_table() -> Result<String, BuildError> {
         let compound = shape.as_shape::<Compound>().expect("a compound");
         let name = format!("VHACD, {resolution} / {concavity}");
         let parts = compound.shapes().len();
-        row(&name, parts, error(compound, &exposed_points(compound)), seconds);
+        row(
+            &name,
+            parts,
+            error(compound, &exposed_points(compound)),
+            seconds,
+        );
     }
     Ok(text)
 }
@@ -68,7 +73,10 @@ pub fn torus_table() -> Result<String, BuildError> {
 /// boundary of `shape`, are from the true torus.
 fn error(shape: &dyn Shape, exposed: &[Vector]) -> Real {
     let torus = ring(MAJOR, MINOR, 960, 320).to_parry();
-    let sticks_out = torus.vertices().iter().map(|&p| shape.distance_to_local_point(p, true));
+    let sticks_out = torus
+        .vertices()
+        .iter()
+        .map(|&p| shape.distance_to_local_point(p, true));
     let off = exposed.iter().map(|&p| {
         let across = p.x.hypot(p.z) - MAJOR;
         (across.hypot(p.y) - MINOR).abs()

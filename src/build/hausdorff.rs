@@ -235,7 +235,10 @@ impl Side for FromBoundary<'_> {
         }
         // A sample that raises neither result need not be measured: the cell is cut all the same.
         let sample = self.solid.towards_boundary(cell.center, &near);
-        if self.tree.is_within(self.triangle, sample, self.bloat.min(best)) {
+        if self
+            .tree
+            .is_within(self.triangle, sample, self.bloat.min(best))
+        {
             return Look::Hidden;
         }
         let (d, triangle) = self.tree.distance_from(sample, self.triangle);
