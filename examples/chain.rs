@@ -105,9 +105,7 @@ fn scene(link: &Arc<Model>) -> Scene {
             },
         }
     });
-    Scene {
-        actors: actors.collect(),
-    }
+    Scene::new(actors.collect())
 }
 
 /// Centre line of a link: a stadium along x, in the plane y = 0.
