@@ -148,7 +148,7 @@ fn shot([bullet, ring]: &[Arc<Model>; 2], number: usize, random: &mut Random) ->
         actor(ring, to, SPEEDS[1], Vector::new(0.10, 0.35, 0.75)),
     ];
     Shot {
-        scene: Scene { actors },
+        scene: Scene::new(actors),
         hits,
     }
 }
