@@ -52,7 +52,7 @@ fn chain(out: &Path) -> Result<(), String> {
             field_of_view: 0.76,
             shadows: 4.0,
         },
-        tile: [340, 380],
+        tile: [240, 260],
         steps: &[0, 10, 35, 70, usize::MAX],
         ghost: 0.0,
     };

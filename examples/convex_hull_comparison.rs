@@ -49,7 +49,7 @@ fn convex_hull_comparison(out: &Path) -> Result<(), String> {
             field_of_view: 0.56,
             shadows: 4.0,
         },
-        tile: [560, 500],
+        tile: [320, 290],
         steps: &[usize::MAX],
         ghost: 0.07,
     };
