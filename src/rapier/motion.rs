@@ -9,6 +9,7 @@ use parry3d::mass_properties::MassProperties;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
     IntegrationParameters, LockedAxes, MultibodyJointSet, RigidBody, RigidBodyHandle, RigidBodySet,
+    RigidBodyType,
 };
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, SharedShape};
 use std::collections::HashMap;
@@ -106,12 +107,16 @@ impl Body {
         if self.kind == Kind::Fixed || !self.awake {
             return;
         }
-        (self.motion.linvel, self.motion.angvel) = if body.is_kinematic() {
+        // rapier sets the end of a body that is driven by its velocity only in its step.
+        let by_position = body.body_type() == RigidBodyType::KinematicPositionBased;
+        (self.motion.linvel, self.motion.angvel) = if by_position {
             let end = body.next_position();
             let com = self.motion.local_center;
             let turn = end.rotation * body.position().rotation.inverse();
             let moved = *end * com - *body.position() * com;
             (moved / dt, shortest(turn).to_scaled_axis() / dt)
+        } else if body.is_kinematic() {
+            (body.linvel(), body.angvel())
         } else {
             let forces = gravity * body.gravity_scale() + body.user_force() * self.inverse_mass;
             (body.linvel() + forces * dt, body.angvel())

@@ -12,6 +12,7 @@ mod distance;
 mod effort;
 mod families;
 mod first_contact;
+mod fuzz;
 mod judge;
 mod lanes;
 mod meshes;

@@ -11,7 +11,7 @@ use rapier3d_medial::prelude::*;
 const SURE: [Real; 2] = [-0.02, 0.02];
 
 /// An open hook, thick at one end and thin at the other.
-fn hook() -> MedialMesh {
+pub fn hook() -> MedialMesh {
     let count = 9;
     let spheres = (0..count).map(|i| {
         let s = i as Real / (count - 1) as Real;
@@ -38,7 +38,7 @@ pub fn link() -> MedialMesh {
     MedialMesh::new(spheres, edges, vec![]).expect("a link")
 }
 
-fn rod() -> MedialMesh {
+pub fn rod() -> MedialMesh {
     let ends = [-0.5, 0.5].map(|z| MedialSphere::new(Vector::new(0.0, 0.0, z), 0.05));
     MedialMesh::new(ends.to_vec(), vec![[0, 1]], vec![]).expect("a rod")
 }
@@ -54,8 +54,8 @@ enum By {
 
 const ALL: [By; 4] = [By::Us, By::Rapier, By::RapierBullets, By::RapierSoftCcd];
 
-/// Whether either body's velocity changed.
-fn collides(solids: [&Solid; 2], flights: [&Flight; 2], by: By) -> bool {
+/// Velocities of both bodies after each step.
+fn velocities(solids: [&Solid; 2], flights: [&Flight; 2], by: By) -> Vec<[Vector; 2]> {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;
     let mut pipeline = attached(&mut world);
@@ -69,34 +69,72 @@ fn collides(solids: [&Solid; 2], flights: [&Flight; 2], by: By) -> bool {
         }
         handle
     });
-    for _ in 0..STEPS {
+    let step = |_| {
         if by == By::Us {
             pipeline.step(&mut world);
         } else {
             world.step();
         }
-    }
-    (0..2).any(|k| {
-        world.bodies[handles[k]]
-            .linvel()
-            .distance(flights[k].linvel)
-            > 1.0e-3
-    })
+        handles.map(|h| world.bodies[h].linvel())
+    };
+    (0..STEPS).map(step).collect()
+}
+
+/// How far a velocity is from that at the start, from which on it is another.
+const CHANGED: Real = 1.0e-3;
+
+/// Whether either body's velocity changed.
+fn collides(flights: [&Flight; 2], velocities: &[[Vector; 2]]) -> bool {
+    let last = velocities.last().expect("steps");
+    (0..2).any(|k| last[k].distance(flights[k].linvel) > CHANGED)
+}
+
+/// Error of the first change of velocity, and of the final velocities, in units of what the reference
+/// changes.
+fn errors(flights: [&Flight; 2], ours: &[[Vector; 2]], truth: &[[Vector; 2]]) -> [Real; 2] {
+    let start = [flights[0].linvel, flights[1].linvel];
+    let first = |all: &[[Vector; 2]]| {
+        let changed = all.iter().find(|v| v[0].distance(start[0]) > CHANGED);
+        changed.map_or(Vector::ZERO, |v| v[0] - start[0])
+    };
+    let (a, b) = (first(ours), first(truth));
+    let [last, right] = [ours, truth].map(|v| *v.last().expect("steps"));
+    let off: Real = (0..2).map(|k| last[k].distance(right[k])).sum();
+    let changed: Real = (0..2).map(|k| right[k].distance(start[k])).sum();
+    [
+        a.distance(b) / b.length().max(CHANGED),
+        off / changed.max(CHANGED),
+    ]
 }
 
 /// What became of the sure contacts and the sure misses, by who stepped.
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Count {
     contacts: u32,
     clear: u32,
     missed: [u32; 4],
     ghosts: [u32; 4],
+    /// Of the first sure contacts, at most [`COMPARED`] of a count.
+    errors: Vec<[Real; 2]>,
+}
+
+/// Sure contacts of a full-size count whose velocities are compared with sub-stepped rapier.
+const COMPARED: usize = 300;
+
+impl Count {
+    /// Error below which a share of the cases lies.
+    fn quantile(&self, which: usize, share: Real) -> Real {
+        let mut all: Vec<_> = self.errors.iter().map(|e| e[which]).collect();
+        all.sort_by(Real::total_cmp);
+        all[((all.len() - 1) as Real * share) as usize]
+    }
 }
 
 fn count(seed: u64, cases: u32, by: &[By], second: impl Fn(&mut Random) -> Solid) -> Count {
     let mut random = Random(seed);
     let shapes = [hook(), link(), rod(), ring(12, 0.4, 0.08)];
     let mut count = Count::default();
+    let compare = by.len() == ALL.len();
     for case in 0..cases {
         let first = Solid::Medial(shapes[(random.unit() * 4.0) as usize].clone());
         let second = second(&mut random);
@@ -108,16 +146,32 @@ fn count(seed: u64, cases: u32, by: &[By], second: impl Fn(&mut Random) -> Solid
         count.contacts += u32::from(least < SURE[0]);
         count.clear += u32::from(least > SURE[1]);
         for &by in by.iter().filter(|_| sure) {
-            let collided = collides(solids, flights, by);
+            let moved = velocities(solids, flights, by);
+            let collided = collides(flights, &moved);
             let (missed, ghost) = (least < 0.0 && !collided, least > 0.0 && collided);
             count.missed[by as usize] += u32::from(missed);
             count.ghosts[by as usize] += u32::from(ghost);
             if by == By::Us && (missed || ghost) {
                 println!("seed {seed}, case {case}: wrong, nearest {least} m: {flights:?}");
             }
+            let compared = by == By::Us && compare && least < 0.0 && count.errors.len() < COMPARED;
+            if compared {
+                let truth = sub_stepped(solids, flights);
+                if collides(flights, &truth) {
+                    count.errors.push(errors(flights, &moved, &truth));
+                }
+            }
         }
     }
-    println!("seed {seed}, {ALL:?}: {count:?}");
+    println!(
+        "seed {seed}: {} sure contacts, {} sure misses; {ALL:?}: missed {:?}, ghosts {:?}",
+        count.contacts, count.clear, count.missed, count.ghosts
+    );
+    if compare {
+        let row = |which| [0.5, 0.95].map(|share| count.quantile(which, share));
+        let (first, last, n) = (row(0), row(1), count.errors.len());
+        println!("  of {n}: first change p50/p95 {first:.3?}, final velocity {last:.3?}");
+    }
     count
 }
 
@@ -140,6 +194,55 @@ fn any_cuboid(random: &mut Random) -> Solid {
     Solid::Cuboid(Vector::new(side(), side(), side()))
 }
 
+fn any_hull(random: &mut Random) -> Solid {
+    let mut corner = |_| random.direction() * random.within(0.2, 0.5);
+    let points: Vec<_> = (0..14).map(&mut corner).collect();
+    Solid::Other(SharedShape::convex_hull(&points).expect("a hull"))
+}
+
+/// Surface of a T: two boxes, one across the other's end.
+fn any_trimesh(random: &mut Random) -> Solid {
+    let mut side = || random.within(0.06, 0.25);
+    let (thin, wide, long) = (side(), side() + 0.2, side() + 0.15);
+    let (mut vertices, mut indices) = Cuboid::new(Vector::new(wide, thin, thin)).to_trimesh();
+    let (stem, triangles) = Cuboid::new(Vector::new(thin, long, thin)).to_trimesh();
+    let shift = Vector::new(0.0, -thin - long, 0.0);
+    let first = vertices.len() as u32;
+    vertices.extend(stem.iter().map(|v| *v + shift));
+    indices.extend(triangles.iter().map(|t| t.map(|i| i + first)));
+    Solid::Other(SharedShape::trimesh(vertices, indices).expect("a surface"))
+}
+
+fn any_round(random: &mut Random) -> Solid {
+    let mut size = || random.within(0.08, 0.4);
+    let (a, b) = (size(), size());
+    Solid::Other(match (random.unit() * 3.0) as u32 {
+        0 => SharedShape::ball(a),
+        1 => SharedShape::capsule_y(a, b),
+        _ => SharedShape::cylinder(a, b),
+    })
+}
+
+fn any_compound(random: &mut Random) -> Solid {
+    let mut at = || Pose::new(random.direction() * 0.3, random.direction());
+    let parts = vec![
+        (at(), SharedShape::cuboid(0.3, 0.08, 0.1)),
+        (at(), SharedShape::ball(0.15)),
+        (at(), SharedShape::capsule_z(0.2, 0.07)),
+    ];
+    Solid::Other(SharedShape::compound(parts))
+}
+
+type Partner = (&'static str, fn(&mut Random) -> Solid);
+
+/// Partners other than medial ones and cuboids.
+const PARTNERS: [Partner; 4] = [
+    ("hull", any_hull),
+    ("trimesh", any_trimesh),
+    ("ball, capsule, cylinder", any_round),
+    ("compound", any_compound),
+];
+
 /// Some minutes: `cargo test --release --test scenes -- --ignored --nocapture full_size`.
 #[test]
 #[ignore = "minutes"]
@@ -149,6 +252,24 @@ fn full_size() {
     assert!(medial.contacts + cuboid.contacts >= 5_000 && medial.clear >= 1_000);
     check(&medial);
     check(&cuboid);
+}
+
+/// Some minutes: `cargo test --release --test scenes -- --ignored --nocapture full_partners`.
+#[test]
+#[ignore = "minutes"]
+fn full_partners() {
+    let counts = PARTNERS.map(|(name, any)| {
+        println!("medial and {name}");
+        count(9003, 1_500, &ALL, any)
+    });
+    counts.iter().for_each(check);
+}
+
+#[test]
+fn a_medial_body_and_any_other() {
+    for (_, any) in PARTNERS {
+        check(&count(73, 100, &ALL[..2], any));
+    }
 }
 
 #[test]

@@ -2,9 +2,11 @@
 
 mod bodies;
 mod controls;
+mod crowds;
 mod determinism;
 #[cfg(feature = "debug-render")]
 mod drawing;
+mod driven;
 mod endurance;
 mod fast_pairs;
 #[cfg_attr(
@@ -16,6 +18,7 @@ mod golden;
 mod heaps;
 mod impacts;
 mod oracle;
+mod partners;
 mod random;
 mod resting;
 #[allow(dead_code)]
