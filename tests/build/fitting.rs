@@ -58,7 +58,7 @@ fn three_balls() -> Mesh {
 /// 1,536 triangles, 27 primitives: the solid lies between the true ring and itself, offset by .0036 of
 /// the longest side either way. (The mesh alone is up to .0029 inside the ring.)
 #[test]
-fn a_ring_of_27_primitives_follow_the_true_ring() {
+fn a_ring_of_27_primitives_follows_the_true_ring() {
     let (big, small) = (0.5, 0.12);
     let mesh = torus(big as f32, small as f32, 48, 16);
     let (medial, report) = built(&mesh, Quality::Balanced, 27, false);
