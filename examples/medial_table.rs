@@ -20,12 +20,10 @@ use common::creature::creature;
 use common::mesh::{Mesh, ring};
 use common::progress::bar;
 use common::surface_error::surface_error;
-use common::torus_table::torus_table;
 use indicatif::ProgressBar;
 use rapier3d::prelude::Real;
 use rapier3d_medial::build::mesh_file::{self, MeshFormat};
 use rapier3d_medial::{BuildOptions, BuildReport, MedialMesh, Quality};
-use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -47,8 +45,8 @@ const POINTS: usize = 200_000;
 const FINEST: Real = 0.0012;
 
 const HEAD: &str = "\
-| model | triangles | primitives | paper | H before | H | uncovered | bloat | Euler | seconds | of which | MB |
-|---|---|---|---|---|---|---|---|---|---|---|---|
+| model | triangles | primitives | paper | H before | H | uncovered | bloat | Euler | seconds | of which |
+|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
 struct Options {
@@ -107,12 +105,6 @@ fn run(options: Options) -> Result<(), String> {
         }
     }
     progress.finish_and_clear();
-    let _ = write!(
-        text,
-        "\nA ring of 1,536 triangles against the true torus, enclosure off:\n\n{}",
-        torus_table().map_err(|e| e.to_string())?
-    );
-    std::fs::write(&out, &text).map_err(|e| format!("{}: {e}", out.display()))?;
     print!("{text}");
     Ok(())
 }
@@ -169,13 +161,7 @@ fn row(
             .map_err(|e| format!("{name}: {e}"))
     };
     let (open, open_report) = build(false, 0.0)?;
-    reset_peak();
-    let idle = peak_megabytes();
     let (closed, report) = build(true, 0.5)?;
-    let megabytes = match (peak_megabytes(), idle) {
-        (Some(peak), Some(idle)) => format!("{:.0}", peak - idle),
-        _ => "–".into(),
-    };
     let side = report.longest_side;
     let measured = |medial: &MedialMesh, report: &BuildReport| {
         let spacing = (0.25 * report.hausdorff.error()).max(FINEST * side);
@@ -186,7 +172,7 @@ fn row(
     let long = report.seconds.iter().filter(|s| s.1 > 0.05 * seconds);
     let stages: Vec<String> = long.map(|(stage, s)| format!("{stage} {s:.1}")).collect();
     let row = format!(
-        "| {name} | {} | {} of {size} | {} | {} | {} | {:.5} | {:.4} | {} | {seconds:.1} | {} | {megabytes} |\n",
+        "| {name} | {} | {} of {size} | {} | {} | {} | {:.5} | {:.4} | {} | {seconds:.1} | {} |\n",
         mesh.indices.len(),
         report.primitives,
         shown(paper(name, size)),
@@ -204,17 +190,4 @@ fn row(
 fn paper(name: &str, size: usize) -> Option<Real> {
     let errors = TABLE_3.iter().find(|row| row.0 == name)?.1;
     SIZES.iter().position(|s| *s == size).map(|k| errors[k])
-}
-
-/// Lets the peak of the process start anew, where the system can.
-fn reset_peak() {
-    let _ = std::fs::write("/proc/self/clear_refs", "5");
-}
-
-/// Largest resident set of the process since then in MB, where the system tells.
-fn peak_megabytes() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|l| l.starts_with("VmHWM"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes / 1024.0)
 }

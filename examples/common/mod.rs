@@ -22,5 +22,4 @@ pub mod strip;
 pub mod surface_error;
 pub mod table;
 pub mod threading;
-pub mod torus_table;
 pub mod triangle_toi;
