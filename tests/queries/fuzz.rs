@@ -17,7 +17,7 @@ use rapier3d_medial::{MedialMesh, MedialSphere, pair};
 /// Mostly of a common size, sometimes any bits at all.
 fn number() -> impl Strategy<Value = Real> {
     prop_oneof![
-        12 => -2.0 as Real..2.0,
+        12 => -2.0f32..2.0,
         2 => prop::sample::select(vec![0.0, 1.0e-30, 1.0e-6, 1.0e4, 1.0e18, -1.0e18]),
         1 => prop::num::f32::ANY,
     ]
@@ -117,7 +117,7 @@ proptest! {
 
     #[test]
     fn queries_of_shapes_end(
-        a in mesh(), b in mesh(), m in motion(), n in motion(), seconds in -0.1 as Real..0.1,
+        a in mesh(), b in mesh(), m in motion(), n in motion(), seconds in -0.1f32..0.1,
         distance in number(), stop in any::<bool>(),
     ) {
         let dispatcher = MedialDispatcher::default().chain(DefaultQueryDispatcher);
