@@ -5,7 +5,7 @@
 # when a test fails. For another driver than the default one, set VK_DRIVER_FILES, as for SwiftShader:
 #   VK_DRIVER_FILES=/usr/lib/chromium/vk_swiftshader_icd.json benches/gpu_figures.sh swiftshader.json
 set -euo pipefail
-out=$(realpath -m "${1:-}")
+out=${1:+$(realpath -m "$1")}
 cd "$(dirname "$0")/.."
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -17,7 +17,7 @@ for features in gpu gpu,parallel; do
 done
 
 field() { sed -n "s/^  \"$1\": \"\(.*\)\",\?$/\1/p" "$work/gpu.json"; }
-if [ -z "${1:-}" ]; then
+if [ -z "$out" ]; then
   mkdir -p benches/results
   out=benches/results/$(field adapter | tr -cs 'A-Za-z0-9\n' '-' | sed 's/-$//').json
 fi

@@ -49,7 +49,7 @@ fn convex_hull_comparison(out: &Path) -> Result<(), String> {
             field_of_view: 0.56,
             shadows: 4.0,
         },
-        tile: [560, 500],
+        tile: [320, 290],
         steps: &[usize::MAX],
         ghost: 0.07,
     };
@@ -137,8 +137,7 @@ fn hung(scene: &Scene, run: &Run) -> usize {
     };
     let posts: Vec<_> = (0..=HOOKS).map(line).collect();
     let hangs = |pose: &&Pose| {
-        let corners = scene.actors[0].model.skeleton.bones().iter();
-        let circle: Vec<Vector> = corners.map(|bone| bone.ends[0]).collect();
+        let circle = scene.actors[0].model.skeleton.line();
         posts
             .iter()
             .any(|post| passes(post, &placed(&circle, pose)) != 0)

@@ -33,6 +33,11 @@ impl Arguments {
         parsed.map_err(|_| format!("{name} cannot be `{value}`"))
     }
 
+    /// Takes the first argument that is left; to be called after all options.
+    pub fn file(&mut self) -> Option<PathBuf> {
+        (!self.0.is_empty()).then(|| self.0.remove(0).into())
+    }
+
     /// Refuses what no option took.
     pub fn finish(self) -> Result<(), String> {
         match self.0.first() {

@@ -26,6 +26,8 @@ pub struct Audit {
     pub deepest: Real,
     /// Lowest vertex of a moving body; the ground is at 0.
     pub lowest: Real,
+    /// The same in the last step.
+    pub lowest_last: Real,
     /// No pose was infinite or not a number.
     pub finite: bool,
 }
@@ -40,6 +42,7 @@ impl Default for Audit {
             crossings: 0,
             deepest: 0.0,
             lowest: Real::MAX,
+            lowest_last: Real::MAX,
             finite: true,
         }
     }
@@ -61,9 +64,10 @@ impl Audit {
         if !self.finite {
             return Ghosts(Vec::new());
         }
-        for (body, pose) in after.iter().enumerate().filter(|(b, _)| scene.moves(*b)) {
-            self.lowest = self.lowest.min(scene.lowest(body, pose));
-        }
+        let moving = after.iter().enumerate().filter(|(b, _)| scene.moves(*b));
+        let heights = moving.map(|(body, pose)| scene.lowest(body, pose));
+        self.lowest_last = heights.fold(Real::MAX, Real::min);
+        self.lowest = self.lowest.min(self.lowest_last);
         for body2 in 1..after.len() {
             for body1 in (0..body2).filter(|b| scene.moves(*b) || scene.moves(body2)) {
                 let [lines1, lines2] = [body1, body2].map(|b| &scene.actors[b].model.skeleton);

@@ -1,6 +1,6 @@
 //! Closed triangle meshes made in code.
 
-use rapier3d::prelude::{Real, TriMesh, Vector};
+use rapier3d::prelude::{Real, Rotation, TriMesh, Vector};
 use std::collections::HashMap;
 use std::f32::consts::TAU;
 
@@ -116,6 +116,46 @@ pub fn ring(major: Real, minor: Real, around: u32, across: u32) -> Mesh {
             -reach * along.sin(),
         )
     };
+    wound(around, across, point)
+}
+
+/// A wire round a closed planar line in y = 0 that runs clockwise seen from above, `across` corners
+/// to each of its cuts. The line must not bend tighter than the wire's radius.
+pub fn tube(line: &[Vector], radius: Real, across: u32) -> Mesh {
+    let count = line.len();
+    let point = |i: u32, j: u32| {
+        let i = i as usize;
+        let along = line[(i + 1) % count] - line[(i + count - 1) % count];
+        let out = along.cross(Vector::Y).normalize();
+        let (sin, cos) = (TAU * j as Real / across as Real).sin_cos();
+        line[i] + (out * cos + Vector::Y * sin) * radius
+    };
+    wound(count as u32, across, point)
+}
+
+/// A wire round any closed line. The cuts are turned along by the smallest rotation from each to the
+/// next, and what is missing to a whole turn is spread over all.
+pub fn tube_in_space(line: &[Vector], radius: Real, across: u32) -> Mesh {
+    let count = line.len();
+    let along = |i: usize| (line[(i + 1) % count] - line[(i + count - 1) % count]).normalize();
+    let mut out = vec![along(0).any_orthonormal_pair().0];
+    for i in 0..count {
+        let turn = Rotation::from_rotation_arc(along(i), along((i + 1) % count));
+        out.push(turn * out[i]);
+    }
+    let (end, sideways) = (out[count], along(0).cross(out[0]));
+    let missing = -end.dot(sideways).atan2(end.dot(out[0]));
+    let point = |i: u32, j: u32| {
+        let (i, share) = (i as usize, i as Real / count as Real);
+        let angle = missing * share - TAU * j as Real / across as Real;
+        let (sin, cos) = angle.sin_cos();
+        line[i] + (out[i] * cos + along(i).cross(out[i]) * sin) * radius
+    };
+    wound(count as u32, across, point)
+}
+
+/// A closed grid of `around` by `across` quads, two triangles each.
+fn wound(around: u32, across: u32, point: impl Fn(u32, u32) -> Vector) -> Mesh {
     let vertices = (0..around * across)
         .map(|k| point(k / across, k % across))
         .collect();
@@ -161,4 +201,13 @@ pub fn ball(radius: Real, around: u32) -> Mesh {
     });
     let indices = caps.chain(sides).collect();
     Mesh { vertices, indices }
+}
+
+/// All points within `radius` of the segment from −`half` to `half` on the y axis.
+pub fn capsule(half: Real, radius: Real, around: u32) -> Mesh {
+    let mut mesh = ball(radius, around);
+    for v in &mut mesh.vertices {
+        v.y += if v.y > -1.0e-3 * radius { half } else { -half };
+    }
+    mesh
 }

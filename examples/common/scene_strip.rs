@@ -52,6 +52,13 @@ impl View<'_> {
         }
     }
 
+    /// Draws one run, so many moments in a row.
+    pub fn columns(&self, scene: &Scene, run: &Run, columns: usize) -> Image {
+        let draw = |step: &usize| self.picture(scene, run, *step);
+        let row = |steps: &[usize]| steps.iter().map(draw).collect();
+        tile(&self.steps.chunks(columns).map(row).collect::<Vec<_>>())
+    }
+
     fn picture(&self, scene: &Scene, run: &Run, step: usize) -> Image {
         let step = step.min(run.milliseconds.len());
         let mut seen = seen(scene, run.poses_after(step));

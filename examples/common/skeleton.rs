@@ -73,11 +73,21 @@ impl Skeleton {
             let angle = TAU * i as Real / sides as Real;
             Vector::new(major * angle.cos(), 0.0, -major * angle.sin())
         };
+        Self::tube(&(0..sides).map(corner).collect::<Vec<_>>(), minor)
+    }
+
+    /// A wire of one radius round a closed line.
+    pub fn tube(line: &[Vector], radius: Real) -> Self {
         let side = |i| Bone {
-            ends: [corner(i), corner(i + 1)],
-            radii: [minor; 2],
+            ends: [line[i], line[(i + 1) % line.len()]],
+            radii: [radius; 2],
         };
-        Self::new((0..sides).map(side).collect())
+        Self::new((0..line.len()).map(side).collect())
+    }
+
+    /// The bones' first ends: the corners of a tube's line.
+    pub fn line(&self) -> Vec<Vector> {
+        self.bones.iter().map(|bone| bone.ends[0]).collect()
     }
 
     /// The edges of a medial mesh where their spheres are at least `thinnest` in radius.

@@ -7,7 +7,26 @@ use std::str::FromStr;
 /// Sizes from which [`super::Backend::Auto`] asks the GPU; see [`super::Batch::calibrate`]. Sizes that are
 /// wrong cost time, never an answer.
 ///
-/// As text, one line each: `adapter = NAME`, `jobs = N` and `tests = N`, where N may be `never`.
+/// As text, one line each: `adapter = NAME`, `jobs = N` and `tests = N`, where N may be `never`. The
+/// program `medial` (features `cli` and `gpu`) measures and writes it:
+///
+/// ```text
+/// medial calibrate body.ma -o gpu.txt
+/// ```
+/// ```no_run
+/// use rapier3d_medial::batch::{Backend, Batch, Calibration};
+/// use rapier3d_medial::prelude::*;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let kept: Calibration = std::fs::read_to_string("gpu.txt")?.parse()?;
+/// let mut batch = Batch::new(Backend::Auto);
+/// if !batch.calibrate(&kept) {
+///     println!("not measured on this adapter");
+/// }
+/// let pipeline = MedialPipeline::with_batch(MedialOptions::default(), batch);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Calibration {
     /// Adapter that it was measured on, as [`super::gpu::Gpu::name`] has it.

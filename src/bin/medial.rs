@@ -149,6 +149,8 @@ struct BuildSummary {
     errors: Errors,
     errors_before_enclosure: Option<Errors>,
     longest_side: f32,
+    euler: i64,
+    target_reached: bool,
     notes: Vec<String>,
     seconds: Vec<(&'static str, f64)>,
 }
@@ -306,6 +308,8 @@ fn build_one(
             .hausdorff_before_enclosure
             .map(|h| relative(&h, side)),
         longest_side: side,
+        euler: report.euler,
+        target_reached: report.target_reached,
         notes: report.notes,
         seconds: report.seconds,
     })

@@ -134,9 +134,12 @@ impl FromSource<'_> {
     fn look_at(&mut self, p: Point, normal: Point, allowed: f64, best: f64) -> Look {
         let leaves = |way: f64, towards: Point| self.solid.is_out(p + towards * way, self.hint);
         // Near enough to the primitive of the point before, and near enough to the outside.
-        let covered = self.solid.distance_to(self.hint, p) <= allowed.min(self.uncovered);
-        if covered && allowed >= 0.0 && leaves(allowed, normal) {
+        let sticks_out = self.solid.distance_to(self.hint, p).max(0.0);
+        if sticks_out <= allowed.min(self.uncovered) && leaves(allowed, normal) {
             return Look::Settled;
+        }
+        if allowed < best && sticks_out <= best.min(self.uncovered) && leaves(best, normal) {
+            return Look::Hidden;
         }
         let near = self.solid.nearest(p, self.hint);
         self.hint = near.primitive;
@@ -217,7 +220,7 @@ impl Side for FromBoundary<'_> {
         cell.radius()
     }
 
-    fn look(&mut self, cell: &Cell, rho: f64, _best: f64, allowed: f64) -> Look {
+    fn look(&mut self, cell: &Cell, rho: f64, best: f64, allowed: f64) -> Look {
         // In this order, for the first two settle most and cost least.
         if self.tree.is_within(self.triangle, cell.center, allowed) {
             return Look::Settled;
@@ -230,17 +233,23 @@ impl Side for FromBoundary<'_> {
             self.triangle = triangle;
             return Look::Settled;
         }
-        match self.solid.onto_boundary(cell.center, &near) {
-            Some(sample) => {
-                let (d, triangle) = self.tree.distance_from(sample, self.triangle);
-                self.triangle = triangle;
-                if d > self.bloat && self.tree.signed_distance(sample, d) > 0.0 {
-                    self.bloat = d;
-                }
-                Look::Near(d, d + near.signed.distance.abs())
-            }
-            None => Look::Hidden,
+        // A sample that raises neither result need not be measured: the cell is cut all the same.
+        let sample = self.solid.towards_boundary(cell.center, &near);
+        if self
+            .tree
+            .is_within(self.triangle, sample, self.bloat.min(best))
+        {
+            return Look::Hidden;
         }
+        let (d, triangle) = self.tree.distance_from(sample, self.triangle);
+        self.triangle = triangle;
+        if d <= self.bloat.min(best) || !self.solid.is_on_boundary(sample, &near) {
+            return Look::Hidden;
+        }
+        if d > self.bloat && self.tree.signed_distance(sample, d) > 0.0 {
+            self.bloat = d;
+        }
+        Look::Near(d, d + near.signed.distance.abs())
     }
 
     fn cut(&self, cell: Cell, cells: &mut Vec<Cell>) {

@@ -86,17 +86,43 @@ pub fn inner_balls(
             }
         }
     }
+    let mut buried = buried(samples.len(), delaunay, &ball_of);
     for t in (0..delaunay.tetrahedra.len()).filter(|&t| ball_of[t] != NONE) {
         if t % 4096 == 0 {
             watch.at(1.0)?;
         }
         for (i, j) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
             if let Some(ring) = ring_around(delaunay, &ball_of, t as u32, i, j) {
+                let corners = delaunay.tetrahedra[t];
+                let [a, b] = [i, j].map(|k| corners[k] as usize);
+                if buried[a] != buried[b] {
+                    // Left open, the ring joins the one's void to what is around the other.
+                    (buried[a], buried[b]) = (false, false);
+                    continue;
+                }
                 fan(&ring, &mut draft);
             }
         }
     }
     Ok((draft, touched))
+}
+
+/// Samples all around which the tetrahedra are inside: the faces around such a one close a void where
+/// the surface was not resolved, and one of them must go.
+fn buried(samples: usize, delaunay: &Delaunay, ball_of: &[u32]) -> Vec<bool> {
+    let mut buried = vec![true; samples];
+    for (t, corners) in delaunay.tetrahedra.iter().enumerate() {
+        for (&v, &beyond) in corners.iter().zip(&delaunay.neighbors[t]) {
+            if ball_of[t] == NONE {
+                buried[v as usize] = false;
+            } else if beyond == NONE {
+                // The face opposite to `v` is on the hull.
+                let on_face = corners.iter().filter(|w| **w != v);
+                on_face.for_each(|&w| buried[w as usize] = false);
+            }
+        }
+    }
+    buried
 }
 
 /// The sphere through four points, unless they lie in a plane.

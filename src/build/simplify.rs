@@ -142,7 +142,15 @@ impl<'a> Simplifier<'a> {
                 None => break,
             }
         }
+        self.open_shells();
         Ok(())
+    }
+
+    /// See [`Complex::open_shells`].
+    pub(super) fn open_shells(&mut self) {
+        let tree = self.tree;
+        self.complex
+            .open_shells(|middle| tree.winding(middle) > 0.5);
     }
 
     fn take(&mut self, candidate: Candidate) {

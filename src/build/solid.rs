@@ -128,12 +128,20 @@ impl<'a> Solid<'a> {
         !self.tree.any_below(p, -ON_BOUNDARY, hint)
     }
 
-    /// The point of the nearest ball's surface that is nearest to `p`, if it is on the boundary;
-    /// outside it always is.
+    /// The point of the nearest ball's surface that is nearest to `p`.
+    pub fn towards_boundary(&self, p: Point, near: &Nearest) -> Point {
+        p - direction(p - self.ball(near).center) * near.signed.distance
+    }
+
+    /// Whether a point that [`Self::towards_boundary`] gave is on the boundary; from outside it always is.
+    pub fn is_on_boundary(&self, moved: Point, near: &Nearest) -> bool {
+        near.signed.distance >= 0.0 || self.is_out(moved, near.primitive)
+    }
+
+    /// [`Self::towards_boundary`], if it is on the boundary.
     pub fn onto_boundary(&self, p: Point, near: &Nearest) -> Option<Point> {
-        let signed = near.signed.distance;
-        let moved = p - direction(p - self.ball(near).center) * signed;
-        (signed >= 0.0 || self.is_out(moved, near.primitive)).then_some(moved)
+        let moved = self.towards_boundary(p, near);
+        self.is_on_boundary(moved, near).then_some(moved)
     }
 
     /// Length of the way from `p`, inside, along a unit vector to the boundary; infinite where it

@@ -1,6 +1,6 @@
 //! After rapier's step: the impacts that it missed, in the order of their times.
 //!
-//! Each impact moves both bodies to its time and gives two impulses: one to the velocities that the
+//! The first contacts of all pairs of medial meshes are one batch. Each impact moves both bodies to its time and gives two impulses: one to the velocities that the
 //! solver left, so that the next step begins right, and one to the motion of this step, so that it
 //! goes on right. Then all pairs of both bodies are asked for again. A body with more than
 //! [`MAX_EVENTS`] impacts stays where it is for the rest of the step, or is carried along by what pushes
@@ -11,6 +11,7 @@ use super::first_contact::{Asker, GUARDED, Hit, Work};
 use super::impulse::{Impact, Inertia, Material};
 use super::motion::{Kind, Snapshot};
 use super::pairs::{Rules, concerned, in_order, sweep};
+use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::{Real, Vector};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
@@ -46,6 +47,8 @@ pub struct Impulse {
 /// What the event loop did.
 #[derive(Default)]
 pub struct Outcome {
+    /// First contacts asked for in the batch.
+    pub jobs: usize,
     /// Impacts.
     pub events: usize,
     /// Bodies that stayed where they were before the step's end.
@@ -78,6 +81,7 @@ struct Loop<'a> {
     boxes: Vec<Aabb>,
     hits: BTreeMap<[usize; 2], Hit>,
     impulses: BTreeMap<[usize; 2], Real>,
+    jobs: usize,
     events: usize,
 }
 
@@ -88,6 +92,7 @@ pub fn resolve(
     asker: Asker,
     rules: Rules,
     narrow_phase: &NarrowPhase,
+    batch: &mut Batch,
     work: &mut Work,
 ) -> Outcome {
     let pairs = sweep(snapshot, asker.dt, MARGIN * asker.unit);
@@ -107,10 +112,15 @@ pub fn resolve(
         boxes: Vec::new(),
         hits: BTreeMap::new(),
         impulses: BTreeMap::new(),
+        jobs: 0,
         events: 0,
     };
+    let asked = events.first_queries(&pairs);
+    let (asked, jobs): (Vec<_>, Vec<_>) = asked.into_iter().unzip();
+    events.jobs = jobs.len();
+    let mut known: HashMap<_, _> = asked.into_iter().zip(batch.run(&jobs)).collect();
     for pair in pairs {
-        events.ask(pair, 0.0, work);
+        events.ask(pair, 0.0, known.remove(&pair), work);
     }
     while let Some((pair, hit)) = events.earliest() {
         if events.boxes.is_empty() {
@@ -162,10 +172,23 @@ impl Loop<'_> {
         })
     }
 
-    fn ask(&mut self, pair: [usize; 2], time: Real, work: &mut Work) {
-        self.hits.remove(&pair);
+    fn is_deep(&self, pair: [usize; 2]) -> bool {
         let handles = pair.map(|k| self.snapshot.parts[k].handle);
-        let deep = self.deep.contains(&handles);
+        self.deep.contains(&handles)
+    }
+
+    /// The first queries of all pairs of medial meshes.
+    fn first_queries(&self, pairs: &[[usize; 2]]) -> Vec<([usize; 2], ToiJob)> {
+        let job = |pair: &[usize; 2]| {
+            let job = self.asker.job(self.snapshot, *pair, self.is_deep(*pair))?;
+            Some((*pair, job))
+        };
+        pairs.iter().filter_map(job).collect()
+    }
+
+    fn ask(&mut self, pair: [usize; 2], time: Real, known: Option<ToiResult>, work: &mut Work) {
+        self.hits.remove(&pair);
+        let deep = self.is_deep(pair);
         let met = self.met.get(&pair).copied().unwrap_or(0);
         // The user's filters are asked once per pair and step, and only where it matters.
         if self.allowed.get(&pair) == Some(&false) || !self.can_give(pair) {
@@ -173,7 +196,7 @@ impl Loop<'_> {
         }
         let hit = self
             .asker
-            .first_contact(self.snapshot, pair, time, met, deep, work);
+            .first_contact(self.snapshot, pair, time, met, deep, known, work);
         let Some(hit) = hit else { return };
         let (snapshot, rules) = (&*self.snapshot, self.rules);
         let allowed = self.allowed.entry(pair);
@@ -201,7 +224,7 @@ impl Loop<'_> {
                 }
                 let both = in_order(self.snapshot, [i, j]);
                 if self.boxes[i].intersects(&self.boxes[j]) {
-                    self.ask(both, time, work);
+                    self.ask(both, time, None, work);
                 } else {
                     self.hits.remove(&both);
                 }
@@ -321,6 +344,7 @@ impl Loop<'_> {
 
     fn finish(self) -> Outcome {
         let mut outcome = Outcome {
+            jobs: self.jobs,
             events: self.events,
             ..Outcome::default()
         };

@@ -8,6 +8,7 @@
 
 use super::effects::{Effect, Effects, Wanted};
 use super::motion::Snapshot;
+use crate::batch::{ToiJob, ToiResult};
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Real, Vector};
 use crate::pair::first_contact::{Counts, first_contact_counted};
@@ -73,6 +74,13 @@ pub struct Hit {
     pub depth: Real,
 }
 
+/// What a pair is asked for.
+struct Question {
+    first: ToiOptions,
+    /// Asked for too where the pair is deep: what it must not sink below.
+    floor: Option<ToiOptions>,
+}
+
 /// Asks for first contacts in a step of `dt` seconds.
 #[derive(Clone, Copy)]
 pub struct Asker<'a> {
@@ -105,17 +113,16 @@ impl Asker<'_> {
         }
     }
 
-    /// First contact from `time` on. `met`: how often the pair has met in this step; `deep`: rapier's
-    /// contacts are, so that even a slow pair is kept above the floor.
-    pub fn first_contact(
+    /// What a pair that has met so often in this step is asked from `time` on; `None`: nothing. `deep`:
+    /// rapier's contacts are, so that even a slow pair is kept above the floor.
+    fn question(
         &self,
         snapshot: &Snapshot,
         pair: [usize; 2],
         time: Real,
         met: u32,
         deep: bool,
-        work: &mut Work,
-    ) -> Option<Hit> {
+    ) -> Option<Question> {
         let fast = self.is_fast(snapshot, pair, FAST);
         let watched = match self.effects_of(snapshot, pair).guard {
             Effect::On => true,
@@ -135,6 +142,54 @@ impl Asker<'_> {
             ..ToiOptions::default()
         };
         let floor = options(-FLOOR * thickness, HAIR * gap);
+        // Where a meeting was, the gap is that of the target to within the tolerance: a larger target
+        // makes it count as touching.
+        let target = gap * (1.0 + 2.0 * TOLERANCE * met as Real);
+        Some(if fast {
+            Question {
+                first: options(target, SINK * thickness),
+                floor: Some(floor),
+            }
+        } else {
+            Question {
+                first: floor,
+                floor: None,
+            }
+        })
+    }
+
+    /// The first query of a pair of medial meshes at the start of the step, as a job of a batch; `None`
+    /// for other pairs, and where nothing is to be asked.
+    pub fn job(&self, snapshot: &Snapshot, pair: [usize; 2], deep: bool) -> Option<ToiJob> {
+        let [Some(mesh1), Some(mesh2)] = pair.map(|k| snapshot.parts[k].medial()) else {
+            return None;
+        };
+        let question = self.question(snapshot, pair, 0.0, 0, deep)?;
+        let [motion1, motion2] = pair.map(|k| snapshot.motion(k, 0.0));
+        Some(ToiJob {
+            mesh1: mesh1.clone(),
+            mesh2: mesh2.clone(),
+            motion1,
+            motion2,
+            seconds: self.dt,
+            options: question.first,
+        })
+    }
+
+    /// First contact from `time` on. `met`: how often the pair has met in this step; `deep` as in
+    /// [`Self::job`], whose answer is `known` where it was asked.
+    #[expect(clippy::too_many_arguments, reason = "what is known of a pair")]
+    pub fn first_contact(
+        &self,
+        snapshot: &Snapshot,
+        pair: [usize; 2],
+        time: Real,
+        met: u32,
+        deep: bool,
+        known: Option<ToiResult>,
+        work: &mut Work,
+    ) -> Option<Hit> {
+        let Question { first, floor } = self.question(snapshot, pair, time, met, deep)?;
         let mut hit: Option<Hit> = None;
         let mut earlier = |new: Option<Hit>| {
             if let Some(n) = new
@@ -143,18 +198,13 @@ impl Asker<'_> {
                 hit = Some(n);
             }
         };
-        if fast {
-            // Where a meeting was, the gap is that of the target to within the tolerance: a larger
-            // target makes it count as touching.
-            let target = gap * (1.0 + 2.0 * TOLERANCE * met as Real);
-            let options = options(target, SINK * thickness);
-            earlier(self.query(snapshot, pair, time, &options, work));
-            let near_floor = (SINK - FLOOR) * thickness;
+        let known = known.map(|known| (known.toi, known.counts));
+        earlier(self.query(snapshot, pair, time, &first, known, work));
+        if let Some(floor) = floor {
+            let near_floor = (SINK - FLOOR) * snapshot.thickness(pair);
             if self.within(snapshot, pair, time, near_floor, work) {
-                earlier(self.query(snapshot, pair, time, &floor, work));
+                earlier(self.query(snapshot, pair, time, &floor, None, work));
             }
-        } else {
-            earlier(self.query(snapshot, pair, time, &floor, work));
         }
         hit
     }
@@ -194,11 +244,13 @@ impl Asker<'_> {
         pair: [usize; 2],
         time: Real,
         options: &ToiOptions,
+        known: Option<(Toi, Counts)>,
         work: &mut Work,
     ) -> Option<Hit> {
         let motions = pair.map(|k| snapshot.motion(k, time));
         let seconds = self.dt - time;
-        let (toi, counts) = ask(snapshot, pair, &motions, seconds, options)?;
+        let answer = known.or_else(|| ask(snapshot, pair, &motions, seconds, options));
+        let (toi, counts) = answer?;
         work.queries += 1;
         work.rotating += u64::from(motions.iter().any(|m| m.angvel != Vector::ZERO));
         work.add(counts);

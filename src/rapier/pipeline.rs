@@ -153,18 +153,11 @@ impl MedialPipeline {
         events: &dyn EventHandler,
     ) -> StepReport {
         let mut report = StepReport::default();
+        let before = self.batch.report().clone();
         let clock = Instant::now();
         report.medial_colliders = candidates::make_unique(colliders);
         let found = candidates::find(parameters, bodies, colliders, &mut self.recycled);
-        let before = self.batch.report().clone();
         let results = self.batch.run(&found.jobs);
-        let after = self.batch.report();
-        report.settled_by_gpu = after.settled_by_gpu - before.settled_by_gpu;
-        report.unfit = after.unfit - before.unfit;
-        report.submissions = after.submissions - before.submissions;
-        report.maps = after.maps - before.maps;
-        report.survivors = after.survivors - before.survivors;
-        report.fallbacks = after.fallbacks - before.fallbacks;
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();
         for (job, result) in found.jobs.iter().zip(&results) {
@@ -232,7 +225,14 @@ impl MedialPipeline {
             multibody_joints,
             hooks,
         };
-        let outcome = super::events::resolve(&mut snapshot, asker, rules, narrow_phase, &mut work);
+        let outcome = super::events::resolve(
+            &mut snapshot,
+            asker,
+            rules,
+            narrow_phase,
+            &mut self.batch,
+            &mut work,
+        );
         for &(index, struck) in &outcome.changed {
             write_back(&snapshot.bodies[index], struck, bodies);
         }
@@ -248,6 +248,7 @@ impl MedialPipeline {
             colliders,
             narrow_phase,
         );
+        report.continuous_jobs = outcome.jobs;
         report.events = outcome.events;
         report.frozen = outcome.frozen;
         report.event_seconds = clock.elapsed().as_secs_f64();
@@ -261,6 +262,13 @@ impl MedialPipeline {
         report.rotating_queries = work.rotating;
         report.culled_nodes += counted.nodes + work.nodes;
         report.elementary_tests += counted.tests + work.tests;
+        let after = self.batch.report();
+        report.settled_by_gpu = after.settled_by_gpu - before.settled_by_gpu;
+        report.unfit = after.unfit - before.unfit;
+        report.submissions = after.submissions - before.submissions;
+        report.maps = after.maps - before.maps;
+        report.survivors = after.survivors - before.survivors;
+        report.fallbacks = after.fallbacks - before.fallbacks;
         report
     }
 }

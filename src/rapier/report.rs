@@ -33,6 +33,9 @@ pub struct StepReport {
     pub continuous_queries: u64,
     /// Those of them, on the motions of the step, in which a body turned.
     pub rotating_queries: u64,
+    /// First contacts of medial pairs that were one batch after rapier's step; other continuous queries
+    /// are with other shapes, in rapier's own sweeps, or repeated after an impact.
+    pub continuous_jobs: usize,
     /// Pairs that the solver had no contacts for because the event loop took them over.
     pub muted: usize,
     /// Impacts resolved within the step.

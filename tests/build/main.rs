@@ -6,6 +6,7 @@ mod corpus;
 mod delaunay;
 mod distance;
 mod enclosure;
+mod fitting;
 mod meshes;
 mod options;
 #[path = "../medial/oracle.rs"]

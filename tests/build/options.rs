@@ -3,7 +3,7 @@
 use crate::build;
 use crate::meshes::*;
 use parry3d::math::Vector;
-use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, Progress};
+use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, Progress, Quality};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -163,6 +163,7 @@ fn max_error_takes_as_few_primitives_as_it_allows() {
         let h = report.hausdorff;
         let error = h.surface_to_envelope.max(h.envelope_to_surface) / report.longest_side;
         assert!(error <= limit, "{error} for {limit}");
+        assert!(report.target_reached);
         assert!(
             report.notes.iter().any(|n| n.contains("max_error")),
             "{:?}",
@@ -178,20 +179,22 @@ fn the_limit_that_binds_is_named() {
     let mesh = ring();
     let limited = |primitives, max_error| {
         let mut options = BuildOptions::default();
+        options.quality = Quality::Fast;
         options.primitives = Some(primitives);
         options.max_error = Some(max_error);
         let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
         let (medial, report) = built.expect("built");
-        (medial.primitive_count(), report.notes.join("; "))
+        let reached = report.target_reached;
+        (medial.primitive_count(), reached, report.notes.join("; "))
     };
-    let (count, notes) = limited(10, 0.001);
+    let (count, reached, notes) = limited(10, 0.001);
     assert!(
-        count <= 10 && notes.contains("primitives 10 bound first"),
+        count <= 10 && !reached && notes.contains("primitives 10 bound first"),
         "{count} {notes}"
     );
-    let (count, notes) = limited(200, 0.1);
+    let (count, reached, notes) = limited(200, 0.1);
     assert!(
-        count < 100 && notes.contains("bound first") && notes.contains("max_error"),
+        count < 100 && reached && notes.contains("bound first") && notes.contains("max_error"),
         "{count} {notes}"
     );
 }

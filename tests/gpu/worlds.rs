@@ -61,20 +61,30 @@ fn worlds_are_the_same_on_either_backend() {
     let [mut cpu, mut device] = [Backend::Cpu, Backend::Gpu].map(pipeline);
     cpu.attach(&mut on_cpu);
     device.attach(&mut on_gpu);
-    let (mut jobs, mut settled, mut events) = (0, 0, 0);
+    let (mut jobs, mut first_contacts, mut settled, mut events, mut again) = (0, 0, 0, 0, 0);
     for step in 0..STEPS {
         let report = cpu.step(&mut on_cpu);
         assert_eq!((report.settled_by_gpu, report.fallbacks), (0, 0));
         let report = device.step(&mut on_gpu);
         assert_eq!(report.fallbacks, 0, "{:?}", device.batch().report().error);
-        jobs += report.jobs;
+        // One submission and one map a batch, two batches a step, but for lists that grow, each once
+        // at most.
+        assert_eq!(report.submissions, report.maps);
+        let batches = u64::from(report.jobs > 0) + u64::from(report.continuous_jobs > 0);
+        again += report.submissions - batches;
+        jobs += report.jobs + report.continuous_jobs;
+        first_contacts += report.continuous_jobs;
         settled += report.settled_by_gpu;
         events += report.events;
         assert_eq!(bits(&on_cpu), bits(&on_gpu), "step {step}");
     }
+    assert!(again <= 3, "{again}");
+    let gpu = device.batch().gpu_counts();
+    assert_eq!((gpu.meshes, gpu.submissions), (2, gpu.maps));
+    println!("{jobs} jobs, {settled} settled by the GPU, {events} events, {gpu:?}");
     assert!(
-        jobs > 1000 && settled > 100 && events > 0,
-        "{jobs} {settled} {events}"
+        jobs > 1000 && first_contacts > 10 && settled > 100 && events > 0,
+        "{jobs} {first_contacts} {settled} {events}"
     );
 }
 
