@@ -40,7 +40,7 @@ fn a_turning_paddle() {
             events += pipeline.step(&mut world).events;
         }
         // Where along the bar they touch: from the turn at which the bar is 0.1 m from the ball.
-        let far = 0.12_f32.hypot(r);
+        let far = Real::hypot(0.12, r);
         let arm = (far * far - 0.01).sqrt();
         let speed = world.bodies[struck].linvel().length();
         let planted = 2.0 * spin * arm;
