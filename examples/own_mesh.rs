@@ -10,7 +10,7 @@
 //! (where the picture goes; default target/own_mesh).
 //!
 //! Exits with 1 when the mesh cannot be built, when its vertices are further out of the medial mesh
-//! than the report says, or when the dropped bodies end in the air or 3 cm in the ground.
+//! than the report says, or when the dropped bodies end in the air or 5 mm in the ground.
 
 mod common;
 
@@ -35,8 +35,8 @@ use std::sync::Arc;
 
 /// Longest side, in metres, that meshes are scaled to.
 const SIZE: Real = 1.0;
-/// Bodies that end deeper in the ground, in metres, have failed: a fifth of the knot's wire.
-const SUNK: Real = 0.03;
+/// Bodies that end deeper in the ground, in metres, have failed.
+const SUNK: Real = 0.005;
 
 struct Options {
     file: Option<PathBuf>,
@@ -104,7 +104,10 @@ fn own_mesh(options: Options) -> Result<(), String> {
 
     let skeleton = Skeleton::of_medial(&medial, 0.02 * SIZE);
     let scene = scene(&Model::new(mesh, skeleton, medial));
-    let run = scene.run(Kind::Medial, 900, |_, _| ());
+    // Merged contacts let a body of many primitives sink in and tremble: docs/rapier.md.
+    let run = scene.run(Kind::Medial, 900, |stage, _| {
+        stage.world.integration_parameters.contact_clustering = false;
+    });
     for step in [30, 900] {
         let label = format!("STEP {}", step.min(run.milliseconds.len()));
         pictures.push(view.labelled(&seen(&scene, run.poses_after(step)), &["DROPPED", &label]));

@@ -104,3 +104,43 @@ fn parts_of_a_mesh_in_hundreds_of_pieces_are_given_up() {
     let error = report.hausdorff.surface_to_envelope / report.longest_side;
     assert!(error > 0.5, "error {error} now");
 }
+
+/// rapier merges the contacts of a pair that share a normal to at most four (`contact_clustering`, on by
+/// default). Under a body of many primitives they change from step to step: it sinks in and never
+/// sleeps; so do rapier's own compounds. Without it all lie still (`docs/rapier.md`).
+#[test]
+fn clustered_contacts_let_a_knot_sink() {
+    let lies = |clustering: bool| {
+        let mut world = PhysicsWorld::new();
+        let ground = ColliderBuilder::cuboid(9.0, 0.5, 9.0);
+        world.insert_collider(ground.translation(Vector::new(0.0, -0.5, 0.0)), None);
+        let mut pipeline = MedialPipeline::new(MedialOptions::default());
+        pipeline.attach(&mut world);
+        world.integration_parameters.contact_clustering = clustering;
+        let knot: Vec<MedialSphere> = (0..150)
+            .map(|k| {
+                let t = std::f32::consts::TAU * k as Real / 150.0;
+                let (x, z) = (
+                    t.sin() + 2.0 * (2.0 * t).sin(),
+                    t.cos() - 2.0 * (2.0 * t).cos(),
+                );
+                MedialSphere::new(Vector::new(x, -(3.0 * t).sin(), z) * 0.17, 0.07)
+            })
+            .collect();
+        let mesh = MedialMesh::tube(&knot, true).expect("a knot");
+        let body = RigidBodyBuilder::dynamic().pose(Pose::new(Vector::Y * 0.8, Vector::X));
+        let collider = ColliderBuilder::medial_mesh(mesh).density(1000.0);
+        let (body, _) = world.insert(body.angular_damping(0.5), collider);
+        for _ in 0..900 {
+            pipeline.step(&mut world);
+        }
+        let body = &world.bodies[body];
+        let low = |s: &MedialSphere| (body.position() * s.center).y - s.radius;
+        let lowest = knot.iter().map(low).fold(1.0, Real::min);
+        (lowest, body.is_sleeping())
+    };
+    let (sunk, sleeps) = lies(true);
+    assert!(sunk < -5.0e-3 && !sleeps, "mended: {sunk} m, {sleeps}");
+    let (sunk, sleeps) = lies(false);
+    assert!(sunk > -1.0e-3 && sleeps, "{sunk} m, {sleeps}");
+}

@@ -196,31 +196,3 @@ fn mutated_worlds_are_refused() {
     }
     assert!(refused > 40, "{refused} of 400 are refused");
 }
-
-/// JSON does not hold rapier's own worlds: keys of its maps are not strings, infinities are null. With
-/// medial colliders it is no better, and no worse.
-#[test]
-fn json_holds_no_worlds_of_rapier() {
-    let plain = {
-        let mut world = world_with_ground();
-        let body = RigidBodyBuilder::dynamic().translation(Vector::Y);
-        world.insert(body, ColliderBuilder::ball(0.2));
-        for _ in 0..30 {
-            world.step();
-        }
-        world
-    };
-    let (mixed, _) = mixed_world();
-    for world in [&plain, &mixed] {
-        let saved = SavedWorld::new(world).expect("a world");
-        let read = serde_json::to_string(&saved)
-            .and_then(|text| serde_json::from_str::<SavedWorld>(&text));
-        println!("{:?}", read.as_ref().err());
-        assert!(read.is_err(), "mended: say so in docs/rapier.md");
-    }
-    let mut text = Vec::new();
-    let own = plain.serialize(&mut serde_json::Serializer::new(&mut text));
-    let read = own.and_then(|()| serde_json::from_slice::<PhysicsWorld>(&text).map(drop));
-    println!("rapier's own: {:?}", read.as_ref().err());
-    assert!(read.is_err(), "rapier's own world");
-}
