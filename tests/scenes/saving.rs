@@ -5,7 +5,6 @@ use crate::random::Random;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 use rapier3d_medial::rapier::{SavedWorld, SavedWorldError, load_world, save_world};
-use serde::Serialize;
 
 const BEFORE: usize = 70;
 const AFTER: usize = 500;
