@@ -10,14 +10,15 @@
 //! - An elementary test has its bracket's lower bound ([`crate::elementary::bracket`]).
 //!
 //! So the first test that is in contact when its turn comes is the first contact. A fast turn is
-//! searched in pieces, so that sagittas stay small.
+//! searched in pieces, so that sagittas stay small. And what comes first in the queue bounds the contact
+//! from below at any moment: a search that has used up [`WORK`] ends there, unresolved, and says so.
 
 use super::apart::{Balls, free_until};
 use super::first_contact::Counts;
 use super::queue::{Candidate, Entry, Open};
 use super::swept::Side;
 use super::volumes::Volumes;
-use crate::elementary::bracket::{Limits, witness};
+use crate::elementary::bracket::{Bracket, Limits, witness};
 use crate::elementary::distance::{crossing, nearest_in_test, signed_distance, thinnest};
 use crate::elementary::first_contact::{Earliest, options_limits};
 use crate::elementary::path::RigidPath;
@@ -43,8 +44,13 @@ const WORTH_WAITING: f64 = 1.0e-3;
 /// fifth longer, fast queries a tenth; 1.5 is nearly as good.
 const SIMILAR: f64 = 3.0;
 
-/// Most pieces of one search; a body that turns further in one step is culled less well.
-const MAX_PIECES: f64 = 64.0;
+/// Node pairs, iterations of elementary tests and pieces of one search, together, after which it ends
+/// unresolved. No query of the tests that turns less than 40 radians takes a hundredth of it. Larger, and
+/// a query of endless turns takes longer; smaller, and it knows less of them.
+const WORK: u64 = 1 << 20;
+
+/// Pieces whose pairs of roots do not count as work. As above.
+const ROOT_PIECES: u64 = 64;
 
 type Spheres = [(Vec3<f64>, f64); 3];
 
@@ -63,6 +69,10 @@ pub(super) struct Search<'a, A, B> {
     first: Option<Entry>,
     /// Elementary tests that are not settled.
     open: Vec<Open>,
+    /// Pieces begun.
+    pieces: u64,
+    /// What [`Self::worked`] may reach.
+    budget: u64,
     pub(super) counts: Counts,
     pub(super) earliest: Earliest<f64>,
 }
@@ -90,6 +100,8 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             heap: BinaryHeap::with_capacity(512),
             first: None,
             open: Vec::with_capacity(128),
+            pieces: 0,
+            budget: WORK,
             counts: Counts::default(),
             earliest: Earliest::new(options_limits(options)),
         }
@@ -98,10 +110,18 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
     /// Searches the whole step.
     pub(super) fn run(&mut self) {
         let fastest = self.motions[0].angle().max(self.motions[1].angle());
-        let pieces = (fastest / PIECE_ANGLE).ceil().clamp(1.0, MAX_PIECES);
-        for piece in 0..pieces as u32 {
-            let end = f64::from(piece + 1) / pieces;
-            if !self.piece(f64::from(piece) / pieces, end) {
+        let pieces = (fastest / PIECE_ANGLE).ceil().max(1.0);
+        let roots = [self.sides.0.body.roots(), self.sides.1.body.roots()].map(u64::from);
+        if roots.contains(&0) {
+            return;
+        }
+        // Bodies of many roots, such as terrain, pay for them in each piece.
+        self.budget = WORK + ROOT_PIECES * roots[0] * roots[1];
+        loop {
+            let start = self.pieces as f64 / pieces;
+            self.pieces += 1;
+            let end = self.pieces as f64 / pieces;
+            if !self.piece(start, end) || end >= 1.0 {
                 break;
             }
         }
@@ -127,9 +147,17 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
                 self.push([i, j]);
             }
         }
+        if self.worked() >= self.budget {
+            self.give_up(start, None);
+            return false;
+        }
         while let Some(entry) = self.next() {
             if entry.time > self.earliest.upper.min(end) {
                 break;
+            }
+            if self.worked() >= self.budget {
+                self.give_up(entry.time, Some(entry.candidate));
+                return false;
             }
             let open = match entry.candidate {
                 Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
@@ -140,6 +168,40 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             }
         }
         self.earliest.status == ToiStatus::Separated
+    }
+
+    fn worked(&self) -> u64 {
+        u64::from(self.counts.nodes) + u64::from(self.earliest.iterations) + self.pieces
+    }
+
+    /// Ends unresolved: nothing meets before `time`, and nothing is known from there on. The witness is of
+    /// primitives that may come first.
+    fn give_up(&mut self, time: f64, first: Option<Candidate>) {
+        let primitives = match first {
+            Some(Candidate::Test(place)) => self.open[place as usize].primitives,
+            Some(Candidate::Nodes([i, j])) => {
+                let (a, b) = (self.sides.0.node(i).below, self.sides.1.node(j).below);
+                [
+                    some_leaf(self.sides.0.body, a),
+                    some_leaf(self.sides.1.body, b),
+                ]
+            }
+            None => [0, 0],
+        };
+        let limits = Limits {
+            start: time,
+            ..self.earliest.limits
+        };
+        let [(_, share_a), (_, share_b)] = spheres(&self.sides, primitives);
+        let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
+        for_each_test(shares[0], shares[1], |test| {
+            let mut bracket = Bracket::free(&limits);
+            bracket.lower = time;
+            self.earliest.found = Some((test, bracket, primitives));
+            false
+        });
+        self.earliest.status = ToiStatus::Unresolved;
+        self.earliest.lower = self.earliest.lower.min(time);
     }
 
     /// The first candidate. Of two nodes just split one is often the first again: it waits in
@@ -394,6 +456,16 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         });
         bracket.lower = lower;
         (bracket.nearest, bracket.normal) = witness(&path, test.domain, lower);
+    }
+}
+
+/// A primitive below a node.
+fn some_leaf(body: &impl Volumes, mut below: Below) -> u32 {
+    loop {
+        match below {
+            Below::Primitive(primitive) => return primitive,
+            Below::Nodes(first, _) => below = body.below(first),
+        }
     }
 }
 

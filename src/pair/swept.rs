@@ -103,16 +103,19 @@ impl<'a, V: Volumes> Side<'a, V> {
         &self.balls[place as usize]
     }
 
-    /// Position of a point at the start of the piece, the chord of its path, and the sagitta.
+    /// Position of a point at the start of the piece, the chord of its path, and the sagitta with what
+    /// rounding of the time adds.
     fn chord(&self, local: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>, f64) {
         let [from, to] = &self.frames;
         let arms = [from.arm(local), to.arm(local)];
         let length = self.times[1] - self.times[0];
         let acceleration = self.motion.acceleration(arms[0]);
+        // Many turns: times are good to an ulp of the step, in which a point swings that far.
+        let rounding = 64.0 * f64::EPSILON * self.motion.angle() * arms[0].length();
         (
             from.center + arms[0],
             (to.center - from.center) + (arms[1] - arms[0]),
-            acceleration * (length * length) / 8.0,
+            acceleration * (length * length) / 8.0 + rounding,
         )
     }
 

@@ -11,3 +11,4 @@ mod rotating;
 mod shapes;
 mod solid;
 mod table;
+mod turns;

@@ -105,7 +105,10 @@ fn fuzz_for() {
     if let Ok(one) = std::env::var("CASE") {
         let (name, case_number) = one.split_once(':').expect("CASE=target:number");
         let target = TARGETS.iter().position(|t| t.0 == name).expect("a target");
-        (TARGETS[target].1)(&mut Rng::of_case(target, case_number.parse().expect("a number")));
+        (TARGETS[target].1)(&mut Rng::of_case(
+            target,
+            case_number.parse().expect("a number"),
+        ));
         return;
     }
     let minutes = number("MINUTES").unwrap_or(1.0);
