@@ -177,6 +177,11 @@ fn damage_is_refused_and_removals_wait_for_a_step() {
         assert!(load_world(&damaged).is_err(), "byte {at}");
         assert!(load_world(&bytes[..at]).is_err(), "cut at {at}");
     }
+    // Zeros at the end do not change the checksum's last word.
+    for zeros in 1..9 {
+        let longer = [&bytes[..], &[0; 8][..zeros]].concat();
+        assert!(load_world(&longer).is_err(), "{zeros} zeros more");
+    }
     let is = |e: Option<SavedWorldError>, what: &str| {
         let text = e.map_or(String::new(), |e| e.to_string());
         assert!(text.contains(what), "{text}");

@@ -5,6 +5,7 @@
 //! gives each target its share of the time, on as many threads as there are, and prints how often each ran.
 //! `CASE=target:number` runs one case again. Finds are kept in `finds.rs`.
 
+mod finds;
 mod mutate;
 mod queries;
 mod targets;
@@ -16,7 +17,7 @@ use std::time::{Duration, Instant};
 use targets::TARGETS;
 
 /// Cases of each target in an ordinary run of the tests.
-const QUICK: u64 = 1_000;
+const QUICK: u64 = 300;
 
 /// Address space in MiB by which no target may grow the process: a claimed count of 2³² items takes
 /// 16,000 and more. Threads of other tests take 64 each.
