@@ -14,20 +14,19 @@
 //! from below at any moment: a search that has used up [`WORK`] ends there, unresolved, and says so.
 
 use super::apart::{Balls, free_until};
+use super::ending::{ROOT_PIECES, WORK, spheres};
 use super::first_contact::Counts;
 use super::queue::{Candidate, Entry, Open};
 use super::swept::Side;
 use super::volumes::Volumes;
-use crate::elementary::bracket::{Bracket, Limits, witness};
-use crate::elementary::distance::{crossing, nearest_in_test, signed_distance, thinnest};
+use crate::elementary::bracket::Limits;
+use crate::elementary::distance::{crossing, signed_distance, thinnest};
 use crate::elementary::first_contact::{Earliest, options_limits};
-use crate::elementary::path::RigidPath;
 use crate::elementary::resumed::bracket_until;
-use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
+use crate::elementary::test_list::{Share, for_each_test};
 use crate::elementary::{InitialContact, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
-use crate::medial::MedialSphere;
 use crate::medial::tree::Below;
 use std::collections::BinaryHeap;
 
@@ -44,35 +43,25 @@ const WORTH_WAITING: f64 = 1.0e-3;
 /// fifth longer, fast queries a tenth; 1.5 is nearly as good.
 const SIMILAR: f64 = 3.0;
 
-/// Node pairs, iterations of elementary tests and pieces of one search, together, after which it ends
-/// unresolved. No query of the tests that turns less than 40 radians takes a hundredth of it. Larger, and
-/// a query of endless turns takes longer; smaller, and it knows less of them.
-const WORK: u64 = 1 << 20;
-
-/// Pieces whose pairs of roots do not count as work. As above.
-const ROOT_PIECES: u64 = 64;
-
-type Spheres = [(Vec3<f64>, f64); 3];
-
 /// One query on its way.
 pub(super) struct Search<'a, A, B> {
-    sides: (Side<'a, A>, Side<'a, B>),
-    motions: [RigidMotion<f64>; 2],
+    pub(super) sides: (Side<'a, A>, Side<'a, B>),
+    pub(super) motions: [RigidMotion<f64>; 2],
     /// Start and end of the piece searched.
-    times: [f64; 2],
-    target: f64,
+    pub(super) times: [f64; 2],
+    pub(super) target: f64,
     /// What culling goes by: no primitive pair has a larger target, raised or not.
-    reach: f64,
-    initial_contact: InitialContact,
-    heap: BinaryHeap<Entry>,
+    pub(super) reach: f64,
+    pub(super) initial_contact: InitialContact,
+    pub(super) heap: BinaryHeap<Entry>,
     /// One candidate that is not in the heap.
-    first: Option<Entry>,
+    pub(super) first: Option<Entry>,
     /// Elementary tests that are not settled.
-    open: Vec<Open>,
+    pub(super) open: Vec<Open>,
     /// Pieces begun.
-    pieces: u64,
+    pub(super) pieces: u64,
     /// What [`Self::worked`] may reach.
-    budget: u64,
+    pub(super) budget: u64,
     pub(super) counts: Counts,
     pub(super) earliest: Earliest<f64>,
 }
@@ -172,36 +161,6 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
 
     fn worked(&self) -> u64 {
         u64::from(self.counts.nodes) + u64::from(self.earliest.iterations) + self.pieces
-    }
-
-    /// Ends unresolved: nothing meets before `time`, and nothing is known from there on. The witness is of
-    /// primitives that may come first.
-    fn give_up(&mut self, time: f64, first: Option<Candidate>) {
-        let primitives = match first {
-            Some(Candidate::Test(place)) => self.open[place as usize].primitives,
-            Some(Candidate::Nodes([i, j])) => {
-                let (a, b) = (self.sides.0.node(i).below, self.sides.1.node(j).below);
-                [
-                    some_leaf(self.sides.0.body, a),
-                    some_leaf(self.sides.1.body, b),
-                ]
-            }
-            None => [0, 0],
-        };
-        let limits = Limits {
-            start: time,
-            ..self.earliest.limits
-        };
-        let [(_, share_a), (_, share_b)] = spheres(&self.sides, primitives);
-        let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
-        for_each_test(shares[0], shares[1], |test| {
-            let mut bracket = Bracket::free(&limits);
-            bracket.lower = time;
-            self.earliest.found = Some((test, bracket, primitives));
-            false
-        });
-        self.earliest.status = ToiStatus::Unresolved;
-        self.earliest.lower = self.earliest.lower.min(time);
     }
 
     /// The first candidate. Of two nodes just split one is often the first again: it waits in
@@ -421,60 +380,4 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         self.queue(Entry::at(bracket.lower, Candidate::Test(place)));
         true
     }
-
-    fn path(&self, test: &ElementaryTest, pair: [u32; 2], target: f64) -> RigidPath<f64> {
-        let [(a, _), (b, _)] = spheres(&self.sides, pair);
-        RigidPath::new(test, &self.motions, target, |second, k| {
-            if second { b[k as usize] } else { a[k as usize] }
-        })
-    }
-
-    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness:
-    /// a test that is proven free until then may be nearer than the one that was found.
-    fn settle(&mut self) {
-        let Some((test, bracket, pair)) = &mut self.earliest.found else {
-            return;
-        };
-        let lower = self.earliest.lower;
-        let [(a, share_a), (b, share_b)] = spheres(&self.sides, *pair);
-        let then = |side: usize, spheres: Spheres| {
-            let turned = self.motions[side].sin_cos(lower);
-            spheres.map(|(c, r)| (self.motions[side].point(c).at(lower, turned).position, r))
-        };
-        let (pa, pb) = (then(0, a), then(1, b));
-        let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
-        let mut least = f64::INFINITY;
-        for_each_test(shares[0], shares[1], |other| {
-            let distance = nearest_in_test(&other, &pa, &pb).1.distance;
-            if distance < least {
-                (*test, least) = (other, distance);
-            }
-            true
-        });
-        let path = RigidPath::new(test, &self.motions, self.target, |second, k| {
-            if second { b[k as usize] } else { a[k as usize] }
-        });
-        bracket.lower = lower;
-        (bracket.nearest, bracket.normal) = witness(&path, test.domain, lower);
-    }
-}
-
-/// A primitive below a node.
-fn some_leaf(body: &impl Volumes, mut below: Below) -> u32 {
-    loop {
-        match below {
-            Below::Primitive(primitive) => return primitive,
-            Below::Nodes(first, _) => below = body.below(first),
-        }
-    }
-}
-
-fn spheres<A: Volumes, B: Volumes>(
-    sides: &(Side<'_, A>, Side<'_, B>),
-    [i, j]: [u32; 2],
-) -> [(Spheres, Share); 2] {
-    let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-    let (a, share_a) = sides.0.body.primitive(i);
-    let (b, share_b) = sides.1.body.primitive(j);
-    [(a.map(local), share_a), (b.map(local), share_b)]
 }
