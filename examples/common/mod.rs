@@ -6,6 +6,7 @@ pub mod arguments;
 pub mod audit;
 pub mod build;
 pub mod creature;
+pub mod decimate;
 pub mod font;
 pub mod isosurface;
 pub mod light;
