@@ -3,8 +3,9 @@
 
 use super::answers::Answers;
 use super::cast::Cast;
-use super::manifolds::{ensure_workspace, write_manifolds};
+use super::manifolds::{ensure_workspace, write_manifolds, write_one_point};
 use super::near;
+use crate::batch::PairResult;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
@@ -78,6 +79,29 @@ impl MedialDispatcher {
     }
 }
 
+impl MedialDispatcher {
+    /// The deepest contact: of the batch where both are medial.
+    fn deepest(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+    ) -> Result<Option<SpherePair>, Unsupported> {
+        let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
+            return self.nearest(pos12, g1, g2, prediction);
+        };
+        let deepest = |found: &PairResult| {
+            let near = found.contacts.iter().filter(|c| c.distance <= prediction);
+            near.min_by(|a, b| a.distance.total_cmp(&b.distance))
+                .copied()
+        };
+        Ok(self
+            .answers
+            .contacts(mesh1, mesh2, pos12, prediction, deepest))
+    }
+}
+
 /// Time by which two shapes in straight motion have met, if they do: an endless cast ends there.
 fn passed_by(pos12: &Pose, velocity: Vector, g1: &dyn Shape, g2: &dyn Shape, target: Real) -> Real {
     let reach = |g: &dyn Shape| {
@@ -127,6 +151,7 @@ impl QueryDispatcher for MedialDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
+        self.answers.count_intersection();
         let nearest = self.nearest(pos12, g1, g2, 0.0)?;
         Ok(match nearest {
             Some(c) => {
@@ -257,7 +282,18 @@ where
             manifolds.clear();
             return Ok(());
         }
-        let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
+        let meshes = (medial(g1), medial(g2));
+        let some = meshes.0.is_some() || meshes.1.is_some();
+        if some && self.answers.has_one_point(g1, g2) {
+            let deepest = self.deepest(pos12, g1, g2, prediction)?;
+            // As above.
+            *workspace = None;
+            ensure_workspace::<M, C>(g1, g2, workspace);
+            write_one_point(deepest, pos12, manifolds);
+            self.answers.count_manifolds(manifolds.len());
+            return Ok(());
+        }
+        let (Some(mesh1), Some(mesh2)) = meshes else {
             return Err(Unsupported);
         };
         ensure_workspace::<M, C>(mesh1, mesh2, workspace);
@@ -271,6 +307,7 @@ where
                     manifolds,
                 );
             });
+        self.answers.count_manifolds(manifolds.len());
         Ok(())
     }
 

@@ -35,6 +35,10 @@ const MARGIN: Real = 5.0e-3;
 /// Share of the depth below it that is pushed out in a step.
 const PUSH: Real = 0.2;
 
+/// Shares of a step before and after which the world does not stop: what is left would be no step, and
+/// a stop at the start would change nothing.
+const STOPS_WITHIN: [Real; 2] = [1.0e-3, 1.0 - 1.0e-3];
+
 /// An impact that happened.
 #[derive(Clone, Copy, Debug)]
 pub struct Impulse {
@@ -57,6 +61,8 @@ pub struct Outcome {
     pub impulses: Vec<Impulse>,
     /// Bodies to be written back: index, and whether their velocity changed.
     pub changed: Vec<(usize, bool)>,
+    /// Seconds into the step at which the world stopped, all bodies with it.
+    pub stopped: Option<Real>,
 }
 
 /// State of one body in the loop.
@@ -123,6 +129,9 @@ pub fn resolve(
         events.ask(pair, 0.0, known.remove(&pair), work);
     }
     while let Some((pair, hit)) = events.earliest() {
+        if events.stops_at(pair, hit.time) {
+            return events.stop(hit.time, narrow_phase);
+        }
         if events.boxes.is_empty() {
             let parts = 0..events.snapshot.parts.len();
             events.boxes = parts.map(|k| events.swept_box(k, 0.0)).collect();
@@ -163,6 +172,11 @@ impl Loop<'_> {
 
     fn bodies(&self, pair: [usize; 2]) -> [usize; 2] {
         pair.map(|k| self.snapshot.parts[k].body)
+    }
+
+    fn stops_at(&self, pair: [usize; 2], time: Real) -> bool {
+        let [first, last] = STOPS_WITHIN.map(|share| share * self.asker.dt);
+        (first..=last).contains(&time) && self.asker.stops(self.snapshot, pair)
     }
 
     /// Whether an impact could still change the motion of either.
@@ -340,6 +354,30 @@ impl Loop<'_> {
         } else {
             NonlinearRigidMotion::constant_position(motion.start)
         };
+    }
+
+    /// Ends here for all bodies. What forces did in the rest of the step they will do again; a velocity
+    /// that contacts of the solver made is taken for theirs from the start of the step on.
+    fn stop(mut self, time: Real, narrow_phase: &NarrowPhase) -> Outcome {
+        let left = 1.0 - time / self.asker.dt;
+        let mut pushed: Vec<bool> = self.courses.iter().map(|c| c.struck).collect();
+        for part in &self.snapshot.parts {
+            let mut contacts = narrow_phase.contact_pairs_with(part.handle);
+            pushed[part.body] |= contacts.any(|c| c.total_impulse_magnitude() > 0.0);
+        }
+        for (b, body) in self.snapshot.bodies.iter_mut().enumerate() {
+            if body.kind != Kind::Fixed && body.awake {
+                self.courses[b].moved = true;
+                if body.kind == Kind::Free && !pushed[b] {
+                    body.undo_forces(left);
+                    self.courses[b].struck = true;
+                }
+            }
+        }
+        let dt = std::mem::replace(&mut self.asker.dt, time);
+        let mut outcome = self.finish();
+        outcome.stopped = (time < dt).then_some(time);
+        outcome
     }
 
     fn finish(self) -> Outcome {

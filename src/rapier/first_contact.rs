@@ -9,7 +9,7 @@
 use super::effects::{Effect, Effects, Wanted};
 use super::motion::Snapshot;
 use crate::batch::{ToiJob, ToiResult};
-use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
+use crate::elementary::{InitialContact, Paths, Toi, ToiOptions, ToiStatus};
 use crate::math::{Real, Vector};
 use crate::pair::first_contact::{Counts, first_contact_counted};
 use crate::parry::cast::Cast;
@@ -40,6 +40,10 @@ const HAIR: Real = 0.1;
 
 /// Gap up to which a pair touches at the start and belongs to the solver, in units of [`GAP`].
 const TOUCHING: Real = 0.45;
+
+/// Gap at which a pair stops the world, in units of [`GAP`]: with the query's tolerance and rounding
+/// below [`TOUCHING`], so that the solver has the contact in what is left of the step.
+const STOPPING: Real = 0.25;
 
 /// What a query found, and its price.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -90,6 +94,8 @@ pub struct Asker<'a> {
     pub dt: Real,
     /// rapier's length unit.
     pub unit: Real,
+    /// Whether the world may stop once more in this step.
+    pub may_stop: bool,
 }
 
 impl Asker<'_> {
@@ -113,6 +119,16 @@ impl Asker<'_> {
         }
     }
 
+    /// Whether the solver gets contacts of the pair for all that it may reach in the step.
+    pub fn speculates(&self, snapshot: &Snapshot, pair: [usize; 2]) -> bool {
+        self.effects_of(snapshot, pair).speculative == Effect::On
+    }
+
+    /// Whether the world stops at the pair's first contact.
+    pub fn stops(&self, snapshot: &Snapshot, pair: [usize; 2]) -> bool {
+        self.may_stop && self.effects_of(snapshot, pair).stop == Effect::On
+    }
+
     /// What a pair that has met so often in this step is asked from `time` on; `None`: nothing. `deep`:
     /// rapier's contacts are, so that even a slow pair is kept above the floor.
     fn question(
@@ -124,7 +140,8 @@ impl Asker<'_> {
         deep: bool,
     ) -> Option<Question> {
         let fast = self.is_fast(snapshot, pair, FAST);
-        let watched = match self.effects_of(snapshot, pair).guard {
+        let effects = self.effects_of(snapshot, pair);
+        let watched = match effects.guard {
             Effect::On => true,
             Effect::Off => false,
             Effect::Auto => deep,
@@ -135,7 +152,12 @@ impl Asker<'_> {
         let thickness = snapshot.thickness(pair);
         let gap = self.gap(thickness);
         let skin = snapshot.parts[pair[0]].skin + snapshot.parts[pair[1]].skin;
+        let paths = match effects.exact_rotation {
+            Effect::Off => Paths::Straight,
+            Effect::On | Effect::Auto => Paths::Exact,
+        };
         let options = |target: Real, by: Real| ToiOptions {
+            paths,
             target_distance: skin + target,
             tolerance: TOLERANCE * gap,
             initial_contact: InitialContact::Deepen { by },
@@ -144,7 +166,11 @@ impl Asker<'_> {
         let floor = options(-FLOOR * thickness, HAIR * gap);
         // Where a meeting was, the gap is that of the target to within the tolerance: a larger target
         // makes it count as touching.
-        let target = gap * (1.0 + 2.0 * TOLERANCE * met as Real);
+        let target = if self.stops(snapshot, pair) {
+            STOPPING * gap
+        } else {
+            gap * (1.0 + 2.0 * TOLERANCE * met as Real)
+        };
         Some(if fast {
             Question {
                 first: options(target, SINK * thickness),
@@ -252,7 +278,8 @@ impl Asker<'_> {
         let answer = known.or_else(|| ask(snapshot, pair, &motions, seconds, options));
         let (toi, counts) = answer?;
         work.queries += 1;
-        work.rotating += u64::from(motions.iter().any(|m| m.angvel != Vector::ZERO));
+        let turning = motions.iter().any(|m| m.angvel != Vector::ZERO);
+        work.rotating += u64::from(turning && options.paths == Paths::Exact);
         work.add(counts);
         (toi.status != ToiStatus::Separated).then(|| Hit {
             time: time + toi.lower * seconds,

@@ -17,6 +17,7 @@ mod recycled;
 pub mod report;
 #[cfg(feature = "serde-serialize")]
 pub mod saved_world;
+mod speculative;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]

@@ -31,6 +31,7 @@ pub fn muted(
         if plane.is_none()
             && !apart(&p.aabb, &q.aabb)
             && asker.is_fast(snapshot, pair, TRAVEL)
+            && !asker.speculates(snapshot, pair)
             && rules.respond(snapshot, pair)
             && !asker.touches(snapshot, pair, work)
         {

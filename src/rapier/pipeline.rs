@@ -1,12 +1,13 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
-use super::effects::{Effects, Wanted};
+use super::effects::{Effects, MAX_STOPS, Wanted};
 use super::emit::{Once, Told};
 use super::first_contact::{Asker, Work};
 use super::motion::{Body, Snapshot};
 use super::pairs::Rules;
 use super::recycled::Recycled;
 use super::report::StepReport;
+use super::speculative::Speculators;
 use super::{candidates, muting};
 use crate::batch::{Backend, Batch};
 use crate::math::{Real, Vector};
@@ -14,7 +15,7 @@ use crate::parry::{Answers, MedialDispatcher};
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
-    RigidBodySet, SoftBodySet,
+    RigidBodySet, RigidBodyType, SoftBodySet,
 };
 use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, PhysicsWorld};
@@ -152,6 +153,56 @@ impl MedialPipeline {
         hooks: &dyn PhysicsHooks,
         events: &dyn EventHandler,
     ) -> StepReport {
+        let mut rest = *parameters;
+        let mut report = StepReport::default();
+        // Links and particles cannot be set back to where they were at a stop.
+        let can_stop = multibody_joints.multibodies().next().is_none() && soft_bodies.is_empty();
+        loop {
+            let may_stop = can_stop && report.stops < MAX_STOPS;
+            let (done, stopped) = self.part(
+                pipeline,
+                gravity,
+                &rest,
+                islands,
+                broad_phase,
+                narrow_phase,
+                bodies,
+                colliders,
+                impulse_joints,
+                multibody_joints,
+                soft_bodies,
+                ccd_solver,
+                hooks,
+                events,
+                may_stop,
+            );
+            report.add(&done);
+            let Some(time) = stopped else { return report };
+            report.stops += 1;
+            rest.dt -= time;
+        }
+    }
+
+    /// A step, or what of it comes before the world stops; the second result is when.
+    #[expect(clippy::too_many_arguments, reason = "as above")]
+    fn part(
+        &mut self,
+        pipeline: &mut PhysicsPipeline,
+        gravity: Vector,
+        parameters: &IntegrationParameters,
+        islands: &mut IslandManager,
+        broad_phase: &mut BroadPhaseBvh,
+        narrow_phase: &mut NarrowPhase,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        impulse_joints: &mut ImpulseJointSet,
+        multibody_joints: &mut MultibodyJointSet,
+        soft_bodies: &mut SoftBodySet,
+        ccd_solver: &mut CCDSolver,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+        may_stop: bool,
+    ) -> (StepReport, Option<Real>) {
         let mut report = StepReport::default();
         let before = self.batch.report().clone();
         let clock = Instant::now();
@@ -176,6 +227,7 @@ impl MedialPipeline {
             effects: &self.effects,
             dt: parameters.dt,
             unit: parameters.length_unit,
+            may_stop,
         };
         let mut work = Work::default();
         let mut snapshot = if report.medial_colliders == 0 || self.effects.none() {
@@ -194,6 +246,10 @@ impl MedialPipeline {
         let muted = muting::muted(&snapshot, &asker, &rules, prediction, &mut work);
         report.muted = muted.len();
         self.answers.mute(muted);
+        self.answers
+            .give_one_point(self.effects.one_point(colliders));
+        let speculators = Speculators::set(&snapshot, &self.effects, asker.unit, bodies);
+        report.speculative = speculators.count();
         report.mute_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
@@ -215,6 +271,7 @@ impl MedialPipeline {
         );
         report.step_seconds = clock.elapsed().as_secs_f64();
         self.answers.mute(HashSet::new());
+        speculators.restore(bodies);
 
         let clock = Instant::now();
         snapshot.follow(parameters, bodies);
@@ -258,6 +315,8 @@ impl MedialPipeline {
         let counted = self.answers.take_counts();
         report.cache_hits = counted.hits;
         report.cache_misses = counted.misses;
+        report.manifolds = counted.manifolds;
+        report.intersections = counted.intersections;
         report.continuous_queries = counted.casts + work.queries;
         report.rotating_queries = work.rotating;
         report.culled_nodes += counted.nodes + work.nodes;
@@ -269,7 +328,7 @@ impl MedialPipeline {
         report.maps = after.maps - before.maps;
         report.survivors = after.survivors - before.survivors;
         report.fallbacks = after.fallbacks - before.fallbacks;
-        report
+        (report, outcome.stopped)
     }
 }
 
@@ -281,7 +340,12 @@ fn write_back(moved: &Body, struck: bool, bodies: &mut RigidBodySet) {
     if !moved.motion.start.is_finite() {
         return;
     }
+    let end = *body.position();
     body.set_position(moved.motion.start, struck);
+    if body.body_type() == RigidBodyType::KinematicPositionBased {
+        // Where it was going, it still is.
+        body.set_next_kinematic_position(end);
+    }
     if struck {
         body.set_linvel(moved.velocity[0], true);
         body.set_angvel(moved.velocity[1], true);

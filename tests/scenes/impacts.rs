@@ -276,6 +276,8 @@ fn slow_and_sleeping_scenes_run_no_continuous_query() {
             report.frozen,
         );
         assert_eq!(asked, (0, 0, 0, 0), "step {step}");
+        let not_called_for = (report.continuous_jobs, report.stops, report.speculative);
+        assert_eq!(not_called_for, (0, 0, 0), "step {step}");
     }
     assert!(world.bodies.iter().all(|(_, b)| b.is_sleeping()));
 }

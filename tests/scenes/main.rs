@@ -7,6 +7,7 @@ mod determinism;
 #[cfg(feature = "debug-render")]
 mod drawing;
 mod driven;
+mod effects;
 mod endurance;
 mod fast_pairs;
 #[cfg_attr(
