@@ -14,6 +14,7 @@
 //! error, or a certified query missed one at all.
 
 mod bodies;
+mod brute_force;
 // The tests use the rest of it.
 #[allow(dead_code)]
 #[path = "../../tests/common/ccd/mod.rs"]
@@ -24,6 +25,7 @@ mod crash;
 mod elementary;
 mod outcome;
 mod page;
+mod paper;
 mod plot;
 mod random;
 mod report;
@@ -74,7 +76,8 @@ fn run() -> Result<()> {
         elementary::motion(queries / 4, tick)
     }));
     let seconds = if quick { 1.0 } else { 4.0 };
-    sections.push(with_bar("steps", 20, |tick| steps::measure(seconds, tick))?);
+    sections.push(with_bar("steps", 40, |tick| steps::measure(seconds, tick))?);
+    sections.extend(with_bar("paper", 6, |tick| paper::measure(quick, tick))?);
     write(&sections, &out)?;
     check(&sections)
 }

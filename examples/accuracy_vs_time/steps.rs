@@ -28,16 +28,34 @@ struct Outcome {
     energy: f64,
 }
 
-fn settings() -> [(&'static str, Effects); 4] {
-    let mut continuous = Effects::OFF;
-    continuous.continuous = Effect::Auto;
-    let mut guard = Effects::OFF;
-    guard.guard = Effect::Auto;
+fn settings() -> [(&'static str, Effects); 8] {
+    let all = Effects::default;
+    let with = |base: Effects, change: fn(&mut Effects)| {
+        let mut effects = base;
+        change(&mut effects);
+        effects
+    };
     [
         ("none", Effects::OFF),
-        ("continuous", continuous),
-        ("guard", guard),
-        ("all, default", Effects::default()),
+        (
+            "continuous",
+            with(Effects::OFF, |e| e.continuous = Effect::Auto),
+        ),
+        ("guard", with(Effects::OFF, |e| e.guard = Effect::Auto)),
+        (
+            "speculative",
+            with(Effects::OFF, |e| e.speculative = Effect::On),
+        ),
+        ("all, default", all()),
+        (
+            "default, straight paths",
+            with(all(), |e| e.exact_rotation = Effect::Off),
+        ),
+        (
+            "default, one contact",
+            with(all(), |e| e.full_manifolds = Effect::Off),
+        ),
+        ("default, stop", with(all(), |e| e.stop = Effect::On)),
     ]
 }
 

@@ -11,6 +11,7 @@ pub mod font;
 pub mod isosurface;
 pub mod light;
 pub mod mesh;
+pub mod pillars;
 pub mod progress;
 pub mod random;
 pub mod render;
