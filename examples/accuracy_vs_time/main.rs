@@ -68,7 +68,7 @@ fn run() -> Result<()> {
     fs::create_dir_all(&out)?;
 
     let mut sections = collisions(quick, mesh)?;
-    let queries = if quick { 1_000 } else { 20_000 };
+    let queries = if quick { 1_000 } else { 6_000 };
     sections.push(with_bar("tolerance", 24, |tick| {
         elementary::tolerance(queries, tick)
     }));

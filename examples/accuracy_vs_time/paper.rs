@@ -196,7 +196,7 @@ pub fn measure(quick: bool, progress: &dyn Fn()) -> Result<Vec<Section>, String>
         let start = Instant::now();
         let scene = match number {
             0 if quick => field(0.014, 148)?,
-            0 => field(0.0066, 148)?,
+            0 => field(0.0059, 148)?,
             1 => creatures(quick)?,
             _ => rings()?,
         };

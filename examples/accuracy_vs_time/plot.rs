@@ -42,7 +42,7 @@ impl Axes<'_> {
         } else {
             low.min(0.0)
         };
-        below..high + 0.18 * wide
+        below..high + 0.25 * wide
     }
 }
 
@@ -159,8 +159,14 @@ fn drawn(
             };
             chart.draw_series(points.iter().map(label))?;
         }
+        // A front falls to the right, which leaves the lower left free.
+        let corner = match points {
+            [] => SeriesLabelPosition::UpperRight,
+            _ => SeriesLabelPosition::LowerLeft,
+        };
         chart
             .configure_series_labels()
+            .position(corner)
             .background_style(WHITE.mix(0.85))
             .border_style(BLACK.mix(0.3))
             .label_font(("sans-serif", 16))

@@ -70,7 +70,7 @@ pub fn measure(crash: &Crash, medial: &[Bodies], peers: &[Bodies], progress: &dy
         title: "What the bodies collide as",
         text: format!(
             "A spiky creature, 4 m wide, flies into a blob for one second: speeds of {SPEEDS:?} widths a \
-             second, turns of {TURNS:?} radians. The truth is when their triangles touch, by conservative \
+             second, turns of {TURNS:.1?} radians. The truth is when their triangles touch, by conservative \
              advancement on exact distances of triangles. The error is that of the contact's time, 95th \
              percentile over the contacts found. Beyond shape error counts contacts that were missed, \
              and answers at whose time the triangles were further apart than the two shapes are off, as \

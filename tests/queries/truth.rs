@@ -51,10 +51,10 @@ fn boxes_that_approach_meet_when_the_gap_is_gone() {
 /// the angle asin(h / √(a² + b²)) − atan(b / a).
 #[test]
 fn a_turning_bar_meets_a_plate_at_its_angle() {
-    let (a, b) = (1.0, 0.125);
+    let (a, b) = (1.0f64, 0.125f64);
     let (bar, plate) = (cuboid(1.0, 0.125, 0.125), cuboid(2.0, 0.25, 2.0));
     for (rate, height) in [(1.0, 0.5f64), (3.0, 0.75), (6.0, 0.25)] {
-        let angle = (height / (a * a + b * b as f64).sqrt()).asin() - (b / a).atan();
+        let angle = (height / (a * a + b * b).sqrt()).asin() - (b / a).atan();
         let turns = motion(STILL, STILL, [0.0, 0.0, rate]);
         let stands = motion([0.0, height + 0.25, 0.0], STILL, STILL);
         let found = time([&bar, &plate], [&turns, &stands]).expect("a hit");
