@@ -2,6 +2,7 @@
 //! dispatcher, which handles a medial mesh as a composite of convex parts.
 
 use super::answers::Answers;
+use super::bearing;
 use super::cast::Cast;
 use super::manifolds::{ensure_workspace, write_manifolds, write_one_point};
 use super::near;
@@ -293,8 +294,23 @@ where
             self.answers.count_manifolds(manifolds.len());
             return Ok(());
         }
+        // What a load on one body is above: of two medial meshes the lighter lies on the other.
+        let (side, mesh) = match meshes {
+            (Some(mesh1), Some(mesh2)) if mesh1.volume() > mesh2.volume() => (1, mesh2),
+            (Some(mesh1), _) => (0, mesh1),
+            (None, Some(mesh2)) => (1, mesh2),
+            (None, None) => return Err(Unsupported),
+        };
+        let center = mesh.mass_properties(1.0).local_com;
+        let center = if side == 0 { center } else { pos12 * center };
+        let borne = bearing::borne(manifolds, side);
         let (Some(mesh1), Some(mesh2)) = meshes else {
-            return Err(Unsupported);
+            bearing::look_again(manifolds);
+            let found = DefaultQueryDispatcher
+                .contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+            bearing::hand_on(manifolds, &borne, prediction, side);
+            bearing::choose(manifolds, center, prediction, &borne, side);
+            return found;
         };
         ensure_workspace::<M, C>(mesh1, mesh2, workspace);
         self.answers
@@ -307,6 +323,7 @@ where
                     manifolds,
                 );
             });
+        bearing::choose(manifolds, center, prediction, &borne, side);
         self.answers.count_manifolds(manifolds.len());
         Ok(())
     }

@@ -48,10 +48,6 @@ pub struct Effects {
     pub stop: Effect,
 }
 
-/// Times that the world stops in one step. Each costs a step; after the last one impulses take the rest,
-/// so that fewer only make impacts less exact. Not varied.
-pub const MAX_STOPS: usize = 8;
-
 impl Effects {
     /// No effect but those that every contact has: rapier's own step, its contacts computed in a batch.
     pub const OFF: Self = Self {

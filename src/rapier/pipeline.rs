@@ -1,6 +1,6 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
-use super::effects::{Effects, MAX_STOPS, Wanted};
+use super::effects::{Effects, Wanted};
 use super::emit::{Once, Told};
 use super::first_contact::{Asker, Work};
 use super::motion::{Body, Snapshot};
@@ -8,6 +8,7 @@ use super::pairs::Rules;
 use super::recycled::Recycled;
 use super::report::StepReport;
 use super::speculative::Speculators;
+use super::tuning::Tuning;
 use super::{candidates, muting};
 use crate::batch::{Backend, Batch};
 use crate::math::{Real, Vector};
@@ -51,6 +52,7 @@ pub struct MedialPipeline {
     answers: Arc<Answers>,
     recycled: Recycled,
     effects: Wanted,
+    tuning: Tuning,
     told: Told,
 }
 
@@ -80,6 +82,12 @@ impl MedialPipeline {
     /// Of two colliders that differ, the one that has an effect on decides.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
         self.effects.set(collider, effects);
+    }
+
+    /// Other constants of the event loop, to measure what they do.
+    #[doc(hidden)]
+    pub fn set_tuning(&mut self, tuning: Tuning) {
+        self.tuning = tuning;
     }
 
     /// Makes the world's narrow phase ask this pipeline first, and lowers the contact recycle
@@ -158,7 +166,7 @@ impl MedialPipeline {
         // Links and particles cannot be set back to where they were at a stop.
         let can_stop = multibody_joints.multibodies().next().is_none() && soft_bodies.is_empty();
         loop {
-            let may_stop = can_stop && report.stops < MAX_STOPS;
+            let may_stop = can_stop && report.stops < self.tuning.max_stops;
             let (done, stopped) = self.part(
                 pipeline,
                 gravity,
@@ -227,6 +235,7 @@ impl MedialPipeline {
             effects: &self.effects,
             dt: parameters.dt,
             unit: parameters.length_unit,
+            tuning: self.tuning,
             may_stop,
         };
         let mut work = Work::default();

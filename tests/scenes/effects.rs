@@ -2,7 +2,7 @@
 //! for it. `docs/effects.md` has the table of all on random scenes.
 
 use crate::bodies::*;
-use crate::impacts::{ball_bar, crossed, passed};
+use crate::impacts::{Record, ball_bar, crossed, passed};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
@@ -250,6 +250,39 @@ fn the_world_stops_at_a_first_contact() {
     );
     assert!(at.distance(at_without) < 1.0e-3, "{at}, {at_without}");
     assert!(v.distance(v_without) < 1.0e-4, "{v}, {v_without}");
+}
+
+/// The bounce of a world that stops is told once; with links of a multibody in the world, which cannot be
+/// put back, it is an impulse as without the effect.
+#[test]
+fn stops_are_told_once_and_leave_multibodies_alone() {
+    for links in [false, true] {
+        let (mut world, handles, _) = crossed(
+            60.0,
+            |_, b| b,
+            |_, c| smooth(c).active_events(ActiveEvents::COLLISION_EVENTS),
+        );
+        if links {
+            let link = |x: Real| RigidBodyBuilder::dynamic().translation(Vector::new(x, 50.0, 0.0));
+            let pair = [0.0, 1.0].map(|x| world.insert(link(x), ball(0.1)).0);
+            let joint = SphericalJointBuilder::new().local_anchor2(-Vector::X);
+            let joined = world.insert_multibody_joint(pair[0], pair[1], joint);
+            assert!(joined.is_some());
+        }
+        let mut pipeline = attached_with(&mut world, but(|e| e.stop = Effect::On));
+        let record = Record::default();
+        let (mut stops, mut events) = (0, 0);
+        for _ in 0..10 {
+            let report = pipeline.step_with_events(&mut world, &(), &record);
+            stops += report.stops;
+            events += report.events;
+        }
+        assert!(!passed(&world, handles));
+        let counts = if links { (0, 1) } else { (1, 0) };
+        assert_eq!((stops, events), counts, "links: {links}");
+        let told = record.0.lock().expect("not poisoned");
+        assert_eq!(*told, [true, false], "links: {links}");
+    }
 }
 
 /// Two equal bars side by side land on each other with both ends at once, without a bounce. Impulses one

@@ -42,7 +42,7 @@ pub fn passed(world: &PhysicsWorld, handles: [RigidBodyHandle; 2]) -> bool {
 
 /// Collision starts and stops, in their order.
 #[derive(Default)]
-struct Record(Mutex<Vec<bool>>);
+pub struct Record(pub Mutex<Vec<bool>>);
 
 impl EventHandler for Record {
     fn handle_collision_event(

@@ -18,6 +18,7 @@ mod fast_pairs;
 mod golden;
 mod heaps;
 mod impacts;
+mod knots;
 mod oracle;
 mod partners;
 mod random;
