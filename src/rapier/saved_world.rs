@@ -57,6 +57,9 @@ pub enum SavedWorldError {
         /// That was stored when it was saved.
         stored: u64,
     },
+    /// Bytes follow the world. (The checksum does not see zeros at the end.)
+    #[error("{0} bytes follow the world")]
+    TooLong(usize),
     /// The content is no world.
     #[error("the content is no world: {0}")]
     Unreadable(#[source] postcard::Error),
@@ -249,6 +252,10 @@ pub fn load_world(bytes: &[u8]) -> Result<PhysicsWorld, SavedWorldError> {
     if computed != stored {
         return Err(SavedWorldError::Damaged { computed, stored });
     }
-    let saved: SavedWorld = postcard::from_bytes(content).map_err(SavedWorldError::Unreadable)?;
+    let (saved, rest) =
+        postcard::take_from_bytes::<SavedWorld>(content).map_err(SavedWorldError::Unreadable)?;
+    if !rest.is_empty() {
+        return Err(SavedWorldError::TooLong(rest.len()));
+    }
     saved.into_world()
 }

@@ -12,3 +12,4 @@ mod rotating;
 mod shapes;
 mod solid;
 mod table;
+mod turns;
