@@ -173,7 +173,9 @@ impl FromSource<'_> {
         if self.is_enclosed(p, normal) {
             Look::Distance(0.0)
         } else {
-            Look::Distance(self.solid.nearest_exit(p, way))
+            // How far below both it is tells nothing more.
+            let enough = best.max(allowed);
+            Look::Distance(self.solid.nearest_exit(p, way, enough))
         }
     }
 

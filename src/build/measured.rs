@@ -135,7 +135,7 @@ pub fn reduce_measured(
             heap.push(measure.candidate(simplifier, [a.min(v), a.max(v)], accepted));
         }
     }
-    simplifier.open_shells();
+    simplifier.open_voids();
     Ok(())
 }
 

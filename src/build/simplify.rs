@@ -142,15 +142,15 @@ impl<'a> Simplifier<'a> {
                 None => break,
             }
         }
-        self.open_shells();
+        self.open_voids();
         Ok(())
     }
 
-    /// See [`Complex::open_shells`].
-    pub(super) fn open_shells(&mut self) {
+    /// See [`Complex::open_voids`].
+    pub(super) fn open_voids(&mut self) {
         let tree = self.tree;
         self.complex
-            .open_shells(|middle| tree.winding(middle) > 0.5);
+            .open_voids(|middle| tree.winding(middle) > 0.5);
     }
 
     fn take(&mut self, candidate: Candidate) {
