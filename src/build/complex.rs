@@ -6,7 +6,6 @@
 
 use super::bounds::Point;
 use super::draft::{Ball, Draft};
-use super::voids::superfluous;
 
 /// Balls, edges and faces, with what lies around each ball.
 pub struct Complex {
@@ -202,18 +201,6 @@ impl Complex {
         self.primitives -= 1;
         for v in self.faces[f as usize] {
             self.faces_of[v as usize].retain(|&g| g != f);
-        }
-    }
-
-    /// Takes a face out of each closed surface whose middle `is_solid` (`voids.rs`): collapses leave
-    /// them where many balls are close, and the solid has no void there.
-    pub fn open_voids(&mut self, is_solid: impl Fn(Point) -> bool) {
-        let mut alive: Vec<u32> = self.faces_of.iter().flatten().copied().collect();
-        alive.sort_unstable();
-        alive.dedup();
-        let faces: Vec<[u32; 3]> = alive.iter().map(|&f| self.faces[f as usize]).collect();
-        for f in superfluous(&faces, |v| self.balls[v as usize].center, is_solid) {
-            self.drop_face(alive[f]);
         }
     }
 

@@ -173,9 +173,7 @@ impl FromSource<'_> {
         if self.is_enclosed(p, normal) {
             Look::Distance(0.0)
         } else {
-            // How far below both it is tells nothing more.
-            let enough = best.max(allowed);
-            Look::Distance(self.solid.nearest_exit(p, way, enough))
+            Look::Distance(self.solid.nearest_exit(p, way))
         }
     }
 

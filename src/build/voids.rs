@@ -8,15 +8,28 @@
 //! its neighbours cover it best. All its edges stay, for they have other faces.
 
 use super::bounds::Point;
+use super::draft::Draft;
 use std::collections::HashMap;
 
 /// A set modulo 2, in ascending order.
 type Chain = Vec<u32>;
 
+/// Takes a face out of each closed surface whose middle `is_solid`. The draft must list the edges of
+/// its faces.
+pub fn open_voids(draft: &mut Draft, is_solid: impl Fn(Point) -> bool) {
+    let balls = &draft.balls;
+    let dropped = superfluous(&draft.faces, |v| balls[v as usize].center, is_solid);
+    let mut place = 0;
+    draft.faces.retain(|_| {
+        place += 1;
+        !dropped.contains(&(place - 1))
+    });
+}
+
 /// Faces to drop, as indices, so that no closed surface is left whose middle `is_solid`.
 ///
 /// Of surfaces that enclose true cavities one each stays.
-pub fn superfluous(
+fn superfluous(
     faces: &[[u32; 3]],
     at: impl Fn(u32) -> Point,
     is_solid: impl Fn(Point) -> bool,
