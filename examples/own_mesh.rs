@@ -104,10 +104,7 @@ fn own_mesh(options: Options) -> Result<(), String> {
 
     let skeleton = Skeleton::of_medial(&medial, 0.02 * SIZE);
     let scene = scene(&Model::new(mesh, skeleton, medial));
-    // Merged contacts let a body of many primitives sink in and tremble: docs/rapier.md.
-    let run = scene.run(Kind::Medial, 900, |stage, _| {
-        stage.world.integration_parameters.contact_clustering = false;
-    });
+    let run = scene.run(Kind::Medial, 900, |_, _| ());
     for step in [30, 900] {
         let label = format!("STEP {}", step.min(run.milliseconds.len()));
         pictures.push(view.labelled(&seen(&scene, run.poses_after(step)), &["DROPPED", &label]));

@@ -1,12 +1,15 @@
 //! What a body collides as: medial meshes of several sizes, and what rapier's users take today.
 
 use crate::common::mesh::Mesh;
+use crate::common::surface_error::surface_error;
+use crate::crash::WIDTH;
 use rapier3d::parry::query::{NonlinearRigidMotion, cast_shapes_nonlinear};
 use rapier3d::parry::shape::{Compound, Shape, SharedShape};
 use rapier3d::parry::transformation::vhacd::VHACDParameters;
 use rapier3d::parry::transformation::voxelization::FillMode;
 use rapier3d::prelude::Real;
-use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, ToiOptions, ToiStatus, pair};
+use rapier3d_medial::pair::first_contact::{Counts, first_contact_counted};
+use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, ToiOptions, ToiStatus};
 use std::time::Instant;
 
 /// Tolerance of the medial queries, in metres: that of the true contacts.
@@ -23,6 +26,8 @@ pub struct Bodies {
     pub shape_error: Option<f64>,
     /// Only every such motion is asked: some answers take a second each.
     pub every: usize,
+    /// Spheres of the creature's medial mesh, 0 of other shapes.
+    pub spheres: usize,
     /// Seconds to build both.
     pub seconds: f64,
     shapes: Shapes,
@@ -49,6 +54,7 @@ impl Bodies {
         Ok(Self {
             name: format!("medial mesh, {primitives}"),
             parts: built[0].1.primitives,
+            spheres: built[0].0.spheres().len(),
             shape_error: Some(error(0) + error(1)),
             every: 1,
             seconds,
@@ -65,6 +71,7 @@ impl Bodies {
             seconds: start.elapsed().as_secs_f64(),
             parts: parts(&*shapes[0]),
             shape_error: None,
+            spheres: 0,
             every: 1,
             shapes: Shapes::Parry(shapes),
         }
@@ -111,16 +118,34 @@ impl Bodies {
         peers
     }
 
-    /// First contact over one second, and whether the answer is a contact.
+    /// First contact of medial meshes over one second, and the work it took; `None` for others.
+    pub fn counted(&self, motions: [&NonlinearRigidMotion; 2]) -> Option<(Option<f64>, Counts)> {
+        let Shapes::Medial([a, b]) = &self.shapes else {
+            return None;
+        };
+        let mut options = ToiOptions::default();
+        options.tolerance = TOLERANCE;
+        options.time_tolerance = 1.0e-6;
+        let (toi, counts) = first_contact_counted(a, motions[0], b, motions[1], 1.0, &options);
+        let hit = toi.status != ToiStatus::Separated;
+        Some((hit.then(|| toi.upper.into()), counts))
+    }
+
+    /// Largest distance from the creature's envelope to its source, at sampled points; not a number
+    /// for other shapes.
+    pub fn bloat(&self, source: &Mesh, points: usize) -> f64 {
+        let Shapes::Medial([creature, _]) = &self.shapes else {
+            return f64::NAN;
+        };
+        let spacing = WIDTH as Real / 150.0;
+        let error = surface_error(creature, source, spacing, points);
+        error.map_or(f64::NAN, |e| e.envelope_to_surface.into())
+    }
+
+    /// First contact over one second; `None` where the answer is that there is none.
     pub fn first_contact(&self, motions: [&NonlinearRigidMotion; 2]) -> Option<f64> {
         match &self.shapes {
-            Shapes::Medial([a, b]) => {
-                let mut options = ToiOptions::default();
-                options.tolerance = TOLERANCE;
-                options.time_tolerance = 1.0e-6;
-                let toi = pair::first_contact(a, motions[0], b, motions[1], 1.0, &options);
-                (toi.status != ToiStatus::Separated).then(|| toi.upper.into())
-            }
+            Shapes::Medial(_) => self.counted(motions)?.0,
             Shapes::Parry([a, b]) => {
                 let hit = cast_shapes_nonlinear(motions[0], &**a, motions[1], &**b, 0.0, 1.0, true);
                 hit.ok().flatten().map(|hit| hit.time_of_impact.into())

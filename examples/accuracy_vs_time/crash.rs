@@ -19,7 +19,7 @@ pub const TURNS: [f64; 5] = [0.0, 0.1, 0.5, 1.5, PI];
 pub const WIDTH: f64 = 4.0;
 /// Two surfaces this near have touched, in metres: a hundred-thousandth of the width, above what
 /// `f32` vertices resolve.
-const TOUCH: f64 = 4.0e-5;
+pub const TOUCH: f64 = 4.0e-5;
 
 /// A motion over one second and what the triangles do in it.
 pub struct Case {
@@ -111,7 +111,7 @@ fn blob() -> Mesh {
             .sum();
         -sum.ln() / 4.0
     };
-    isosurface(field, Vector::splat(-1.3), [52; 3], 0.05)
+    isosurface(field, Vector::splat(-1.3), [26; 3], 0.1)
 }
 
 /// The same motion as parry's.

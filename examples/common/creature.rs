@@ -12,7 +12,12 @@ const CELL: Real = 0.075;
 
 /// The creature: one closed mesh, and the bones that it grew on.
 pub fn creature() -> (Mesh, Skeleton) {
-    skin(&limbs(), CELL)
+    creature_with_cells(CELL)
+}
+
+/// The same with cubes of another side, in metres, at most [`CELL`].
+pub fn creature_with_cells(cell: Real) -> (Mesh, Skeleton) {
+    skin(&limbs(), cell)
 }
 
 fn limbs() -> Vec<Limb> {

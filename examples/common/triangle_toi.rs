@@ -27,7 +27,8 @@ pub struct Motion {
 }
 
 impl Motion {
-    fn pose(&self, time: f64) -> Isometry3<f64> {
+    /// Where the body is at a time.
+    pub fn pose(&self, time: f64) -> Isometry3<f64> {
         Isometry3::from_parts(
             Translation3::from(self.start + self.velocity * time),
             UnitQuaternion::from_scaled_axis(self.turn * time),

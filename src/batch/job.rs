@@ -1,6 +1,6 @@
 //! What a batch is asked and what it answers, whatever computes it.
 
-use crate::elementary::{InitialContact, Toi, ToiOptions};
+use crate::elementary::{InitialContact, Paths, Toi, ToiOptions};
 use crate::math::tolerance::MAX_ITERATIONS;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
@@ -136,8 +136,10 @@ impl Job for ToiJob {
     }
     fn sweep(&self) -> Option<Sweep<'_>> {
         let options = &self.options;
-        // Under a lower cap a miss may stay unresolved.
-        let sure = options.max_iterations >= MAX_ITERATIONS && options.time_tolerance.is_finite();
+        // Under a lower cap a miss may stay unresolved; devices know rigid motions only.
+        let sure = options.max_iterations >= MAX_ITERATIONS
+            && options.time_tolerance.is_finite()
+            && options.paths == Paths::Exact;
         let target = match options.initial_contact {
             InitialContact::Stop => options.target_distance.max(0.0),
             InitialContact::Deepen { .. } => options.target_distance,

@@ -20,9 +20,7 @@ use super::certificate::{ActiveFace, first_step, fixed_step, turning_step};
 use super::path::Path;
 use super::test_list::Domain;
 use super::{cone_cone, sphere_slab};
-#[cfg(feature = "gpu")]
-use crate::math::lane::Scalar;
-use crate::math::lane::{Lane, Mask, Vec3};
+use crate::math::lane::{Lane, Mask, Scalar, Vec3};
 use crate::math::nearest::{Family, Nearest};
 use crate::math::tolerance::{NEVER, SLACK_ULPS, STEP_ULPS, TOLERANCE_PER_SLACK};
 
@@ -67,9 +65,8 @@ pub struct Bracket<L: Lane> {
     pub iterations: u32,
 }
 
-#[cfg(feature = "gpu")]
 impl<S: Scalar> Bracket<S> {
-    /// Of a test that something else has proven free: no nearest spheres.
+    /// Of a test that something else has proven free until the horizon: no nearest spheres.
     pub(crate) fn free(limits: &Limits<S>) -> Self {
         let zero = S::zero();
         Self {

@@ -74,6 +74,18 @@ pub struct ToiOptions {
     pub initial_contact: InitialContact,
     /// Where the paper's iteration begins. [`alternating()`] only.
     pub alternating_start: AlternatingStart,
+    /// On which paths the points of a turning body go. Mesh queries only.
+    pub paths: Paths,
+}
+
+/// Paths of the points of a body that turns in the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Paths {
+    /// Those of its rigid motion.
+    #[default]
+    Exact,
+    /// Straight from where each starts to where it ends (paper, Eq. 1): the guarantee is for these.
+    Straight,
 }
 
 /// Time at which the paper's iteration looks for its first nearest sphere pair (§4.3, Figure 3).
@@ -109,6 +121,7 @@ impl Default for ToiOptions {
             target_distance: 0.0,
             initial_contact: InitialContact::Stop,
             alternating_start: AlternatingStart::End,
+            paths: Paths::Exact,
         }
     }
 }

@@ -22,6 +22,8 @@ pub struct RigidMotion<S> {
     angle: S,
     /// Columns of the rotation at the start.
     columns: [Vec3<S>; 3],
+    /// What a step of straight paths adds to the columns; zero where the motion is rigid.
+    drift: [Vec3<S>; 3],
     /// Centre of rotation in the body's frame.
     local_center: Vec3<S>,
 }
@@ -107,7 +109,21 @@ impl<S: Scalar> RigidMotion<S> {
             axis: Vec3::select(turning, omega * inverse, any),
             angle: S::select(turning, angle, S::zero()),
             columns,
+            drift: [Vec3::zero(); 3],
             local_center,
+        }
+    }
+
+    /// The motion in which each point goes straight from where this one starts it to where it ends
+    /// (paper, Eq. 1): affine, not rigid, and a turning body shrinks half-way.
+    pub fn straightened(&self) -> Self {
+        let turned = self.sin_cos(S::one());
+        Self {
+            angle: S::zero(),
+            drift: self
+                .columns
+                .map(|column| self.turn(column, turned) - column),
+            ..*self
         }
     }
 
@@ -120,7 +136,7 @@ impl<S: Scalar> RigidMotion<S> {
         let acceleration = self.angle * self.angle * across.length();
         PointPath {
             base: self.center + along,
-            displacement: self.displacement,
+            displacement: self.displacement + rotate(&self.drift, local - self.local_center),
             across,
             turned: self.axis.cross(rho),
             angle: self.angle,
@@ -145,7 +161,7 @@ impl<S: Scalar> RigidMotion<S> {
         let turned = self.sin_cos(t);
         Frame {
             center: self.center + self.displacement * t,
-            columns: self.columns.map(|column| self.turn(column, turned)),
+            columns: [0, 1, 2].map(|k| self.turn(self.columns[k], turned) + self.drift[k] * t),
             local_center: self.local_center,
         }
     }

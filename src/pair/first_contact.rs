@@ -4,7 +4,7 @@
 use super::search::Search;
 use super::volumes::Volumes;
 use crate::elementary::first_contact::{motion_is_finite, to_toi};
-use crate::elementary::{Toi, ToiOptions};
+use crate::elementary::{Paths, Toi, ToiOptions};
 use crate::math::Real;
 use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
@@ -51,7 +51,10 @@ pub fn first_contact_counted(
     if !finite || !bounds_finite {
         return (Toi::bad_input(options), Counts::default());
     }
-    let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
+    let mut motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
+    if options.paths == Paths::Straight {
+        motions = motions.map(|m| m.straightened());
+    }
     let mut search = Search::new((body1, body2), motions, options);
     search.run();
     let found = search.earliest.found;

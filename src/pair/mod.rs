@@ -6,6 +6,7 @@
 mod apart;
 pub mod contacts;
 pub mod distance;
+mod ending;
 pub mod first_contact;
 mod queue;
 mod search;

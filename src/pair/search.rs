@@ -10,23 +10,23 @@
 //! - An elementary test has its bracket's lower bound ([`crate::elementary::bracket`]).
 //!
 //! So the first test that is in contact when its turn comes is the first contact. A fast turn is
-//! searched in pieces, so that sagittas stay small.
+//! searched in pieces, so that sagittas stay small. And what comes first in the queue bounds the contact
+//! from below at any moment: a search that has used up [`WORK`] ends there, unresolved, and says so.
 
 use super::apart::{Balls, free_until};
+use super::ending::{ROOT_PIECES, WORK, spheres};
 use super::first_contact::Counts;
 use super::queue::{Candidate, Entry, Open};
 use super::swept::Side;
 use super::volumes::Volumes;
-use crate::elementary::bracket::{Limits, witness};
-use crate::elementary::distance::{crossing, nearest_in_test, signed_distance, thinnest};
+use crate::elementary::bracket::Limits;
+use crate::elementary::distance::{crossing, signed_distance, thinnest};
 use crate::elementary::first_contact::{Earliest, options_limits};
-use crate::elementary::path::RigidPath;
 use crate::elementary::resumed::bracket_until;
-use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
+use crate::elementary::test_list::{Share, for_each_test};
 use crate::elementary::{InitialContact, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
-use crate::medial::MedialSphere;
 use crate::medial::tree::Below;
 use std::collections::BinaryHeap;
 
@@ -43,26 +43,25 @@ const WORTH_WAITING: f64 = 1.0e-3;
 /// fifth longer, fast queries a tenth; 1.5 is nearly as good.
 const SIMILAR: f64 = 3.0;
 
-/// Most pieces of one search; a body that turns further in one step is culled less well.
-const MAX_PIECES: f64 = 64.0;
-
-type Spheres = [(Vec3<f64>, f64); 3];
-
 /// One query on its way.
 pub(super) struct Search<'a, A, B> {
-    sides: (Side<'a, A>, Side<'a, B>),
-    motions: [RigidMotion<f64>; 2],
+    pub(super) sides: (Side<'a, A>, Side<'a, B>),
+    pub(super) motions: [RigidMotion<f64>; 2],
     /// Start and end of the piece searched.
-    times: [f64; 2],
-    target: f64,
+    pub(super) times: [f64; 2],
+    pub(super) target: f64,
     /// What culling goes by: no primitive pair has a larger target, raised or not.
-    reach: f64,
-    initial_contact: InitialContact,
-    heap: BinaryHeap<Entry>,
+    pub(super) reach: f64,
+    pub(super) initial_contact: InitialContact,
+    pub(super) heap: BinaryHeap<Entry>,
     /// One candidate that is not in the heap.
-    first: Option<Entry>,
+    pub(super) first: Option<Entry>,
     /// Elementary tests that are not settled.
-    open: Vec<Open>,
+    pub(super) open: Vec<Open>,
+    /// Pieces begun.
+    pub(super) pieces: u64,
+    /// What [`Self::worked`] may reach.
+    pub(super) budget: u64,
     pub(super) counts: Counts,
     pub(super) earliest: Earliest<f64>,
 }
@@ -90,6 +89,8 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             heap: BinaryHeap::with_capacity(512),
             first: None,
             open: Vec::with_capacity(128),
+            pieces: 0,
+            budget: WORK,
             counts: Counts::default(),
             earliest: Earliest::new(options_limits(options)),
         }
@@ -98,10 +99,18 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
     /// Searches the whole step.
     pub(super) fn run(&mut self) {
         let fastest = self.motions[0].angle().max(self.motions[1].angle());
-        let pieces = (fastest / PIECE_ANGLE).ceil().clamp(1.0, MAX_PIECES);
-        for piece in 0..pieces as u32 {
-            let end = f64::from(piece + 1) / pieces;
-            if !self.piece(f64::from(piece) / pieces, end) {
+        let pieces = (fastest / PIECE_ANGLE).ceil().max(1.0);
+        let roots = [self.sides.0.body.roots(), self.sides.1.body.roots()].map(u64::from);
+        if roots.contains(&0) {
+            return;
+        }
+        // Bodies of many roots, such as terrain, pay for them in each piece.
+        self.budget = WORK + ROOT_PIECES * roots[0] * roots[1];
+        loop {
+            let start = self.pieces as f64 / pieces;
+            self.pieces += 1;
+            let end = self.pieces as f64 / pieces;
+            if !self.piece(start, end) || end >= 1.0 {
                 break;
             }
         }
@@ -127,9 +136,17 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
                 self.push([i, j]);
             }
         }
+        if self.worked() >= self.budget {
+            self.give_up(start, None);
+            return false;
+        }
         while let Some(entry) = self.next() {
             if entry.time > self.earliest.upper.min(end) {
                 break;
+            }
+            if self.worked() >= self.budget {
+                self.give_up(entry.time, Some(entry.candidate));
+                return false;
             }
             let open = match entry.candidate {
                 Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
@@ -140,6 +157,10 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             }
         }
         self.earliest.status == ToiStatus::Separated
+    }
+
+    fn worked(&self) -> u64 {
+        u64::from(self.counts.nodes) + u64::from(self.earliest.iterations) + self.pieces
     }
 
     /// The first candidate. Of two nodes just split one is often the first again: it waits in
@@ -359,50 +380,4 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         self.queue(Entry::at(bracket.lower, Candidate::Test(place)));
         true
     }
-
-    fn path(&self, test: &ElementaryTest, pair: [u32; 2], target: f64) -> RigidPath<f64> {
-        let [(a, _), (b, _)] = spheres(&self.sides, pair);
-        RigidPath::new(test, &self.motions, target, |second, k| {
-            if second { b[k as usize] } else { a[k as usize] }
-        })
-    }
-
-    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness:
-    /// a test that is proven free until then may be nearer than the one that was found.
-    fn settle(&mut self) {
-        let Some((test, bracket, pair)) = &mut self.earliest.found else {
-            return;
-        };
-        let lower = self.earliest.lower;
-        let [(a, share_a), (b, share_b)] = spheres(&self.sides, *pair);
-        let then = |side: usize, spheres: Spheres| {
-            let turned = self.motions[side].sin_cos(lower);
-            spheres.map(|(c, r)| (self.motions[side].point(c).at(lower, turned).position, r))
-        };
-        let (pa, pb) = (then(0, a), then(1, b));
-        let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
-        let mut least = f64::INFINITY;
-        for_each_test(shares[0], shares[1], |other| {
-            let distance = nearest_in_test(&other, &pa, &pb).1.distance;
-            if distance < least {
-                (*test, least) = (other, distance);
-            }
-            true
-        });
-        let path = RigidPath::new(test, &self.motions, self.target, |second, k| {
-            if second { b[k as usize] } else { a[k as usize] }
-        });
-        bracket.lower = lower;
-        (bracket.nearest, bracket.normal) = witness(&path, test.domain, lower);
-    }
-}
-
-fn spheres<A: Volumes, B: Volumes>(
-    sides: &(Side<'_, A>, Side<'_, B>),
-    [i, j]: [u32; 2],
-) -> [(Spheres, Share); 2] {
-    let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-    let (a, share_a) = sides.0.body.primitive(i);
-    let (b, share_b) = sides.1.body.primitive(j);
-    [(a.map(local), share_a), (b.map(local), share_b)]
 }

@@ -23,6 +23,10 @@ pub(super) struct Swept {
 
 const NOT_YET: u32 = u32::MAX;
 
+/// Angle of the step in radians up to which rounding of the time is covered by the margins of 64 ulps of
+/// the coordinates, of which an arm is one: half of them. Larger, and a ball may be a few ulps too small.
+const COVERED: f64 = 32.0;
+
 /// One side of a search. A node is swept once, however many nodes of the other side it meets.
 pub(super) struct Side<'a, V> {
     pub(super) body: &'a V,
@@ -103,16 +107,21 @@ impl<'a, V: Volumes> Side<'a, V> {
         &self.balls[place as usize]
     }
 
-    /// Position of a point at the start of the piece, the chord of its path, and the sagitta.
+    /// Position of a point at the start of the piece, the chord of its path, and the sagitta with what
+    /// rounding of the time adds.
     fn chord(&self, local: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>, f64) {
         let [from, to] = &self.frames;
         let arms = [from.arm(local), to.arm(local)];
         let length = self.times[1] - self.times[0];
         let acceleration = self.motion.acceleration(arms[0]);
+        // Times are good to an ulp of the step, in which a point swings an ulp of the angle; up to
+        // `COVERED` the margins for coordinates cover that.
+        let swing = (self.motion.angle() - COVERED).max(0.0) * arms[0].length();
+        let rounding = 64.0 * f64::EPSILON * swing;
         (
             from.center + arms[0],
             (to.center - from.center) + (arms[1] - arms[0]),
-            acceleration * (length * length) / 8.0,
+            acceleration * (length * length) / 8.0 + rounding,
         )
     }
 

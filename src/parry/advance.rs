@@ -26,6 +26,14 @@ use std::collections::BinaryHeap;
 /// primitives in fast rotation: 3.5 on average, 37 at most; 4 leaves a margin of 7.
 const CAP: u32 = 4;
 
+/// Iterations of one query after which it ends, unresolved: no contact before what comes first then.
+/// Queries that turn less than 40 radians take a thousand. Larger, and a query of endless turns takes
+/// longer; smaller, and it knows less of them.
+const WORK: u32 = 1 << 17;
+
+/// Iterations of a primitive before it waits for its turn again. Not tuned; only speed depends on it.
+const SLICE: u32 = 64;
+
 /// Distance at which a node of the tree counts as met, in units of its radius. Not tuned; only speed
 /// depends on it: smaller takes more steps, larger culls less.
 const NODE_TOLERANCE: f64 = 0.1;
@@ -55,15 +63,15 @@ pub fn first_contact(
         pivots: pivots.into(),
         options,
         counts: Counts::default(),
+        heap: BinaryHeap::new(),
+        work: 0,
         tolerance: options.tolerance.max(0.0).into(),
         status: ToiStatus::Separated,
         lower: 1.0,
         upper: 1.0,
         found: None,
     };
-    for (i, body) in bodies.iter().enumerate() {
-        search.body(body, i as u32);
-    }
+    search.run(bodies);
     // From the pair's frame to the world: it starts at the first body's origin and moves with the
     // second body's velocity.
     let elapsed = search.lower * f64::from(seconds);
@@ -79,6 +87,9 @@ struct Search<'a> {
     pivots: f64,
     options: &'a ToiOptions,
     counts: Counts,
+    heap: BinaryHeap<Reverse<Entry>>,
+    /// Iterations so far.
+    work: u32,
     tolerance: f64,
     status: ToiStatus,
     lower: f64,
@@ -93,9 +104,15 @@ struct Found {
     primitives: [u32; 2],
 }
 
-/// A node of the tree by the time until which it is free.
+/// A node of the tree, or a primitive on its way, by the time until which it is free of a body.
 #[derive(PartialEq)]
-struct Entry(f64, u32);
+struct Entry {
+    time: f64,
+    body: u32,
+    node: u32,
+    /// Iterations of the primitive so far.
+    spent: u32,
+}
 impl Eq for Entry {}
 impl PartialOrd for Entry {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
@@ -104,32 +121,72 @@ impl PartialOrd for Entry {
 }
 impl Ord for Entry {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0).then(self.1.cmp(&other.1))
+        let rest = |e: &Self| (e.body, e.node, e.spent);
+        (self.time.total_cmp(&other.time)).then_with(|| rest(self).cmp(&rest(other)))
     }
 }
 
 impl Search<'_> {
-    /// Best-first over the tree, by the time until which each node is proven free.
-    fn body(&mut self, body: &Turned, index: u32) {
-        let mut heap = BinaryHeap::new();
-        for root in 0..self.mesh.roots() {
-            self.push(&mut heap, body, root, 0.0);
+    /// Best-first over the tree and the bodies, by the time until which each node is proven free.
+    fn run(&mut self, bodies: &[Turned]) {
+        for (index, body) in bodies.iter().enumerate() {
+            for root in 0..self.mesh.roots() {
+                self.push(body, index as u32, root, 0.0);
+            }
         }
-        while let Some(Reverse(Entry(time, node))) = heap.pop() {
-            if time > self.upper || self.status == ToiStatus::Overlapping {
+        while let Some(Reverse(entry)) = self.heap.pop() {
+            let Some(body) = bodies.get(entry.body as usize) else {
+                return;
+            };
+            if entry.time > self.upper || self.status == ToiStatus::Overlapping {
                 return;
             }
-            match self.mesh.below(node) {
+            match self.mesh.below(entry.node) {
+                _ if self.work >= WORK => return self.give_up(body, &entry),
                 Below::Nodes(i, j) => {
-                    self.push(&mut heap, body, i, time);
-                    self.push(&mut heap, body, j, time);
+                    self.push(body, entry.body, i, entry.time);
+                    self.push(body, entry.body, j, entry.time);
                 }
-                Below::Primitive(i) => self.leaf(body, [i, index], time),
+                Below::Primitive(i) => self.leaf(body, [i, entry.body], &entry),
             }
         }
     }
 
-    fn push(&mut self, heap: &mut BinaryHeap<Reverse<Entry>>, body: &Turned, node: u32, time: f64) {
+    /// Ends unresolved: nothing meets before the entry's time, and nothing is known from there on. The
+    /// witness is of a primitive that may come first.
+    fn give_up(&mut self, body: &Turned, entry: &Entry) {
+        let mut below = self.mesh.below(entry.node);
+        let primitive = loop {
+            match below {
+                Below::Primitive(primitive) => break primitive,
+                Below::Nodes(first, _) => below = self.mesh.below(first),
+            }
+        };
+        let (balls, len) = self.balls(primitive);
+        let limits = Limits {
+            start: entry.time,
+            horizon: self.upper,
+            target: self.options.target_distance.into(),
+            tolerance: self.tolerance,
+            steps: 1,
+        };
+        let Advance { near, place, .. } = self.advance(body, &balls[..len], &limits);
+        self.found = Some(Found {
+            near,
+            place,
+            primitives: [primitive, entry.body],
+        });
+        self.lower = self.lower.min(entry.time);
+        self.status = ToiStatus::Unresolved;
+    }
+
+    fn balls(&self, primitive: u32) -> ([Ball; 3], usize) {
+        let (spheres, share) = Volumes::primitive(self.mesh, primitive);
+        let balls = spheres.map(|s| (Vec3::from_vector(s.center), f64::from(s.radius)));
+        (balls, share.spheres.clamp(1, 3))
+    }
+
+    fn push(&mut self, body: &Turned, index: u32, node: u32, time: f64) {
         self.counts.nodes += 1;
         let (center, radius) = self.mesh.bound(node);
         let limits = Limits {
@@ -142,21 +199,26 @@ impl Search<'_> {
         let ball = (Vec3::from_vector(center), f64::from(radius));
         let advance = self.advance(body, &[ball], &limits);
         if !advance.separated {
-            heap.push(Reverse(Entry(advance.lower, node)));
+            self.heap.push(Reverse(Entry {
+                time: advance.lower,
+                body: index,
+                node,
+                spent: 0,
+            }));
         }
     }
 
-    fn leaf(&mut self, body: &Turned, primitives: [u32; 2], time: f64) {
-        self.counts.tests += 1;
-        let (spheres, share) = Volumes::primitive(self.mesh, primitives[0]);
-        let balls = spheres.map(|s| (Vec3::from_vector(s.center), f64::from(s.radius)));
-        let balls = &balls[..share.spheres.clamp(1, 3)];
+    fn leaf(&mut self, body: &Turned, primitives: [u32; 2], entry: &Entry) {
+        self.counts.tests += u32::from(entry.spent == 0);
+        let (balls, len) = self.balls(primitives[0]);
+        let balls = &balls[..len];
+        let cap = CAP.saturating_mul(self.options.max_iterations);
         let mut limits = Limits {
-            start: time,
+            start: entry.time,
             horizon: self.upper,
             target: self.options.target_distance.into(),
             tolerance: self.tolerance,
-            steps: CAP.saturating_mul(self.options.max_iterations),
+            steps: SLICE.min(cap - entry.spent),
         };
         if let InitialContact::Deepen { by } = self.options.initial_contact {
             let at_start = Limits {
@@ -166,12 +228,21 @@ impl Search<'_> {
             };
             let start = self.advance(body, balls, &at_start).near.distance();
             if start <= limits.target + limits.tolerance {
-                limits.start = 0.0;
+                limits.start = if entry.spent == 0 { 0.0 } else { entry.time };
                 limits.target = start - f64::from(by) - limits.tolerance;
             }
         }
         let advance = self.advance(body, balls, &limits);
         if advance.separated {
+            return;
+        }
+        let spent = entry.spent + advance.steps;
+        if !advance.met && advance.steps == SLICE && spent < cap {
+            self.heap.push(Reverse(Entry {
+                time: advance.lower,
+                spent,
+                ..*entry
+            }));
             return;
         }
         self.tolerance = self.tolerance.max(TOLERANCE_PER_SLACK * advance.slack);
@@ -197,8 +268,10 @@ impl Search<'_> {
         }
     }
 
-    fn advance(&self, body: &Turned, balls: &[Ball], limits: &Limits) -> Advance {
-        follow(&self.motions, self.pivots, body, balls, limits)
+    fn advance(&mut self, body: &Turned, balls: &[Ball], limits: &Limits) -> Advance {
+        let advance = follow(&self.motions, self.pivots, body, balls, limits);
+        self.work += advance.steps;
+        advance
     }
 
     fn answer(&self, bodies: &[Turned], origin: Vec3<f64>) -> Toi {

@@ -44,6 +44,32 @@ pub struct Counted {
     pub nodes: u64,
     /// Elementary tests executed outside the batch.
     pub tests: u64,
+    /// Manifolds written.
+    pub manifolds: u64,
+    /// Whether two shapes intersect, as sensors ask.
+    pub intersections: u64,
+}
+
+/// Which pairs get their deepest contact only.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct OnePoint {
+    /// Those of which neither shape is named below.
+    pub others: bool,
+    /// By instance id; of two that differ, the one with all its contacts decides.
+    pub own: HashMap<u64, bool>,
+}
+
+impl OnePoint {
+    fn holds(&self, ids: [u64; 2]) -> bool {
+        let own = ids.map(|id| self.own.get(&id));
+        let mut named = own.into_iter().flatten();
+        let some = own != [None; 2];
+        if some {
+            named.all(|one| *one)
+        } else {
+            self.others
+        }
+    }
 }
 
 /// Answers of one batch, shared by a pipeline and its dispatcher.
@@ -57,6 +83,9 @@ pub struct Answers {
     tests: AtomicU64,
     missed: Mutex<Vec<[u64; 2]>>,
     muted: RwLock<HashSet<Key>>,
+    one_point: RwLock<OnePoint>,
+    manifolds: AtomicU64,
+    intersections: AtomicU64,
 }
 
 impl Answers {
@@ -108,6 +137,35 @@ impl Answers {
         !muted.is_empty() && muted.contains(&Key::new(shape1, shape2, pos12))
     }
 
+    /// From now on these pairs get their deepest contact only.
+    pub fn give_one_point(&self, pairs: OnePoint) {
+        *self
+            .one_point
+            .write()
+            .unwrap_or_else(PoisonError::into_inner) = pairs;
+    }
+
+    /// Whether a pair gets its deepest contact only. A shape that is not medial has no say.
+    pub fn has_one_point(&self, shape1: &dyn Shape, shape2: &dyn Shape) -> bool {
+        let id = |s: &dyn Shape| s.as_shape::<MedialMesh>().map_or(0, |m| m.instance_id());
+        let pairs = self
+            .one_point
+            .read()
+            .unwrap_or_else(PoisonError::into_inner);
+        pairs.holds([id(shape1), id(shape2)])
+    }
+
+    /// Counts manifolds written.
+    pub fn count_manifolds(&self, manifolds: usize) {
+        self.manifolds
+            .fetch_add(manifolds as u64, Ordering::Relaxed);
+    }
+
+    /// Counts a test of intersection.
+    pub fn count_intersection(&self) {
+        self.intersections.fetch_add(1, Ordering::Relaxed);
+    }
+
     /// Counts a shape cast and its work.
     pub fn count_cast(&self, nodes: u32, tests: u32) {
         self.casts.fetch_add(1, Ordering::Relaxed);
@@ -134,6 +192,8 @@ impl Answers {
             casts: take(&self.casts),
             nodes: take(&self.nodes),
             tests: take(&self.tests),
+            manifolds: take(&self.manifolds),
+            intersections: take(&self.intersections),
         }
     }
 }

@@ -2,9 +2,11 @@
 //! dispatcher, which handles a medial mesh as a composite of convex parts.
 
 use super::answers::Answers;
+use super::bearing;
 use super::cast::Cast;
-use super::manifolds::{ensure_workspace, write_manifolds};
+use super::manifolds::{ensure_workspace, write_manifolds, write_one_point};
 use super::near;
+use crate::batch::PairResult;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
@@ -78,6 +80,29 @@ impl MedialDispatcher {
     }
 }
 
+impl MedialDispatcher {
+    /// The deepest contact: of the batch where both are medial.
+    fn deepest(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+    ) -> Result<Option<SpherePair>, Unsupported> {
+        let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
+            return self.nearest(pos12, g1, g2, prediction);
+        };
+        let deepest = |found: &PairResult| {
+            let near = found.contacts.iter().filter(|c| c.distance <= prediction);
+            near.min_by(|a, b| a.distance.total_cmp(&b.distance))
+                .copied()
+        };
+        Ok(self
+            .answers
+            .contacts(mesh1, mesh2, pos12, prediction, deepest))
+    }
+}
+
 /// Time by which two shapes in straight motion have met, if they do: an endless cast ends there.
 fn passed_by(pos12: &Pose, velocity: Vector, g1: &dyn Shape, g2: &dyn Shape, target: Real) -> Real {
     let reach = |g: &dyn Shape| {
@@ -127,6 +152,7 @@ impl QueryDispatcher for MedialDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
+        self.answers.count_intersection();
         let nearest = self.nearest(pos12, g1, g2, 0.0)?;
         Ok(match nearest {
             Some(c) => {
@@ -257,8 +283,34 @@ where
             manifolds.clear();
             return Ok(());
         }
-        let (Some(mesh1), Some(mesh2)) = (medial(g1), medial(g2)) else {
-            return Err(Unsupported);
+        let meshes = (medial(g1), medial(g2));
+        let some = meshes.0.is_some() || meshes.1.is_some();
+        if some && self.answers.has_one_point(g1, g2) {
+            let deepest = self.deepest(pos12, g1, g2, prediction)?;
+            // As above.
+            *workspace = None;
+            ensure_workspace::<M, C>(g1, g2, workspace);
+            write_one_point(deepest, pos12, manifolds);
+            self.answers.count_manifolds(manifolds.len());
+            return Ok(());
+        }
+        // What a load on one body is above: of two medial meshes the lighter lies on the other.
+        let (side, mesh) = match meshes {
+            (Some(mesh1), Some(mesh2)) if mesh1.volume() > mesh2.volume() => (1, mesh2),
+            (Some(mesh1), _) => (0, mesh1),
+            (None, Some(mesh2)) => (1, mesh2),
+            (None, None) => return Err(Unsupported),
+        };
+        let center = mesh.mass_properties(1.0).local_com;
+        let center = if side == 0 { center } else { pos12 * center };
+        let borne = bearing::borne(manifolds, side);
+        let (Some(mesh1), Some(mesh2)) = meshes else {
+            bearing::look_again(manifolds);
+            let found = DefaultQueryDispatcher
+                .contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+            bearing::hand_on(manifolds, &borne, prediction, side);
+            bearing::choose(manifolds, center, prediction, &borne, side);
+            return found;
         };
         ensure_workspace::<M, C>(mesh1, mesh2, workspace);
         self.answers
@@ -271,6 +323,8 @@ where
                     manifolds,
                 );
             });
+        bearing::choose(manifolds, center, prediction, &borne, side);
+        self.answers.count_manifolds(manifolds.len());
         Ok(())
     }
 

@@ -54,6 +54,8 @@ pub struct Advance {
     pub met: bool,
     /// Proven free up to the horizon.
     pub separated: bool,
+    /// Iterations taken.
+    pub steps: u32,
     /// Rounding slack, a length.
     pub slack: f64,
     /// Nearest sphere at `lower`, its radius with the body's border.
@@ -102,6 +104,7 @@ pub fn follow(
         lower: limits.start,
         met: false,
         separated: false,
+        steps: 0,
         slack: 0.0,
         near: body.nearest(
             &Place {
@@ -115,7 +118,8 @@ pub fn follow(
             axis,
         },
     };
-    for _ in 0..limits.steps {
+    while known.steps < limits.steps {
+        known.steps += 1;
         let t = known.lower;
         let turned = [motion1.sin_cos(t), motion2.sin_cos(t)];
         let center = pivot.at(t, turned[1]);

@@ -98,6 +98,34 @@ pub fn write_manifolds<M, C>(
     }
 }
 
+/// Writes one contact, in a manifold of its own that keeps the data of the one before.
+pub fn write_one_point<M, C>(
+    contact: Option<SpherePair>,
+    pos12: &Pose,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+) where
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    let old = std::mem::take(manifolds).into_iter().next();
+    let Some(c) = contact else { return };
+    let [a, b] = c.primitives;
+    let old = old.filter(|m| {
+        [m.subshape1, m.subshape2] == [a, b] && m.local_n1.dot(c.normal) >= SAME_NORMAL
+    });
+    let data = old.as_ref().map(|m| m.data.clone()).unwrap_or_default();
+    let mut manifold = ContactManifold::with_data(a, b, data);
+    manifold.local_n1 = c.normal;
+    manifold.local_n2 = pos12.rotation.inverse() * -c.normal;
+    let feature = PackedFeatureId::face(c.feature);
+    let mut point = TrackedContact::new(c.points[0], c.points[1], feature, feature, c.distance);
+    if let Some(before) = old.as_ref().and_then(|m| m.points.first()) {
+        point.data = before.data;
+    }
+    manifold.points.push(point);
+    manifolds.push(manifold);
+}
+
 /// The contacts that have no deeper one of about the same normal within `radius`.
 fn deepest_of_each_patch<'a>(
     contacts: impl Iterator<Item = &'a SpherePair>,

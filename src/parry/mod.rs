@@ -2,6 +2,7 @@
 
 pub mod advance;
 pub mod answers;
+pub mod bearing;
 pub mod cast;
 pub mod dispatcher;
 pub mod follow;

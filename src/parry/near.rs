@@ -38,10 +38,11 @@ pub fn nearest(
     if let Some(second) = other.as_shape::<MedialMesh>() {
         return Ok(nearest_spheres(mesh, second, pos12, max_distance));
     }
-    if !pos12.is_finite() || max_distance.is_nan() {
+    // The inverse of a pose at the end of the numbers is not finite.
+    let pos21 = pos12.inverse();
+    if !pos12.is_finite() || !pos21.is_finite() || max_distance.is_nan() {
         return Ok((None, Counts::default()));
     }
-    let pos21 = pos12.inverse();
     let region =
         mesh.aabb()
             .transform_by(&pos21)

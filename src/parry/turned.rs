@@ -245,10 +245,12 @@ fn minimise(until: f64, size: f64, eval: impl Fn(f64) -> (NearBall, f64)) -> Nea
         if hi - lo <= FLAT {
             break;
         }
-        let x = if round % 4 == 0 {
+        let between = lo - weight_lo * (hi - lo) / (weight_hi - weight_lo);
+        // Slopes that overflow leave nothing to interpolate.
+        let x = if round % 4 == 0 || between.is_nan() {
             0.5 * (lo + hi)
         } else {
-            (lo - weight_lo * (hi - lo) / (weight_hi - weight_lo)).clamp(lo, hi)
+            between.clamp(lo, hi)
         };
         let (near, slope) = eval(x);
         if slope.abs() <= FLAT * size {

@@ -1,5 +1,8 @@
-//! What a scene, or a collider, calls for; what is off costs nothing.
+//! What a scene, or a collider, calls for; what is off costs nothing. `docs/effects.md` has the
+//! inequality by which each is decided.
 
+use crate::medial::MedialMesh;
+use crate::parry::answers::OnePoint;
 use rapier3d::geometry::{ColliderHandle, ColliderSet};
 use std::collections::HashMap;
 
@@ -10,7 +13,7 @@ pub enum Effect {
     Off,
     /// Always.
     On,
-    /// Decided per pair and step from the motion.
+    /// Decided per pair and step.
     #[default]
     Auto,
 }
@@ -26,14 +29,40 @@ pub struct Effects {
     /// Slow pairs are kept from crossing medial axes, whatever the solver does. `Auto`: for pairs whose
     /// contacts in rapier are deeper than a quarter of their thickness.
     pub guard: Effect,
+    /// First contacts are those of the rigid motion. `Auto`: always
+    /// (`docs/effects.md`). Off: of straight paths from where each point starts to
+    /// where it ends, as in the paper (Eq. 1): what a turning body passes beyond them is missed. Two
+    /// medial meshes only.
+    pub exact_rotation: Effect,
+    /// Every contact of a pair goes to the solver. `Auto`: always. Off: the deepest one alone, enough
+    /// for bullets and debris, too little to rest on. Sensors have no contacts at all.
+    pub full_manifolds: Effect,
+    /// rapier's speculative contacts, kept to compare with: the pair is never muted, and both bodies
+    /// get contacts from their poses at the start for all they may reach in the step
+    /// (`RigidBody::set_soft_ccd_prediction`). `Auto`: never; they stop bodies that pass each other.
+    pub speculative: Effect,
+    /// The paper's response (§4.5): where `continuous` finds the pair's first contact, the whole world
+    /// stops at that time, and rapier's solver does the contact in a step over the rest. `Auto`:
+    /// never; each stop costs a step. Off: an impulse between the two bodies, the others go on. After
+    /// eight stops in a step, and in worlds with multibodies or soft bodies, as if off.
+    pub stop: Effect,
 }
 
 impl Effects {
-    /// All effects off: rapier's own step, its contacts computed in a batch.
+    /// No effect but those that every contact has: rapier's own step, its contacts computed in a batch.
     pub const OFF: Self = Self {
         continuous: Effect::Off,
         guard: Effect::Off,
+        exact_rotation: Effect::Auto,
+        full_manifolds: Effect::Auto,
+        speculative: Effect::Off,
+        stop: Effect::Off,
     };
+
+    /// Whether nothing needs to know how bodies move in the step.
+    fn leaves_all_to_rapier(&self) -> bool {
+        [self.continuous, self.guard] == [Effect::Off; 2] && self.speculative != Effect::On
+    }
 }
 
 /// The effects of a scene and of single colliders.
@@ -59,9 +88,34 @@ impl Wanted {
         self.own.retain(|handle, _| colliders.contains(*handle));
     }
 
-    /// Whether no pair can call for the event loop.
+    /// Whether no pair can call for the motions of the step.
     pub fn none(&self) -> bool {
-        self.scene == Effects::OFF && self.own.values().all(|e| *e == Effects::OFF)
+        let mut all = self.own.values().chain([&self.scene]);
+        all.all(Effects::leaves_all_to_rapier)
+    }
+
+    /// Whether `chosen` holds of the scene or of a collider.
+    pub fn any(&self, chosen: impl Fn(&Effects) -> bool) -> bool {
+        self.own.values().chain([&self.scene]).any(chosen)
+    }
+
+    /// Which pairs get their deepest contact only. A collider's own setting is known by the mesh.
+    pub fn one_point(&self, colliders: &ColliderSet) -> OnePoint {
+        let mut pairs = OnePoint {
+            others: self.scene.full_manifolds == Effect::Off,
+            ..OnePoint::default()
+        };
+        for (handle, effects) in &self.own {
+            let collider = colliders.get(*handle);
+            let mesh = collider.and_then(|c| c.shape().as_shape::<MedialMesh>());
+            if let Some(mesh) = mesh
+                && effects.full_manifolds != Effect::Auto
+            {
+                let one = effects.full_manifolds == Effect::Off;
+                pairs.own.insert(mesh.instance_id(), one);
+            }
+        }
+        pairs
     }
 
     /// Those of a pair: `On` wins, then `Off`, of what the two colliders set; else the scene's.
@@ -76,9 +130,14 @@ impl Wanted {
             (Effect::Auto, Effect::Auto) => scene,
         };
         let [a, b] = own;
+        let scene = self.scene;
         Effects {
-            continuous: choose(a.continuous, b.continuous, self.scene.continuous),
-            guard: choose(a.guard, b.guard, self.scene.guard),
+            continuous: choose(a.continuous, b.continuous, scene.continuous),
+            guard: choose(a.guard, b.guard, scene.guard),
+            exact_rotation: choose(a.exact_rotation, b.exact_rotation, scene.exact_rotation),
+            full_manifolds: choose(a.full_manifolds, b.full_manifolds, scene.full_manifolds),
+            speculative: choose(a.speculative, b.speculative, scene.speculative),
+            stop: choose(a.stop, b.stop, scene.stop),
         }
     }
 }

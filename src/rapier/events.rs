@@ -3,11 +3,11 @@
 //! The first contacts of all pairs of medial meshes are one batch. Each impact moves both bodies to its time and gives two impulses: one to the velocities that the
 //! solver left, so that the next step begins right, and one to the motion of this step, so that it
 //! goes on right. Then all pairs of both bodies are asked for again. A body with more than
-//! [`MAX_EVENTS`] impacts stays where it is for the rest of the step, or is carried along by what pushes
+//! [`Tuning::max_events`](super::tuning::Tuning) impacts stays where it is for the rest of the step, or is carried along by what pushes
 //! it. No hit is ever dropped, at the current time neither; so no medial axis crosses another on the
 //! motion executed.
 
-use super::first_contact::{Asker, GUARDED, Hit, Work};
+use super::first_contact::{Asker, Hit, Work};
 use super::impulse::{Impact, Inertia, Material};
 use super::motion::{Kind, Snapshot};
 use super::pairs::{Rules, concerned, in_order, sweep};
@@ -18,22 +18,13 @@ use parry3d::query::NonlinearRigidMotion;
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Impacts of a body in one step after which it stays where it is. Not varied in measurements.
-const MAX_EVENTS: u32 = 16;
-
-/// Impacts after which a body is no longer carried along either: two that push it from both sides
-/// would go on for ever.
-const MAX_CARRIED: u32 = 2 * MAX_EVENTS;
-
-/// Depth from which bodies in an impact are pushed apart, in units of the thickness.
-const PUSH_FROM: Real = 0.1;
-
 /// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
 /// which grows a little with each meeting of a pair.
 const MARGIN: Real = 5.0e-3;
 
-/// Share of the depth below it that is pushed out in a step.
-const PUSH: Real = 0.2;
+/// Shares of a step before and after which the world does not stop: what is left would be no step, and
+/// a stop at the start would change nothing.
+const STOPS_WITHIN: [Real; 2] = [1.0e-3, 1.0 - 1.0e-3];
 
 /// An impact that happened.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +48,8 @@ pub struct Outcome {
     pub impulses: Vec<Impulse>,
     /// Bodies to be written back: index, and whether their velocity changed.
     pub changed: Vec<(usize, bool)>,
+    /// Seconds into the step at which the world stopped, all bodies with it.
+    pub stopped: Option<Real>,
 }
 
 /// State of one body in the loop.
@@ -100,7 +93,7 @@ pub fn resolve(
         return Outcome::default();
     }
     let courses = vec![Course::default(); snapshot.bodies.len()];
-    let deep = deep(snapshot, narrow_phase, &pairs);
+    let deep = deep(snapshot, narrow_phase, &pairs, asker.tuning.guarded());
     let mut events = Loop {
         snapshot,
         asker,
@@ -123,6 +116,9 @@ pub fn resolve(
         events.ask(pair, 0.0, known.remove(&pair), work);
     }
     while let Some((pair, hit)) = events.earliest() {
+        if events.stops_at(pair, hit.time) {
+            return events.stop(hit.time, narrow_phase);
+        }
         if events.boxes.is_empty() {
             let parts = 0..events.snapshot.parts.len();
             events.boxes = parts.map(|k| events.swept_box(k, 0.0)).collect();
@@ -138,6 +134,7 @@ fn deep(
     snapshot: &Snapshot,
     narrow_phase: &NarrowPhase,
     pairs: &[[usize; 2]],
+    guarded: Real,
 ) -> HashSet<[ColliderHandle; 2]> {
     let depth = |[i, j]: [usize; 2]| {
         let [h1, h2] = [i, j].map(|k| snapshot.parts[k].handle);
@@ -146,7 +143,7 @@ fn deep(
         points.map(|p| -p.dist).reduce(Real::max)
     };
     let is_deep = |pair: &&[usize; 2]| {
-        depth(**pair).is_some_and(|d| d > GUARDED * snapshot.thickness(**pair))
+        depth(**pair).is_some_and(|d| d > guarded * snapshot.thickness(**pair))
     };
     let handles = |pair: &[usize; 2]| pair.map(|k| snapshot.parts[k].handle);
     pairs.iter().filter(is_deep).map(handles).collect()
@@ -165,10 +162,16 @@ impl Loop<'_> {
         pair.map(|k| self.snapshot.parts[k].body)
     }
 
+    fn stops_at(&self, pair: [usize; 2], time: Real) -> bool {
+        let [first, last] = STOPS_WITHIN.map(|share| share * self.asker.dt);
+        (first..=last).contains(&time) && self.asker.stops(self.snapshot, pair)
+    }
+
     /// Whether an impact could still change the motion of either.
     fn can_give(&self, pair: [usize; 2]) -> bool {
         self.bodies(pair).iter().any(|&b| {
-            self.snapshot.bodies[b].kind == Kind::Free && self.courses[b].events <= MAX_CARRIED
+            self.snapshot.bodies[b].kind == Kind::Free
+                && self.courses[b].events <= self.asker.tuning.max_carried()
         })
     }
 
@@ -252,7 +255,8 @@ impl Loop<'_> {
         }
         if hit.normal == Vector::ZERO {
             for b in bodies {
-                self.courses[b].events = self.courses[b].events.max(MAX_EVENTS + 1);
+                self.courses[b].events =
+                    self.courses[b].events.max(self.asker.tuning.max_events + 1);
             }
         } else {
             self.push(pair, hit);
@@ -289,8 +293,9 @@ impl Loop<'_> {
             let arm = centers[k] - m.start * m.local_center;
             [m.linvel + m.angvel.cross(arm), m.angvel]
         });
-        let sunk = hit.depth - PUSH_FROM * self.snapshot.thickness(pair);
-        let out = PUSH * sunk.max(0.0) / self.asker.dt;
+        let tuning = &self.asker.tuning;
+        let sunk = hit.depth - tuning.push_from * self.snapshot.thickness(pair);
+        let out = tuning.push * sunk.max(0.0) / self.asker.dt;
         if let Some(j) = impact.impulse(velocities, 0.0) {
             *self.impulses.entry(pair).or_insert(0.0) += j.length();
             for k in 0..2 {
@@ -321,7 +326,7 @@ impl Loop<'_> {
     /// Stops a body that had too many impacts, or lets what pushes it carry it along.
     fn freeze(&mut self, body: usize, other: usize, time: Real) {
         let events = self.courses[body].events;
-        if self.snapshot.bodies[body].kind != Kind::Free || events <= MAX_EVENTS {
+        if self.snapshot.bodies[body].kind != Kind::Free || events <= self.asker.tuning.max_events {
             return;
         }
         let carrier = &self.snapshot.bodies[other];
@@ -329,7 +334,7 @@ impl Loop<'_> {
         let carrying = carrier.motion_from(time);
         self.courses[body].frozen = true;
         let motion = &mut self.snapshot.bodies[body].motion;
-        *motion = if carries && events <= MAX_CARRIED {
+        *motion = if carries && events <= self.asker.tuning.max_carried() {
             let center = carrying.start * carrying.local_center;
             NonlinearRigidMotion {
                 local_center: motion.start.inverse_transform_point(center),
@@ -340,6 +345,30 @@ impl Loop<'_> {
         } else {
             NonlinearRigidMotion::constant_position(motion.start)
         };
+    }
+
+    /// Ends here for all bodies. What forces did in the rest of the step they will do again; a velocity
+    /// that contacts of the solver made is taken for theirs from the start of the step on.
+    fn stop(mut self, time: Real, narrow_phase: &NarrowPhase) -> Outcome {
+        let left = 1.0 - time / self.asker.dt;
+        let mut pushed: Vec<bool> = self.courses.iter().map(|c| c.struck).collect();
+        for part in &self.snapshot.parts {
+            let mut contacts = narrow_phase.contact_pairs_with(part.handle);
+            pushed[part.body] |= contacts.any(|c| c.total_impulse_magnitude() > 0.0);
+        }
+        for (b, body) in self.snapshot.bodies.iter_mut().enumerate() {
+            if body.kind != Kind::Fixed && body.awake {
+                self.courses[b].moved = true;
+                if body.kind == Kind::Free && !pushed[b] {
+                    body.undo_forces(left);
+                    self.courses[b].struck = true;
+                }
+            }
+        }
+        let dt = std::mem::replace(&mut self.asker.dt, time);
+        let mut outcome = self.finish();
+        outcome.stopped = (time < dt).then_some(time);
+        outcome
     }
 
     fn finish(self) -> Outcome {

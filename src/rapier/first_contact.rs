@@ -2,44 +2,19 @@
 //! and the certified query that finds it.
 //!
 //! A fast pair stops a small gap before it touches; what touches already may sink a tenth of the
-//! thickness deeper, but no further than [`FLOOR`]; what is deeper may sink by a hair. A slow pair is
+//! thickness deeper, but no further than [`Tuning::floor`]; what is deeper may sink by a hair. A slow pair is
 //! left to the solver down to that floor. The floor is half way to the medial axes, so that none
 //! crosses another.
 
 use super::effects::{Effect, Effects, Wanted};
 use super::motion::Snapshot;
+use super::tuning::Tuning;
 use crate::batch::{ToiJob, ToiResult};
-use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
+use crate::elementary::{InitialContact, Paths, Toi, ToiOptions, ToiStatus};
 use crate::math::{Real, Vector};
 use crate::pair::first_contact::{Counts, first_contact_counted};
 use crate::parry::cast::Cast;
 use parry3d::query::NonlinearRigidMotion;
-
-/// Relative travel in a step, in units of the thinner collider's thickness, from which a pair is fast.
-const FAST: Real = 0.25;
-
-/// Depth no pair may reach, in units of the thickness; with [`FAST`] it makes a whole half: a slow pair
-/// deeper than [`GUARDED`] at the start is watched, any other cannot get there.
-const FLOOR: Real = 0.5;
-
-/// Depth of rapier's contacts, in units of the thickness, from which a slow pair is watched.
-pub const GUARDED: Real = FLOOR - FAST;
-
-/// How much deeper a touching fast pair may get in one go, in units of the thickness.
-const SINK: Real = 0.1;
-
-/// Gap at which a fast pair counts as in contact, in units of rapier's length unit and of the
-/// thickness, whichever is less. Chosen on one set of scenes and never varied.
-const GAP: [Real; 2] = [1.0e-3, 0.1];
-
-/// Tolerance of the query, in units of the gap.
-const TOLERANCE: Real = 0.1;
-
-/// How much deeper a pair below the floor may get in one go, in units of the gap.
-const HAIR: Real = 0.1;
-
-/// Gap up to which a pair touches at the start and belongs to the solver, in units of [`GAP`].
-const TOUCHING: Real = 0.45;
 
 /// What a query found, and its price.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -90,12 +65,17 @@ pub struct Asker<'a> {
     pub dt: Real,
     /// rapier's length unit.
     pub unit: Real,
+    /// Constants.
+    pub tuning: Tuning,
+    /// Whether the world may stop once more in this step.
+    pub may_stop: bool,
 }
 
 impl Asker<'_> {
     fn gap(&self, thickness: Real) -> Real {
-        (GAP[0] * self.unit)
-            .min(GAP[1] * thickness)
+        let [gap, share] = self.tuning.gap;
+        (gap * self.unit)
+            .min(share * thickness)
             .max(Real::MIN_POSITIVE)
     }
 
@@ -113,6 +93,16 @@ impl Asker<'_> {
         }
     }
 
+    /// Whether the solver gets contacts of the pair for all that it may reach in the step.
+    pub fn speculates(&self, snapshot: &Snapshot, pair: [usize; 2]) -> bool {
+        self.effects_of(snapshot, pair).speculative == Effect::On
+    }
+
+    /// Whether the world stops at the pair's first contact.
+    pub fn stops(&self, snapshot: &Snapshot, pair: [usize; 2]) -> bool {
+        self.may_stop && self.effects_of(snapshot, pair).stop == Effect::On
+    }
+
     /// What a pair that has met so often in this step is asked from `time` on; `None`: nothing. `deep`:
     /// rapier's contacts are, so that even a slow pair is kept above the floor.
     fn question(
@@ -123,8 +113,9 @@ impl Asker<'_> {
         met: u32,
         deep: bool,
     ) -> Option<Question> {
-        let fast = self.is_fast(snapshot, pair, FAST);
-        let watched = match self.effects_of(snapshot, pair).guard {
+        let fast = self.is_fast(snapshot, pair, self.tuning.fast);
+        let effects = self.effects_of(snapshot, pair);
+        let watched = match effects.guard {
             Effect::On => true,
             Effect::Off => false,
             Effect::Auto => deep,
@@ -132,22 +123,32 @@ impl Asker<'_> {
         if !(fast || watched) || time >= self.dt || snapshot.travel(pair, self.dt - time) <= 0.0 {
             return None;
         }
+        let tuning = &self.tuning;
         let thickness = snapshot.thickness(pair);
         let gap = self.gap(thickness);
         let skin = snapshot.parts[pair[0]].skin + snapshot.parts[pair[1]].skin;
+        let paths = match effects.exact_rotation {
+            Effect::Off => Paths::Straight,
+            Effect::On | Effect::Auto => Paths::Exact,
+        };
         let options = |target: Real, by: Real| ToiOptions {
+            paths,
             target_distance: skin + target,
-            tolerance: TOLERANCE * gap,
+            tolerance: tuning.tolerance * gap,
             initial_contact: InitialContact::Deepen { by },
             ..ToiOptions::default()
         };
-        let floor = options(-FLOOR * thickness, HAIR * gap);
+        let floor = options(-tuning.floor * thickness, tuning.hair * gap);
         // Where a meeting was, the gap is that of the target to within the tolerance: a larger target
         // makes it count as touching.
-        let target = gap * (1.0 + 2.0 * TOLERANCE * met as Real);
+        let target = if self.stops(snapshot, pair) {
+            tuning.stopping * gap
+        } else {
+            gap * (1.0 + 2.0 * tuning.tolerance * met as Real)
+        };
         Some(if fast {
             Question {
-                first: options(target, SINK * thickness),
+                first: options(target, tuning.sink * thickness),
                 floor: Some(floor),
             }
         } else {
@@ -201,7 +202,7 @@ impl Asker<'_> {
         let known = known.map(|known| (known.toi, known.counts));
         earlier(self.query(snapshot, pair, time, &first, known, work));
         if let Some(floor) = floor {
-            let near_floor = (SINK - FLOOR) * snapshot.thickness(pair);
+            let near_floor = (self.tuning.sink - self.tuning.floor) * snapshot.thickness(pair);
             if self.within(snapshot, pair, time, near_floor, work) {
                 earlier(self.query(snapshot, pair, time, &floor, None, work));
             }
@@ -212,7 +213,7 @@ impl Asker<'_> {
     /// Whether the pair touches at the start of the step, so that the solver has it.
     pub fn touches(&self, snapshot: &Snapshot, pair: [usize; 2], work: &mut Work) -> bool {
         let gap = self.gap(snapshot.thickness(pair));
-        self.within(snapshot, pair, 0.0, TOUCHING * gap, work)
+        self.within(snapshot, pair, 0.0, self.tuning.touching * gap, work)
     }
 
     /// Whether the surfaces are within `distance` of each other at `time`.
@@ -252,7 +253,8 @@ impl Asker<'_> {
         let answer = known.or_else(|| ask(snapshot, pair, &motions, seconds, options));
         let (toi, counts) = answer?;
         work.queries += 1;
-        work.rotating += u64::from(motions.iter().any(|m| m.angvel != Vector::ZERO));
+        let turning = motions.iter().any(|m| m.angvel != Vector::ZERO);
+        work.rotating += u64::from(turning && options.paths == Paths::Exact);
         work.add(counts);
         (toi.status != ToiStatus::Separated).then(|| Hit {
             time: time + toi.lower * seconds,

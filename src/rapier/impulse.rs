@@ -3,7 +3,7 @@
 //! With the relative velocity `v = (v2 + ω2 × r2) − (v1 + ω1 × r1)` at the contact and the effective
 //! inverse mass `k(u) = u · (m1⁻¹ + m2⁻¹) u + u · ((I1⁻¹ (r1 × u)) × r1) + u · ((I2⁻¹ (r2 × u)) × r2)`,
 //! the normal impulse that takes `v·n` to `v'` is `j = (v' − v·n) / k(n)`; friction takes the sliding
-//! velocity to 0 with at most `μ j`.
+//! velocity to 0 with at most `μ j`, and with no more than leaves the impact without a gain of energy.
 
 use super::motion::Body;
 use crate::math::{Real, Vector};
@@ -126,8 +126,43 @@ impl Impact {
         if speed > Real::MIN_POSITIVE {
             let u = slide / speed;
             let stop = speed / k(u).max(Real::MIN_POSITIVE);
-            impulse -= u * stop.min(self.material.friction * push);
+            let friction = u * -stop.min(self.material.friction * push);
+            impulse += friction * self.harmless_share(v, impulse, friction);
         }
         impulse.is_finite().then_some(impulse)
+    }
+
+    /// What an impulse adds to the relative velocity at the contact.
+    fn effect(&self, impulse: Vector) -> Vector {
+        let of = |k: usize| {
+            let [dv, dw] = self.inertias[k].change(self.arms[k], impulse);
+            dv + dw.cross(self.arms[k])
+        };
+        of(0) + of(1)
+    }
+
+    /// The largest share of the friction with which the impact gains no energy. With restitution by
+    /// Newton's law and lever arms, friction can push against the velocity that the normal impulse has
+    /// just made (Kane and Levinson, Dynamics, 1985); a heap of elastic bodies then flies apart.
+    ///
+    /// The work of an impulse `j` is `j·v + j·(K j) / 2`, so that of `normal + f friction` is a
+    /// quadratic in `f`.
+    fn harmless_share(&self, v: Vector, normal: Vector, friction: Vector) -> Real {
+        let after_normal = v + self.effect(normal);
+        let a = 0.5 * friction.dot(self.effect(friction));
+        let b = friction.dot(after_normal);
+        // A normal impulse that pushes bodies apart may add energy, friction none to it.
+        let c = (0.5 * normal.dot(v + after_normal)).min(0.0);
+        if a + b + c <= 0.0 {
+            return 1.0;
+        }
+        let root = (b * b - 4.0 * a * c).max(0.0).sqrt();
+        // The positive root, without cancellation; a > 0 where b is not, by the test above.
+        let share = if b > 0.0 {
+            -2.0 * c / (b + root)
+        } else {
+            (root - b) / (2.0 * a)
+        };
+        share.clamp(0.0, 1.0)
     }
 }

@@ -17,6 +17,8 @@ mod recycled;
 pub mod report;
 #[cfg(feature = "serde-serialize")]
 pub mod saved_world;
+mod speculative;
+mod tuning;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]
@@ -26,3 +28,5 @@ pub use pipeline::{MedialOptions, MedialPipeline};
 pub use report::StepReport;
 #[cfg(feature = "serde-serialize")]
 pub use saved_world::{SavedWorld, SavedWorldError, load_world, save_world};
+#[doc(hidden)]
+pub use tuning::Tuning;

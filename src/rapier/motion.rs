@@ -48,6 +48,8 @@ pub struct Body {
     pub time: Real,
     /// Linear and angular velocity that the solver works with, per second.
     pub velocity: [Vector; 2],
+    /// The same before rapier's step.
+    velocity_before: [Vector; 2],
     /// Largest distance of a point of its colliders from the centre of mass, a length.
     pub reach: Real,
     /// Mass, centre and inertia in the body's frame.
@@ -78,6 +80,7 @@ impl Body {
             },
             time: 0.0,
             velocity: [body.linvel(), body.angvel()],
+            velocity_before: [body.linvel(), body.angvel()],
             reach: 0.0,
             mass: properties.local_mprops,
             inverse_mass: properties.effective_inv_mass,
@@ -94,6 +97,7 @@ impl Body {
             motion: NonlinearRigidMotion::identity(),
             time: 0.0,
             velocity: [Vector::ZERO; 2],
+            velocity_before: [Vector::ZERO; 2],
             reach: 0.0,
             mass: MassProperties::default(),
             inverse_mass: Vector::ZERO,
@@ -141,6 +145,13 @@ impl Body {
         self.motion.linvel = (end * com - start * com) / dt;
         self.motion.angvel = turn / dt;
         self.awake |= self.motion.linvel != Vector::ZERO || self.motion.angvel != Vector::ZERO;
+    }
+
+    /// Takes back what forces did to the velocities in the last `share` of rapier's step.
+    pub fn undo_forces(&mut self, share: Real) {
+        for (now, before) in self.velocity.iter_mut().zip(self.velocity_before) {
+            *now += (before - *now) * share;
+        }
     }
 
     /// Motion from `time` on.

@@ -9,9 +9,6 @@ use crate::math::Real;
 use crate::parry::answers::Key;
 use std::collections::HashSet;
 
-/// Relative travel in a step, in units of the thinner collider's thickness, from which a pair is muted.
-const TRAVEL: Real = 1.0;
-
 /// The pairs to be muted, under the key by which the narrow phase will ask.
 pub fn muted(
     snapshot: &Snapshot,
@@ -30,7 +27,8 @@ pub fn muted(
         };
         if plane.is_none()
             && !apart(&p.aabb, &q.aabb)
-            && asker.is_fast(snapshot, pair, TRAVEL)
+            && asker.is_fast(snapshot, pair, asker.tuning.muted)
+            && !asker.speculates(snapshot, pair)
             && rules.respond(snapshot, pair)
             && !asker.touches(snapshot, pair, work)
         {

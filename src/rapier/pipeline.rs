@@ -7,6 +7,8 @@ use super::motion::{Body, Snapshot};
 use super::pairs::Rules;
 use super::recycled::Recycled;
 use super::report::StepReport;
+use super::speculative::Speculators;
+use super::tuning::Tuning;
 use super::{candidates, muting};
 use crate::batch::{Backend, Batch};
 use crate::math::{Real, Vector};
@@ -14,7 +16,7 @@ use crate::parry::{Answers, MedialDispatcher};
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
-    RigidBodySet, SoftBodySet,
+    RigidBodySet, RigidBodyType, SoftBodySet,
 };
 use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, PhysicsWorld};
@@ -50,6 +52,7 @@ pub struct MedialPipeline {
     answers: Arc<Answers>,
     recycled: Recycled,
     effects: Wanted,
+    tuning: Tuning,
     told: Told,
 }
 
@@ -79,6 +82,12 @@ impl MedialPipeline {
     /// Of two colliders that differ, the one that has an effect on decides.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
         self.effects.set(collider, effects);
+    }
+
+    /// Other constants of the event loop, to measure what they do.
+    #[doc(hidden)]
+    pub fn set_tuning(&mut self, tuning: Tuning) {
+        self.tuning = tuning;
     }
 
     /// Makes the world's narrow phase ask this pipeline first, and lowers the contact recycle
@@ -152,6 +161,56 @@ impl MedialPipeline {
         hooks: &dyn PhysicsHooks,
         events: &dyn EventHandler,
     ) -> StepReport {
+        let mut rest = *parameters;
+        let mut report = StepReport::default();
+        // Links and particles cannot be set back to where they were at a stop.
+        let can_stop = multibody_joints.multibodies().next().is_none() && soft_bodies.is_empty();
+        loop {
+            let may_stop = can_stop && report.stops < self.tuning.max_stops;
+            let (done, stopped) = self.part(
+                pipeline,
+                gravity,
+                &rest,
+                islands,
+                broad_phase,
+                narrow_phase,
+                bodies,
+                colliders,
+                impulse_joints,
+                multibody_joints,
+                soft_bodies,
+                ccd_solver,
+                hooks,
+                events,
+                may_stop,
+            );
+            report.add(&done);
+            let Some(time) = stopped else { return report };
+            report.stops += 1;
+            rest.dt -= time;
+        }
+    }
+
+    /// A step, or what of it comes before the world stops; the second result is when.
+    #[expect(clippy::too_many_arguments, reason = "as above")]
+    fn part(
+        &mut self,
+        pipeline: &mut PhysicsPipeline,
+        gravity: Vector,
+        parameters: &IntegrationParameters,
+        islands: &mut IslandManager,
+        broad_phase: &mut BroadPhaseBvh,
+        narrow_phase: &mut NarrowPhase,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        impulse_joints: &mut ImpulseJointSet,
+        multibody_joints: &mut MultibodyJointSet,
+        soft_bodies: &mut SoftBodySet,
+        ccd_solver: &mut CCDSolver,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+        may_stop: bool,
+    ) -> (StepReport, Option<Real>) {
         let mut report = StepReport::default();
         let before = self.batch.report().clone();
         let clock = Instant::now();
@@ -176,6 +235,8 @@ impl MedialPipeline {
             effects: &self.effects,
             dt: parameters.dt,
             unit: parameters.length_unit,
+            tuning: self.tuning,
+            may_stop,
         };
         let mut work = Work::default();
         let mut snapshot = if report.medial_colliders == 0 || self.effects.none() {
@@ -194,6 +255,10 @@ impl MedialPipeline {
         let muted = muting::muted(&snapshot, &asker, &rules, prediction, &mut work);
         report.muted = muted.len();
         self.answers.mute(muted);
+        self.answers
+            .give_one_point(self.effects.one_point(colliders));
+        let speculators = Speculators::set(&snapshot, &self.effects, asker.unit, bodies);
+        report.speculative = speculators.count();
         report.mute_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
@@ -215,6 +280,7 @@ impl MedialPipeline {
         );
         report.step_seconds = clock.elapsed().as_secs_f64();
         self.answers.mute(HashSet::new());
+        speculators.restore(bodies);
 
         let clock = Instant::now();
         snapshot.follow(parameters, bodies);
@@ -258,6 +324,8 @@ impl MedialPipeline {
         let counted = self.answers.take_counts();
         report.cache_hits = counted.hits;
         report.cache_misses = counted.misses;
+        report.manifolds = counted.manifolds;
+        report.intersections = counted.intersections;
         report.continuous_queries = counted.casts + work.queries;
         report.rotating_queries = work.rotating;
         report.culled_nodes += counted.nodes + work.nodes;
@@ -269,7 +337,7 @@ impl MedialPipeline {
         report.maps = after.maps - before.maps;
         report.survivors = after.survivors - before.survivors;
         report.fallbacks = after.fallbacks - before.fallbacks;
-        report
+        (report, outcome.stopped)
     }
 }
 
@@ -281,7 +349,12 @@ fn write_back(moved: &Body, struck: bool, bodies: &mut RigidBodySet) {
     if !moved.motion.start.is_finite() {
         return;
     }
+    let end = *body.position();
     body.set_position(moved.motion.start, struck);
+    if body.body_type() == RigidBodyType::KinematicPositionBased {
+        // Where it was going, it still is.
+        body.set_next_kinematic_position(end);
+    }
     if struck {
         body.set_linvel(moved.velocity[0], true);
         body.set_angvel(moved.velocity[1], true);

@@ -29,6 +29,11 @@ pub struct StepReport {
     pub cache_hits: u64,
     /// Manifold requests computed on the spot: new pairs, bodies changed by the user.
     pub cache_misses: u64,
+    /// Manifolds written for pairs of medial colliders, and for all that get one contact only
+    /// ([`crate::Effects::full_manifolds`]). Those with other shapes are parry's.
+    pub manifolds: u64,
+    /// Tests of intersection, of sensors above all.
+    pub intersections: u64,
     /// Continuous queries (first contact) executed.
     pub continuous_queries: u64,
     /// Those of them, on the motions of the step, in which a body turned.
@@ -42,6 +47,11 @@ pub struct StepReport {
     pub events: usize,
     /// Bodies that stopped before the step's end, or were carried along, after too many impacts.
     pub frozen: usize,
+    /// Times that the world stopped at a first contact ([`crate::Effects::stop`]); each made a step more,
+    /// whose work is in all counters.
+    pub stops: usize,
+    /// Bodies that got speculative contacts ([`crate::Effects::speculative`]), summed over these steps.
+    pub speculative: usize,
     /// Node pairs of sphere trees looked at.
     pub culled_nodes: u64,
     /// Elementary tests (cone–cone, sphere–slab) executed.
@@ -54,4 +64,38 @@ pub struct StepReport {
     pub event_seconds: f64,
     /// Seconds of rapier's own step, which includes manifolds and continuous queries.
     pub step_seconds: f64,
+}
+
+impl StepReport {
+    /// Adds what another part of the same step did.
+    pub(super) fn add(&mut self, part: &Self) {
+        self.medial_colliders = part.medial_colliders;
+        self.pairs += part.pairs;
+        self.jobs += part.jobs;
+        self.settled_by_gpu += part.settled_by_gpu;
+        self.unfit += part.unfit;
+        self.submissions += part.submissions;
+        self.maps += part.maps;
+        self.survivors += part.survivors;
+        self.fallbacks += part.fallbacks;
+        self.contacts += part.contacts;
+        self.cache_hits += part.cache_hits;
+        self.cache_misses += part.cache_misses;
+        self.manifolds += part.manifolds;
+        self.intersections += part.intersections;
+        self.continuous_queries += part.continuous_queries;
+        self.rotating_queries += part.rotating_queries;
+        self.continuous_jobs += part.continuous_jobs;
+        self.muted += part.muted;
+        self.events += part.events;
+        self.frozen += part.frozen;
+        self.speculative += part.speculative;
+        self.culled_nodes += part.culled_nodes;
+        self.elementary_tests += part.elementary_tests;
+        self.batch_seconds += part.batch_seconds;
+        self.mute_seconds += part.mute_seconds;
+        self.event_seconds += part.event_seconds;
+        self.step_seconds += part.step_seconds;
+        self.stops += part.stops;
+    }
 }

@@ -9,7 +9,9 @@
 use crate::medial::MedialMesh;
 use crate::medial::asset::checksum;
 use crate::rapier::MedialSharedShape;
-use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, NarrowPhase, SharedShape};
+use rapier3d::geometry::{
+    BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, NarrowPhase, SharedShape,
+};
 use rapier3d::pipeline::{CollisionPipeline, PhysicsWorld};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -18,7 +20,7 @@ use std::collections::HashMap;
 pub const MAGIC: [u8; 8] = *b"\x89worlds\n";
 
 /// Version of the bytes that is written and read: this crate's, and rapier 0.36's layout.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Bytes before the content: magic, version, checksum of the content.
 const HEADER: usize = 20;
@@ -55,6 +57,9 @@ pub enum SavedWorldError {
         /// That was stored when it was saved.
         stored: u64,
     },
+    /// Bytes follow the world. (The checksum does not see zeros at the end.)
+    #[error("{0} bytes follow the world")]
+    TooLong(usize),
     /// The content is no world.
     #[error("the content is no world: {0}")]
     Unreadable(#[source] postcard::Error),
@@ -77,13 +82,23 @@ pub struct SavedWorld {
     meshes: Vec<MedialMesh>,
     /// Medial colliders, and which mesh each has.
     shapes: Vec<(ColliderHandle, u32)>,
-    /// Whether colliders were changed since the last step; their marks say which.
-    changed: bool,
+    changes: Changes,
     world: PhysicsWorld,
 }
 
+/// Which colliders the next step has to look at anew.
+#[derive(Serialize, Deserialize)]
+enum Changes {
+    /// These have moved, as a first contact within a step leaves them; none was changed otherwise.
+    Moved(Vec<ColliderHandle>),
+    /// Some were changed by hand. Their own marks say how; those of medial colliders say besides that
+    /// the shape is new, for which rapier begins their contacts afresh.
+    Marked,
+}
+
 impl SavedWorld {
-    /// Takes a copy of the world. Save between steps.
+    /// Takes a copy of the world. Save between steps: of colliders changed by hand since the last one
+    /// (added, given other groups) the contacts, if they had any, begin afresh after loading.
     ///
     /// Fails if colliders were removed since the last step.
     pub fn new(world: &PhysicsWorld) -> Result<Self, SavedWorldError> {
@@ -92,8 +107,16 @@ impl SavedWorld {
         if removed > 0 {
             return Err(SavedWorldError::Removed(removed));
         }
-        // What is left in this list are then the colliders that get a ball, and no others.
-        let changed = !colliders.take_modified().is_empty();
+        let modified: Vec<ColliderHandle> = colliders.clone().take_modified().to_vec();
+        let moved = |h: &ColliderHandle| colliders.get(*h).is_some_and(only_moved);
+        let changes = if modified.iter().all(moved) {
+            forget_changes(world, &mut colliders);
+            Changes::Moved(modified)
+        } else {
+            // What is left in this list are then the colliders that get a ball, and no others.
+            colliders.take_modified();
+            Changes::Marked
+        };
         let mut meshes: Vec<MedialMesh> = Vec::new();
         let mut known: HashMap<usize, u32> = HashMap::new();
         let mut shapes = Vec::new();
@@ -129,7 +152,7 @@ impl SavedWorld {
         Ok(Self {
             meshes,
             shapes,
-            changed,
+            changes,
             world,
         })
     }
@@ -141,7 +164,7 @@ impl SavedWorld {
         let Self {
             meshes,
             shapes,
-            changed,
+            changes,
             mut world,
         } = self;
         for (handle, index) in shapes {
@@ -155,25 +178,39 @@ impl SavedWorld {
             };
             collider.set_shape(SharedShape::medial_mesh(mesh.clone()));
         }
-        forget_changes(&mut world);
-        if changed {
+        let mut colliders = std::mem::take(&mut world.colliders);
+        forget_changes(&world, &mut colliders);
+        match changes {
+            // Setting where it is already marks it as moved.
+            Changes::Moved(moved) => moved.into_iter().for_each(|h| {
+                if let Some(collider) = colliders.get_mut(h) {
+                    collider.set_position(*collider.position());
+                }
+            }),
             // Lists all colliders as possibly changed; each one's own marks say whether it is.
-            world.colliders.iter_mut().for_each(drop);
+            Changes::Marked => colliders.iter_mut().for_each(drop),
         }
+        world.colliders = colliders;
         Ok(world)
     }
 }
 
+/// Whether nothing but its pose was changed since the last step. rapier keeps the marks to itself, but
+/// prints them.
+fn only_moved(collider: &Collider) -> bool {
+    format!("{collider:?}").contains("changes: ColliderChanges(IN_MODIFIED_SET | POSITION)")
+}
+
 /// Clears the marks of the listed colliders. Only a step does that: one of collision detection alone,
 /// with copies of all that it changes but the colliders.
-fn forget_changes(world: &mut PhysicsWorld) {
+fn forget_changes(world: &PhysicsWorld, colliders: &mut ColliderSet) {
     CollisionPipeline::new().step(
         0.0,
         &mut world.islands.clone(),
         &mut BroadPhaseBvh::default(),
         &mut NarrowPhase::new(),
         &mut world.bodies.clone(),
-        &mut world.colliders,
+        colliders,
         &(),
         &(),
     );
@@ -215,6 +252,10 @@ pub fn load_world(bytes: &[u8]) -> Result<PhysicsWorld, SavedWorldError> {
     if computed != stored {
         return Err(SavedWorldError::Damaged { computed, stored });
     }
-    let saved: SavedWorld = postcard::from_bytes(content).map_err(SavedWorldError::Unreadable)?;
+    let (saved, rest) =
+        postcard::take_from_bytes::<SavedWorld>(content).map_err(SavedWorldError::Unreadable)?;
+    if !rest.is_empty() {
+        return Err(SavedWorldError::TooLong(rest.len()));
+    }
     saved.into_world()
 }

@@ -1,6 +1,7 @@
 //! Shape casts of medial meshes against every built-in shape, by [`oracle`], which shares no code with
 //! them.
 
+mod bearing;
 mod inside;
 mod linear;
 mod oracle;
@@ -11,3 +12,4 @@ mod rotating;
 mod shapes;
 mod solid;
 mod table;
+mod turns;

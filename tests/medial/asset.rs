@@ -203,7 +203,7 @@ fn other_files_and_versions_are_named() {
 }
 
 /// The checksum of the format, from its description, to forge files with.
-fn seal(bytes: &mut [u8]) {
+pub fn seal(bytes: &mut [u8]) {
     let end = bytes.len() - 8;
     let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
     let whole = end / 8 * 8;
@@ -220,7 +220,7 @@ fn seal(bytes: &mut [u8]) {
 }
 
 /// Uses all of a mesh that a hostile file was taken for.
-fn walk(mesh: &MedialMesh) {
+pub fn walk(mesh: &MedialMesh) {
     let near = Pose::translation(0.1, 0.05, 0.02);
     contacts(mesh, mesh, &near, 0.1);
     nearest_spheres(mesh, mesh, &near, f32::MAX);

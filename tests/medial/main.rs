@@ -5,6 +5,7 @@ mod broken_file;
 #[cfg(feature = "cli")]
 mod cli;
 mod envelope;
+mod fuzz;
 mod ma_file;
 mod mass;
 mod mesh;

@@ -1,8 +1,7 @@
 //! Any numbers: every query ends, and does not panic; what it promises is a time of the step.
 //!
 //! More cases: `PROPTEST_CASES=1000000 cargo test --release --test queries fuzz`. Finds are kept in
-//! `regressions.rs`. Steps are short and turns small: a query ends, but late, where a body turns
-//! thousands of times in it (docs/rapier.md).
+//! `regressions.rs`. Endless turns are for `casts`, `turns` and the fuzzing of `medial`.
 
 use parry3d::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastOptions,
@@ -30,7 +29,7 @@ fn vector() -> impl Strategy<Value = Vector> {
 fn motion() -> impl Strategy<Value = NonlinearRigidMotion> {
     let turn = prop_oneof![3 => vector(), 1 => vector().prop_map(|v| v * 40.0)];
     (vector(), vector(), vector(), vector(), turn).prop_map(|(at, rotation, center, v, w)| {
-        // Longer turns end late (docs/rapier.md).
+        // Longer ones end too, but cost a million node pairs each.
         let w = if w.is_finite() {
             w.clamp_length_max(40.0)
         } else {

@@ -5,6 +5,14 @@ mod ccd;
 #[path = "../common/creature.rs"]
 mod creature;
 
+/// What the examples take for the truth.
+#[allow(dead_code)]
+#[path = "../../examples/common"]
+mod truth_of_examples {
+    pub mod mesh;
+    pub mod triangle_toi;
+}
+
 mod bad_input;
 mod batch;
 mod coherence;
@@ -19,4 +27,5 @@ mod meshes;
 mod oracle;
 mod penetration;
 mod regressions;
+mod truth;
 mod witness;

@@ -4,7 +4,9 @@
 use crate::ccd::rng::Rng;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::elementary::distance::signed_distance;
-use rapier3d_medial::elementary::{ToiOptions, ToiStatus, f64 as double};
+use rapier3d_medial::elementary::{
+    self, MovingSphere, Paths, ToiOptions, ToiStatus, f64 as double,
+};
 use rapier3d_medial::math::lane::Vec3;
 use rapier3d_medial::math::{Pose, Real, Vector};
 use rapier3d_medial::pair::{contacts, first_contact, nearest_spheres};
@@ -201,4 +203,61 @@ fn within_the_tolerance_at_the_start_is_contact_at_once() {
             );
         }
     }
+}
+
+/// On straight paths: each sphere of both meshes from where the rigid motion starts it to where it ends,
+/// all primitive pairs by the elementary query. Fast spins, so that these are not the rigid paths.
+#[test]
+fn first_contact_on_straight_paths_is_that_of_brute_force() {
+    let mut rng = Rng::new(78);
+    let (mut hits, mut others) = (0, 0);
+    for k in 0..200 {
+        let meshes = [mesh(&mut rng), mesh(&mut rng)];
+        let motions = [
+            motion(&mut rng, 0.0, 0.0, 1.0 + (k % 3) as Real),
+            motion(&mut rng, 2.0 + (k % 5) as Real * 0.3, 2.0, (k % 4) as Real),
+        ];
+        let options = |paths| ToiOptions {
+            tolerance: 1.0e-5,
+            paths,
+            ..Default::default()
+        };
+        let movers = [0, 1].map(|side| {
+            let [start, end] = [0.0, 1.0].map(|t| motions[side].position_at_time(t));
+            let mover = |s: &MedialSphere| {
+                let center = start * s.center;
+                MovingSphere {
+                    center,
+                    radius: s.radius,
+                    displacement: end * s.center - center,
+                }
+            };
+            let primitives = meshes[side].primitives();
+            primitives
+                .map(|p| p.spheres().iter().map(mover).collect::<Vec<_>>())
+                .collect::<Vec<_>>()
+        });
+        let mut first: Real = 1.0;
+        for p in &movers[0] {
+            for q in &movers[1] {
+                let toi = elementary::first_contact(p, q, &options(Paths::Exact));
+                first = first.min(toi.upper);
+            }
+        }
+        let query = |paths| {
+            let [m1, m2] = &motions;
+            first_contact(&meshes[0], m1, &meshes[1], m2, 1.0, &options(paths))
+        };
+        let straight = query(Paths::Straight);
+        assert!(
+            straight.lower - 1.0e-4 <= first && first <= straight.upper + 1.0e-4,
+            "case {k}: {first}, {straight:?}"
+        );
+        hits += u32::from(first < 1.0);
+        others += u32::from((query(Paths::Exact).upper - first).abs() > 1.0e-3);
+    }
+    assert!(
+        hits >= 60 && others >= 30,
+        "{hits} hits, {others} off the rigid paths"
+    );
 }

@@ -244,6 +244,77 @@ fn soft_bodies_lie_on_medial_ground_and_carry_medial_bodies() {
     );
 }
 
+/// A rigid collider hung on a soft body's cluster proxy holds it up: as a medial ring, as rapier's compound
+/// of the same capsules.
+#[test]
+fn medial_colliders_hang_on_cluster_proxies() {
+    let mesh = ring(12, 0.3, 0.08);
+    let capsules = mesh.edges().iter().map(|e| {
+        let [a, b] = e.map(|i| mesh.spheres()[i as usize].center);
+        (Pose::IDENTITY, SharedShape::capsule(a, b, 0.08))
+    });
+    let capsules = SharedShape::compound(capsules.collect());
+    // Height of the soft body's middle, and of the proxy's collider.
+    let height = |foot: Option<ColliderBuilder>| {
+        let mut world = world_with_ground();
+        let mut pipeline = attached(&mut world);
+        let at = Vector::new(0.0, 1.2, 0.0);
+        let soft = SoftBodyBuilder::cuboid(at, Vector::splat(0.4), 4, 4, 4);
+        let soft = world.insert_soft_body(soft);
+        let proxy = world.soft_bodies[soft].root_body();
+        let foot = foot.map(|f| {
+            let below = Vector::new(0.0, -0.7, 0.0);
+            world.insert_collider(f.translation(below).density(0.0), Some(proxy))
+        });
+        for _ in 0..180 {
+            pipeline.step(&mut world);
+        }
+        let particles = world.soft_bodies[soft].particles();
+        let sum: Real = particles.iter().map(|p| p.position().y).sum();
+        let foot = foot.map(|f| world.colliders[f].translation().y);
+        (sum / particles.len() as Real, foot.unwrap_or(0.0))
+    };
+    let (bare, _) = height(None);
+    let (medial, medial_foot) = height(Some(ColliderBuilder::medial_mesh(mesh.clone())));
+    let (compound, compound_foot) = height(Some(ColliderBuilder::new(capsules)));
+    println!("{bare} {medial} {medial_foot} {compound} {compound_foot}");
+    assert!(medial > bare + 0.2, "{medial}, without {bare}");
+    assert!((medial - compound).abs() < 0.01, "{medial}, not {compound}");
+    assert!((medial_foot - compound_foot).abs() < 0.01);
+    assert!((0.07..0.09).contains(&medial_foot), "{medial_foot}");
+}
+
+/// Where a ring is, seen from `offset`, after it has slid down the slope there for a second.
+fn slides(offset: Real) -> Vector {
+    let mut world = PhysicsWorld::new();
+    let mut pipeline = attached(&mut world);
+    let at = Vector::new(offset, 0.0, offset);
+    let ground = ColliderBuilder::medial_mesh(plate()).translation(at);
+    world.insert_collider(ground.friction(0.05), None);
+    let up = Vector::new(-SLOPE, 1.0, 0.0).normalize();
+    let start = Vector::new(3.0, SLOPE * 3.0, 0.0) + up * (RADIUS + MINOR);
+    let tilt = Vector::new(0.0, 0.0, SLOPE.atan());
+    let ring = add_ring(&mut world, As::Medial, Pose::new(at + start, tilt));
+    for _ in 0..60 {
+        pipeline.step(&mut world);
+    }
+    world.bodies[ring].translation() - at
+}
+
+/// The table of docs/rapier.md: a moving body loses what `f32` cannot resolve of its steps.
+#[test]
+fn sliding_bodies_err_by_what_f32_resolves() {
+    let near = slides(0.0);
+    assert!(near.x < 2.95, "it slides: {near}");
+    for offset in [100.0, 1000.0, 10_000.0, 100_000.0] {
+        let error = (slides(offset) - near).length();
+        println!("{offset} m: {error} m of {}", 3.0 - near.x);
+        // A step is rounded by half an ulp of the coordinates, in either direction: at the worst all alike.
+        let ulps = offset * Real::EPSILON;
+        assert!(error < 60.0 * ulps + 1.0e-3, "{error} m at {offset} m");
+    }
+}
+
 /// Largest speed over the last second of a ring that was laid on medial ground, and its height then.
 fn at_rest(offset: Real) -> (Real, Real) {
     let mut world = PhysicsWorld::new();

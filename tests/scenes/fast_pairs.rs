@@ -8,7 +8,7 @@ use rapier3d_medial::prelude::*;
 
 /// Free flights that get deeper than this, a length, surely meet; those that stay further apart
 /// surely do not. In between lies what sampling, and the gap at which bodies meet, leave open.
-const SURE: [Real; 2] = [-0.02, 0.02];
+pub const SURE: [Real; 2] = [-0.02, 0.02];
 
 /// An open hook, thick at one end and thin at the other.
 pub fn hook() -> MedialMesh {
@@ -84,14 +84,14 @@ fn velocities(solids: [&Solid; 2], flights: [&Flight; 2], by: By) -> Vec<[Vector
 const CHANGED: Real = 1.0e-3;
 
 /// Whether either body's velocity changed.
-fn collides(flights: [&Flight; 2], velocities: &[[Vector; 2]]) -> bool {
+pub fn collides(flights: [&Flight; 2], velocities: &[[Vector; 2]]) -> bool {
     let last = velocities.last().expect("steps");
     (0..2).any(|k| last[k].distance(flights[k].linvel) > CHANGED)
 }
 
 /// Error of the first change of velocity, and of the final velocities, in units of what the reference
 /// changes.
-fn errors(flights: [&Flight; 2], ours: &[[Vector; 2]], truth: &[[Vector; 2]]) -> [Real; 2] {
+pub fn errors(flights: [&Flight; 2], ours: &[[Vector; 2]], truth: &[[Vector; 2]]) -> [Real; 2] {
     let start = [flights[0].linvel, flights[1].linvel];
     let first = |all: &[[Vector; 2]]| {
         let changed = all.iter().find(|v| v[0].distance(start[0]) > CHANGED);

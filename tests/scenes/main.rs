@@ -7,6 +7,7 @@ mod determinism;
 #[cfg(feature = "debug-render")]
 mod drawing;
 mod driven;
+mod effects;
 mod endurance;
 mod fast_pairs;
 #[cfg_attr(
@@ -17,6 +18,7 @@ mod fast_pairs;
 mod golden;
 mod heaps;
 mod impacts;
+mod knots;
 mod oracle;
 mod partners;
 mod random;

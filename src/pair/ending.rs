@@ -1,0 +1,118 @@
+//! How the search of [`super::search`] ends: with the witness of the first contact, or unresolved when its
+//! work is used up.
+
+use super::queue::Candidate;
+use super::search::Search;
+use super::swept::Side;
+use super::volumes::Volumes;
+use crate::elementary::ToiStatus;
+use crate::elementary::bracket::{Bracket, Limits, witness};
+use crate::elementary::distance::nearest_in_test;
+use crate::elementary::path::RigidPath;
+use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
+use crate::math::lane::Vec3;
+use crate::medial::MedialSphere;
+use crate::medial::tree::Below;
+
+/// Node pairs, iterations of elementary tests and pieces of one search, together, after which it ends
+/// unresolved. No query of the tests that turns less than 40 radians takes a hundredth of it. Larger, and
+/// a query of endless turns takes longer; smaller, and it knows less of them.
+pub(super) const WORK: u64 = 1 << 20;
+
+/// Pieces whose pairs of roots do not count as work. As above.
+pub(super) const ROOT_PIECES: u64 = 64;
+
+type Spheres = [(Vec3<f64>, f64); 3];
+
+impl<A: Volumes, B: Volumes> Search<'_, A, B> {
+    /// Ends unresolved: nothing meets before `time`, and nothing is known from there on. The witness is of
+    /// primitives that may come first.
+    pub(super) fn give_up(&mut self, time: f64, first: Option<Candidate>) {
+        let primitives = match first {
+            Some(Candidate::Test(place)) => self.open[place as usize].primitives,
+            Some(Candidate::Nodes([i, j])) => {
+                let (a, b) = (self.sides.0.node(i).below, self.sides.1.node(j).below);
+                [
+                    some_leaf(self.sides.0.body, a),
+                    some_leaf(self.sides.1.body, b),
+                ]
+            }
+            None => [0, 0],
+        };
+        let limits = Limits {
+            start: time,
+            ..self.earliest.limits
+        };
+        let [(_, share_a), (_, share_b)] = spheres(&self.sides, primitives);
+        let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
+        for_each_test(shares[0], shares[1], |test| {
+            let mut bracket = Bracket::free(&limits);
+            bracket.lower = time;
+            self.earliest.found = Some((test, bracket, primitives));
+            false
+        });
+        self.earliest.status = ToiStatus::Unresolved;
+        self.earliest.lower = self.earliest.lower.min(time);
+    }
+
+    pub(super) fn path(
+        &self,
+        test: &ElementaryTest,
+        pair: [u32; 2],
+        target: f64,
+    ) -> RigidPath<f64> {
+        let [(a, _), (b, _)] = spheres(&self.sides, pair);
+        RigidPath::new(test, &self.motions, target, |second, k| {
+            if second { b[k as usize] } else { a[k as usize] }
+        })
+    }
+
+    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness:
+    /// a test that is proven free until then may be nearer than the one that was found.
+    pub(super) fn settle(&mut self) {
+        let Some((test, bracket, pair)) = &mut self.earliest.found else {
+            return;
+        };
+        let lower = self.earliest.lower;
+        let [(a, share_a), (b, share_b)] = spheres(&self.sides, *pair);
+        let then = |side: usize, spheres: Spheres| {
+            let turned = self.motions[side].sin_cos(lower);
+            spheres.map(|(c, r)| (self.motions[side].point(c).at(lower, turned).position, r))
+        };
+        let (pa, pb) = (then(0, a), then(1, b));
+        let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
+        let mut least = f64::INFINITY;
+        for_each_test(shares[0], shares[1], |other| {
+            let distance = nearest_in_test(&other, &pa, &pb).1.distance;
+            if distance < least {
+                (*test, least) = (other, distance);
+            }
+            true
+        });
+        let path = RigidPath::new(test, &self.motions, self.target, |second, k| {
+            if second { b[k as usize] } else { a[k as usize] }
+        });
+        bracket.lower = lower;
+        (bracket.nearest, bracket.normal) = witness(&path, test.domain, lower);
+    }
+}
+
+/// A primitive below a node.
+fn some_leaf(body: &impl Volumes, mut below: Below) -> u32 {
+    loop {
+        match below {
+            Below::Primitive(primitive) => return primitive,
+            Below::Nodes(first, _) => below = body.below(first),
+        }
+    }
+}
+
+pub(super) fn spheres<A: Volumes, B: Volumes>(
+    sides: &(Side<'_, A>, Side<'_, B>),
+    [i, j]: [u32; 2],
+) -> [(Spheres, Share); 2] {
+    let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
+    let (a, share_a) = sides.0.body.primitive(i);
+    let (b, share_b) = sides.1.body.primitive(j);
+    [(a.map(local), share_a), (b.map(local), share_b)]
+}

@@ -1,0 +1,280 @@
+//! Which contacts bear the load. Of all contacts under one normal rapier solves four at most: the
+//! deepest, the furthest from it, and the two furthest to its sides. Under a body of many primitives
+//! those need not be what it lies on, and then it sinks in and never sleeps.
+//!
+//! Here it is what it lies on. Seen along the normal, contact `i` is at `u_i` with a gap `d_i`; a body
+//! pressed on with its centre of mass over `c` comes to lie on the facet above `c` of the lower convex
+//! hull of all `(u_i, d_i)`. That facet attains the least `Σ λ_i d_i` with `Σ λ_i u_i = c`, `Σ λ_i = 1`,
+//! `λ ≥ 0`, which the simplex method finds: three rows, a pivot is a change of one corner. A fourth
+//! contact widens it.
+
+use crate::math::{Pose, Real, Vector};
+use parry3d::query::ContactManifold;
+
+/// Cosine from which rapier 0.36 takes two manifolds to have one normal (5°).
+const ONE_NORMAL: Real = 0.996;
+
+/// Contacts under one normal that rapier solves.
+const SOLVED: usize = 4;
+
+/// Gaps that differ by less count as equal, in units of the prediction distance: contacts that bore
+/// before stay, and wide ones come first. Without it the choice flickers, and impulses are lost.
+const EQUAL: f64 = 0.05;
+
+/// Contacts nearer to each other than this are one, in units of the prediction distance; as in rapier.
+const SAME_PLACE: f64 = 0.25;
+
+/// Steepest facet, as a gradient, where the load is beside all contacts and the body tips over: contacts
+/// deeper than that slope from the edge it tips over are not left in. With 1 a knot slept 60 mm deep.
+const STEEPEST: f64 = 0.02;
+
+/// Pivots after which the facet found so far has to do.
+const PIVOTS: usize = 64;
+
+/// A contact as it is seen along the normal.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// Index of its manifold, and of its point there.
+    contact: [usize; 2],
+    /// Place in the plane, from the centre of mass.
+    at: [f64; 2],
+    /// Gap, less what preference is worth.
+    gap: f64,
+}
+
+/// A contact of the step before, of those that bore.
+pub struct Borne<C> {
+    subshapes: [u32; 2],
+    place: Vector,
+    data: C,
+}
+
+/// The contacts that bore, by their places on body `side` (0 or 1).
+pub fn borne<M, C: Copy>(manifolds: &[ContactManifold<M, C>], side: usize) -> Vec<Borne<C>> {
+    let of = |m: &ContactManifold<M, C>, i: usize| Borne {
+        subshapes: [m.subshape1, m.subshape2],
+        place: places(m, i)[side],
+        data: m.points[i].data,
+    };
+    let all = manifolds.iter();
+    all.flat_map(|m| (0..m.points.len()).map(move |i| of(m, i)))
+        .collect()
+}
+
+/// Makes parry look for all contacts again: it goes on from those it has, and some were left out.
+pub fn look_again<M, C: Default + Copy>(manifolds: &mut [ContactManifold<M, C>]) {
+    if manifolds.iter().map(|m| m.points.len()).sum::<usize>() >= SOLVED {
+        manifolds
+            .iter_mut()
+            .for_each(ContactManifold::mark_shapes_deformed);
+    }
+}
+
+/// Hands the data of the contacts that bore to the nearest of the same subshapes, each once: parry goes
+/// by features, which several contacts of an edge share, and then an impulse would count several times.
+pub fn hand_on<M, C: Default + Copy>(
+    manifolds: &mut [ContactManifold<M, C>],
+    borne: &[Borne<C>],
+    prediction: Real,
+    side: usize,
+) {
+    for manifold in manifolds {
+        let now: Vec<Vector> = (0..manifold.points.len())
+            .map(|i| places(manifold, i)[side])
+            .collect();
+        let ids = [manifold.subshape1, manifold.subshape2];
+        manifold
+            .points
+            .iter_mut()
+            .for_each(|p| p.data = C::default());
+        let mut free = vec![true; now.len()];
+        for b in borne.iter().filter(|b| b.subshapes == ids) {
+            let apart = |i: &usize| now[*i].distance(b.place);
+            let near = (0..now.len()).filter(|i| free[*i] && apart(i) < prediction);
+            if let Some(i) = near.min_by(|i, j| apart(i).total_cmp(&apart(j))) {
+                free[i] = false;
+                manifold.points[i].data = b.data;
+            }
+        }
+    }
+}
+
+/// Leaves out all contacts but those that bear the load: under each normal at most four, chosen for a
+/// load at `center` (in the first body's frame). `borne` are those of before, on body `side`.
+pub fn choose<M, C: Copy>(
+    manifolds: &mut [ContactManifold<M, C>],
+    center: Vector,
+    prediction: Real,
+    borne: &[Borne<C>],
+    side: usize,
+) {
+    let equal = EQUAL * f64::from(prediction);
+    let mut normals: Vec<(Vector, Vec<Seen>)> = Vec::new();
+    for (m, manifold) in manifolds.iter().enumerate() {
+        if manifold.points.is_empty() {
+            continue;
+        }
+        let n = normal(manifold);
+        let known = normals
+            .iter()
+            .position(|(first, _)| first.dot(n) >= ONE_NORMAL);
+        let group = known.unwrap_or_else(|| {
+            normals.push((n, Vec::new()));
+            normals.len() - 1
+        });
+        let (first, seen) = &mut normals[group];
+        let [x, y] = first.any_orthonormal_pair().into();
+        for (i, point) in manifold.points.iter().enumerate() {
+            let points = places(manifold, i);
+            let from = points[0] - center;
+            let bore = borne
+                .iter()
+                .any(|b| b.place.distance(points[side]) < prediction);
+            seen.push(Seen {
+                contact: [m, i],
+                at: [from.dot(x).into(), from.dot(y).into()],
+                gap: f64::from(point.dist) - if bore { equal } else { 0.0 },
+            });
+        }
+    }
+    let mut left_out = Vec::new();
+    for (_, seen) in &mut normals {
+        left_out.extend(without_doubles(seen, SAME_PLACE * f64::from(prediction)));
+        if seen.len() <= SOLVED {
+            continue;
+        }
+        let size = seen
+            .iter()
+            .map(|s| square(s.at))
+            .fold(f64::MIN_POSITIVE, f64::max);
+        for s in seen.iter_mut() {
+            s.gap -= equal * square(s.at) / size;
+        }
+        let bear = bearing(seen, equal);
+        let others = (0..seen.len()).filter(|i| !bear.contains(i));
+        left_out.extend(others.map(|i| seen[i].contact));
+    }
+    // From the last on, so that indices stay.
+    left_out.sort_unstable();
+    for [m, i] in left_out.into_iter().rev() {
+        manifolds[m].points.remove(i);
+    }
+}
+
+/// Takes out the contacts that have a deeper one within `radius`: neighbours meet in the sphere they
+/// share, and parry names the ends of an edge twice.
+fn without_doubles(seen: &mut Vec<Seen>, radius: f64) -> Vec<[usize; 2]> {
+    seen.sort_by(|a, b| a.gap.total_cmp(&b.gap).then(a.contact.cmp(&b.contact)));
+    let (mut kept, mut doubles): (Vec<Seen>, _) = (Vec::new(), Vec::new());
+    for s in seen.drain(..) {
+        let apart = |k: &Seen| square([0, 1].map(|axis| s.at[axis] - k.at[axis]));
+        if kept.iter().any(|k| apart(k) < radius * radius) {
+            doubles.push(s.contact);
+        } else {
+            kept.push(s);
+        }
+    }
+    *seen = kept;
+    doubles
+}
+
+/// Up to four of the contacts: the facet above the origin, and the one that widens it best among those
+/// within `equal` of its plane, or else the nearest to it.
+fn bearing(seen: &[Seen], equal: f64) -> Vec<usize> {
+    let (facet, plane) = facet(seen);
+    let mut bear: Vec<usize> = facet.into_iter().flatten().collect();
+    while bear.len() < SOLVED {
+        let above = |s: &Seen| s.gap - (plane[0] + plane[1] * s.at[0] + plane[2] * s.at[1]);
+        let apart = |s: &Seen| {
+            let to = |b: &usize| square([0, 1].map(|k| s.at[k] - seen[*b].at[k]));
+            bear.iter().map(to).fold(f64::MAX, f64::min)
+        };
+        // All within the same share of `equal` above the plane: the one furthest from the others.
+        let rank = |i: &usize| ((above(&seen[*i]) / equal).floor(), -apart(&seen[*i]));
+        let rest = (0..seen.len()).filter(|i| !bear.contains(i));
+        let next = rest.min_by(|i, j| {
+            let (a, b) = (rank(i), rank(j));
+            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        let Some(next) = next else { break };
+        bear.push(next);
+    }
+    bear
+}
+
+/// The corners of the facet above the origin, and its plane `a + b x + c y`. A corner is missing where
+/// the origin is not above the contacts: the body then lies on an edge or on one contact.
+fn facet(seen: &[Seen]) -> ([Option<usize>; 3], [f64; 3]) {
+    // Three corners that are not there, so far out and so high that any real facet is below them.
+    let reach = 2.0 * seen.iter().map(|s| square(s.at)).fold(0.0, f64::max).sqrt();
+    let highest = seen.iter().map(|s| s.gap).fold(f64::MIN, f64::max);
+    let around = [[2.0, 0.0], [-1.0, 2.0], [-1.0, -2.0]];
+    let far = around.map(|at| at.map(|x: f64| x * reach));
+    let mut corners = far.map(|at| (None, at, highest + STEEPEST * reach));
+    let mut plane = through(&corners.map(|(_, at, gap)| (at, gap)));
+    for _ in 0..PIVOTS {
+        let above = |s: &Seen| s.gap - (plane[0] + plane[1] * s.at[0] + plane[2] * s.at[1]);
+        let by_height = |i: &usize, j: &usize| above(&seen[*i]).total_cmp(&above(&seen[*j]));
+        let lowest = (0..seen.len()).min_by(by_height);
+        let Some(enters) = lowest.filter(|i| above(&seen[*i]) < -1.0e-12 * reach) else {
+            break;
+        };
+        // The corner that the origin is left of when the new one takes its place cannot stay.
+        let at = corners.map(|(_, at, _)| at);
+        let (origin, new) = (shares(&at, [0.0; 2]), shares(&at, seen[enters].at));
+        let ratio = |k: &usize| origin[*k].max(0.0) / new[*k];
+        let leaves = (0..3)
+            .filter(|k| new[*k] > 1.0e-9)
+            .min_by(|i, j| ratio(i).total_cmp(&ratio(j)));
+        let Some(leaves) = leaves else { break };
+        let mut changed = corners;
+        changed[leaves] = (Some(enters), seen[enters].at, seen[enters].gap);
+        let next = through(&changed.map(|(_, at, gap)| (at, gap)));
+        if !next.iter().all(|x| x.is_finite()) {
+            break;
+        }
+        (corners, plane) = (changed, next);
+    }
+    (corners.map(|(i, _, _)| i), plane)
+}
+
+/// Shares of three corners in a point: barycentric coordinates.
+fn shares(at: &[[f64; 2]; 3], p: [f64; 2]) -> [f64; 3] {
+    let area = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    let [a, b, c] = *at;
+    let whole = area(a, b, c);
+    [area(p, b, c), area(a, p, c), area(a, b, p)].map(|part| part / whole)
+}
+
+/// The plane through three corners: its height at the origin and its gradient.
+fn through(corners: &[([f64; 2], f64); 3]) -> [f64; 3] {
+    let at = corners.map(|(at, _)| at);
+    let height = |p| {
+        let shares = shares(&at, p);
+        (0..3).map(|k| shares[k] * corners[k].1).sum::<f64>()
+    };
+    let base: f64 = height([0.0; 2]);
+    [base, height([1.0, 0.0]) - base, height([0.0, 1.0]) - base]
+}
+
+fn square(at: [f64; 2]) -> f64 {
+    at[0] * at[0] + at[1] * at[1]
+}
+
+/// The two points of a contact, each in its body's frame.
+fn places<M, C>(manifold: &ContactManifold<M, C>, i: usize) -> [Vector; 2] {
+    let point = &manifold.points[i];
+    let in_body = |pose: Option<&Pose>, p: Vector| pose.map_or(p, |pose| pose * p);
+    [
+        in_body(manifold.subshape_pos1(), point.local_p1),
+        in_body(manifold.subshape_pos2(), point.local_p2),
+    ]
+}
+
+/// The normal in the first body's frame.
+fn normal<M, C>(manifold: &ContactManifold<M, C>) -> Vector {
+    let n = manifold.local_n1;
+    manifold.subshape_pos1().map_or(n, |pose| pose.rotation * n)
+}

@@ -1,0 +1,77 @@
+//! The constants of the event loop, in one place so that `cargo bench --bench effects -- --sweep` can
+//! vary them.
+
+use crate::math::Real;
+
+/// Constants of the event loop. The defaults are what is meant to be used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Relative travel in a step, in units of the thinner collider's thickness, from which a pair is
+    /// fast. With [`Self::floor`] it makes a whole half: a slow pair deeper than the floor less this at
+    /// the start is watched, any other cannot get to the floor.
+    pub fast: Real,
+    /// Depth no pair may reach, in units of the thickness: half way to the medial axes. Above 1 they
+    /// cross.
+    pub floor: Real,
+    /// Relative travel in a step, in units of the thickness, from which a pair is muted. Between this
+    /// and [`Self::fast`] both the solver and the loop have it.
+    pub muted: Real,
+    /// Gap at which a fast pair counts as in contact, in units of rapier's length unit, and of the
+    /// thickness, whichever is less.
+    pub gap: [Real; 2],
+    /// Tolerance of the query, in units of the gap: smaller costs iterations.
+    pub tolerance: Real,
+    /// Gap up to which a pair touches at the start and belongs to the solver, in units of [`Self::gap`].
+    pub touching: Real,
+    /// Gap at which a pair stops the world, in units of [`Self::gap`]: with the query's tolerance and
+    /// rounding below [`Self::touching`], so that the solver has the contact in what is left of the
+    /// step.
+    pub stopping: Real,
+    /// How much deeper a touching fast pair may get in one go, in units of the thickness.
+    pub sink: Real,
+    /// How much deeper a pair below the floor may get in one go, in units of the gap. At 0 it would
+    /// never leave its first contact.
+    pub hair: Real,
+    /// Impacts of a body in one step after which it stays where it is.
+    pub max_events: u32,
+    /// Times that the world stops in one step. Each costs a step; after the last one impulses take the
+    /// rest, so fewer only make impacts less exact.
+    pub max_stops: usize,
+    /// Depth from which bodies in an impact are pushed apart, in units of the thickness.
+    pub push_from: Real,
+    /// Share of the depth below it that is pushed out in a step.
+    pub push: Real,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            fast: 0.25,
+            floor: 0.5,
+            muted: 1.0,
+            gap: [1.0e-3, 0.1],
+            tolerance: 0.1,
+            touching: 0.45,
+            stopping: 0.25,
+            sink: 0.1,
+            hair: 0.1,
+            max_events: 16,
+            max_stops: 8,
+            push_from: 0.1,
+            push: 0.2,
+        }
+    }
+}
+
+impl Tuning {
+    /// Depth of rapier's contacts, in units of the thickness, from which a slow pair is watched.
+    pub(super) fn guarded(&self) -> Real {
+        self.floor - self.fast
+    }
+
+    /// Impacts after which a body is no longer carried along either: two that push it from both sides
+    /// would go on for ever.
+    pub(super) fn max_carried(&self) -> u32 {
+        2 * self.max_events
+    }
+}

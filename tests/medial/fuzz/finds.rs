@@ -1,0 +1,34 @@
+//! What the fuzzing found, kept.
+
+use parry3d::math::{Pose, Rotation, Vector};
+use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
+use parry3d::shape::SharedShape;
+use rapier3d_medial::parry::MedialDispatcher;
+use rapier3d_medial::{MedialMesh, MedialSphere};
+
+/// The inverse of a pose so far away is not finite: a panic here, and a debug assertion of parry.
+#[test]
+fn poses_at_the_end_of_the_numbers_are_survived() {
+    let dispatcher = MedialDispatcher::default().chain(DefaultQueryDispatcher);
+    let sphere = |x, y, z, r| MedialSphere::new(Vector::new(x, y, z), r);
+    let spheres = vec![
+        sphere(-0.774, 0.086, 0.331, 0.072),
+        sphere(-0.887, 0.045, -0.631, 0.231),
+        sphere(-0.195, -0.869, -0.455, 0.003),
+    ];
+    let mesh = MedialMesh::new(spheres, vec![], vec![[0, 1, 2]]).expect("a slab");
+    let far = Vector::new(-2.6e38, -2.12e38, 5.6e37);
+    let rotation = Rotation::from_xyzw(0.886, 0.418, -0.1885, 0.0686).normalize();
+    let pose = Pose::from_parts(far, rotation);
+    assert!(pose.is_finite() && !pose.inverse().is_finite());
+    for other in [
+        SharedShape::capsule_y(0.0, 0.28),
+        SharedShape::cone(0.81, 1.43),
+        SharedShape::round_cone(0.81, 1.43, 0.1),
+        SharedShape::cuboid(0.3, 0.2, 0.1),
+    ] {
+        let _ = dispatcher.distance(&pose, &mesh, &*other);
+        let _ = dispatcher.contact(&pose, &mesh, &*other, 1.0);
+        let _ = dispatcher.intersection_test(&pose, &mesh, &*other);
+    }
+}
