@@ -138,7 +138,11 @@ pub fn balanced(
     let most = collapsed.most;
     let mut best = match &collapsed.fine {
         Some(fine) => {
-            let start = measured_start(fine, target, most, watch)?;
+            let mut start = measured_start(fine, target, most, watch)?;
+            // It keeps the topology, were it above the count.
+            if start.primitives().len() > most {
+                start.clone_from(&collapsed.start);
+            }
             grown(start, target, most, watch)?
         }
         None => grown(collapsed.start.clone(), target, most, watch)?,

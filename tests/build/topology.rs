@@ -3,6 +3,23 @@
 use crate::build;
 use crate::meshes::*;
 use parry3d::math::Vector;
+use rapier3d_medial::{BuildOptions, MedialMesh};
+
+/// A ring needs three primitives; one is one all the same.
+#[test]
+fn the_count_is_kept_before_the_hole() {
+    let mesh = torus(0.5, 0.12, 24, 8);
+    let options = BuildOptions {
+        primitives: Some(1),
+        enclose: false,
+        ..Default::default()
+    };
+    let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
+    let (medial, report) = built.expect("a ring builds");
+    assert_eq!(medial.primitive_count(), 1);
+    let given_up = |n: &String| n.contains("given up");
+    assert!(report.notes.iter().any(given_up), "{:?}", report.notes);
+}
 
 #[test]
 fn the_euler_number_is_that_of_the_solid() {
