@@ -19,7 +19,7 @@ const SOLVED: usize = 4;
 
 /// Gaps that differ by less count as equal, in units of the prediction distance: contacts that bore
 /// before stay, and wide ones come first. Without it the choice flickers, and impulses are lost.
-const EQUAL: f64 = 0.05;
+const EQUAL: f64 = 0.02;
 
 /// Contacts nearer to each other than this are one, in units of the prediction distance; as in rapier.
 const SAME_PLACE: f64 = 0.25;
