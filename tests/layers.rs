@@ -157,3 +157,55 @@ fn files_open_with_what_they_are_and_stay_short() {
         assert!(lines <= LONGEST, "{} has {lines} lines", path.display());
     }
 }
+
+/// The numbers in a text, as they are written but for the commas of thousands; a sign counts only in
+/// an exponent. What stands in backticks is no measurement, nor are numbers of figures and tables.
+fn numbers(text: &str) -> Vec<String> {
+    let text = text.split('`').step_by(2).collect::<String>();
+    let mut found = Vec::new();
+    let mut last = "";
+    for word in text.split([
+        ' ', '|', '/', '(', ')', '\n', '"', '[', ']', ':', ';', '−', '+', '%',
+    ]) {
+        let named = last.starts_with("Figure") || last.starts_with("Table");
+        if !word.is_empty() {
+            last = word;
+        }
+        let word = word.trim_matches(|c: char| !c.is_ascii_digit());
+        let plain = word.replace(',', "");
+        if !named && plain.parse::<f64>().is_ok() {
+            found.push(plain);
+        }
+    }
+    found
+}
+
+/// `docs/accuracy.md` tells of one run, whose tables are `docs/accuracy.csv`: each of its table rows
+/// takes its numbers from one row of the run, each number of its text is one of the run's.
+#[test]
+fn accuracy_page_has_only_numbers_of_its_run() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let read = |name: &str| fs::read_to_string(docs.join(name)).expect("a file of docs");
+    let run = read("accuracy.csv");
+    // Commas part the cells there; those within quotes stay in front of a space.
+    let rows: Vec<Vec<String>> = run.lines().map(|l| numbers(&l.replace(',', " "))).collect();
+    let page = read("accuracy.md");
+    let mut checked = 0;
+    for line in page.lines() {
+        let wanted = numbers(line);
+        let within = |row: &Vec<String>| wanted.iter().all(|n| row.contains(n));
+        if line.starts_with('|') {
+            assert!(
+                rows.iter().any(within),
+                "no row of the run has all of: {line}"
+            );
+        } else {
+            let missing = wanted
+                .iter()
+                .find(|n| !rows.iter().flatten().any(|m| m == *n));
+            assert_eq!(missing, None, "not of the run: {line}");
+        }
+        checked += wanted.len();
+    }
+    assert!(checked > 100, "only {checked} numbers were found");
+}

@@ -3,6 +3,7 @@
 //! ```text
 //! cargo bench --bench effects              # some minutes
 //! cargo bench --bench effects -- --quick   # a minute: fewer flights and heaps
+//! cargo bench --bench effects -- --planted # seconds: the planted scenes only
 //! cargo bench --bench effects -- --sweep   # the event loop's constants, halved and doubled
 //! ```
 //!
@@ -81,6 +82,9 @@ fn main() {
     }
     let quick = asked("--quick");
     let rows = rows();
+    if asked("--planted") {
+        return planted::table(&rows);
+    }
     let steppers: Vec<Stepper> = rows.iter().map(|(_, s)| *s).collect();
     let name = |k: usize| rows[k].0;
 
@@ -133,12 +137,5 @@ fn main() {
         println!("| {} | {row} |", name(k));
     }
 
-    println!("\nPlanted, {} cases each\n", planted::CASES);
-    println!(
-        "| | slow presses passed | balls overlooked by a turning rod | depth of flat landings, % of the radii |"
-    );
-    println!("|---|---|---|---|");
-    for (name, stepper) in &rows {
-        println!("| {name} | {} |", planted::row(7_501, *stepper));
-    }
+    planted::table(&rows);
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Width and height, in the unit of the fonts: small, so that text is large where it is scaled.
 const SIZE: (u32, u32) = (760, 500);
 
-const COLORS: [RGBColor; 7] = [
+const COLORS: [RGBColor; 8] = [
     RGBColor(0, 110, 160),
     RGBColor(200, 80, 20),
     RGBColor(30, 130, 60),
@@ -16,6 +16,7 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(110, 100, 0),
     RGBColor(190, 30, 80),
     RGBColor(70, 80, 95),
+    RGBColor(20, 160, 160),
 ];
 
 type Place = (f64, f64);
@@ -159,9 +160,10 @@ fn drawn(
             };
             chart.draw_series(points.iter().map(label))?;
         }
-        // A front falls to the right, which leaves the lower left free.
+        // A front falls to the right, which leaves the lower left free; many settings leave the middle.
         let corner = match points {
             [] => SeriesLabelPosition::UpperRight,
+            [_, _, _, _, _, ..] => SeriesLabelPosition::MiddleLeft,
             _ => SeriesLabelPosition::LowerLeft,
         };
         chart

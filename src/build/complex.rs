@@ -204,51 +204,6 @@ impl Complex {
         }
     }
 
-    /// Takes a face out of each hollow shell of four faces whose middle `is_solid`: collapses leave
-    /// them where many balls are close, and the solid has no void there. The face that goes is the
-    /// one nearest to the fourth ball, whose own three faces cover it best.
-    pub fn open_shells(&mut self, is_solid: impl Fn(Point) -> bool) {
-        for a in 0..self.balls.len() as u32 {
-            while let Some(shell) = self.shell_at(a) {
-                if !is_solid(self.middle(&shell)) {
-                    break;
-                }
-                let height = |k: &usize| {
-                    let face = [1, 2, 3].map(|i| shell[(k + i) % 4]);
-                    (self.balls[shell[*k] as usize].center - self.middle(&face)).length()
-                };
-                let least = (0..4).min_by(|i, j| height(i).total_cmp(&height(j)));
-                let apex = shell[least.unwrap_or(0)];
-                let covered = |&f: &u32| {
-                    let face = self.faces[f as usize];
-                    !face.contains(&apex) && face.iter().all(|v| shell.contains(v))
-                };
-                let at = shell.into_iter().find(|&v| v != apex).unwrap_or(a);
-                let Some(face) = self.faces_of[at as usize].iter().copied().find(covered) else {
-                    break;
-                };
-                self.drop_face(face);
-            }
-        }
-    }
-
-    /// Four balls, of which `a` has the smallest index, all of whose four faces there are.
-    fn shell_at(&self, a: u32) -> Option<[u32; 4]> {
-        for face in self.faces_at(a) {
-            let mut others = face.into_iter().filter(|&v| v != a);
-            let (x, y) = (others.next()?, others.next()?);
-            if x < a || y < a {
-                continue;
-            }
-            let has = |u: u32, z: u32| self.opposite(a, u).any(|w| w == z);
-            let fourth = |&z: &u32| z > a && has(x, z) && has(y, z);
-            if let Some(z) = self.opposite(x, y).find(fourth) {
-                return Some([a, x, y, z]);
-            }
-        }
-        None
-    }
-
     /// What is alive, as a draft.
     pub fn draft(&self) -> Draft {
         let mut index = vec![u32::MAX; self.balls.len()];

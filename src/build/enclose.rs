@@ -30,9 +30,11 @@ const POINTS: usize = 30_000;
 /// three passes settle nearly all.
 const DILATION_PASSES: usize = 8;
 
-/// Longest edge of the smallest pieces of the certificate (longest side 1). A piece across the seam
-/// of two primitives costs up to this much growth; halving it doubles the time along seams.
+/// Longest edge of the smallest pieces of the certificate (longest side 1), up to 500 primitives. A
+/// piece across the seam of two primitives costs up to this much growth; halving it doubles the time
+/// along seams. More primitives have smaller errors: it shrinks as their own size does.
 const FINEST: f64 = 0.003;
+const FINEST_UP_TO: f64 = 500.0;
 
 /// Passes of the certificate before all balls grow alike. Measured: 2 to 5 are needed.
 const CERTIFICATE_PASSES: usize = 12;
@@ -125,6 +127,7 @@ fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<()
     let needles = surface.needles.iter();
     let needles = needles.map(|t| t.map(|v| surface.vertices[v as usize]));
     let mut open: Vec<[Point; 3]> = surface.all_corners().chain(needles).collect();
+    let crowd = (draft.primitives().len() as f64 / FINEST_UP_TO).max(1.0);
     for pass in 0..CERTIFICATE_PASSES {
         let mut growth = Growth::none(draft);
         let tree = PrimitiveTree::new(draft);
@@ -132,6 +135,7 @@ fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<()
             tree: &tree,
             hint: 0,
             worst: 0.0,
+            finest_sq: FINEST * FINEST / crowd,
         };
         let mut left = Vec::new();
         for (i, &triangle) in open.iter().enumerate() {
@@ -165,6 +169,8 @@ struct Prover<'a> {
     hint: u32,
     /// Largest distance by which a piece was missed.
     worst: f64,
+    /// Squared length of the longest edge of the smallest pieces.
+    finest_sq: f64,
 }
 
 impl Prover<'_> {
@@ -177,7 +183,7 @@ impl Prover<'_> {
             if worst.distance <= 0.0 {
                 continue;
             }
-            if longest_edge_sq(&piece) > FINEST * FINEST {
+            if longest_edge_sq(&piece) > self.finest_sq {
                 pieces.extend(halve(piece));
                 continue;
             }

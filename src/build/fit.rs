@@ -10,10 +10,11 @@ use super::refit::{Target, refit};
 use super::samples::{even_samples, vertex_samples};
 use super::simplify::{BOUNDARY_WEIGHT_SOLID, Simplifier};
 use super::surface::Surface;
-use super::swaps::{Scored, grow, remove, swap};
+use super::swaps::{Scored, Swaps, grow, remove, swap};
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
 use crate::error::BuildError;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Up to this many primitives several starts are tried, and larger shares swapped.
 const SMALL: usize = 200;
@@ -21,8 +22,9 @@ const SMALL: usize = 200;
 /// Above this many measured cost no longer beats the quadrics' and takes too long.
 const LARGE: usize = 1000;
 
-/// Spacing of envelope samples (longest side 1).
-const ENVELOPE_SPACING: f64 = 0.01;
+/// Spacing of envelope samples (longest side 1), up to [`SMALL`] and above: it must stay below the
+/// size of the primitives, for bulges between samples are not seen.
+const ENVELOPE_SPACING: [f64; 2] = [0.01, 0.007];
 
 /// The samples to fit `most` primitives to.
 pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> Target<'a> {
@@ -35,15 +37,22 @@ pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> Tar
     Target {
         tree,
         samples,
-        spacing: ENVELOPE_SPACING,
+        spacing: ENVELOPE_SPACING[usize::from(most > SMALL)],
     }
+}
+
+/// Few samples, to tell drafts that may serve from those that cannot.
+pub fn rough_target<'a>(surface: &Surface, tree: &'a TriangleTree) -> Target<'a> {
+    target(surface, tree, 1)
 }
 
 /// Counts above this have no more samples: the count alone must not overflow.
 const LARGEST_FIT: usize = 10_000;
 
-/// Drafts of a plain collapse on its way to the count wanted.
+/// Drafts of a plain collapse on its way to a count.
 pub struct Collapsed {
+    /// The count.
+    pub most: usize,
     /// About twice as many primitives as a start.
     pub fine: Option<Draft>,
     /// As many as a start.
@@ -58,79 +67,109 @@ fn start_count(most: usize) -> usize {
     ((most as f64 * share) as usize).max(8).min(most)
 }
 
-impl Collapsed {
-    /// Collapses to `most` primitives.
-    pub fn new(
-        simplifier: &mut Simplifier,
-        most: usize,
-        watch: &mut Watch,
-    ) -> Result<Self, BuildError> {
-        let start = start_count(most);
-        simplifier.reduce_to((2 * start).max(start + 100), watch)?;
-        let fine = (most <= LARGE).then(|| simplifier.draft());
-        if start == most {
-            simplifier.reduce_to(most, watch)?;
-            let plain = simplifier.draft();
-            return Ok(Self {
-                fine,
-                start: plain.clone(),
-                plain,
-            });
-        }
-        let mut plain = None;
-        if simplifier.primitives() > most {
-            simplifier.reduce_to(most, watch)?;
-            plain = Some(simplifier.draft());
-        }
-        simplifier.reduce_to(start, watch)?;
-        let start = simplifier.draft();
-        Ok(Self {
-            fine,
-            plain: plain.unwrap_or_else(|| start.clone()),
-            start,
-        })
-    }
+/// Primitives of what a start by measured cost is collapsed from.
+fn fine_count(most: usize) -> usize {
+    let start = start_count(most);
+    (2 * start).max(start + 100)
 }
+
+/// Round counts that are tried as well when a larger one is asked for.
+const ROUND: [usize; 12] = [
+    50_000, 20_000, 10_000, 5_000, 2_000, 1_000, 500, 200, 100, 50, 20, 10,
+];
+
+/// Collapses to `most` primitives, and to the round counts below as long as the topology stays: the
+/// drafts for each, the largest count first, and whether that one kept the topology.
+pub fn collapse(
+    simplifier: &mut Simplifier,
+    most: usize,
+    watch: &mut Watch,
+) -> Result<(Vec<Collapsed>, bool), BuildError> {
+    // More than there is would be copied again and again.
+    let most = most.min(simplifier.primitives()).max(1);
+    let round = ROUND.into_iter().filter(|n| *n < most);
+    let tried = std::iter::once(most).chain(round);
+    let counts: BTreeSet<usize> = tried
+        .clone()
+        .flat_map(|n| [fine_count(n), n, start_count(n)])
+        .collect();
+    let least = start_count(most);
+    let mut drafts = BTreeMap::new();
+    let mut kept = true;
+    for &count in counts.iter().rev() {
+        simplifier.reduce_to(count, watch)?;
+        let keeps = !simplifier.broke_topology();
+        if count < least && !keeps {
+            break;
+        }
+        kept &= keeps;
+        drafts.insert(count, simplifier.draft());
+    }
+    let tried = tried.take_while(|n| drafts.contains_key(&start_count(*n)));
+    let of = |count: usize| drafts[&count].clone();
+    let collapsed = |most| Collapsed {
+        most,
+        fine: (most <= LARGE).then(|| of(fine_count(most))),
+        start: of(start_count(most)),
+        plain: of(most),
+    };
+    Ok((tried.map(collapsed).collect(), kept))
+}
+
+/// Swaps of small counts, and of larger ones. With fewer iterations most rounds of the latter fail.
+const SMALL_SWAPS: Swaps = Swaps {
+    share: 0.15,
+    rounds: 6,
+    iterations: 6,
+};
+const SWAPS: Swaps = Swaps {
+    share: 0.06,
+    rounds: 3,
+    iterations: 8,
+};
 
 /// Fits a closed surface's draft to at most `most` primitives: the result of
 /// [`super::Quality::Balanced`].
 pub fn balanced(
     collapsed: &Collapsed,
     target: &Target,
-    most: usize,
     watch: &mut Watch,
 ) -> Result<Scored, BuildError> {
+    let most = collapsed.most;
     let mut best = match &collapsed.fine {
         Some(fine) => {
-            let start = measured_start(fine, target, most, watch)?;
+            let mut start = measured_start(fine, target, most, watch)?;
+            // It keeps the topology, were it above the count.
+            if start.primitives().len() > most {
+                start.clone_from(&collapsed.start);
+            }
             grown(start, target, most, watch)?
         }
         None => grown(collapsed.start.clone(), target, most, watch)?,
     };
     if most <= SMALL {
         better(&mut best, refitted(collapsed.plain.clone(), target, watch)?);
-        best = swap(best, target, most, 0.2, 2, watch)?;
+        best = last(swap(best, target, most, SMALL_SWAPS, watch)?);
     }
     Ok(best)
 }
 
-/// Goes on from [`balanced`] with more starts and swaps: the result of [`super::Quality::Best`].
-pub fn best(
+/// Goes on from [`balanced`] with swaps, for small counts from another start as well: drafts among
+/// which is the result of [`super::Quality::Best`].
+pub fn more(
     balanced: Scored,
     collapsed: &Collapsed,
     target: &Target,
-    most: usize,
     watch: &mut Watch,
-) -> Result<Scored, BuildError> {
-    let mut best = balanced;
-    let (share, rounds) = if most <= SMALL { (0.2, 6) } else { (0.1, 2) };
-    if most <= SMALL {
-        better(
-            &mut best,
-            grown(collapsed.start.clone(), target, most, watch)?,
-        );
+) -> Result<Vec<Scored>, BuildError> {
+    let most = collapsed.most;
+    if most > SMALL {
+        return swap(balanced, target, most, SWAPS, watch);
     }
-    swap(best, target, most, share, rounds, watch)
+    let mut drafts = swap(balanced, target, most, SWAPS, watch)?;
+    let start = grown(collapsed.start.clone(), target, most, watch)?;
+    drafts.extend(swap(start, target, most, SMALL_SWAPS, watch)?);
+    Ok(drafts)
 }
 
 /// A refit alone: for drafts that must keep their complex.
@@ -174,4 +213,10 @@ fn better(best: &mut Scored, other: Scored) {
     if other.1 < best.1 {
         *best = other;
     }
+}
+
+/// The last of drafts that get better and better.
+fn last(drafts: Vec<Scored>) -> Scored {
+    let none = || (Draft::default(), f64::INFINITY);
+    drafts.into_iter().next_back().unwrap_or_else(none)
 }

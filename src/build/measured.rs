@@ -135,7 +135,6 @@ pub fn reduce_measured(
             heap.push(measure.candidate(simplifier, [a.min(v), a.max(v)], accepted));
         }
     }
-    simplifier.open_shells();
     Ok(())
 }
 

@@ -40,6 +40,7 @@ mod subdivide;
 mod surface;
 mod swaps;
 mod triangle_tree;
+mod voids;
 mod watch;
 mod weld;
 

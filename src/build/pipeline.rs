@@ -36,9 +36,16 @@ impl Candidate {
     }
 }
 
+/// Note on a result that is not what the source was.
+const GAVE_UP: &str = "holes or parts were given up to reach the count";
+
 /// A fit whose largest residual is below this share of the plain collapse's is better without
 /// measuring both.
 const CLEARLY_BETTER: f64 = 0.75;
+
+/// How much larger a plain collapse's error may be, before enclosure, than that of its fit after it:
+/// 1.3 on a ring, 2 on the bug, where all counts of primitives differ by more.
+const LARGEST_GAIN: f64 = 2.0;
 
 /// The checked surface, its tree, and what to build from it.
 pub struct Source {
@@ -62,59 +69,106 @@ impl Source {
         watch.begin("simplify")?;
         let mut parts = Parts::new(start, &self.tree, watch)?;
         let most = self.limits.primitives.unwrap_or(usize::MAX);
-        let mut candidate = if let Some(error) = self.limits.max_error {
-            parts.reduce_to(most, watch)?;
-            self.coarsest(&mut parts, error, watch)?
-        } else if let Some(simplifier) = self.fittable(&mut parts) {
-            self.fitted(simplifier, most, watch)?
-        } else {
-            parts.reduce_to(most, watch)?;
-            self.finish(parts.draft(), watch)?
+        if self.limits.max_error.is_none()
+            && let Some(simplifier) = parts.only_solid()
+        {
+            return self.best_of(simplifier, most, watch);
+        }
+        parts.reduce_to(most, watch)?;
+        let mut candidate = match self.limits.max_error {
+            Some(error) => self.coarsest(&mut parts, error, watch)?,
+            None => self.finish(parts.draft(), watch)?,
         };
         if parts.broke_topology() {
-            candidate
-                .notes
-                .push("holes or parts were given up to reach the count".into());
+            candidate.notes.push(GAVE_UP.into());
         }
         Ok(candidate)
     }
 
-    /// The simplifier of what a fit can improve: solids without sheets or overlaps, whose surface
-    /// tells inside from outside at each point.
-    fn fittable<'p, 's>(&self, parts: &'p mut Parts<'s>) -> Option<&'p mut Simplifier<'s>> {
-        let wanted = self.limits.quality > Quality::Fast && self.surface.simple;
-        parts.only_solid().filter(|_| wanted)
-    }
-
-    /// The best of the plain collapse, the balanced fit and, if asked for, the best fit, by the
-    /// error that is reported: a higher quality has the lower one's result among its own.
-    fn fitted(
+    /// The best by the error that is reported of what each quality up to the one asked for gives, for
+    /// the count asked for and for one that is smaller and promising: round bodies need few
+    /// primitives, and more of them would fit worse.
+    fn best_of(
         &self,
         simplifier: &mut Simplifier,
         most: usize,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
-        let collapsed = Collapsed::new(simplifier, most, watch)?;
-        let target = fit::target(&self.surface, &self.tree, most);
-        let balanced = fit::balanced(&collapsed, &target, most, watch)?;
-        let mut best = self.enclosed(balanced.0.clone(), Effort::CLOSE, watch)?;
-        let plain = target.residuals(&collapsed.plain, watch)?.largest;
-        if target.residuals(&balanced.0, watch)?.largest > CLEARLY_BETTER * plain {
-            best = self.or_better(best, collapsed.plain.clone(), watch)?;
+        let (collapsed, kept_topology) = fit::collapse(simplifier, most, watch)?;
+        let Some((first, smaller)) = collapsed.split_first() else {
+            return self.finish(simplifier.draft(), watch);
+        };
+        let mut best = self.fitted(first, None, watch)?;
+        if let Some(other) = self.promising(smaller, &best, watch)? {
+            best = self.fitted(other, Some(best), watch)?;
         }
-        if self.limits.quality == Quality::Best {
-            let score = balanced.1;
-            let (draft, new) = fit::best(balanced, &collapsed, &target, most, watch)?;
-            if new < score {
-                best = self.or_better(best, draft, watch)?;
+        let mut candidate = self.reported(best, watch)?;
+        if !kept_topology {
+            candidate.notes.push(GAVE_UP.into());
+        }
+        Ok(candidate)
+    }
+
+    /// Of smaller counts the one to try: the smallest that a fit may bring below the best, or if
+    /// nothing is fitted the one with the smallest error, if that is below the best.
+    fn promising<'c>(
+        &self,
+        smaller: &'c [Collapsed],
+        best: &Enclosed,
+        watch: &mut Watch,
+    ) -> Result<Option<&'c Collapsed>, BuildError> {
+        let target = fit::rough_target(&self.surface, &self.tree);
+        let gain = if self.fits() { LARGEST_GAIN } else { 1.0 };
+        let mut least = gain * f64::from(best.hausdorff.error());
+        let mut promising = None;
+        for collapsed in smaller {
+            let error = target.residuals(&collapsed.plain, watch)?.largest;
+            if error < least {
+                promising = Some(collapsed);
+                if !self.fits() {
+                    least = error;
+                }
             }
         }
-        self.reported(best, watch)
+        Ok(promising)
+    }
+
+    /// Whether drafts are fitted. Surfaces of parts that overlap do not tell inside from outside at
+    /// each point.
+    fn fits(&self) -> bool {
+        self.limits.quality > Quality::Fast && self.surface.simple
+    }
+
+    /// The best of `best` and what each quality gives for a count.
+    fn fitted(
+        &self,
+        collapsed: &Collapsed,
+        best: Option<Enclosed>,
+        watch: &mut Watch,
+    ) -> Result<Enclosed, BuildError> {
+        if !self.fits() {
+            return self.or_better(best, collapsed.plain.clone(), watch);
+        }
+        let target = &fit::target(&self.surface, &self.tree, collapsed.most);
+        let balanced = fit::balanced(collapsed, target, watch)?;
+        let mut best = self.or_better(best, balanced.0.clone(), watch)?;
+        let plain = target.residuals(&collapsed.plain, watch)?.largest;
+        if target.residuals(&balanced.0, watch)?.largest > CLEARLY_BETTER * plain {
+            best = self.or_better(Some(best), collapsed.plain.clone(), watch)?;
+        }
+        if self.limits.quality == Quality::Best {
+            // The first is the balanced one itself.
+            let drafts = fit::more(balanced, collapsed, target, watch)?;
+            for (draft, _) in drafts.into_iter().skip(1) {
+                best = self.or_better(Some(best), draft, watch)?;
+            }
+        }
+        Ok(best)
     }
 
     /// A rung of the ladder as the quality wants it: fitted where it is above [`Quality::Fast`].
     fn rung(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        if self.limits.quality == Quality::Fast || !self.surface.simple {
+        if !self.fits() {
             return self.finish(draft, watch);
         }
         let target = fit::target(&self.surface, &self.tree, draft.primitives().len());
@@ -212,10 +266,13 @@ impl Source {
     /// The better of two; the second is measured only until it is worse.
     fn or_better(
         &self,
-        best: Enclosed,
+        best: Option<Enclosed>,
         other: Draft,
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
+        let Some(best) = best else {
+            return self.enclosed(other, Effort::CLOSE, watch);
+        };
         let error = best.hausdorff.error();
         let effort = Effort {
             enough: error.into(),

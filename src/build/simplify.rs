@@ -13,6 +13,7 @@ use super::complex::Complex;
 use super::draft::{Ball, Draft};
 use super::quadric::{Quadric, cone_normals, slab_normals};
 use super::triangle_tree::TriangleTree;
+use super::voids::open_voids;
 use super::watch::Watch;
 use crate::error::BuildError;
 use std::cmp::Ordering;
@@ -121,9 +122,12 @@ impl<'a> Simplifier<'a> {
         !self.keep_topology
     }
 
-    /// The medial mesh as it is now.
+    /// The medial mesh as it is now, without voids where the solid has none: collapses leave them
+    /// where many balls are close.
     pub fn draft(&self) -> Draft {
-        self.complex.draft()
+        let mut draft = self.complex.draft();
+        open_voids(&mut draft, |middle| self.tree.winding(middle) > 0.5);
+        draft
     }
 
     /// Collapses the cheapest edges until there are at most `target` (at least 1) primitives.
@@ -142,15 +146,7 @@ impl<'a> Simplifier<'a> {
                 None => break,
             }
         }
-        self.open_shells();
         Ok(())
-    }
-
-    /// See [`Complex::open_shells`].
-    pub(super) fn open_shells(&mut self) {
-        let tree = self.tree;
-        self.complex
-            .open_shells(|middle| tree.winding(middle) > 0.5);
     }
 
     fn take(&mut self, candidate: Candidate) {

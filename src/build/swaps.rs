@@ -15,34 +15,50 @@ use crate::error::BuildError;
 /// A fitted draft and its score.
 pub type Scored = (Draft, f64);
 
-/// `rounds` of swaps of the share `share` of `most` primitives, less in each later round.
+/// Insertions within a round: with fewer most rounds fail.
+const INSERTIONS: usize = 3;
+
+/// How much is swapped.
+#[derive(Clone, Copy)]
+pub struct Swaps {
+    /// Share of the primitives that the first round moves; later ones move less.
+    pub share: f64,
+    /// Rounds.
+    pub rounds: usize,
+    /// Iterations of the refit that ends each.
+    pub iterations: usize,
+}
+
+/// Swaps among `most` primitives: the start, and after it each draft that is better than all before.
 pub fn swap(
     start: Scored,
     target: &Target,
     most: usize,
-    share: f64,
-    rounds: usize,
+    swaps: Swaps,
     watch: &mut Watch,
-) -> Result<Scored, BuildError> {
-    let (mut best, mut score) = start;
-    for round in 0..rounds {
-        let removed = share * most as f64 / (1.0 + 0.5 * round as f64);
+) -> Result<Vec<Scored>, BuildError> {
+    let mut drafts = Vec::new();
+    let mut best = start;
+    for round in 0..swaps.rounds {
+        let removed = swaps.share * most as f64 / (1.0 + 0.5 * round as f64);
         let removed = (removed as usize).max(2);
         // Below that nothing is left to hang the new ones on.
         if removed + 2 > most {
             break;
         }
         watch.begin("swaps")?;
-        let simplifier = Simplifier::new(best.clone(), BOUNDARY_WEIGHT_SOLID, target.tree, watch)?;
+        let (weight, tree) = (BOUNDARY_WEIGHT_SOLID, target.tree);
+        let simplifier = Simplifier::new(best.0.clone(), weight, tree, watch)?;
         let mut draft = remove(simplifier, most - removed, target, watch)?;
-        grow(&mut draft, target, most, 2, watch)?;
+        grow(&mut draft, target, most, INSERTIONS, watch)?;
         watch.begin("refit")?;
-        let new = refit(&mut draft, target, 4, watch)?;
-        if new < score {
-            (best, score) = (draft, new);
+        let score = refit(&mut draft, target, swaps.iterations, watch)?;
+        if score < best.1 {
+            drafts.push(std::mem::replace(&mut best, (draft, score)));
         }
     }
-    Ok((best, score))
+    drafts.push(best);
+    Ok(drafts)
 }
 
 /// Collapses by measured cost, over half of the samples where there are few primitives.

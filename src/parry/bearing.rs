@@ -19,7 +19,7 @@ const SOLVED: usize = 4;
 
 /// Gaps that differ by less count as equal, in units of the prediction distance: contacts that bore
 /// before stay, and wide ones come first. Without it the choice flickers, and impulses are lost.
-const EQUAL: f64 = 0.05;
+const EQUAL: f64 = 0.02;
 
 /// Contacts nearer to each other than this are one, in units of the prediction distance; as in rapier.
 const SAME_PLACE: f64 = 0.25;
@@ -108,7 +108,8 @@ pub fn choose<M, C: Copy>(
     borne: &[Borne<C>],
     side: usize,
 ) {
-    let equal = EQUAL * f64::from(prediction);
+    let prediction = f64::from(prediction);
+    let equal = EQUAL * prediction;
     let mut normals: Vec<(Vector, Vec<Seen>)> = Vec::new();
     for (m, manifold) in manifolds.iter().enumerate() {
         if manifold.points.is_empty() {
@@ -129,7 +130,7 @@ pub fn choose<M, C: Copy>(
             let from = points[0] - center;
             let bore = borne
                 .iter()
-                .any(|b| b.place.distance(points[side]) < prediction);
+                .any(|b| f64::from(b.place.distance(points[side])) < SAME_PLACE * prediction);
             seen.push(Seen {
                 contact: [m, i],
                 at: [from.dot(x).into(), from.dot(y).into()],
@@ -139,10 +140,14 @@ pub fn choose<M, C: Copy>(
     }
     let mut left_out = Vec::new();
     for (_, seen) in &mut normals {
-        left_out.extend(without_doubles(seen, SAME_PLACE * f64::from(prediction)));
-        if seen.len() <= SOLVED {
+        left_out.extend(without_doubles(seen, SAME_PLACE * prediction));
+        if seen.iter().filter(|s| s.gap <= prediction).count() <= SOLVED {
             continue;
         }
+        left_out.extend(
+            seen.extract_if(.., |s| s.gap > prediction)
+                .map(|s| s.contact),
+        );
         let size = seen
             .iter()
             .map(|s| square(s.at))
@@ -150,7 +155,7 @@ pub fn choose<M, C: Copy>(
         for s in seen.iter_mut() {
             s.gap -= equal * square(s.at) / size;
         }
-        let bear = bearing(seen, equal);
+        let bear = bearing(seen);
         let others = (0..seen.len()).filter(|i| !bear.contains(i));
         left_out.extend(others.map(|i| seen[i].contact));
     }
@@ -178,39 +183,33 @@ fn without_doubles(seen: &mut Vec<Seen>, radius: f64) -> Vec<[usize; 2]> {
     doubles
 }
 
-/// Up to four of the contacts: the facet above the origin, and the one that widens it best among those
-/// within `equal` of its plane, or else the nearest to it.
-fn bearing(seen: &[Seen], equal: f64) -> Vec<usize> {
-    let (facet, plane) = facet(seen);
-    let mut bear: Vec<usize> = facet.into_iter().flatten().collect();
+/// Four of the contacts: the facet above the origin, and those furthest from it, where the body may
+/// come down next.
+fn bearing(seen: &[Seen]) -> Vec<usize> {
+    let mut bear: Vec<usize> = facet(seen).into_iter().flatten().collect();
     while bear.len() < SOLVED {
-        let above = |s: &Seen| s.gap - (plane[0] + plane[1] * s.at[0] + plane[2] * s.at[1]);
         let apart = |s: &Seen| {
             let to = |b: &usize| square([0, 1].map(|k| s.at[k] - seen[*b].at[k]));
             bear.iter().map(to).fold(f64::MAX, f64::min)
         };
-        // All within the same share of `equal` above the plane: the one furthest from the others.
-        let rank = |i: &usize| ((above(&seen[*i]) / equal).floor(), -apart(&seen[*i]));
         let rest = (0..seen.len()).filter(|i| !bear.contains(i));
-        let next = rest.min_by(|i, j| {
-            let (a, b) = (rank(i), rank(j));
-            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
-        });
+        let next = rest.max_by(|i, j| apart(&seen[*i]).total_cmp(&apart(&seen[*j])));
         let Some(next) = next else { break };
         bear.push(next);
     }
     bear
 }
 
-/// The corners of the facet above the origin, and its plane `a + b x + c y`. A corner is missing where
-/// the origin is not above the contacts: the body then lies on an edge or on one contact.
-fn facet(seen: &[Seen]) -> ([Option<usize>; 3], [f64; 3]) {
+/// The corners of the facet above the origin. One is missing where the origin is not above the contacts:
+/// the body then lies on an edge or on one contact.
+fn facet(seen: &[Seen]) -> [Option<usize>; 3] {
     // Three corners that are not there, so far out and so high that any real facet is below them.
     let reach = 2.0 * seen.iter().map(|s| square(s.at)).fold(0.0, f64::max).sqrt();
     let highest = seen.iter().map(|s| s.gap).fold(f64::MIN, f64::max);
     let around = [[2.0, 0.0], [-1.0, 2.0], [-1.0, -2.0]];
     let far = around.map(|at| at.map(|x: f64| x * reach));
     let mut corners = far.map(|at| (None, at, highest + STEEPEST * reach));
+    // `a + b x + c y`.
     let mut plane = through(&corners.map(|(_, at, gap)| (at, gap)));
     for _ in 0..PIVOTS {
         let above = |s: &Seen| s.gap - (plane[0] + plane[1] * s.at[0] + plane[2] * s.at[1]);
@@ -235,7 +234,7 @@ fn facet(seen: &[Seen]) -> ([Option<usize>; 3], [f64; 3]) {
         }
         (corners, plane) = (changed, next);
     }
-    (corners.map(|(i, _, _)| i), plane)
+    corners.map(|(i, _, _)| i)
 }
 
 /// Shares of three corners in a point: barycentric coordinates.

@@ -1,5 +1,13 @@
 //! The constants of the event loop, in one place so that `cargo bench --bench effects -- --sweep` can
 //! vary them.
+//!
+//! Each was halved and doubled alone: 1,458 flights of two fast bodies, and heaps of 27 loops at 20, 60
+//! and 150 m/s, with restitution 0 (measured at commit 343b3fc, before impacts were kept from gaining
+//! energy, and at 60 m/s again after) and 0.9 (after, where energy is judged). With none was a contact missed or invented, a loop
+//! linked wrongly, or, at 0.9, energy gained, and
+//! the median error of the first change of velocity stayed within 0.01. So none needs tuning. What moves
+//! is told where it does; of the others depth stays within 0.1 of the radii, and the number of queries
+//! within a quarter.
 
 use crate::math::Real;
 
@@ -11,7 +19,8 @@ pub struct Tuning {
     /// the start is watched, any other cannot get to the floor.
     pub fast: Real,
     /// Depth no pair may reach, in units of the thickness: half way to the medial axes. Above 1 they
-    /// cross.
+    /// cross. Halved and doubled, bodies of a heap get 0.2 and 0.5 of the radii of both deep instead of
+    /// 0.27, and queries go from 340 a step to 536 and 315 at 20 m/s.
     pub floor: Real,
     /// Relative travel in a step, in units of the thickness, from which a pair is muted. Between this
     /// and [`Self::fast`] both the solver and the loop have it.
@@ -25,17 +34,18 @@ pub struct Tuning {
     pub touching: Real,
     /// Gap at which a pair stops the world, in units of [`Self::gap`]: with the query's tolerance and
     /// rounding below [`Self::touching`], so that the solver has the contact in what is left of the
-    /// step.
+    /// step. Doubled it is not, which costs a quarter more queries.
     pub stopping: Real,
     /// How much deeper a touching fast pair may get in one go, in units of the thickness.
     pub sink: Real,
     /// How much deeper a pair below the floor may get in one go, in units of the gap. At 0 it would
     /// never leave its first contact.
     pub hair: Real,
-    /// Impacts of a body in one step after which it stays where it is.
+    /// Impacts of a body in one step after which it stays where it is. Halved and doubled, 1.7 times and
+    /// half as many bodies do at 150 m/s, for 0.75 and 1.33 times the queries.
     pub max_events: u32,
     /// Times that the world stops in one step. Each costs a step; after the last one impulses take the
-    /// rest, so fewer only make impacts less exact.
+    /// rest, so fewer only make impacts less exact: at half, 0.7 impulses a flight instead of 0.3.
     pub max_stops: usize,
     /// Depth from which bodies in an impact are pushed apart, in units of the thickness.
     pub push_from: Real,

@@ -14,6 +14,7 @@ mod options;
 mod oracle;
 mod scale;
 mod shapes;
+mod topology;
 
 use meshes::Mesh;
 use rapier3d_medial::Quality;

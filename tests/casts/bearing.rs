@@ -100,7 +100,8 @@ fn the_facet_under_the_load_bears() {
     );
 }
 
-/// The deepest of all is among them where the load is beside all contacts: the body tips over there.
+/// Where the load is beside all contacts the body tips over an edge of theirs; what is deeper than a slope
+/// of 2 % from there stays among them.
 #[test]
 fn deep_contacts_stay_where_the_body_tips_over() {
     let mut random = Random(12);
@@ -118,6 +119,7 @@ fn deep_contacts_stay_where_the_body_tips_over() {
         let mut all = manifolds(&contacts);
         choose(&mut all, Vector::ZERO, 0.002, &[], 0);
         let mut kept = all.iter().flat_map(|m| &m.points);
-        assert!(kept.any(|p| p.dist < 0.8 * deepest), "{case}: {deepest}");
+        // The contacts are within 1.3 m of the load.
+        assert!(kept.any(|p| p.dist < deepest + 0.026), "{case}: {deepest}");
     }
 }
