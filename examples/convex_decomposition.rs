@@ -48,13 +48,7 @@ fn main() -> ExitCode {
 
 fn convex_decomposition(out: &Path) -> Result<(), String> {
     let scene = scene()?;
-    // rapier's merging of contacts lets bodies of many parts sink and tremble, of both kinds
-    // (docs/rapier.md): off for both.
-    let runs = [Kind::Medial, Kind::Parts].map(|kind| {
-        scene.run(kind, STEPS, |stage, _| {
-            stage.world.integration_parameters.contact_clustering = false;
-        })
-    });
+    let runs = [Kind::Medial, Kind::Parts].map(|kind| scene.run(kind, STEPS, |_, _| ()));
     let view = View {
         camera: Camera {
             eye: Vector::new(-14.0, 16.0, 34.0),
