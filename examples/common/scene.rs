@@ -41,6 +41,8 @@ pub enum Kind {
     Medial,
     /// Convex hulls of the true meshes: plain rapier.
     Hulls,
+    /// Convex parts of the true meshes, by rapier's decomposition: plain rapier.
+    Parts,
     /// The true meshes: plain rapier.
     Triangles,
 }
@@ -51,6 +53,7 @@ impl Kind {
         match self {
             Self::Medial => "MEDIAL MESHES",
             Self::Hulls => "CONVEX HULLS",
+            Self::Parts => "CONVEX PARTS",
             Self::Triangles => "TRIANGLE MESHES",
         }
     }
@@ -60,6 +63,7 @@ impl Kind {
         match self {
             Self::Medial => ColliderBuilder::medial_mesh(model.medial.clone()),
             Self::Hulls => ColliderBuilder::convex_hull(vertices).expect("a solid"),
+            Self::Parts => ColliderBuilder::convex_decomposition(vertices, indices),
             Self::Triangles => ColliderBuilder::trimesh(vertices.clone(), indices.clone())
                 .expect("a mesh with triangles"),
         }
