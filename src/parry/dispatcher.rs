@@ -168,7 +168,14 @@ impl QueryDispatcher for MedialDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        let nearest = self.nearest(pos12, g1, g2, Real::MAX)?.ok_or(Unsupported)?;
+        // None where poses are not finite or overflow: parry's own answer to these may panic.
+        let Some(nearest) = self.nearest(pos12, g1, g2, Real::MAX)? else {
+            return Ok(ShapeDistance {
+                distance: Real::MAX,
+                subshape1: 0,
+                subshape2: 0,
+            });
+        };
         Ok(ShapeDistance {
             distance: nearest.distance.max(0.0),
             subshape1: nearest.primitives[0],

@@ -32,3 +32,21 @@ fn poses_at_the_end_of_the_numbers_are_survived() {
         let _ = dispatcher.intersection_test(&pose, &mesh, &*other);
     }
 }
+
+/// A pose that is no number leaves nothing near: a debug assertion of parry, with a capsule of no length.
+#[test]
+fn poses_that_are_no_numbers_leave_nothing_near() {
+    let dispatcher = MedialDispatcher::default().chain(DefaultQueryDispatcher);
+    let ball = MedialSphere::new(Vector::ZERO, 0.3);
+    let mesh = MedialMesh::new(vec![ball], vec![], vec![]).expect("a sphere");
+    let capsule = SharedShape::capsule_y(0.0, 0.28);
+    for x in [f32::NAN, f32::INFINITY] {
+        let pose = Pose::translation(x, 0.0, 0.0);
+        let distance = dispatcher.distance(&pose, &mesh, &*capsule);
+        assert_eq!(distance.map(|d| d.distance).ok(), Some(f32::MAX));
+        let contact = dispatcher.contact(&pose, &mesh, &*capsule, 1.0);
+        assert!(contact.is_ok_and(|c| c.is_none()));
+        let meets = dispatcher.intersection_test(&pose, &mesh, &*capsule);
+        assert!(meets.is_ok_and(|m| !m.intersecting));
+    }
+}
