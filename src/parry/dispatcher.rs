@@ -301,6 +301,11 @@ where
             self.answers.count_manifolds(manifolds.len());
             return Ok(());
         }
+        // Every place where a soft surface touches has a load of its own.
+        let soft = |g: &dyn Shape| g.as_composite_shape().is_some_and(|c| c.is_deformable());
+        if soft(g1) || soft(g2) {
+            return Err(Unsupported);
+        }
         // What a load on one body is above: of two medial meshes the lighter lies on the other.
         let (side, mesh) = match meshes {
             (Some(mesh1), Some(mesh2)) if mesh1.volume() > mesh2.volume() => (1, mesh2),
