@@ -15,7 +15,7 @@
 mod common;
 
 use common::arguments::{Arguments, example, verdict};
-use common::build::build;
+use common::build::{build, model};
 use common::creature::creature;
 use common::falling::{SIZE, falling_on, falling_ring};
 use common::mesh::Mesh;
@@ -26,7 +26,6 @@ use common::scene_table::table;
 use common::skeleton::Skeleton;
 use rapier3d::prelude::*;
 use rapier3d_medial::Backend;
-use rapier3d_medial::build::mesh_file;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -62,13 +61,11 @@ fn main() -> ExitCode {
 
 fn falling_rings(options: Options) -> Result<(), String> {
     let ring = match &options.mesh {
-        None => rings()?,
+        // 27 primitives for 1,200 triangles, as in the paper.
+        None => model("build the ring", falling_ring(), 27)?,
         Some(file) => users_mesh(file)?,
     };
-    let (mesh, skeleton) = creature();
-    mesh.check_closed()?;
-    let medial = build("build the creature", &mesh, 700)?;
-    let creature = Model::new(mesh, skeleton, medial);
+    let creature = model("build the creature", creature(), 700)?;
     let mut scene = falling_on(creature, &ring, if options.quick { 5 } else { 15 });
     scene.backend = options.backend;
 
@@ -94,23 +91,10 @@ fn falling_rings(options: Options) -> Result<(), String> {
     verdict(medial.failures())
 }
 
-/// Rings: 27 primitives for 1,200 triangles, as in the paper.
-fn rings() -> Result<Arc<Model>, String> {
-    let (mesh, skeleton) = falling_ring();
-    mesh.check_closed()?;
-    let medial = build("build the ring", &mesh, 27)?;
-    Ok(Model::new(mesh, skeleton, medial))
-}
-
 /// The user's mesh, scaled to the size of a ring. No formula is known for its inner lines: they are
 /// those of the medial mesh, as far as they are thick.
 fn users_mesh(file: &Path) -> Result<Arc<Model>, String> {
-    let read = mesh_file::read(file).map_err(|e| e.to_string())?;
-    let mesh = Mesh {
-        vertices: read.vertices,
-        indices: read.indices,
-    };
-    let mesh = mesh.fitted(SIZE);
+    let mesh = Mesh::read(file)?.fitted(SIZE);
     let medial = build("build your mesh", &mesh, 100)?;
     let skeleton = Skeleton::of_medial(&medial, 0.02 * SIZE);
     Ok(Model::new(mesh, skeleton, medial))

@@ -13,19 +13,16 @@
 mod common;
 
 use common::arguments::{example_with_out, verdict};
-use common::build::build;
-use common::mesh::Mesh;
+use common::build::model;
 use common::render::Camera;
-use common::scene::{Actor, Kind, Model, Run, Scene, Stage};
+use common::scene::{Actor, Kind, Run, Scene, Stage};
 use common::scene_strip::{SLATE, View};
 use common::screw::{BOLT, NUT_HALF, PITCH, bolt, nut, play};
-use common::skeleton::Skeleton;
 use common::table::Table;
 use rapier3d::prelude::*;
 use std::f32::consts::TAU;
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 /// Height of the nut's centre at the start, in metres.
 const START: Real = 5.9;
@@ -43,12 +40,12 @@ fn main() -> ExitCode {
 fn nut_and_bolt(out: &Path) -> Result<(), String> {
     let scene = Scene::new(vec![
         Actor {
-            model: model("build the bolt", bolt())?,
+            model: model("build the bolt", bolt(), PRIMITIVES)?,
             start: RigidBodyBuilder::fixed(),
             color: SLATE,
         },
         Actor {
-            model: model("build the nut", nut())?,
+            model: model("build the nut", nut(), PRIMITIVES)?,
             start: RigidBodyBuilder::dynamic().pose(Pose::new(
                 Vector::Y * START,
                 Vector::Y * (TAU * START / PITCH),
@@ -91,12 +88,6 @@ fn nut_and_bolt(out: &Path) -> Result<(), String> {
     });
     println!("{}\n\n{table}", path.display());
     verdict(descents[0].failures())
-}
-
-fn model(name: &'static str, (mesh, lines): (Mesh, Skeleton)) -> Result<Arc<Model>, String> {
-    mesh.check_closed()?;
-    let medial = build(name, &mesh, PRIMITIVES)?;
-    Ok(Model::new(mesh, lines, medial))
 }
 
 fn grease(stage: &mut Stage, step: usize) {
