@@ -3,7 +3,7 @@
 
 use super::recycled::Recycled;
 use crate::batch::PairJob;
-use crate::math::{Pose, Real};
+use crate::math::{Pose, Real, Rotation};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle, RigidBodySet};
@@ -67,6 +67,41 @@ pub fn find(
     colliders: &ColliderSet,
     recycled: &mut Recycled,
 ) -> Candidates {
+    let mut found = Candidates::default();
+    recycled.begin(parameters);
+    for_each_near(parameters, bodies, colliders, |job, rotations, hooked| {
+        found.pairs += 1;
+        if recycled.needs_update(&job, rotations) || hooked {
+            found.jobs.push(job);
+        }
+    });
+    found
+}
+
+/// What [`find`] will find at the next step, if nothing is changed until then.
+#[cfg(feature = "gpu")]
+pub fn expect(
+    parameters: &IntegrationParameters,
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+    recycled: &Recycled,
+) -> Vec<PairJob> {
+    let mut jobs = Vec::new();
+    for_each_near(parameters, bodies, colliders, |job, rotations, hooked| {
+        if hooked || !recycled.recycles(&job, rotations) {
+            jobs.push(job);
+        }
+    });
+    jobs
+}
+
+/// Each near pair as a job, with the rotations of both and whether the user has hooks on them.
+fn for_each_near(
+    parameters: &IntegrationParameters,
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+    mut visit: impl FnMut(PairJob, [Rotation; 2], bool),
+) {
     let prediction = parameters.prediction_distance();
     let mut items: Vec<Item> = colliders
         .iter_enabled()
@@ -93,8 +128,6 @@ pub fn find(
         })
         .collect();
     items.sort_by(|a, b| a.aabb.mins.x.total_cmp(&b.aabb.mins.x));
-    let mut found = Candidates::default();
-    recycled.begin(parameters);
     for (i, a) in items.iter().enumerate() {
         for b in &items[i + 1..] {
             if b.aabb.mins.x > a.aabb.maxs.x {
@@ -103,17 +136,12 @@ pub fn find(
             if !wanted(a, b) {
                 continue;
             }
-            found.pairs += 1;
             let (x, y) = in_order(a, b);
             let job = job(x, y, prediction);
             let hooked = !(x.collider.active_hooks() | y.collider.active_hooks()).is_empty();
-            let rotations = [x.pose.rotation, y.pose.rotation];
-            if recycled.needs_update(&job, rotations) || hooked {
-                found.jobs.push(job);
-            }
+            visit(job, [x.pose.rotation, y.pose.rotation], hooked);
         }
     }
-    found
 }
 
 fn wanted(a: &Item, b: &Item) -> bool {

@@ -78,6 +78,18 @@ impl MedialPipeline {
         &self.batch
     }
 
+    /// For a browser, between two steps: asks the device about the contacts of the next one and waits
+    /// for its answers without blocking. Elsewhere each step asks for the next one by itself, and waits
+    /// only when it comes. What is changed in the world after that goes to the CPU.
+    #[cfg(feature = "gpu")]
+    pub async fn prepare(&mut self, world: &PhysicsWorld) {
+        let parameters = &world.integration_parameters;
+        let (bodies, colliders) = (&world.bodies, &world.colliders);
+        let next = candidates::expect(parameters, bodies, colliders, &self.recycled);
+        self.batch.submit_async(&next).await;
+        self.batch.ready().await;
+    }
+
     /// What a collider calls for, whatever the scene does; [`Effects::default`] leaves it to the scene.
     /// Of two colliders that differ, the one that has an effect on decides.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
@@ -321,6 +333,12 @@ impl MedialPipeline {
         for ids in self.answers.take_missed() {
             self.recycled.forget(ids);
         }
+        #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+        if outcome.stopped.is_none() && self.batch.gpu().is_some() {
+            // The poses are final: the device has the time until the next step.
+            let next = candidates::expect(parameters, bodies, colliders, &self.recycled);
+            self.batch.submit(&next);
+        }
         let counted = self.answers.take_counts();
         report.cache_hits = counted.hits;
         report.cache_misses = counted.misses;
@@ -335,6 +353,7 @@ impl MedialPipeline {
         report.unfit = after.unfit - before.unfit;
         report.submissions = after.submissions - before.submissions;
         report.maps = after.maps - before.maps;
+        report.ahead = after.ahead - before.ahead;
         report.survivors = after.survivors - before.survivors;
         report.fallbacks = after.fallbacks - before.fallbacks;
         (report, outcome.stopped)

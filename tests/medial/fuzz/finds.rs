@@ -57,7 +57,10 @@ fn spheres_that_end_beyond_all_numbers_are_refused() {
     let sphere = |x, r| MedialSphere::new(Vector::new(x, -0.2, 0.2), r);
     for sphere in [sphere(f32::MAX, 1.0e38), sphere(-3.0e38, 1.0e38)] {
         let refused = MedialMesh::new(vec![sphere], vec![], vec![]);
-        assert!(matches!(refused, Err(MeshError::NotFinite { index: 0, .. })));
+        assert!(matches!(
+            refused,
+            Err(MeshError::NotFinite { index: 0, .. })
+        ));
     }
     assert!(MedialMesh::new(vec![sphere(1.0e38, 1.0e38)], vec![], vec![]).is_ok());
 }
