@@ -111,6 +111,38 @@ fn worlds_are_the_same_on_either_backend() {
     );
 }
 
+/// As a browser does it: what a step is going to ask is awaited before the step.
+#[test]
+fn worlds_prepared_between_steps_are_the_same() {
+    if gpu(options()).is_none() {
+        return;
+    }
+    let [mut on_cpu, mut on_gpu] = [mixed_world(), mixed_world()];
+    let batch = Batch::new(Backend::Gpu);
+    let mut device = MedialPipeline::with_batch(MedialOptions::default(), batch);
+    let mut cpu = MedialPipeline::new(MedialOptions::default());
+    cpu.attach(&mut on_cpu);
+    device.attach(&mut on_gpu);
+    let (mut contacts, mut ahead) = (0, 0);
+    for step in 0..90 {
+        cpu.step(&mut on_cpu);
+        pollster::block_on(device.prepare(&on_gpu));
+        let maps = device.batch().report().maps;
+        let report = device.step(&mut on_gpu);
+        let own = u64::from(report.continuous_jobs > 0);
+        let next = device.batch().report().maps - maps - own;
+        // Nothing is waited for in the step but first contacts, and the next step's jobs are sent.
+        assert!(next <= 1 || step == 0, "{report:?}");
+        contacts += report.jobs as u64;
+        ahead += report.ahead;
+        assert!(bits(&on_cpu) == bits(&on_gpu), "step {step}");
+    }
+    assert!(
+        contacts > 300 && ahead * 10 > contacts * 9,
+        "{ahead} of {contacts}"
+    );
+}
+
 #[test]
 fn a_world_goes_on_when_the_device_is_lost() {
     if gpu(options()).is_none() {
