@@ -3,10 +3,10 @@
 //! but for the counts of work, and a device that fails costs time only.
 
 #[cfg(feature = "gpu")]
-use super::ahead::{Ahead, Key};
-#[cfg(feature = "gpu")]
 use super::calibration::Calibration;
 use super::cpu;
+#[cfg(feature = "gpu")]
+use super::early::{Early, Key};
 #[cfg(feature = "gpu")]
 use super::gpu::{Bound, Gpu, GpuCounts, GpuOptions, Proposal, layout};
 use super::job::Job;
@@ -61,7 +61,7 @@ pub struct BatchReport {
     /// Times that the CPU waited for answers of the GPU: one a submission.
     pub maps: u64,
     /// Jobs asked that had gone to the GPU before ([`Batch::submit`]).
-    pub ahead: u64,
+    pub sent_early: u64,
     /// Primitive pairs that the GPU could not prove free.
     pub survivors: u64,
     /// Batches that a GPU was to have and could not take.
@@ -80,7 +80,7 @@ pub struct Batch {
     #[cfg(feature = "gpu")]
     proposals: Vec<Proposal>,
     #[cfg(feature = "gpu")]
-    ahead: Ahead,
+    early: Early,
     #[cfg(feature = "gpu")]
     bounds: Vec<Bound>,
     #[cfg(feature = "gpu")]
@@ -116,12 +116,20 @@ impl Batch {
         #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
         return pollster::block_on(self.run_async(jobs));
         #[cfg(all(feature = "gpu", target_arch = "wasm32"))]
-        return match self.take_ahead(jobs) {
-            Some(ahead) if !ahead.pending => self.settle(jobs, |sweep| ahead.proposal(sweep)),
+        return match self.take_early(jobs) {
+            Some(early) if !early.pending => self.settle(jobs, |sweep| early.proposal(sweep)),
             _ => self.run_on_cpu(jobs),
         };
         #[cfg(not(feature = "gpu"))]
         self.run_on_cpu(jobs)
+    }
+
+    /// Whether there is a GPU that serves.
+    pub fn has_device(&self) -> bool {
+        #[cfg(feature = "gpu")]
+        return self.gpu.is_some();
+        #[cfg(not(feature = "gpu"))]
+        false
     }
 
     /// Sends jobs to a GPU, if the backend has one for so many, before their answers are needed: the next
@@ -244,7 +252,7 @@ impl Batch {
 
     /// As [`Self::submit`], without blocking.
     pub async fn submit_async<J: Job>(&mut self, jobs: &[J]) {
-        self.ahead = Ahead::default();
+        self.early = Early::default();
         if !self.asks_gpu(jobs.len(), |least| least.jobs) {
             return;
         }
@@ -259,17 +267,17 @@ impl Batch {
             return self.fall_back(error);
         }
         let keys = sweeps.iter().map(Key::of);
-        self.ahead.sent = keys.zip(0..).collect();
-        self.ahead.pending = true;
+        self.early.sent = keys.zip(0..).collect();
+        self.early.pending = true;
     }
 
     /// Waits without blocking for what was sent by [`Self::submit_async`]; [`Self::run`] does so too, but
     /// for a browser, where it takes what is back.
     pub async fn ready(&mut self) {
-        if !std::mem::take(&mut self.ahead.pending) {
+        if !std::mem::take(&mut self.early.pending) {
             return;
         }
-        let mut proposals = std::mem::take(&mut self.ahead.proposals);
+        let mut proposals = std::mem::take(&mut self.early.proposals);
         let before = self.gpu_counts();
         let outcome = match &mut self.gpu {
             Some(gpu) => gpu.collect(&mut proposals).await,
@@ -277,30 +285,30 @@ impl Batch {
         };
         self.count(before);
         match outcome {
-            Ok(()) => self.ahead.proposals = proposals,
+            Ok(()) => self.early.proposals = proposals,
             Err(error) => self.fall_back(error),
         }
     }
 
     /// What was sent before, if it is of any use for these jobs.
-    fn take_ahead<J: Job>(&mut self, jobs: &[J]) -> Option<Ahead> {
-        let ahead = std::mem::take(&mut self.ahead);
+    fn take_early<J: Job>(&mut self, jobs: &[J]) -> Option<Early> {
+        let early = std::mem::take(&mut self.early);
         let known = |job: &J| {
             job.sweep()
-                .is_some_and(|s| ahead.sent.contains_key(&Key::of(&s)))
+                .is_some_and(|s| early.sent.contains_key(&Key::of(&s)))
         };
         let known = jobs.iter().filter(|job| known(job)).count();
-        self.report.ahead += known as u64;
-        (known > 0).then_some(ahead)
+        self.report.sent_early += known as u64;
+        (known > 0).then_some(early)
     }
 
     /// As [`Self::run`], without blocking while the device works.
     pub async fn run_async<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
-        if let Some(ahead) = self.take_ahead(jobs) {
-            self.ahead = ahead;
+        if let Some(early) = self.take_early(jobs) {
+            self.early = early;
             self.ready().await;
-            let ahead = std::mem::take(&mut self.ahead);
-            return self.settle(jobs, |sweep| ahead.proposal(sweep));
+            let early = std::mem::take(&mut self.early);
+            return self.settle(jobs, |sweep| early.proposal(sweep));
         }
         if !self.asks_gpu(jobs.len(), |least| least.jobs) {
             return self.run_on_cpu(jobs);

@@ -1,12 +1,12 @@
 //! L4: many pairs at once, contacts at fixed poses or first contacts in motion. One call in, one
 //! answer per job out, in the order of the jobs.
 
-#[cfg(feature = "gpu")]
-mod ahead;
 mod backend;
 #[cfg(feature = "gpu")]
 mod calibration;
 pub mod cpu;
+#[cfg(feature = "gpu")]
+mod early;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod job;

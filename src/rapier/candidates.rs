@@ -1,6 +1,7 @@
 //! Which pairs of medial colliders may need manifolds in this step: sweep and prune over their boxes
 //! at the start of the step.
 
+use super::ahead::{Ahead, Start};
 use super::recycled::Recycled;
 use crate::batch::PairJob;
 use crate::math::{Pose, Real, Rotation};
@@ -42,6 +43,17 @@ struct Item<'a> {
 }
 
 impl Item<'_> {
+    fn start(&self) -> Start<'_> {
+        let aabb = self.mesh.aabb();
+        let offset = self.collider.position_wrt_parent();
+        Start {
+            body: self.parent.map(|(_, body)| body),
+            pose: self.pose,
+            offset: offset.copied().unwrap_or(Pose::IDENTITY),
+            extent: aabb.mins.abs().max(aabb.maxs.abs()).length(),
+        }
+    }
+
     /// Moves by the solver, and is awake.
     fn active(&self) -> bool {
         self.parent
@@ -56,6 +68,8 @@ pub struct Candidates {
     pub pairs: usize,
     /// Those whose relative pose changed too much for rapier to recycle their contacts.
     pub jobs: Vec<PairJob>,
+    /// Where the answers to these belong.
+    pub ahead: Vec<Ahead>,
 }
 
 /// Finds all near pairs of medial colliders: at least one of them dynamic and awake, not on the same
@@ -69,17 +83,18 @@ pub fn find(
 ) -> Candidates {
     let mut found = Candidates::default();
     recycled.begin(parameters);
-    for_each_near(parameters, bodies, colliders, |job, rotations, hooked| {
+    for_each_near(parameters, bodies, colliders, |near| {
         found.pairs += 1;
-        if recycled.needs_update(&job, rotations) || hooked {
+        if recycled.needs_update(&near.job, near.rotations()) || near.hooked {
+            let (job, ahead) = near.at_the_end(parameters);
             found.jobs.push(job);
+            found.ahead.push(ahead);
         }
     });
     found
 }
 
 /// What [`find`] will find at the next step, if nothing is changed until then.
-#[cfg(feature = "gpu")]
 pub fn expect(
     parameters: &IntegrationParameters,
     bodies: &RigidBodySet,
@@ -87,20 +102,46 @@ pub fn expect(
     recycled: &Recycled,
 ) -> Vec<PairJob> {
     let mut jobs = Vec::new();
-    for_each_near(parameters, bodies, colliders, |job, rotations, hooked| {
-        if hooked || !recycled.recycles(&job, rotations) {
-            jobs.push(job);
+    for_each_near(parameters, bodies, colliders, |near| {
+        if near.hooked || !recycled.recycles(&near.job, near.rotations()) {
+            jobs.push(near.at_the_end(parameters).0);
         }
     });
     jobs
 }
 
-/// Each near pair as a job, with the rotations of both and whether the user has hooks on them.
+/// Two colliders that are near each other.
+struct Near<'a, 'b> {
+    items: [&'a Item<'b>; 2],
+    /// At the start of the step.
+    job: PairJob,
+    /// Whether the user has hooks on them.
+    hooked: bool,
+}
+
+impl Near<'_, '_> {
+    fn rotations(&self) -> [Rotation; 2] {
+        self.items.map(|item| item.pose.rotation)
+    }
+
+    /// The job at the poses that the velocities lead to.
+    fn at_the_end(self, parameters: &IntegrationParameters) -> (PairJob, Ahead) {
+        let [x, y] = self.items;
+        let thickness = x.mesh.thickness().min(y.mesh.thickness());
+        let starts = [&x.start(), &y.start()];
+        let prediction = parameters.prediction_distance();
+        let (ahead, pos12) = Ahead::new(starts, parameters.dt, thickness, prediction);
+        let job = PairJob { pos12, ..self.job };
+        (job, ahead)
+    }
+}
+
+/// Visits each near pair.
 fn for_each_near(
     parameters: &IntegrationParameters,
     bodies: &RigidBodySet,
     colliders: &ColliderSet,
-    mut visit: impl FnMut(PairJob, [Rotation; 2], bool),
+    mut visit: impl FnMut(Near<'_, '_>),
 ) {
     let prediction = parameters.prediction_distance();
     let mut items: Vec<Item> = colliders
@@ -139,7 +180,11 @@ fn for_each_near(
             let (x, y) = in_order(a, b);
             let job = job(x, y, prediction);
             let hooked = !(x.collider.active_hooks() | y.collider.active_hooks()).is_empty();
-            visit(job, [x.pose.rotation, y.pose.rotation], hooked);
+            visit(Near {
+                items: [x, y],
+                job,
+                hooked,
+            });
         }
     }
 }

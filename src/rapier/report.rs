@@ -20,7 +20,7 @@ pub struct StepReport {
     /// Times that the step waited for answers of the GPU: one for each batch.
     pub maps: u64,
     /// Jobs of the batch that had gone to the GPU at the end of the step before.
-    pub ahead: u64,
+    pub sent_early: u64,
     /// Primitive pairs that the GPU could not prove free.
     pub survivors: u64,
     /// Batches that a GPU was to have and could not take; [`crate::MedialPipeline::batch`] says why.
@@ -78,7 +78,7 @@ impl StepReport {
         self.unfit += part.unfit;
         self.submissions += part.submissions;
         self.maps += part.maps;
-        self.ahead += part.ahead;
+        self.sent_early += part.sent_early;
         self.survivors += part.survivors;
         self.fallbacks += part.fallbacks;
         self.contacts += part.contacts;

@@ -12,10 +12,10 @@ mod ccd;
 #[path = "../common/creature.rs"]
 mod creature;
 
-mod ahead;
 mod batch;
 mod calibration;
 mod culling;
+mod early;
 mod elementary;
 mod failures;
 mod large;

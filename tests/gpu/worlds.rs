@@ -62,7 +62,7 @@ fn worlds_are_the_same_on_either_backend() {
     cpu.attach(&mut on_cpu);
     device.attach(&mut on_gpu);
     let (mut jobs, mut first_contacts, mut settled, mut events) = (0, 0, 0, 0);
-    let (mut contacts, mut ahead, mut made) = (0, 0, 0);
+    let (mut contacts, mut early, mut made) = (0, 0, 0);
     let (mut reruns, mut unsent) = (0, 0);
     for step in 0..STEPS {
         let report = cpu.step(&mut on_cpu);
@@ -73,13 +73,13 @@ fn worlds_are_the_same_on_either_backend() {
         // the contacts of the next; the first step has its own to ask as well.
         let runs = device.batch().gpu_counts().reruns;
         assert_eq!(report.submissions, report.maps);
-        let none_sent = u64::from(report.jobs > 0 && report.ahead == 0);
+        let none_sent = u64::from(report.jobs > 0 && report.sent_early == 0);
         unsent += none_sent;
         let most = 2 + none_sent + runs - reruns;
         assert!(report.submissions <= most, "{report:?}");
         reruns = runs;
         contacts += report.jobs as u64;
-        ahead += report.ahead;
+        early += report.sent_early;
         if step == STEPS / 2 {
             made = device.batch().gpu_counts().buffers_made;
         }
@@ -102,8 +102,8 @@ fn worlds_are_the_same_on_either_backend() {
     let gpu = device.batch().gpu_counts();
     assert_eq!((gpu.meshes, gpu.submissions), (2, gpu.maps));
     assert_eq!(gpu.buffers_made, made, "after warm-up");
-    assert!(ahead * 20 > contacts * 19, "{ahead} of {contacts}");
-    println!("{ahead} of {contacts} contacts sent ahead");
+    assert!(early * 20 > contacts * 19, "{early} of {contacts}");
+    println!("{early} of {contacts} jobs sent early");
     println!("{jobs} jobs, {settled} settled by the GPU, {events} events, {gpu:?}");
     assert!(
         jobs > 1000 && first_contacts > 10 && settled > 100 && events > 0,
@@ -123,7 +123,7 @@ fn worlds_prepared_between_steps_are_the_same() {
     let mut cpu = MedialPipeline::new(MedialOptions::default());
     cpu.attach(&mut on_cpu);
     device.attach(&mut on_gpu);
-    let (mut contacts, mut ahead) = (0, 0);
+    let (mut contacts, mut early) = (0, 0);
     for step in 0..90 {
         cpu.step(&mut on_cpu);
         pollster::block_on(device.prepare(&on_gpu));
@@ -134,12 +134,12 @@ fn worlds_prepared_between_steps_are_the_same() {
         // Nothing is waited for in the step but first contacts, and the next step's jobs are sent.
         assert!(next <= 1 || step == 0, "{report:?}");
         contacts += report.jobs as u64;
-        ahead += report.ahead;
+        early += report.sent_early;
         assert!(bits(&on_cpu) == bits(&on_gpu), "step {step}");
     }
     assert!(
-        contacts > 300 && ahead * 10 > contacts * 9,
-        "{ahead} of {contacts}"
+        contacts > 300 && early * 10 > contacts * 9,
+        "{early} of {contacts}"
     );
 }
 

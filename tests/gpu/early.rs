@@ -40,11 +40,17 @@ fn what_was_sent_is_not_asked_again() {
         jobs.push(pair_jobs(201).remove(200));
         assert_answers(&mut batch, &jobs);
         let report = batch.report();
-        assert_eq!((report.submissions, report.maps, report.ahead), (1, 1, 179));
+        assert_eq!(
+            (report.submissions, report.maps, report.sent_early),
+            (1, 1, 179)
+        );
         assert!(report.settled_by_gpu > 20 && report.settled_by_gpu < 179);
         // It is used up.
         assert_answers(&mut batch, &jobs);
-        assert_eq!((batch.report().submissions, batch.report().ahead), (2, 179));
+        assert_eq!(
+            (batch.report().submissions, batch.report().sent_early),
+            (2, 179)
+        );
     }
 }
 
@@ -61,7 +67,10 @@ fn what_was_sent_in_vain_is_dropped() {
     }
     assert_answers(&mut batch, &pair_jobs(60));
     let report = batch.report();
-    assert_eq!((report.submissions, report.maps, report.ahead), (4, 4, 0));
+    assert_eq!(
+        (report.submissions, report.maps, report.sent_early),
+        (4, 4, 0)
+    );
     assert_eq!(report.fallbacks, 0);
 }
 
@@ -98,6 +107,6 @@ fn poses_that_are_not_finite_are_not_settled() {
     }
     batch.submit(&jobs);
     assert_answers(&mut batch, &jobs);
-    assert_eq!((batch.report().unfit, batch.report().ahead), (10, 30));
+    assert_eq!((batch.report().unfit, batch.report().sent_early), (10, 30));
     assert!(batch.report().settled_by_gpu > 0);
 }

@@ -37,7 +37,7 @@ impl Key {
 
 /// Jobs on the device.
 #[derive(Default)]
-pub(super) struct Ahead {
+pub(super) struct Early {
     /// Index of each.
     pub(super) sent: HashMap<Key, u32>,
     /// What the device said of them, once they are collected.
@@ -46,7 +46,7 @@ pub(super) struct Ahead {
     pub(super) pending: bool,
 }
 
-impl Ahead {
+impl Early {
     /// What the device said of this one, if it was sent.
     pub(super) fn proposal(&self, sweep: &Sweep<'_>) -> Option<Proposal> {
         let index = self.sent.get(&Key::of(sweep))?;
