@@ -20,7 +20,7 @@ use std::collections::HashMap;
 pub const MAGIC: [u8; 8] = *b"\x89worlds\n";
 
 /// Version of the bytes that is written and read: this crate's, and rapier 0.36's layout.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Bytes before the content: magic, version, checksum of the content.
 const HEADER: usize = 20;
@@ -57,7 +57,7 @@ pub enum SavedWorldError {
         /// That was stored when it was saved.
         stored: u64,
     },
-    /// Bytes follow the world. (The checksum does not see zeros at the end.)
+    /// Bytes follow the world.
     #[error("{0} bytes follow the world")]
     TooLong(usize),
     /// The content is no world.
