@@ -156,6 +156,8 @@ fn set_alpha(node: &mut SceneNode3d, alpha: f32) {
     node.apply_to_objects_mut_recursive(&mut |object| {
         let color = object.data().color();
         object.set_color(Color::new(color.r, color.g, color.b, alpha));
+        // Shadows of what is seen through are drawn in stripes.
+        object.set_casts_shadows(alpha == 1.0);
     });
 }
 

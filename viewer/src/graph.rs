@@ -63,7 +63,9 @@ impl Graph {
             let scale = sorted.get(sorted.len() * 19 / 20).copied();
             let scale = 1.2 * scale.unwrap_or(0.0).max(1.0e-9);
             let last = values().next_back().unwrap_or(0.0);
-            ui.colored_label(*color, format!("{name}: {last:.5} (most {largest:.5})"));
+            let digits = if k == 0 { 2 } else { 0 };
+            let text = format!("{name}: {last:.digits$} (most {largest:.digits$})");
+            ui.colored_label(*color, text);
             let size = Vec2::new(ui.available_width(), 34.0);
             let (place, _) = ui.allocate_exact_size(size, Sense::hover());
             let painter = ui.painter_at(place);

@@ -72,9 +72,6 @@ async fn view() -> Result<(), String> {
     let mut window = Window::new_with_size("rapier3d-medial", 1280, 800).await;
     window.set_background_color(Color::new(0.86, 0.90, 0.94, 1.0));
     window.set_ambient(0.45);
-    // All of it within the nearest shadow map, the sharpest.
-    window.set_shadow_distance(16.0);
-    window.set_first_cascade_far_bound(16.0);
     let mut camera = OrbitCamera3d::new(Vec3::new(2.8, 3.6, 6.6), Vec3::new(0.0, 1.0, 0.0));
     let mut root = SceneNode3d::empty();
     let sun = Light::directional(Vec3::new(-0.45, -0.8, -0.4)).with_intensity(2.4);

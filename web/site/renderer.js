@@ -46,7 +46,7 @@ void main() {
 
 export class Renderer {
   constructor(canvas, count, colors) {
-    const gl = canvas.getContext("webgl2", { antialias: true, stencil: true });
+    const gl = canvas.getContext("webgl2", { alpha: false, antialias: true, stencil: true });
     if (!gl) throw new Error("the browser has no WebGL 2");
     Object.assign(this, { canvas, gl, count, colors, turn: 0.42, rise: 0.42, distance: 9 });
     this.program = link(gl);
@@ -154,7 +154,7 @@ export class Renderer {
     const narrow = Math.max(1, 0.95 / aspect);
     const focal = 1 / Math.tan(0.36);
     const distance = this.distance * narrow;
-    const target = [0, aspect < 1 ? 0.1 : 1.2, 0];
+    const target = [0, aspect < 1 ? -0.9 : 1.2, 0];
     const back = [
       Math.cos(this.rise) * Math.sin(this.turn),
       Math.sin(this.rise),
