@@ -122,8 +122,7 @@ impl Source {
         let mut least = gain * f64::from(best.hausdorff.error());
         let mut promising = None;
         for collapsed in smaller {
-            let error = target.residuals(&collapsed.plain, watch)?.largest;
-            if error < least {
+            if let Some(error) = target.largest_below(&collapsed.plain, least, watch)? {
                 promising = Some(collapsed);
                 if !self.fits() {
                     least = error;
@@ -152,8 +151,8 @@ impl Source {
         let target = &fit::target(&self.surface, &self.tree, collapsed.most);
         let balanced = fit::balanced(collapsed, target, watch)?;
         let mut best = self.or_better(best, balanced.0.clone(), watch)?;
-        let plain = target.residuals(&collapsed.plain, watch)?.largest;
-        if target.residuals(&balanced.0, watch)?.largest > CLEARLY_BETTER * plain {
+        let clear = target.residuals(&balanced.0, watch)?.largest / CLEARLY_BETTER;
+        if target.largest_below(&collapsed.plain, clear, watch)?.is_some() {
             best = self.or_better(Some(best), collapsed.plain.clone(), watch)?;
         }
         if self.limits.quality == Quality::Best {
