@@ -13,9 +13,7 @@
 
 use super::bounds::Point;
 use super::draft::Draft;
-use super::residuals::{
-    EnvelopeSample, GUESS, Residuals, Row, envelope_samples, residuals,
-};
+use super::residuals::{EnvelopeSample, GUESS, Residuals, Row, envelope_samples, residuals};
 use super::samples::Sample;
 use super::solid::Solid;
 use super::triangle_tree::TriangleTree;

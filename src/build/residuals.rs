@@ -17,7 +17,7 @@ use super::draft::{Ball, Corners, Draft};
 use super::samples::Sample;
 use super::solid::{Cell, Solid};
 use super::triangle_tree::TriangleTree;
-use super::watch::Watch;
+use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
 
 /// First guess of an envelope sample's distance (longest side 1); only time depends on it.
@@ -173,6 +173,7 @@ pub fn residuals(
         };
         chunk.iter().map(row).collect()
     })?);
+    watch.hold(bytes_of(&rows) + bytes_of(&paired) + size_of_val(envelope));
     let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
     let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();
     let squares = sum(|r| r.weight * r.residual * r.residual);
