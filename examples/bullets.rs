@@ -14,7 +14,7 @@
 mod common;
 
 use common::arguments::{example_with_out, verdict};
-use common::build::build;
+use common::build::model;
 use common::light::{Facet, facets};
 use common::mesh::{capsule, ring};
 use common::random::Random;
@@ -110,11 +110,9 @@ fn models() -> Result<[Arc<Model>; 2], String> {
     let mesh = capsule(half, radius, 24);
     mesh.check_closed()?;
     let bullet = Model::new(mesh, Skeleton::new(vec![Bone { ends, radii }]), medial);
+    let lines = Skeleton::ring(RING.0, RING.1, 40);
     let mesh = ring(RING.0, RING.1, 40, 15);
-    mesh.check_closed()?;
-    let medial = build("build the ring", &mesh, 40)?;
-    let ring = Model::new(mesh, Skeleton::ring(RING.0, RING.1, 40), medial);
-    Ok([bullet, ring])
+    Ok([bullet, model("build the ring", (mesh, lines), 40)?])
 }
 
 /// Even shots are at the middle half of the tube, odd ones through the middle half of what the hole

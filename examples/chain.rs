@@ -13,7 +13,7 @@
 mod common;
 
 use common::arguments::{example_with_out, verdict};
-use common::build::build;
+use common::build::model;
 use common::mesh::tube;
 use common::render::Camera;
 use common::scene::{Actor, Kind, Model, Run, Scene};
@@ -40,9 +40,8 @@ fn main() -> ExitCode {
 fn chain(out: &Path) -> Result<(), String> {
     let outline = outline();
     let mesh = tube(&outline, LINK[2], 14);
-    mesh.check_closed()?;
-    let medial = build("build the link", &mesh, 32)?;
-    let link = Model::new(mesh, Skeleton::tube(&outline, LINK[2]), medial);
+    let lines = Skeleton::tube(&outline, LINK[2]);
+    let link = model("build the link", (mesh, lines), 32)?;
     let scene = scene(&link);
     let runs = [Kind::Medial, Kind::Hulls].map(|kind| scene.run(kind, STEPS, |_, _| ()));
     let view = View {

@@ -15,26 +15,21 @@
 mod common;
 
 use common::arguments::{Arguments, example, verdict};
-use common::build::build;
+use common::build::{build, model};
 use common::creature::creature;
-use common::mesh::{Mesh, ring};
-use common::random::Random;
+use common::falling::{SIZE, falling_on, falling_ring};
+use common::mesh::Mesh;
 use common::render::Camera;
-use common::scene::{Actor, Kind, Model, Scene};
-use common::scene_strip::{SLATE, View, rainbow};
+use common::scene::{Kind, Model};
+use common::scene_strip::View;
 use common::scene_table::table;
 use common::skeleton::Skeleton;
 use rapier3d::prelude::*;
 use rapier3d_medial::Backend;
-use rapier3d_medial::build::mesh_file;
-use std::f32::consts::TAU;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-
-/// Radii of a ring's centre circle and of its tube, in metres.
-const RING: (Real, Real) = (0.5, 0.1);
 
 struct Options {
     mesh: Option<PathBuf>,
@@ -66,14 +61,12 @@ fn main() -> ExitCode {
 
 fn falling_rings(options: Options) -> Result<(), String> {
     let ring = match &options.mesh {
-        None => rings()?,
+        // 27 primitives for 1,200 triangles, as in the paper.
+        None => model("build the ring", falling_ring(), 27)?,
         Some(file) => users_mesh(file)?,
     };
-    let (mesh, skeleton) = creature();
-    mesh.check_closed()?;
-    let medial = build("build the creature", &mesh, 700)?;
-    let creature = Model::new(mesh, skeleton, medial);
-    let mut scene = scene(ring, creature, if options.quick { 5 } else { 15 });
+    let creature = model("build the creature", creature(), 700)?;
+    let mut scene = falling_on(creature, &ring, if options.quick { 5 } else { 15 });
     scene.backend = options.backend;
 
     let [medial, hulls] =
@@ -98,55 +91,11 @@ fn falling_rings(options: Options) -> Result<(), String> {
     verdict(medial.failures())
 }
 
-/// `count` rings on a spiral above the creature, every next one higher, turned and spun at random,
-/// the same way in every run.
-fn scene(ring: Arc<Model>, creature: Arc<Model>, count: usize) -> Scene {
-    let mut random = Random(9);
-    let rings = (0..count).map(|k| {
-        let angle = TAU * 0.618_034 * k as Real;
-        let out = 1.35 * ((k as Real + 0.6) / count as Real).sqrt();
-        let place = Vector::new(out * angle.cos(), 3.2 + 0.55 * k as Real, out * angle.sin());
-        let tilt = random.direction() * random.between(0.0, 1.2);
-        let spin = random.direction() * random.between(0.0, 3.0);
-        Actor {
-            model: Arc::clone(&ring),
-            start: RigidBodyBuilder::dynamic()
-                .pose(Pose::new(place, tilt))
-                .angvel(spin)
-                .angular_damping(0.5),
-            color: rainbow(k as Real / count as Real),
-        }
-    });
-    let mut actors: Vec<Actor> = rings.collect();
-    actors.push(Actor {
-        model: creature,
-        start: RigidBodyBuilder::fixed(),
-        color: SLATE,
-    });
-    Scene::new(actors)
-}
-
-/// Rings: 27 primitives for 1,200 triangles, as in the paper.
-fn rings() -> Result<Arc<Model>, String> {
-    let (major, minor) = RING;
-    let mesh = ring(major, minor, 40, 15);
-    mesh.check_closed()?;
-    let medial = build("build the ring", &mesh, 27)?;
-    let skeleton = Skeleton::ring(major, minor, 40);
-    Ok(Model::new(mesh, skeleton, medial))
-}
-
 /// The user's mesh, scaled to the size of a ring. No formula is known for its inner lines: they are
 /// those of the medial mesh, as far as they are thick.
 fn users_mesh(file: &Path) -> Result<Arc<Model>, String> {
-    let read = mesh_file::read(file).map_err(|e| e.to_string())?;
-    let size = 2.0 * (RING.0 + RING.1);
-    let mesh = Mesh {
-        vertices: read.vertices,
-        indices: read.indices,
-    };
-    let mesh = mesh.fitted(size);
+    let mesh = Mesh::read(file)?.fitted(SIZE);
     let medial = build("build your mesh", &mesh, 100)?;
-    let skeleton = Skeleton::of_medial(&medial, 0.02 * size);
+    let skeleton = Skeleton::of_medial(&medial, 0.02 * SIZE);
     Ok(Model::new(mesh, skeleton, medial))
 }

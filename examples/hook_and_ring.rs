@@ -13,10 +13,10 @@
 mod common;
 
 use common::arguments::{example_with_out, verdict};
-use common::build::build;
+use common::build::model;
 use common::mesh::ring;
 use common::render::Camera;
-use common::scene::{Actor, Kind, Model, Run, Scene, Stage};
+use common::scene::{Actor, Kind, Run, Scene, Stage};
 use common::scene_strip::{SLATE, View};
 use common::skeleton::Skeleton;
 use common::skin::{Limb, skin};
@@ -25,12 +25,13 @@ use rapier3d::prelude::*;
 use std::f32::consts::TAU;
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 /// Radii of the ring's centre circle and of its tube, in metres.
 const RING: (Real, Real) = (0.5, 0.08);
 /// Height of the posts, in metres.
 const POSTS: Real = 0.7;
+/// Side of the grid's cubes for hook and posts, in metres.
+const CELL: Real = 0.022;
 /// After so many steps the hook is under the rim, has lifted the ring, has swung.
 const MOVES: [usize; 3] = [60, 180, 480];
 
@@ -80,10 +81,8 @@ fn hook_and_ring(out: &Path) -> Result<(), String> {
 /// The ring, the hook, the posts.
 fn scene() -> Result<Scene, String> {
     let (major, minor) = RING;
-    let mesh = ring(major, minor, 40, 15);
-    mesh.check_closed()?;
-    let medial = build("build the ring", &mesh, 40)?;
-    let ring = Model::new(mesh, Skeleton::ring(major, minor, 40), medial);
+    let lines = Skeleton::ring(major, minor, 40);
+    let ring = model("build the ring", (ring(major, minor, 40, 15), lines), 40)?;
     let actor = |model, start, color| Actor {
         model,
         start,
@@ -100,23 +99,16 @@ fn scene() -> Result<Scene, String> {
             Vector::new(0.90, 0.55, 0.08),
         ),
         actor(
-            limbs("build the hook", &[hook()])?,
+            model("build the hook", skin(&[hook()], CELL), 80)?,
             RigidBodyBuilder::kinematic_position_based().translation(hook_at(0)),
             Vector::new(0.15, 0.35, 0.70),
         ),
         actor(
-            limbs("build the posts", &posts())?,
+            model("build the posts", skin(&posts(), CELL), 80)?,
             RigidBodyBuilder::fixed(),
             SLATE,
         ),
     ]))
-}
-
-fn limbs(name: &'static str, limbs: &[Limb]) -> Result<Arc<Model>, String> {
-    let (mesh, skeleton) = skin(limbs, 0.022);
-    mesh.check_closed()?;
-    let medial = build(name, &mesh, 80)?;
-    Ok(Model::new(mesh, skeleton, medial))
 }
 
 fn hook() -> Limb {

@@ -15,9 +15,9 @@
 mod common;
 
 use common::arguments::{Arguments, example, verdict};
-use common::build::build_with_report;
+use common::build::{build_with_report, print};
 use common::light::{Facet, facets};
-use common::mesh::{Mesh, tube_in_space};
+use common::mesh::{Mesh, knot};
 use common::random::Random;
 use common::render::Camera;
 use common::scene::{Actor, Kind, Model, Scene};
@@ -25,9 +25,7 @@ use common::scene_strip::{View, rainbow, seen};
 use common::skeleton::Skeleton;
 use common::strip::tile;
 use rapier3d::prelude::*;
-use rapier3d_medial::build::mesh_file;
-use rapier3d_medial::{BuildReport, MedialMesh};
-use std::f32::consts::TAU;
+use rapier3d_medial::MedialMesh;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -61,13 +59,7 @@ fn main() -> ExitCode {
 
 fn own_mesh(options: Options) -> Result<(), String> {
     let mesh = match &options.file {
-        Some(file) => {
-            let read = mesh_file::read(file).map_err(|e| e.to_string())?;
-            Mesh {
-                vertices: read.vertices,
-                indices: read.indices,
-            }
-        }
+        Some(file) => Mesh::read(file)?,
         None => knot(),
     };
     let mesh = mesh.fitted(SIZE);
@@ -124,34 +116,6 @@ fn own_mesh(options: Options) -> Result<(), String> {
     verdict(failures)
 }
 
-fn print(mesh: &Mesh, report: &BuildReport) {
-    let share = |error: Real| format!("{:.2} %", 100.0 * error / report.longest_side);
-    let error = &report.hausdorff;
-    println!(
-        "{} triangles, {} primitives",
-        mesh.indices.len(),
-        report.primitives
-    );
-    println!("of the longest side, at most:");
-    println!(
-        "  mesh to medial mesh  {}",
-        share(error.surface_to_envelope)
-    );
-    println!(
-        "  medial mesh to mesh  {}",
-        share(error.envelope_to_surface)
-    );
-    println!("  mesh sticks out by   {}", share(error.uncovered));
-    println!("{:#?}", report.findings);
-    report
-        .notes
-        .iter()
-        .for_each(|note| println!("note: {note}"));
-    for (stage, seconds) in &report.seconds {
-        println!("{stage:24} {seconds:7.3} s");
-    }
-}
-
 /// How far the farthest vertex is out of the solid, by parry's point query.
 fn farthest_out(mesh: &Mesh, medial: &MedialMesh) -> Real {
     use rapier3d::parry::query::PointQuery;
@@ -173,17 +137,4 @@ fn scene(model: &Arc<Model>) -> Scene {
         color: rainbow(k as Real / 4.0),
     });
     Scene::new(actors.collect())
-}
-
-/// A trefoil knot.
-fn knot() -> Mesh {
-    let line = (0..150).map(|k| {
-        let t = TAU * k as Real / 150.0;
-        Vector::new(
-            t.sin() + 2.0 * (2.0 * t).sin(),
-            t.cos() - 2.0 * (2.0 * t).cos(),
-            -(3.0 * t).sin(),
-        )
-    });
-    tube_in_space(&line.collect::<Vec<_>>(), 0.42, 14)
 }

@@ -2,8 +2,12 @@
 
 use super::mesh::Mesh;
 use super::progress::bar;
+use super::scene::Model;
+use super::skeleton::Skeleton;
+use rapier3d::prelude::Real;
 use rapier3d_medial::{BuildReport, Progress, prelude::*};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// Builds a medial mesh of so many primitives. `name` goes on the progress bar.
 pub fn build(name: &'static str, mesh: &Mesh, primitives: usize) -> Result<MedialMesh, String> {
@@ -26,7 +30,18 @@ pub fn build(name: &'static str, mesh: &Mesh, primitives: usize) -> Result<Media
     Ok(medial)
 }
 
-/// The same, without the line, but with all that the builder says.
+/// Builds a body of a mesh made in code and of the inner lines that it was made round.
+pub fn model(
+    name: &'static str,
+    (mesh, lines): (Mesh, Skeleton),
+    primitives: usize,
+) -> Result<Arc<Model>, String> {
+    mesh.check_closed()?;
+    let medial = build(name, &mesh, primitives)?;
+    Ok(Model::new(mesh, lines, medial))
+}
+
+/// A medial mesh, without the line, but with all that the builder says.
 pub fn build_with_report(
     name: &'static str,
     mesh: &Mesh,
@@ -45,4 +60,33 @@ pub fn build_with_report(
         MedialMesh::from_trimesh_with_progress(&mesh.vertices, &mesh.indices, &options, &mut show);
     bar.finish();
     built.map_err(|e| format!("cannot {name}: {e}"))
+}
+
+/// Prints what the builder measured, found and took.
+pub fn print(mesh: &Mesh, report: &BuildReport) {
+    let share = |error: Real| format!("{:.2} %", 100.0 * error / report.longest_side);
+    let error = &report.hausdorff;
+    println!(
+        "{} triangles, {} primitives",
+        mesh.indices.len(),
+        report.primitives
+    );
+    println!("of the longest side, at most:");
+    println!(
+        "  mesh to medial mesh  {}",
+        share(error.surface_to_envelope)
+    );
+    println!(
+        "  medial mesh to mesh  {}",
+        share(error.envelope_to_surface)
+    );
+    println!("  mesh sticks out by   {}", share(error.uncovered));
+    println!("{:#?}", report.findings);
+    report
+        .notes
+        .iter()
+        .for_each(|note| println!("note: {note}"));
+    for (stage, seconds) in &report.seconds {
+        println!("{stage:24} {seconds:7.3} s");
+    }
 }

@@ -1,8 +1,10 @@
 //! Closed triangle meshes made in code.
 
 use rapier3d::prelude::{Real, Rotation, TriMesh, Vector};
+use rapier3d_medial::build::mesh_file;
 use std::collections::HashMap;
 use std::f32::consts::TAU;
+use std::path::Path;
 
 /// A triangle mesh in its body's frame; triangles run counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +16,15 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Reads a file: OBJ, STL, PLY or OFF.
+    pub fn read(file: &Path) -> Result<Self, String> {
+        let read = mesh_file::read(file).map_err(|e| e.to_string())?;
+        Ok(Self {
+            vertices: read.vertices,
+            indices: read.indices,
+        })
+    }
+
     /// The corners of a triangle.
     pub fn corners(&self, triangle: [u32; 3]) -> [Vector; 3] {
         triangle.map(|i| self.vertices[i as usize])
@@ -152,6 +163,19 @@ pub fn tube_in_space(line: &[Vector], radius: Real, across: u32) -> Mesh {
         line[i] + (out[i] * cos + along(i).cross(out[i]) * sin) * radius
     };
     wound(count as u32, across, point)
+}
+
+/// A trefoil knot.
+pub fn knot() -> Mesh {
+    let line = (0..150).map(|k| {
+        let t = TAU * k as Real / 150.0;
+        Vector::new(
+            t.sin() + 2.0 * (2.0 * t).sin(),
+            t.cos() - 2.0 * (2.0 * t).cos(),
+            -(3.0 * t).sin(),
+        )
+    });
+    tube_in_space(&line.collect::<Vec<_>>(), 0.42, 14)
 }
 
 /// A closed grid of `around` by `across` quads, two triangles each.

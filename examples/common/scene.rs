@@ -48,6 +48,21 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// All kinds, with the names that they have as arguments.
+    pub const ALL: [(Self, &str); 4] = [
+        (Self::Medial, "medial"),
+        (Self::Hulls, "hulls"),
+        (Self::Parts, "parts"),
+        (Self::Triangles, "triangles"),
+    ];
+
+    /// The kind that has a name as argument.
+    pub fn named(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(_, of)| *of == name);
+        let found = found.ok_or(format!("a kind of collider cannot be `{name}`"));
+        found.map(|(kind, _)| *kind)
+    }
+
     /// Its name on pictures and in tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -140,6 +155,14 @@ impl Stage {
         }
     }
 
+    /// What all actors call for, in a medial stage.
+    pub fn set_effects(&mut self, effects: Effects) {
+        if let Some(pipeline) = &mut self.pipeline {
+            let colliders = self.bodies.iter().map(|(_, collider)| *collider);
+            colliders.for_each(|collider| pipeline.set_effects(collider, effects));
+        }
+    }
+
     fn all_sleep(&self) -> bool {
         let mut bodies = self.world.bodies.iter();
         bodies.all(|(_, body)| body.is_sleeping() || !body.is_dynamic())
@@ -173,6 +196,18 @@ impl Scene {
             bodies,
             pipeline,
         }
+    }
+
+    /// A world in which the actors collide as told and go on from where they are in another.
+    pub fn stage_from(&self, kind: Kind, last: &Stage) -> Stage {
+        let mut stage = self.stage(kind);
+        for ((body, _), (from, _)) in stage.bodies.iter().zip(&last.bodies) {
+            let (body, from) = (&mut stage.world.bodies[*body], &last.world.bodies[*from]);
+            body.set_position(*from.position(), true);
+            body.set_linvel(from.linvel(), true);
+            body.set_angvel(from.angvel(), true);
+        }
+        stage
     }
 
     /// Steps until all sleep, at most `steps` times. `before_step` may act on the stage, and gets

@@ -3,7 +3,7 @@
 //! The key is both instance ids and every bit of the relative pose: an answer is either exactly the
 //! one asked for, or not there and computed on the spot.
 
-use crate::batch::{PairJob, PairResult};
+use crate::batch::PairResult;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use parry3d::shape::Shape;
@@ -89,14 +89,12 @@ pub struct Answers {
 }
 
 impl Answers {
-    /// Forgets the old answers and takes those of a new batch.
-    pub fn replace(&self, jobs: &[PairJob], results: Vec<PairResult>) {
+    /// Forgets the old answers and takes those of a new batch, each with the prediction distance it
+    /// holds for.
+    pub fn replace(&self, answers: impl Iterator<Item = ((Key, Real), PairResult)>) {
         let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
         known.clear();
-        known.extend(jobs.iter().zip(results).map(|(job, result)| {
-            let key = Key::new(&job.mesh1, &job.mesh2, &job.pos12);
-            (key, (job.prediction, result))
-        }));
+        known.extend(answers.map(|((key, prediction), result)| (key, (prediction, result))));
     }
 
     /// Calls `with` on the answer to a request, from the batch if it holds it, else computed.

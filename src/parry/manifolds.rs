@@ -81,7 +81,8 @@ pub fn write_manifolds<M, C>(
             }
         };
         let [p1, p2] = c.points;
-        let distance = (pos12 * p2 - p1).dot(manifold.local_n1);
+        // Along the manifold's normal, which need not be quite the contact's.
+        let distance = c.distance + (pos12 * p2 - p1).dot(manifold.local_n1 - c.normal);
         let feature = PackedFeatureId::face(c.feature);
         let mut point = TrackedContact::new(p1, p2, feature, feature, distance);
         let previous = old

@@ -1,6 +1,7 @@
 //! Which pairs of medial colliders may need manifolds in this step: sweep and prune over their boxes
 //! at the start of the step.
 
+use super::ahead::{Ahead, Start};
 use super::recycled::Recycled;
 use crate::batch::PairJob;
 use crate::math::{Pose, Real};
@@ -42,6 +43,17 @@ struct Item<'a> {
 }
 
 impl Item<'_> {
+    fn start(&self) -> Start<'_> {
+        let aabb = self.mesh.aabb();
+        let offset = self.collider.position_wrt_parent();
+        Start {
+            body: self.parent.map(|(_, body)| body),
+            pose: self.pose,
+            offset: offset.copied().unwrap_or(Pose::IDENTITY),
+            extent: aabb.mins.abs().max(aabb.maxs.abs()).length(),
+        }
+    }
+
     /// Moves by the solver, and is awake.
     fn active(&self) -> bool {
         self.parent
@@ -56,6 +68,8 @@ pub struct Candidates {
     pub pairs: usize,
     /// Those whose relative pose changed too much for rapier to recycle their contacts.
     pub jobs: Vec<PairJob>,
+    /// Where the answers to these belong.
+    pub ahead: Vec<Ahead>,
 }
 
 /// Finds all near pairs of medial colliders: at least one of them dynamic and awake, not on the same
@@ -105,11 +119,16 @@ pub fn find(
             }
             found.pairs += 1;
             let (x, y) = in_order(a, b);
-            let job = job(x, y, prediction);
+            let mut job = job(x, y, prediction);
             let hooked = !(x.collider.active_hooks() | y.collider.active_hooks()).is_empty();
             let rotations = [x.pose.rotation, y.pose.rotation];
             if recycled.needs_update(&job, rotations) || hooked {
+                let thickness = x.mesh.thickness().min(y.mesh.thickness());
+                let starts = [&x.start(), &y.start()];
+                let (ahead, pos12) = Ahead::new(starts, parameters.dt, thickness, prediction);
+                job.pos12 = pos12;
                 found.jobs.push(job);
+                found.ahead.push(ahead);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! L6: the hook round rapier's step, and what a rapier user calls.
 
+mod ahead;
 pub mod candidates;
 pub mod collider;
 #[cfg(feature = "debug-render")]

@@ -111,20 +111,11 @@ impl Body {
         if self.kind == Kind::Fixed || !self.awake {
             return;
         }
-        // rapier sets the end of a body that is driven by its velocity only in its step.
-        let by_position = body.body_type() == RigidBodyType::KinematicPositionBased;
-        (self.motion.linvel, self.motion.angvel) = if by_position {
-            let end = body.next_position();
-            let com = self.motion.local_center;
-            let turn = end.rotation * body.position().rotation.inverse();
-            let moved = *end * com - *body.position() * com;
-            (moved / dt, shortest(turn).to_scaled_axis() / dt)
-        } else if body.is_kinematic() {
-            (body.linvel(), body.angvel())
-        } else {
+        [self.motion.linvel, self.motion.angvel] = velocities(body, dt);
+        if body.is_dynamic() {
             let forces = gravity * body.gravity_scale() + body.user_force() * self.inverse_mass;
-            (body.linvel() + forces * dt, body.angvel())
-        };
+            self.motion.linvel += forces * dt;
+        }
     }
 
     /// The motion that took it to where it is after rapier's step.
@@ -168,6 +159,18 @@ impl Body {
         self.motion.start.rotation = self.motion.start.rotation.normalize();
         self.time = time;
     }
+}
+
+/// Linear and angular velocity with which a body starts into a step of `dt` seconds. Of a body that is
+/// driven by its position rapier computes them only in its step.
+pub fn velocities(body: &RigidBody, dt: Real) -> [Vector; 2] {
+    if body.body_type() != RigidBodyType::KinematicPositionBased {
+        return [body.linvel(), body.angvel()];
+    }
+    let (start, end) = (body.position(), body.next_position());
+    let com = body.mass_properties().local_mprops.local_com;
+    let turn = shortest(end.rotation * start.rotation.inverse());
+    [*end * com - *start * com, turn.to_scaled_axis()].map(|moved| moved / dt)
 }
 
 fn shortest(q: Rotation) -> Rotation {

@@ -1,0 +1,118 @@
+//! Contacts as they are at the end of a step, as far as velocities tell before it.
+//!
+//! rapier keeps the normals and lever arms of a step's start through all its `s` substeps. A load that
+//! turns with its body (the pull in a chain, the weight of a ring that rolls in another) then lags
+//! behind it, and that feeds what swings. With contacts `θ` of a step ahead of its start, an oscillation
+//! of angular frequency `ω` grows in each step `h` by the factor
+//!
+//! `√(1 + ((s − 1) / 2s − θ) (ω h)²)`,
+//!
+//! the root of the determinant of one step `v' = v − h ω² (x + θ h v)`, `x' = x + (h / s) Σ_k v_k`, whose
+//! force acts in `s` equal parts. Warm-started impulses lag too, by up to half a step more. With `θ = 0`
+//! a ring that rolls in another swings ever wider, and twenty hanging links tremble for ever; with
+//! `θ = 1`, backward Euler for directions, nothing grows, and they sleep.
+
+use super::motion::velocities;
+use crate::batch::{PairJob, PairResult};
+use crate::math::{Pose, Real, Rotation, Vector};
+use crate::parry::answers::Key;
+use parry3d::query::NonlinearRigidMotion;
+use rapier3d::dynamics::RigidBody;
+
+/// How far ahead contacts are computed, in steps. A ring that rolls in another from 0.12 m to the side
+/// reaches, 20 s later, 0.17 m with 0, 0.12 with 0.5, 0.10 with 0.75 and 0.08 with 1. Chains of 5 to 40
+/// links slept in 8, 12 and 14 of 14 cases with the last three.
+const AHEAD: Real = 1.0;
+
+/// Relative travel in that time, in units of the thinner body's thickness and at most rapier's
+/// prediction distance, beyond which contacts are computed less far ahead: a fast body would already be
+/// in the other, or past it.
+const REACH: Real = 0.25;
+
+/// A collider at the start of a step.
+pub struct Start<'a> {
+    /// Its body.
+    pub body: Option<&'a RigidBody>,
+    /// Its pose.
+    pub pose: Pose,
+    /// Its pose in the body's frame.
+    pub offset: Pose,
+    /// Bound on the distance of its points from its origin.
+    pub extent: Real,
+}
+
+impl Start<'_> {
+    fn center(&self) -> Vector {
+        self.body.map_or(Vector::ZERO, |b| {
+            self.offset.inverse() * b.mass_properties().local_mprops.local_com
+        })
+    }
+
+    /// The motion its velocities announce.
+    fn motion(&self, dt: Real) -> NonlinearRigidMotion {
+        let still = [Vector::ZERO; 2];
+        let [linvel, angvel] = self.body.map_or(still, |b| velocities(b, dt));
+        NonlinearRigidMotion {
+            start: self.pose,
+            local_center: self.center(),
+            linvel,
+            angvel,
+        }
+    }
+}
+
+/// From where contacts computed ahead have to be brought back to.
+pub struct Ahead {
+    /// Relative pose at the start (second in first).
+    pos12: Pose,
+    /// Turn of each body until then, in its own frame.
+    turns: [Rotation; 2],
+    /// Centre of mass of each, in its own frame.
+    centers: [Vector; 2],
+}
+
+impl Ahead {
+    /// Of two colliders whose thinner one has thickness `thickness`, in a step of `dt` seconds; with the
+    /// relative pose at which to compute their contacts.
+    pub fn new(starts: [&Start; 2], dt: Real, thickness: Real, prediction: Real) -> (Self, Pose) {
+        let motions = starts.map(|s| s.motion(dt));
+        let [a, b] = &motions;
+        let swing = |k: usize| {
+            let arm = motions[k].local_center.length() + starts[k].extent;
+            motions[k].angvel.length() * arm
+        };
+        let speed = (a.linvel - b.linvel).length() + swing(0) + swing(1);
+        let reach = prediction.min(REACH * thickness);
+        let far = speed * AHEAD * dt > reach;
+        let time = if far { reach / speed } else { AHEAD * dt };
+        // At the start, if nothing moves or velocities are not finite.
+        let poses = if speed > 0.0 && time > 0.0 {
+            motions.map(|m| m.position_at_time(time))
+        } else {
+            [a.start, b.start]
+        };
+        let turn = |k: usize| motions[k].start.rotation.inverse() * poses[k].rotation;
+        let ahead = Self {
+            pos12: a.start.inv_mul(&b.start),
+            turns: [turn(0), turn(1)],
+            centers: motions.map(|m| m.local_center),
+        };
+        (ahead, poses[0].inv_mul(&poses[1]))
+    }
+
+    /// The key under which rapier will ask for the contacts of `job`.
+    pub fn key(&self, job: &PairJob) -> Key {
+        Key::new(&job.mesh1, &job.mesh2, &self.pos12)
+    }
+
+    /// Brings contacts back: normals and lever arms point as they will, gaps are those at the start.
+    pub fn bring_back(&self, result: &mut PairResult) {
+        for contact in &mut result.contacts {
+            let [p1, p2] = contact.points;
+            contact.normal = self.turns[0] * contact.normal;
+            contact.distance = (self.pos12 * p2 - p1).dot(contact.normal);
+            let turned = |k: usize, p| self.centers[k] + self.turns[k] * (p - self.centers[k]);
+            contact.points = [turned(0, p1), turned(1, p2)];
+        }
+    }
+}
