@@ -39,10 +39,10 @@ impl<'a> Parts<'a> {
     }
 
     /// The solid part, if it is all there is.
-    pub fn only_solid(self) -> Result<Simplifier<'a>, Self> {
+    pub fn into_only_solid(self) -> Result<Simplifier<'a>, Box<Self>> {
         match self.sheets.primitives() {
             0 => Ok(self.solid),
-            _ => Err(self),
+            _ => Err(Box::new(self)),
         }
     }
 

@@ -70,9 +70,9 @@ impl Source {
         let mut parts = Parts::new(start, &self.tree, watch)?;
         let most = self.limits.primitives.unwrap_or(usize::MAX);
         if self.limits.max_error.is_none() {
-            parts = match parts.only_solid() {
+            parts = match parts.into_only_solid() {
                 Ok(simplifier) => return self.best_of(simplifier, most, watch),
-                Err(parts) => parts,
+                Err(parts) => *parts,
             };
         }
         parts.reduce_to(most, watch)?;
@@ -145,7 +145,7 @@ impl Source {
     ) -> Result<Enclosed, BuildError> {
         if !self.fits() {
             let best = self.or_better(best, collapsed.plain.clone(), watch)?;
-            return Ok(best.as_of_lower_quality());
+            return Ok(best.counted_for_lower_quality());
         }
         let target = &fit::target(&self.surface, &self.tree, collapsed.most);
         let balanced = fit::balanced(collapsed, target, watch)?;
@@ -157,7 +157,7 @@ impl Source {
         {
             best = self.or_better(Some(best), collapsed.plain.clone(), watch)?;
         }
-        best = best.as_of_lower_quality();
+        best = best.counted_for_lower_quality();
         if self.limits.quality == Quality::Best {
             // The first is the balanced one itself.
             let drafts = fit::more(balanced, collapsed, target, watch)?;
@@ -325,7 +325,7 @@ struct Enclosed {
 }
 
 impl Enclosed {
-    fn as_of_lower_quality(mut self) -> Self {
+    fn counted_for_lower_quality(mut self) -> Self {
         let error = f64::from(self.hausdorff.error());
         self.lower_quality = self.lower_quality.min(error);
         self
