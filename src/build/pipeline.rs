@@ -105,7 +105,9 @@ impl Source {
         let mut best = self.fitted(&first, None, watch)?;
         let mut wins = most;
         for other in &smaller {
-            let least = match self.fits() && other.most >= fit::LARGE {
+            // Where parts overlap, what is inside others is far from any solid and says nothing.
+            let sure = self.fits() || !self.surface.simple;
+            let least = match sure && other.most >= fit::LARGE {
                 true => f64::INFINITY,
                 false => gain * best.lower_quality,
             };
