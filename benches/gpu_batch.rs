@@ -20,7 +20,7 @@ use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::batch::gpu::layout::{Bound, SEPARATED};
 use rapier3d_medial::batch::gpu::{Gpu, GpuOptions};
-use rapier3d_medial::batch::{Calibration, Job, ToiJob, cpu};
+use rapier3d_medial::batch::{Calibration, Job, Sweep, ToiJob, cpu};
 use rapier3d_medial::elementary::bracket::{Limits, bracket};
 use rapier3d_medial::elementary::many::{Lanes, brackets};
 use rapier3d_medial::elementary::path::LinearPath;
@@ -212,11 +212,39 @@ fn every_test(gpu: &mut Gpu) -> Value {
     lists
         .iter_mut()
         .for_each(|(domain, paths)| ask(*domain, paths));
+    // The same approach with culling on the device.
+    let still = NonlinearRigidMotion::identity();
+    let sweep = Sweep {
+        meshes: [&mesh; 2],
+        motions: [
+            still,
+            NonlinearRigidMotion {
+                start: Pose::translation(2.6, 0.0, 0.0),
+                linvel: Vector::new(-1.0, 0.0, 0.0),
+                ..still
+            },
+        ],
+        seconds: 1.0,
+        reach: f64::from(LIMITS.tolerance),
+    };
+    let mut proposals = Vec::new();
+    let sweeps = [sweep];
+    let culled = (0..ROUNDS).map(|_| {
+        let asked = gpu.propose(&sweeps, &mut proposals);
+        milliseconds(|| block_on(asked).expect("a proposal"))
+    });
+    let culled = least(culled.collect());
+    let counts = gpu.counts();
+    println!(
+        "with culling, ms: device {culled:.2}; {} primitive pairs, {} not proven free",
+        counts.primitive_pairs, counts.survivors
+    );
     println!(
         "all {all} elementary tests of two meshes, ms: lanes {on_cpu:.0}, device {on_device:.0}, stage {stage:.0}; {proven} proven free"
     );
     json!({
         "tests": all, "lanes_ms": on_cpu, "device_ms": on_device, "stage_ms": stage, "proven": proven,
+        "culled_device_ms": culled,
     })
 }
 
@@ -241,16 +269,25 @@ fn toi_jobs(mesh: &MedialMesh, count: usize) -> Vec<ToiJob> {
 }
 
 fn mesh_pairs(gpu: &mut Gpu) -> Vec<Value> {
-    println!("mesh pairs of 1,236 x 1,236, ms    CPU  device  device and CPU   proven of the free");
+    println!(
+        "mesh pairs of 1,236 x 1,236, ms    CPU  CPU x2  device  device and CPU   proven of the free"
+    );
     let mesh = creature();
     let row = |count: usize| {
         let jobs = toi_jobs(&mesh, count);
         let sweeps: Vec<_> = jobs.iter().filter_map(Job::sweep).collect();
         let mut proposals = Vec::new();
-        let mut times = [const { Vec::new() }; 3];
+        let mut times = [const { Vec::new() }; 4];
         let mut answers = Vec::new();
         for _ in 0..ROUNDS {
             times[0].push(milliseconds(|| answers = cpu::run(&jobs)));
+            times[3].push(milliseconds(|| {
+                let (first, second) = jobs.split_at(jobs.len() / 2);
+                std::thread::scope(|scope| {
+                    scope.spawn(|| drop(black_box(cpu::run(first))));
+                    drop(black_box(cpu::run(second)));
+                });
+            }));
             let device = milliseconds(|| {
                 block_on(gpu.propose(&sweeps, &mut proposals)).expect("proposals");
             });
@@ -265,15 +302,15 @@ fn mesh_pairs(gpu: &mut Gpu) -> Vec<Value> {
         let wrong = both.filter(|(a, p)| p.is_free() && !apart(a.toi.status));
         assert_eq!(wrong.count(), 0, "free on the device, not on the CPU");
         let proven = proposals.iter().filter(|p| p.is_free()).count();
-        let [a, b, c] = times.map(least);
+        let [a, b, c, two] = times.map(least);
         let (counts, stages) = (gpu.counts(), stages(gpu));
-        println!("{count:>30} {a:>7.2} {b:>7.2} {c:>15.2}   {proven} of {free}");
+        println!("{count:>30} {a:>7.2} {two:>7.2} {b:>7.2} {c:>15.2}   {proven} of {free}");
         println!(
             "  cluster pairs {}, primitive pairs {}, survivors {}; stages {stages:.2?}",
             counts.cluster_pairs, counts.primitive_pairs, counts.survivors
         );
         json!({
-            "mesh_pairs": count, "cpu_ms": a, "device_ms": b, "device_and_cpu_ms": c,
+            "mesh_pairs": count, "cpu_ms": a, "cpu_two_threads_ms": two, "device_ms": b, "device_and_cpu_ms": c,
             "stages_ms": stages, "proven": proven, "free": free,
             "cluster_pairs": counts.cluster_pairs, "primitive_pairs": counts.primitive_pairs,
             "survivors": counts.survivors,

@@ -12,8 +12,9 @@
 //! the paper. H is measured with parry's triangle meshes, not with the builder's trees: at all vertices
 //! of both surfaces and at 200,000 points more on each, which no fit has seen; the solid's boundary is
 //! drawn with triangles of a quarter of the error. "Before" is the builder's own measure of what it
-//! enclosed, by points that no fit has seen either. Memory is the largest resident set during the build,
-//! where the system tells it (Linux).
+//! enclosed, by points that no fit has seen either; uncovered and bloat are its own too, and ± is by how
+//! much a distance may exceed them between the points that it looked at. MB is the largest resident set
+//! during the build, where the system tells it (Linux), and what of it the builder's arrays are.
 //!
 //! Last comes a ring at 27 primitives beside parry's convex decomposition, both against the true ring.
 
@@ -51,8 +52,8 @@ const POINTS: usize = 200_000;
 const FINEST: Real = 0.0012;
 
 const HEAD: &str = "\
-| model | triangles | primitives | paper | H before | H | uncovered | bloat | Euler | MB | seconds | of which |
-|---|---|---|---|---|---|---|---|---|---|---|---|
+| model | triangles | primitives | paper | H before | H | uncovered | bloat | ± | Euler | MB | arrays | seconds | of which |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
 struct Options {
@@ -177,7 +178,7 @@ fn row(
     let long = report.seconds.iter().filter(|s| s.1 > 0.05 * seconds);
     let stages: Vec<String> = long.map(|(stage, s)| format!("{stage} {s:.1}")).collect();
     let row = format!(
-        "| {name} | {} | {} of {size} | {} | {} | {} | {:.5} | {:.4} | {} | {} | {seconds:.1} | {} |\n",
+        "| {name} | {} | {} of {size} | {} | {} | {} | {:.5} | {:.4} | {:.4} | {} | {} | {} | {seconds:.1} | {} |\n",
         mesh.indices.len(),
         report.primitives,
         shown(paper(name, size)),
@@ -185,8 +186,10 @@ fn row(
         shown(error),
         report.hausdorff.uncovered / side,
         report.hausdorff.bloat / side,
+        report.hausdorff.sampling / side,
         report.euler,
         peak.map_or("–".into(), |mb| mb.to_string()),
+        report.memory / (1024 * 1024),
         stages.join(", "),
     );
     progress.set_position(start + 1000);

@@ -38,6 +38,7 @@ fn main() -> ExitCode {
 }
 
 fn nut_and_bolt(out: &Path) -> Result<(), String> {
+    let on_thread = Pose::new(Vector::Y * START, Vector::Y * (TAU * START / PITCH));
     let scene = Scene::new(vec![
         Actor {
             model: model("build the bolt", bolt(), PRIMITIVES)?,
@@ -46,10 +47,7 @@ fn nut_and_bolt(out: &Path) -> Result<(), String> {
         },
         Actor {
             model: model("build the nut", nut(), PRIMITIVES)?,
-            start: RigidBodyBuilder::dynamic().pose(Pose::new(
-                Vector::Y * START,
-                Vector::Y * (TAU * START / PITCH),
-            )),
+            start: RigidBodyBuilder::dynamic().pose(on_thread),
             color: Vector::new(0.85, 0.55, 0.12),
         },
     ]);
@@ -77,8 +75,8 @@ fn nut_and_bolt(out: &Path) -> Result<(), String> {
     row("turns", &|k| format!("{:.2}", descents[k].turns));
     row("m down", &|k| format!("{:.2}", descents[k].down));
     row(&format!("m down per turn, of {PITCH}"), &|k| {
-        let pitch = descents[k].pitch.map(|pitch| format!("{pitch:.3}"));
-        pitch.unwrap_or("-".to_string())
+        let pitch = descents[k].pitch;
+        pitch.map_or("-".to_string(), |pitch| format!("{pitch:.3}"))
     });
     row(&format!("pitches off the thread, of {:.2}", play()), &|k| {
         format!("{:.2}", descents[k].off)

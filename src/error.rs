@@ -9,7 +9,7 @@ pub enum MeshError {
     /// No sphere at all.
     #[error("a medial mesh needs at least one sphere")]
     Empty,
-    /// A coordinate or radius is NaN or infinite.
+    /// A coordinate or radius is NaN or infinite, or so large that the sphere ends beyond all numbers.
     #[error("sphere {index} is not finite: center {center:?}, radius {radius}")]
     NotFinite {
         /// Index of the sphere.

@@ -6,8 +6,12 @@
 use super::calibration::Calibration;
 use super::cpu;
 #[cfg(feature = "gpu")]
+use super::early::{Early, Key};
+#[cfg(feature = "gpu")]
 use super::gpu::{Bound, Gpu, GpuCounts, GpuOptions, Proposal, layout};
 use super::job::Job;
+#[cfg(feature = "gpu")]
+use super::job::Sweep;
 use crate::elementary::bracket::{Bracket, Limits};
 use crate::elementary::many::{Lanes, brackets};
 use crate::elementary::path::LinearPath;
@@ -56,6 +60,8 @@ pub struct BatchReport {
     pub submissions: u64,
     /// Times that the CPU waited for answers of the GPU: one a submission.
     pub maps: u64,
+    /// Jobs asked that had gone to the GPU before ([`Batch::submit`]).
+    pub sent_early: u64,
     /// Primitive pairs that the GPU could not prove free.
     pub survivors: u64,
     /// Batches that a GPU was to have and could not take.
@@ -73,6 +79,8 @@ pub struct Batch {
     gpu: Option<Gpu>,
     #[cfg(feature = "gpu")]
     proposals: Vec<Proposal>,
+    #[cfg(feature = "gpu")]
+    early: Early,
     #[cfg(feature = "gpu")]
     bounds: Vec<Bound>,
     #[cfg(feature = "gpu")]
@@ -102,12 +110,36 @@ impl Batch {
         &self.report
     }
 
-    /// Answers all jobs, in their order.
+    /// Answers all jobs, in their order. In a browser the CPU does, but for those that were sent
+    /// before and are back (`submit_async`, `ready`).
     pub fn run<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
         #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
         return pollster::block_on(self.run_async(jobs));
-        #[cfg(not(all(feature = "gpu", not(target_arch = "wasm32"))))]
+        #[cfg(all(feature = "gpu", target_arch = "wasm32"))]
+        return match self.take_early(jobs) {
+            Some(early) if !early.pending => self.settle(jobs, |sweep| early.proposal(sweep)),
+            _ => self.run_on_cpu(jobs),
+        };
+        #[cfg(not(feature = "gpu"))]
         self.run_on_cpu(jobs)
+    }
+
+    /// Whether there is a GPU that serves.
+    pub fn has_device(&self) -> bool {
+        #[cfg(feature = "gpu")]
+        return self.gpu.is_some();
+        #[cfg(not(feature = "gpu"))]
+        false
+    }
+
+    /// Sends jobs to a GPU, if the backend has one for so many, before their answers are needed: the next
+    /// [`Self::run`] has those that it asks again, to the bit, from this submission, and the others from
+    /// the CPU. Does not wait for the GPU. In a browser nothing is sent; use `submit_async` there.
+    pub fn submit<J: Job>(&mut self, jobs: &[J]) {
+        #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+        pollster::block_on(self.submit_async(jobs));
+        #[cfg(not(all(feature = "gpu", not(target_arch = "wasm32"))))]
+        let _ = jobs;
     }
 
     fn run_on_cpu<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
@@ -218,16 +250,70 @@ impl Batch {
         self.report.error = Some(error);
     }
 
+    /// As [`Self::submit`], without blocking.
+    pub async fn submit_async<J: Job>(&mut self, jobs: &[J]) {
+        self.early = Early::default();
+        if !self.asks_gpu(jobs.len(), |least| least.jobs) {
+            return;
+        }
+        let sweeps: Vec<_> = jobs.iter().filter_map(Job::sweep).collect();
+        let before = self.gpu_counts();
+        let outcome = match &mut self.gpu {
+            Some(gpu) => gpu.submit(&sweeps).await,
+            None => return,
+        };
+        self.count(before);
+        if let Err(error) = outcome {
+            return self.fall_back(error);
+        }
+        let keys = sweeps.iter().map(Key::of);
+        self.early.sent = keys.zip(0..).collect();
+        self.early.pending = true;
+    }
+
+    /// Waits without blocking for what was sent by [`Self::submit_async`]; [`Self::run`] does so too, but
+    /// for a browser, where it takes what is back.
+    pub async fn ready(&mut self) {
+        if !std::mem::take(&mut self.early.pending) {
+            return;
+        }
+        let mut proposals = std::mem::take(&mut self.early.proposals);
+        let before = self.gpu_counts();
+        let outcome = match &mut self.gpu {
+            Some(gpu) => gpu.collect(&mut proposals).await,
+            None => Ok(()),
+        };
+        self.count(before);
+        match outcome {
+            Ok(()) => self.early.proposals = proposals,
+            Err(error) => self.fall_back(error),
+        }
+    }
+
+    /// What was sent before, if it is of any use for these jobs.
+    fn take_early<J: Job>(&mut self, jobs: &[J]) -> Option<Early> {
+        let early = std::mem::take(&mut self.early);
+        let known = |job: &J| {
+            job.sweep()
+                .is_some_and(|s| early.sent.contains_key(&Key::of(&s)))
+        };
+        let known = jobs.iter().filter(|job| known(job)).count();
+        self.report.sent_early += known as u64;
+        (known > 0).then_some(early)
+    }
+
     /// As [`Self::run`], without blocking while the device works.
     pub async fn run_async<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
+        if let Some(early) = self.take_early(jobs) {
+            self.early = early;
+            self.ready().await;
+            let early = std::mem::take(&mut self.early);
+            return self.settle(jobs, |sweep| early.proposal(sweep));
+        }
         if !self.asks_gpu(jobs.len(), |least| least.jobs) {
             return self.run_on_cpu(jobs);
         }
-        let (asked, sweeps): (Vec<usize>, Vec<_>) = jobs
-            .iter()
-            .enumerate()
-            .filter_map(|(index, job)| Some((index, job.sweep()?)))
-            .unzip();
+        let sweeps: Vec<_> = jobs.iter().filter_map(Job::sweep).collect();
         let mut proposals = std::mem::take(&mut self.proposals);
         let before = self.gpu_counts();
         let outcome = match &mut self.gpu {
@@ -235,29 +321,40 @@ impl Batch {
             None => Ok(()),
         };
         self.count(before);
-        match outcome {
-            Ok(()) => {
-                let taken = proposals.iter().filter_map(|p| p.survivors);
-                self.report.survivors += taken.clone().map(u64::from).sum::<u64>();
-                self.report.unfit += (jobs.len() - taken.count()) as u64;
-            }
-            Err(error) => {
-                proposals.clear();
-                self.fall_back(error);
-            }
+        if let Err(error) = outcome {
+            proposals.clear();
+            self.fall_back(error);
         }
-        let mut answers: Vec<Option<J::Answer>> = jobs.iter().map(|_| None).collect();
-        for (index, proposal) in asked.into_iter().zip(&proposals) {
-            if proposal.is_free() {
-                answers[index] = Some(jobs[index].free());
-            }
-        }
+        let mut each = proposals.iter().copied();
+        let answers = self.settle(jobs, |_| each.next());
         self.proposals = proposals;
-        let open: Vec<&J> = jobs
-            .iter()
-            .zip(&answers)
-            .filter_map(|(job, answer)| answer.is_none().then_some(job))
-            .collect();
+        answers
+    }
+
+    /// Answers what the device proves free, and has the rest from the CPU. `proposal` is asked in the
+    /// order of the jobs that a device may have.
+    fn settle<J: Job>(
+        &mut self,
+        jobs: &[J],
+        mut proposal: impl FnMut(&Sweep<'_>) -> Option<Proposal>,
+    ) -> Vec<J::Answer> {
+        let mut answers = Vec::with_capacity(jobs.len());
+        let mut open = Vec::new();
+        for job in jobs {
+            let said = job.sweep().map(|sweep| proposal(&sweep));
+            match said {
+                Some(Some(Proposal {
+                    survivors: Some(n), ..
+                })) => self.report.survivors += u64::from(n),
+                None | Some(Some(_)) => self.report.unfit += 1,
+                Some(None) => {}
+            }
+            let free = said.flatten().is_some_and(|p| p.is_free());
+            answers.push(free.then(|| job.free()));
+            if !free {
+                open.push(job);
+            }
+        }
         self.report.settled_by_gpu += (jobs.len() - open.len()) as u64;
         let mut rest = self.run_on_cpu(&open).into_iter();
         answers

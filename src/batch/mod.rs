@@ -6,6 +6,8 @@ mod backend;
 mod calibration;
 pub mod cpu;
 #[cfg(feature = "gpu")]
+mod early;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod job;
 

@@ -140,18 +140,4 @@ impl Bounds {
         let far = |l: f64, h: f64| l.abs().max(h.abs());
         Point::new(far(lo.x, hi.x), far(lo.y, hi.y), far(lo.z, hi.z)).length()
     }
-
-    /// Distance to the box, or minus the depth below its nearest face when inside.
-    #[inline]
-    pub fn signed_distance(&self, p: Point) -> f64 {
-        let x = (self.lo.x - p.x).max(p.x - self.hi.x);
-        let y = (self.lo.y - p.y).max(p.y - self.hi.y);
-        let z = (self.lo.z - p.z).max(p.z - self.hi.z);
-        let deepest = x.max(y).max(z);
-        if deepest <= 0.0 {
-            return deepest;
-        }
-        let (x, y, z) = (x.max(0.0), y.max(0.0), z.max(0.0));
-        (x * x + y * y + z * z).sqrt()
-    }
 }

@@ -6,6 +6,7 @@
 
 use super::bounds::Point;
 use super::draft::{Ball, Draft};
+use super::watch::bytes_of;
 
 /// Balls, edges and faces, with what lies around each ball.
 pub struct Complex {
@@ -57,6 +58,13 @@ impl Complex {
         let lone = (0..n as u32).filter(|&v| complex.is_lone(v)).count();
         complex.primitives += ends / 2 + lone;
         complex
+    }
+
+    /// Bytes of its arrays.
+    pub fn bytes(&self) -> usize {
+        let lists = |of: &Vec<Vec<u32>>| bytes_of(of) + of.iter().map(bytes_of).sum::<usize>();
+        let around = lists(&self.neighbors) + lists(&self.faces_of);
+        bytes_of(&self.balls) + self.alive.len() + bytes_of(&self.faces) + around
     }
 
     /// Number of slabs, cones that belong to no slab, and lone balls.

@@ -18,6 +18,7 @@
 
 use super::bounds::{Bounds, Point};
 use super::insertion_order::insertion_order;
+use super::watch::bytes_of;
 use robust::{Coord3D, insphere, orient3d};
 
 /// No tetrahedron: beyond a face of the hull.
@@ -25,6 +26,9 @@ pub const NONE: u32 = u32::MAX;
 
 /// Distance of the enclosing tetrahedron's corners over the points' extent.
 const ENCLOSING: f64 = 64.0;
+
+/// Cells per point, the most that points of a surface have: space for as many is set aside.
+const CELLS: usize = 8;
 
 /// Points between two calls of the caller's `tick`: about a millisecond.
 const TICK: usize = 256;
@@ -50,6 +54,12 @@ impl Delaunay {
         match result {
             Ok(delaunay) => delaunay,
         }
+    }
+
+    /// Bytes of its arrays, and of those that it takes to make them from so many points.
+    pub(super) fn bytes(&self, points: usize) -> usize {
+        let own = bytes_of(&self.tetrahedra) + bytes_of(&self.neighbors);
+        own + points * (size_of::<Coord3D<f64>>() + CELLS * (size_of::<Cell>() + 5))
     }
 
     /// As [`Self::new`]; `tick` is told how many points are in, and its error ends the work.
@@ -122,9 +132,9 @@ impl Work {
         let n = points.len() as u32;
         let mut work = Self {
             points: points.iter().chain(&corners).map(coordinates).collect(),
-            cells: Vec::with_capacity(8 * points.len()),
-            alive: Vec::with_capacity(8 * points.len()),
-            in_cavity: Vec::with_capacity(8 * points.len()),
+            cells: Vec::with_capacity(CELLS * points.len()),
+            alive: Vec::with_capacity(CELLS * points.len()),
+            in_cavity: Vec::with_capacity(CELLS * points.len()),
             insertion: 0,
             free: Vec::new(),
             last: 0,

@@ -3,6 +3,7 @@
 
 use super::bounds::Point;
 use super::surface::Frame;
+use super::watch::bytes_of;
 use crate::error::MeshError;
 use crate::math::{Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
@@ -74,6 +75,11 @@ impl Draft {
         let lone = (0..self.balls.len() as u32).filter(|&v| !used[v as usize]);
         primitives.extend(lone.map(|v| [v; 3]));
         primitives
+    }
+
+    /// Bytes of its arrays.
+    pub fn bytes(&self) -> usize {
+        bytes_of(&self.balls) + bytes_of(&self.edges) + bytes_of(&self.faces)
     }
 
     /// Both drafts in one.

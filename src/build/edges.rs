@@ -4,7 +4,7 @@
 //! orientation relative to its shell's root, so that a contradiction (a Möbius strip) shows where
 //! it closes.
 
-use super::watch::Watch;
+use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
 
 /// One use of an edge by a triangle. The edge's lower vertex is that of its group.
@@ -57,6 +57,7 @@ impl Edges {
         }
         let mut next = start.clone();
         let mut uses = vec![Use { hi: 0, packed: 0 }; 3 * triangles.len()];
+        watch.hold(bytes_of(&uses) + 2 * bytes_of(&start) + size_of_val(triangles));
         for (i, t) in triangles.iter().enumerate() {
             watch.every(i)?;
             for (u, v) in sides(t) {

@@ -16,7 +16,7 @@ use super::draft::{Ball, Draft};
 use super::random::Random;
 use super::samples::Sample;
 use super::triangle_tree::TriangleTree;
-use super::watch::Watch;
+use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
 
 /// A sample votes when the centre is seen from it within 72° of its normal or of the opposite:
@@ -43,7 +43,11 @@ fn shifted(samples: &[Sample]) -> Vec<Point> {
 /// Delaunay tetrahedra of the samples.
 pub fn tetrahedra(samples: &[Sample], watch: &mut Watch) -> Result<Delaunay, BuildError> {
     let points = shifted(samples);
-    Delaunay::with_tick(&points, |done| watch.at(done as f64 / points.len() as f64))
+    let delaunay =
+        Delaunay::with_tick(&points, |done| watch.at(done as f64 / points.len() as f64))?;
+    let inputs = size_of_val(samples) + bytes_of(&points);
+    watch.hold(inputs + delaunay.bytes(points.len()));
+    Ok(delaunay)
 }
 
 /// The initial medial mesh, and whether each sample is touched by one of its balls. Without

@@ -10,6 +10,7 @@ mod enclose;
 mod fast_hash;
 mod findings;
 mod fit;
+mod four_boxes;
 pub mod hausdorff;
 mod inner_balls;
 mod insert;
@@ -111,6 +112,7 @@ impl MedialMesh {
             target_reached,
             findings,
             notes,
+            memory: watch.peak(),
             seconds: watch.finish()?,
         };
         Ok((mesh, report))

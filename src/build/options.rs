@@ -100,6 +100,10 @@ pub struct BuildReport {
     pub findings: Findings,
     /// The same in words, and which limit bound.
     pub notes: Vec<String>,
+    /// Most bytes that the builder's large arrays held at any time: the sum of their capacities. An
+    /// estimate from below: small lists, and what the allocator adds, are not in it, nor is the
+    /// caller's mesh.
+    pub memory: usize,
     /// Seconds per stage, in order.
     pub seconds: Vec<(&'static str, f64)>,
 }
@@ -153,12 +157,13 @@ impl Limits {
         })
     }
 
-    /// Samples of the surface that the medial mesh starts from: three for each primitive wanted, or
-    /// neighbours at about twice the error allowed.
+    /// Samples of the surface that the medial mesh starts from: two for each primitive wanted, or
+    /// neighbours at about twice the error allowed. Measured up to 5,000 primitives: eight for each give
+    /// nothing more; half of the least loses a third at 500.
     pub fn samples(&self, area: f64) -> usize {
         const LEAST: usize = 10_000;
         const MOST: usize = 200_000;
-        let by_count = self.primitives.map_or(0, |n| n.saturating_mul(3));
+        let by_count = self.primitives.map_or(0, |n| n.saturating_mul(2));
         let by_error = self.max_error.map_or(0.0, |e| area / (4.0 * e * e));
         by_count
             .max((by_error as usize).min(6 * LEAST))

@@ -39,8 +39,11 @@ impl<'a> Parts<'a> {
     }
 
     /// The solid part, if it is all there is.
-    pub fn only_solid(&mut self) -> Option<&mut Simplifier<'a>> {
-        (self.sheets.primitives() == 0).then_some(&mut self.solid)
+    pub fn into_only_solid(self) -> Result<Simplifier<'a>, Box<Self>> {
+        match self.sheets.primitives() {
+            0 => Ok(self.solid),
+            _ => Err(Box::new(self)),
+        }
     }
 
     /// Number of primitives now.

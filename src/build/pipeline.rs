@@ -69,10 +69,11 @@ impl Source {
         watch.begin("simplify")?;
         let mut parts = Parts::new(start, &self.tree, watch)?;
         let most = self.limits.primitives.unwrap_or(usize::MAX);
-        if self.limits.max_error.is_none()
-            && let Some(simplifier) = parts.only_solid()
-        {
-            return self.best_of(simplifier, most, watch);
+        if self.limits.max_error.is_none() {
+            parts = match parts.into_only_solid() {
+                Ok(simplifier) => return self.best_of(simplifier, most, watch),
+                Err(parts) => *parts,
+            };
         }
         parts.reduce_to(most, watch)?;
         let mut candidate = match self.limits.max_error {
@@ -86,51 +87,49 @@ impl Source {
     }
 
     /// The best by the error that is reported of what each quality up to the one asked for gives, for
-    /// the count asked for and for one that is smaller and promising: round bodies need few
-    /// primitives, and more of them would fit worse.
+    /// the count asked for and for smaller round ones: round bodies need few primitives, and from
+    /// thousands on more of them often fit worse.
+    ///
+    /// The error never rises from one of [`fit::ROUND`] to a larger count (while both start from as
+    /// many samples), nor with the quality: what gives the one is among what is tried for the other.
+    /// Left out are counts whose plain collapse is too bad for any fit to make it win.
     fn best_of(
         &self,
-        simplifier: &mut Simplifier,
+        simplifier: Simplifier,
         most: usize,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
-        let (collapsed, kept_topology) = fit::collapse(simplifier, most, watch)?;
-        let Some((first, smaller)) = collapsed.split_first() else {
-            return self.finish(simplifier.draft(), watch);
-        };
-        let mut best = self.fitted(first, None, watch)?;
-        if let Some(other) = self.promising(smaller, &best, watch)? {
+        let (first, smaller, kept_topology) = fit::collapse(simplifier, most, watch)?;
+        let rough = fit::rough_target(&self.surface, &self.tree);
+        let gain = if self.fits() { LARGEST_GAIN } else { 1.0 };
+        let mut best = self.fitted(&first, None, watch)?;
+        let mut wins = most;
+        for other in &smaller {
+            // Where parts overlap, what is inside others is far from any solid and says nothing.
+            let sure = self.fits() || !self.surface.simple;
+            let least = match sure && other.most >= fit::LARGE {
+                true => f64::INFINITY,
+                false => gain * best.lower_quality,
+            };
+            if rough.largest_below(&other.plain, least, watch)?.is_none() {
+                continue;
+            }
+            let before = best.hausdorff.error();
             best = self.fitted(other, Some(best), watch)?;
+            if best.hausdorff.error() < before {
+                wins = other.most;
+            }
         }
         let mut candidate = self.reported(best, watch)?;
+        if wins < most {
+            candidate
+                .notes
+                .push(format!("{wins} primitives fit better than {most}"));
+        }
         if !kept_topology {
             candidate.notes.push(GAVE_UP.into());
         }
         Ok(candidate)
-    }
-
-    /// Of smaller counts the one to try: the smallest that a fit may bring below the best, or if
-    /// nothing is fitted the one with the smallest error, if that is below the best.
-    fn promising<'c>(
-        &self,
-        smaller: &'c [Collapsed],
-        best: &Enclosed,
-        watch: &mut Watch,
-    ) -> Result<Option<&'c Collapsed>, BuildError> {
-        let target = fit::rough_target(&self.surface, &self.tree);
-        let gain = if self.fits() { LARGEST_GAIN } else { 1.0 };
-        let mut least = gain * f64::from(best.hausdorff.error());
-        let mut promising = None;
-        for collapsed in smaller {
-            let error = target.residuals(&collapsed.plain, watch)?.largest;
-            if error < least {
-                promising = Some(collapsed);
-                if !self.fits() {
-                    least = error;
-                }
-            }
-        }
-        Ok(promising)
     }
 
     /// Whether drafts are fitted. Surfaces of parts that overlap do not tell inside from outside at
@@ -147,15 +146,20 @@ impl Source {
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
         if !self.fits() {
-            return self.or_better(best, collapsed.plain.clone(), watch);
+            let best = self.or_better(best, collapsed.plain.clone(), watch)?;
+            return Ok(best.counted_for_lower_quality());
         }
         let target = &fit::target(&self.surface, &self.tree, collapsed.most);
         let balanced = fit::balanced(collapsed, target, watch)?;
         let mut best = self.or_better(best, balanced.0.clone(), watch)?;
-        let plain = target.residuals(&collapsed.plain, watch)?.largest;
-        if target.residuals(&balanced.0, watch)?.largest > CLEARLY_BETTER * plain {
+        let clear = target.residuals(&balanced.0, watch)?.largest / CLEARLY_BETTER;
+        if target
+            .largest_below(&collapsed.plain, clear, watch)?
+            .is_some()
+        {
             best = self.or_better(Some(best), collapsed.plain.clone(), watch)?;
         }
+        best = best.counted_for_lower_quality();
         if self.limits.quality == Quality::Best {
             // The first is the balanced one itself.
             let drafts = fit::more(balanced, collapsed, target, watch)?;
@@ -258,6 +262,7 @@ impl Source {
         let hausdorff = measure(&self.surface, &self.tree, &enclosed, effort, watch)?;
         Ok(Enclosed {
             draft: enclosed,
+            lower_quality: hausdorff.error().into(),
             hausdorff,
             before,
         })
@@ -280,7 +285,10 @@ impl Source {
         };
         let other = self.enclosed(other, effort, watch)?;
         Ok(if other.hausdorff.error() < error {
-            other
+            Enclosed {
+                lower_quality: best.lower_quality,
+                ..other
+            }
         } else {
             best
         })
@@ -313,4 +321,15 @@ struct Enclosed {
     draft: Draft,
     hausdorff: Hausdorff,
     before: Option<Draft>,
+    /// The least error so far without [`Quality::Best`]: it decides which counts are tried, so that
+    /// they are the same for both.
+    lower_quality: f64,
+}
+
+impl Enclosed {
+    fn counted_for_lower_quality(mut self) -> Self {
+        let error = f64::from(self.hausdorff.error());
+        self.lower_quality = self.lower_quality.min(error);
+        self
+    }
 }

@@ -7,31 +7,33 @@
 
 use super::bounds::{Bounds, Point, coordinate};
 use super::draft::{Ball, Corners, Draft, Signed};
+use super::four_boxes::{FourBoxes, FourPoints, slack};
 use super::prepared::Prepared;
+use wide::f32x4;
 
-/// Primitives in a leaf.
-const LEAF: usize = 2;
-
+/// Four groups of primitives, or single ones.
 struct Node {
-    volume: Bounds,
-    centers: Bounds,
-    largest_radius: f64,
-    /// Leaf: first primitive. Inner: first of two neighbouring children.
-    first: u32,
-    /// Leaf: number of primitives. Inner: 0.
-    count: u32,
+    volumes: FourBoxes,
+    centers: FourBoxes,
+    largest_radii: f32x4,
+    children: [Child; 4],
+}
+
+/// What one of a node's boxes is of.
+#[derive(Clone, Copy)]
+enum Child {
+    Nothing,
+    Primitive(u32),
+    Group(u32),
 }
 
 impl Node {
-    /// A lower bound of the signed distance; the first one found that reaches `limit`.
+    /// Lower bounds of the signed distances.
     #[inline]
-    fn lower_bound(&self, p: Point, limit: f64) -> f64 {
-        let volume = self.volume.signed_distance(p);
-        if volume >= limit {
-            return volume;
-        }
-        let centers = self.centers.distance_sq(p).sqrt() - self.largest_radius;
-        volume.max(centers)
+    fn lower_bounds(&self, p: &FourPoints) -> [f32; 4] {
+        let volumes = self.volumes.signed_distance(p);
+        let centers = self.centers.distance_sq(p).sqrt() - self.largest_radii;
+        volumes.fast_max(centers).to_array()
     }
 }
 
@@ -44,35 +46,47 @@ pub struct Nearest {
     pub primitive: u32,
 }
 
+impl Nearest {
+    /// Becomes the other if that is nearer, or as near with a lower index: so the order in which the tree
+    /// is searched does not show.
+    #[inline]
+    fn take_nearer(&mut self, other: Self) {
+        let (mine, its) = (self.signed.distance, other.signed.distance);
+        if its < mine || its == mine && other.primitive > self.primitive {
+            *self = other;
+        }
+    }
+}
+
 /// Boxes over the primitives of a draft; node 0 is the root.
 pub struct PrimitiveTree<'a> {
     draft: &'a Draft,
     primitives: Vec<Corners>,
     prepared: Vec<Prepared>,
-    /// Primitives in the order of the leaves.
-    order: Vec<u32>,
     nodes: Vec<Node>,
+    /// Largest coordinate of any box.
+    reach: f64,
 }
 
 impl<'a> PrimitiveTree<'a> {
-    /// Builds the tree by halving at the median of the longest spread of the primitives' middles.
+    /// Builds the tree by halving twice, at the median of the longest spread of the primitives' middles.
     pub fn new(draft: &'a Draft) -> Self {
         let primitives = draft.primitives();
         let middle = |c: &Corners| Ball::interpolate(draft.balls_of(*c), [1.0 / 3.0; 3]);
-        let mut items: Vec<(Ball, u32)> = primitives.iter().map(middle).zip(0u32..).collect();
+        let mut items: Vec<Item> = primitives.iter().map(middle).zip(0u32..).collect();
         let prepare = |c: &Corners| Prepared::new(*c, draft.balls_of(*c));
+        let far = |b: &Ball| {
+            let c = b.center;
+            c.x.abs().max(c.y.abs()).max(c.z.abs()) + b.radius
+        };
         let mut tree = Self {
             draft,
             prepared: primitives.iter().map(prepare).collect(),
+            nodes: Vec::with_capacity(items.len() / 2 + 1),
+            reach: draft.balls.iter().map(far).fold(0.0, f64::max),
             primitives,
-            order: Vec::new(),
-            nodes: Vec::with_capacity(items.len()),
         };
-        if !items.is_empty() {
-            tree.nodes.push(tree.node(&items, 0));
-            tree.split(0, 0, &mut items);
-        }
-        tree.order = items.iter().map(|i| i.1).collect();
+        tree.group(&mut items);
         tree
     }
 
@@ -81,51 +95,40 @@ impl<'a> PrimitiveTree<'a> {
         &self.primitives
     }
 
-    fn node(&self, items: &[(Ball, u32)], first: usize) -> Node {
-        let balls = items
-            .iter()
-            .flat_map(|i| self.draft.balls_of(self.primitives[i.1 as usize]));
-        Node {
-            volume: balls
-                .clone()
-                .map(|b| Bounds::of_ball(b.center, b.radius))
-                .fold(Bounds::EMPTY, Bounds::union),
-            centers: Bounds::of(balls.clone().map(|b| b.center)),
-            largest_radius: balls.map(|b| b.radius).fold(0.0, f64::max),
-            first: first as u32,
-            count: items.len() as u32,
+    /// Adds the node of a group, and those below it; gives its index.
+    fn group(&mut self, items: &mut [Item]) -> u32 {
+        let (left, right) = halve(items);
+        let ((a, b), (c, d)) = (halve(left), halve(right));
+        let parts = [a, b, c, d];
+        let index = self.nodes.len() as u32;
+        self.nodes.push(self.node(&parts));
+        for (k, part) in parts.into_iter().enumerate() {
+            let child = match part {
+                [] => Child::Nothing,
+                [only] => Child::Primitive(only.1),
+                several => Child::Group(self.group(several)),
+            };
+            self.nodes[index as usize].children[k] = child;
         }
+        index
     }
 
-    fn split(&mut self, node: usize, first: usize, items: &mut [(Ball, u32)]) {
-        if items.len() <= LEAF {
-            return;
-        }
-        let spread = Bounds::of(items.iter().map(|i| i.0.center));
-        let (least, most) = items.iter().fold((f64::MAX, 0.0f64), |(least, most), i| {
-            (least.min(i.0.radius), most.max(i.0.radius))
-        });
-        let axis = spread.longest_axis();
-        let by_radius = most - least > spread.longest_side();
-        let key = |b: &Ball| {
-            if by_radius {
-                b.radius
-            } else {
-                coordinate(b.center, axis)
-            }
+    /// The bounds of four groups.
+    fn node(&self, parts: &[&mut [Item]; 4]) -> Node {
+        let balls = |k: usize| {
+            let of = |i: &Item| self.draft.balls_of(self.primitives[i.1 as usize]);
+            parts[k].iter().flat_map(of)
         };
-        let middle = items.len() / 2;
-        items.select_nth_unstable_by(middle, |a, b| {
-            key(&a.0).total_cmp(&key(&b.0)).then(a.1.cmp(&b.1))
-        });
-        let (left, right) = items.split_at_mut(middle);
-        let children = self.nodes.len();
-        self.nodes[node].first = children as u32;
-        self.nodes[node].count = 0;
-        let pair = [self.node(left, first), self.node(right, first + middle)];
-        self.nodes.extend(pair);
-        self.split(children, first, left);
-        self.split(children + 1, first + middle, right);
+        let around = |bounds: &dyn Fn(Ball) -> Bounds| {
+            FourBoxes::new([0, 1, 2, 3].map(|k| balls(k).map(bounds).reduce(Bounds::union)))
+        };
+        let radius = |k: usize| balls(k).map(|b| b.radius).fold(0.0, f64::max) as f32;
+        Node {
+            volumes: around(&|b| Bounds::of_ball(b.center, b.radius)),
+            centers: around(&|b| Bounds::of([b.center])),
+            largest_radii: f32x4::from([0, 1, 2, 3].map(radius)),
+            children: [Child::Nothing; 4],
+        }
     }
 
     /// The ball that gives a signed distance.
@@ -149,9 +152,7 @@ impl<'a> PrimitiveTree<'a> {
             primitive,
         };
         self.visit(p, best.signed.distance, |signed, primitive| {
-            if signed.distance < best.signed.distance {
-                best = Nearest { signed, primitive };
-            }
+            best.take_nearer(Nearest { signed, primitive });
             Some(best.signed.distance)
         });
         best
@@ -169,9 +170,7 @@ impl<'a> PrimitiveTree<'a> {
             return None;
         }
         self.visit(p, signed.distance.min(most), |signed, primitive| {
-            if signed.distance < best.signed.distance {
-                best = Nearest { signed, primitive };
-            }
+            best.take_nearer(Nearest { signed, primitive });
             let lowest = best.signed.distance;
             (lowest >= least).then_some(lowest.min(most))
         });
@@ -194,40 +193,69 @@ impl<'a> PrimitiveTree<'a> {
 
     /// Calls `see` for primitives whose distance may be below `limit`, nearer groups first; `see`
     /// returns the new limit, or `None` to stop.
-    fn visit(&self, p: Point, mut limit: f64, mut see: impl FnMut(Signed, u32) -> Option<f64>) {
-        // Halving keeps the depth below 32, and each level leaves one node waiting.
-        let mut stack = [(0.0, 0u32); 64];
+    fn visit(&self, p: Point, limit: f64, mut see: impl FnMut(Signed, u32) -> Option<f64>) {
+        let (point, slack) = (FourPoints::splat(p), slack(p, self.reach));
+        let mut limit = (limit + slack) as f32;
+        // Quartering keeps the depth below 17, and each level leaves three waiting.
+        let mut stack = [(f32::NEG_INFINITY, Child::Group(0)); 64];
         let mut len = 1;
-        stack[0] = (self.nodes[0].lower_bound(p, limit), 0);
         while len > 0 {
             len -= 1;
-            let (bound, index) = stack[len];
+            let (bound, child) = stack[len];
             if bound >= limit {
                 continue;
             }
-            let node = &self.nodes[index as usize];
-            let first = node.first as usize;
-            if node.count > 0 {
-                for &primitive in &self.order[first..first + node.count as usize] {
+            match child {
+                Child::Nothing => {}
+                Child::Primitive(primitive) => {
                     match see(self.distance_to(primitive, p), primitive) {
-                        Some(new) => limit = new,
+                        Some(new) => limit = (new + slack) as f32,
                         None => return,
                     }
                 }
-                continue;
-            }
-            let bound = |child: usize| (self.nodes[child].lower_bound(p, limit), child as u32);
-            let (left, right) = (bound(first), bound(first + 1));
-            let (near, far) = match left.0 <= right.0 {
-                true => (left, right),
-                false => (right, left),
-            };
-            for child in [far, near] {
-                if child.0 < limit {
-                    stack[len] = child;
-                    len += 1;
+                Child::Group(index) => {
+                    let node = &self.nodes[index as usize];
+                    let first = len;
+                    for (bound, child) in node.lower_bounds(&point).into_iter().zip(node.children) {
+                        if bound >= limit {
+                            continue;
+                        }
+                        // The nearest on top.
+                        let mut at = len;
+                        while at > first && stack[at - 1].0 < bound {
+                            stack[at] = stack[at - 1];
+                            at -= 1;
+                        }
+                        stack[at] = (bound, child);
+                        len += 1;
+                    }
                 }
             }
         }
     }
+}
+
+/// Middle of a primitive, and its index.
+type Item = (Ball, u32);
+
+/// Halves primitives at the median of the longest spread of their middles, or of their radii.
+fn halve(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
+    let middle = items.len() / 2;
+    if middle == 0 {
+        return items.split_at_mut(0);
+    }
+    let spread = Bounds::of(items.iter().map(|i| i.0.center));
+    let (least, most) = items.iter().fold((f64::MAX, 0.0f64), |(least, most), i| {
+        (least.min(i.0.radius), most.max(i.0.radius))
+    });
+    let axis = spread.longest_axis();
+    let by_radius = most - least > spread.longest_side();
+    let key = |b: &Ball| match by_radius {
+        true => b.radius,
+        false => coordinate(b.center, axis),
+    };
+    items.select_nth_unstable_by(middle, |a, b| {
+        key(&a.0).total_cmp(&key(&b.0)).then(a.1.cmp(&b.1))
+    });
+    items.split_at_mut(middle)
 }

@@ -13,7 +13,7 @@
 
 use super::bounds::Point;
 use super::draft::Draft;
-use super::residuals::{EnvelopeSample, Residuals, Row, envelope_samples, residuals};
+use super::residuals::{EnvelopeSample, GUESS, Residuals, Row, envelope_samples, residuals};
 use super::samples::Sample;
 use super::solid::Solid;
 use super::triangle_tree::TriangleTree;
@@ -56,6 +56,42 @@ impl Target<'_> {
         let envelope = envelope_samples(&Solid::new(draft), COARSE * self.spacing, watch)?;
         let mut hints = vec![0; self.samples.len()];
         self.examine(draft, &mut hints, &envelope, watch)
+    }
+
+    /// The largest residual of a draft if it is below `limit`; the search ends at the first that is not,
+    /// which for bad drafts is soon.
+    pub fn largest_below(
+        &self,
+        draft: &Draft,
+        limit: f64,
+        watch: &mut Watch,
+    ) -> Result<Option<f64>, BuildError> {
+        let solid = Solid::new(draft);
+        let (mut largest, mut hint) = (0.0f64, 0);
+        for (i, sample) in self.samples.iter().enumerate() {
+            if i % 512 == 0 {
+                watch.again()?;
+            }
+            let near = solid.nearest(sample.point, hint);
+            hint = near.primitive;
+            largest = largest.max(near.signed.distance.abs());
+            if largest >= limit {
+                return Ok(None);
+            }
+        }
+        let envelope = envelope_samples(&solid, COARSE * self.spacing, watch)?;
+        for (i, sample) in envelope.iter().enumerate() {
+            if i % 512 == 0 {
+                watch.again()?;
+            }
+            let (point, _) = sample.at(draft, &solid);
+            let off = self.tree.closest(point, GUESS) - point;
+            largest = largest.max(off.length());
+            if largest >= limit {
+                return Ok(None);
+            }
+        }
+        Ok(Some(largest))
     }
 
     fn examine(

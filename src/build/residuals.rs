@@ -17,7 +17,7 @@ use super::draft::{Ball, Corners, Draft};
 use super::samples::Sample;
 use super::solid::{Cell, Solid};
 use super::triangle_tree::TriangleTree;
-use super::watch::Watch;
+use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
 
 /// First guess of an envelope sample's distance (longest side 1); only time depends on it.
@@ -50,6 +50,15 @@ pub struct EnvelopeSample {
     normal: Point,
 }
 
+impl EnvelopeSample {
+    /// Where it is now, and the corners of its primitive.
+    pub fn at(&self, draft: &Draft, solid: &Solid) -> (Point, Corners) {
+        let corners = solid.primitives()[self.primitive as usize];
+        let ball = Ball::interpolate(draft.balls_of(corners), self.weights);
+        (ball.center + self.normal * ball.radius, corners)
+    }
+}
+
 /// All rows of a draft: surface samples first, then envelope samples.
 pub struct Residuals {
     /// The rows.
@@ -80,8 +89,7 @@ pub fn envelope_samples(
         cells = map_chunks(&cells, watch, |chunk| {
             let mut children = Vec::new();
             for &(cell, hint) in chunk {
-                let near = solid.nearest(cell.center, hint);
-                if near.signed.distance.abs() <= cell.radius() {
+                if let Some(near) = solid.nearest_if_near(cell.center, cell.radius(), hint) {
                     children.extend(cell.children().map(|child| (child, near.primitive)));
                 }
             }
@@ -91,10 +99,9 @@ pub fn envelope_samples(
     map_chunks(&cells, watch, |chunk| {
         let mut samples = Vec::new();
         for &(cell, hint) in chunk {
-            let near = solid.nearest(cell.center, hint);
-            if near.signed.distance.abs() > cell.radius() {
+            let Some(near) = solid.nearest_if_near(cell.center, cell.radius(), hint) else {
                 continue;
-            }
+            };
             if let Some(point) = solid.onto_boundary(cell.center, &near) {
                 samples.push(EnvelopeSample {
                     primitive: near.primitive,
@@ -145,9 +152,7 @@ pub fn residuals(
     let share = surface_rows as f64 / envelope.len().max(1) as f64;
     rows.extend(map_chunks(envelope, watch, |chunk| {
         let row = |sample: &EnvelopeSample| {
-            let corners = solid.primitives()[sample.primitive as usize];
-            let ball = Ball::interpolate(draft.balls_of(corners), sample.weights);
-            let point = ball.center + sample.normal * ball.radius;
+            let (point, corners) = sample.at(draft, &solid);
             let off = point - tree.closest(point, GUESS);
             let (distance, along) = (off.length(), off.dot(sample.normal));
             // Where the way to the surface is across the normal, growing does not help.
@@ -168,6 +173,7 @@ pub fn residuals(
         };
         chunk.iter().map(row).collect()
     })?);
+    watch.hold(bytes_of(&rows) + bytes_of(&paired) + size_of_val(envelope));
     let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
     let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();
     let squares = sum(|r| r.weight * r.residual * r.residual);

@@ -14,7 +14,7 @@ use super::draft::{Ball, Draft};
 use super::quadric::{Quadric, cone_normals, slab_normals};
 use super::triangle_tree::TriangleTree;
 use super::voids::open_voids;
-use super::watch::Watch;
+use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -109,7 +109,14 @@ impl<'a> Simplifier<'a> {
             }
             simplifier.push_around(v, |u| u > v);
         }
+        watch.hold(simplifier.bytes());
         Ok(simplifier)
+    }
+
+    /// Bytes of its arrays.
+    fn bytes(&self) -> usize {
+        let heap = self.heap.capacity() * size_of::<Candidate>();
+        self.complex.bytes() + bytes_of(&self.quadrics) + bytes_of(&self.versions) + heap
     }
 
     /// Number of primitives now.

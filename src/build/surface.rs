@@ -6,7 +6,7 @@ use super::findings::Findings;
 use super::orient::{Patches, orient};
 use super::patches::{Kind, judge};
 use super::triangle_tree::TriangleTree;
-use super::watch::Watch;
+use super::watch::{Watch, bytes_of};
 use super::weld::{Welded, weld};
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
@@ -112,6 +112,7 @@ impl Surface {
         };
         let corners_of = |i: usize| surface.corners(i);
         let mut tree = TriangleTree::new(surface.triangles.len(), corners_of, watch)?;
+        watch.keep(surface.bytes() + tree.bytes());
         surface.sort(patches, &mut tree, watch)?;
         Ok((surface, tree))
     }
@@ -153,6 +154,13 @@ impl Surface {
         self.patch_of = patches.of;
         self.findings = findings;
         Ok(())
+    }
+
+    /// Bytes of its arrays.
+    fn bytes(&self) -> usize {
+        let triangles = bytes_of(&self.triangles) + bytes_of(&self.needles);
+        let of_each = bytes_of(&self.normals) + bytes_of(&self.patch_of) + self.triangles.len();
+        bytes_of(&self.vertices) + triangles + of_each
     }
 
     /// The triangles that `wanted` says, as a surface of their own.

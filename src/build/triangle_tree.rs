@@ -7,7 +7,7 @@
 //! moment is the sum of its area vectors.
 
 use super::bounds::{Bounds, Point, coordinate, direction};
-use super::watch::Watch;
+use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
 
 /// Triangles in a leaf. 2 to 8 differ by less than a tenth in time.
@@ -78,6 +78,12 @@ impl TriangleTree {
         };
         tree.sum_up(watch)?;
         Ok(tree)
+    }
+
+    /// Bytes of its arrays.
+    pub fn bytes(&self) -> usize {
+        let of_each = bytes_of(&self.given) + bytes_of(&self.counts);
+        bytes_of(&self.nodes) + bytes_of(&self.corners) + of_each
     }
 
     /// Lets each triangle, by its place among those given, count as `counts` says: 1, −1 or 0.

@@ -1,4 +1,5 @@
-//! Progress and cancellation: stages report through one object, which also times them.
+//! Progress and cancellation: stages report through one object, which also times them and adds up
+//! their arrays.
 
 use super::options::Progress;
 use crate::error::BuildError;
@@ -27,6 +28,11 @@ const STAGES: [(&str, f64); 12] = [
 /// microsecond. The promise is 200 ms; more reports cost more than they serve.
 const EVERY: usize = 1 << 14;
 
+/// Bytes of an array, with what it has in reserve.
+pub fn bytes_of<T>(array: &Vec<T>) -> usize {
+    array.capacity() * size_of::<T>()
+}
+
 /// Passes progress to the caller and its wish to stop to the stages.
 pub struct Watch<'a> {
     callback: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
@@ -37,6 +43,9 @@ pub struct Watch<'a> {
     fraction: f64,
     since: Instant,
     seconds: Vec<(&'static str, f64)>,
+    /// Bytes held to the end, and the most held at any time.
+    kept: usize,
+    peak: usize,
 }
 
 impl<'a> Watch<'a> {
@@ -50,6 +59,8 @@ impl<'a> Watch<'a> {
             fraction: 0.0,
             since: Instant::now(),
             seconds: Vec::new(),
+            kept: 0,
+            peak: 0,
         }
     }
 
@@ -91,6 +102,22 @@ impl<'a> Watch<'a> {
             self.at(0.0)?;
         }
         Ok(())
+    }
+
+    /// Takes down arrays that are held to the end of the build, besides those before.
+    pub fn keep(&mut self, bytes: usize) {
+        self.kept += bytes;
+        self.hold(0);
+    }
+
+    /// Takes down what is held for a while, besides what is kept.
+    pub fn hold(&mut self, bytes: usize) {
+        self.peak = self.peak.max(self.kept + bytes);
+    }
+
+    /// Most bytes held at any time.
+    pub fn peak(&self) -> usize {
+        self.peak
     }
 
     /// Ends the build: the last report, and the seconds of each stage in order of first entry.

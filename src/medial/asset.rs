@@ -40,7 +40,7 @@ use std::path::Path;
 pub const MAGIC: [u8; 8] = *b"\x89medial\n";
 
 /// Version of the layout that is written and read.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 const HEADER: usize = 128;
 const CHECKSUM: usize = 8;
@@ -354,20 +354,27 @@ pub(super) fn mass_of(index: usize, numbers: &[Real; MASS]) -> Result<MassProper
     Ok(mass)
 }
 
-/// FNV-1a's step on words of 8 bytes, with a rotation that brings high bits down. Each step maps the
-/// state one to one for a given word, and the word for a given state: a change within one word always
-/// changes the result; of others one in 2⁶⁴ goes unseen.
+/// The round of xxHash64 (Collet) on words of 8 bytes, from the length on. Each round maps the state one to
+/// one for a given word, and the word for a given state: a change within one word always changes the
+/// result; of others about one in 2⁶⁴ goes unseen, as a word's bits are spread before they meet the state.
 pub(crate) fn checksum(bytes: &[u8]) -> u64 {
-    const PRIME: u64 = 0x0000_0100_0000_01b3;
-    const START: u64 = 0xcbf2_9ce4_8422_2325;
-    let step = |h: u64, word: u64| (h ^ word).wrapping_mul(PRIME).rotate_left(29);
+    const P: [u64; 3] = [
+        0x9e37_79b1_85eb_ca87,
+        0xc2b2_ae3d_27d4_eb4f,
+        0x85eb_ca77_c2b2_ae63,
+    ];
+    let round = |h: u64, word: u64| {
+        let spread = word.wrapping_mul(P[1]).rotate_left(31).wrapping_mul(P[0]);
+        let turned = (h ^ spread).rotate_left(27);
+        turned.wrapping_mul(P[0]).wrapping_add(P[2])
+    };
     let words = bytes.chunks_exact(8);
     let mut last = [0; 8];
     last[..words.remainder().len()].copy_from_slice(words.remainder());
-    let hash = words.fold(START, |h, chunk| {
+    let hash = words.fold(bytes.len() as u64, |h, chunk| {
         let mut word = [0; 8];
         word.copy_from_slice(chunk);
-        step(h, u64::from_le_bytes(word))
+        round(h, u64::from_le_bytes(word))
     });
-    step(hash, u64::from_le_bytes(last))
+    round(hash, u64::from_le_bytes(last))
 }

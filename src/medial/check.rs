@@ -4,7 +4,8 @@ use super::primitive::MedialSphere;
 use super::simplex::Simplex;
 use crate::error::{AssetError, MeshError};
 
-/// Fails on the first item that is not finite, negative, out of range or degenerate.
+/// Fails on the first item that is not finite, reaches beyond what is, is negative, out of range or
+/// degenerate.
 pub fn check(
     spheres: &[MedialSphere],
     edges: &[[u32; 2]],
@@ -14,7 +15,9 @@ pub fn check(
         return Err(MeshError::Empty);
     }
     for (index, s) in spheres.iter().enumerate() {
-        if !(s.center.is_finite() && s.radius.is_finite()) {
+        // As far as the sphere reaches: a box and a tree without infinities.
+        let reach = s.center.abs().max_element() + s.radius.abs();
+        if !(s.center.is_finite() && reach.is_finite()) {
             return Err(MeshError::NotFinite {
                 index,
                 center: s.center.into(),

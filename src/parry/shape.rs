@@ -38,7 +38,10 @@ impl CompositeShape for MedialMesh {
             return;
         }
         match self.primitive(shape_id as usize) {
-            MedialPrimitive::Cone([a, b]) if a.radius == b.radius => {
+            // parry's capsule panics at points that are no numbers where the square of its length is zero.
+            MedialPrimitive::Cone([a, b])
+                if a.radius == b.radius && a.center.distance_squared(b.center) > 0.0 =>
+            {
                 f(None, &Capsule::new(a.center, b.center, a.radius), None);
             }
             primitive => f(None, &MedialPart::new(primitive), None),

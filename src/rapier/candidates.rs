@@ -4,7 +4,7 @@
 use super::ahead::{Ahead, Start};
 use super::recycled::Recycled;
 use crate::batch::PairJob;
-use crate::math::{Pose, Real};
+use crate::math::{Pose, Real, Rotation};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle, RigidBodySet};
@@ -81,6 +81,68 @@ pub fn find(
     colliders: &ColliderSet,
     recycled: &mut Recycled,
 ) -> Candidates {
+    let mut found = Candidates::default();
+    recycled.begin(parameters);
+    for_each_near(parameters, bodies, colliders, |near| {
+        found.pairs += 1;
+        if recycled.needs_update(&near.job, near.rotations()) || near.hooked {
+            let (job, ahead) = near.at_the_end(parameters);
+            found.jobs.push(job);
+            found.ahead.push(ahead);
+        }
+    });
+    found
+}
+
+/// What [`find`] will find at the next step, if nothing is changed until then.
+pub fn expect(
+    parameters: &IntegrationParameters,
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+    recycled: &Recycled,
+) -> Vec<PairJob> {
+    let mut jobs = Vec::new();
+    for_each_near(parameters, bodies, colliders, |near| {
+        if near.hooked || !recycled.recycles(&near.job, near.rotations()) {
+            jobs.push(near.at_the_end(parameters).0);
+        }
+    });
+    jobs
+}
+
+/// Two colliders that are near each other.
+struct Near<'a, 'b> {
+    items: [&'a Item<'b>; 2],
+    /// At the start of the step.
+    job: PairJob,
+    /// Whether the user has hooks on them.
+    hooked: bool,
+}
+
+impl Near<'_, '_> {
+    fn rotations(&self) -> [Rotation; 2] {
+        self.items.map(|item| item.pose.rotation)
+    }
+
+    /// The job at the poses that the velocities lead to.
+    fn at_the_end(self, parameters: &IntegrationParameters) -> (PairJob, Ahead) {
+        let [x, y] = self.items;
+        let thickness = x.mesh.thickness().min(y.mesh.thickness());
+        let starts = [&x.start(), &y.start()];
+        let prediction = parameters.prediction_distance();
+        let (ahead, pos12) = Ahead::new(starts, parameters.dt, thickness, prediction);
+        let job = PairJob { pos12, ..self.job };
+        (job, ahead)
+    }
+}
+
+/// Visits each near pair.
+fn for_each_near(
+    parameters: &IntegrationParameters,
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+    mut visit: impl FnMut(Near<'_, '_>),
+) {
     let prediction = parameters.prediction_distance();
     let mut items: Vec<Item> = colliders
         .iter_enabled()
@@ -107,8 +169,6 @@ pub fn find(
         })
         .collect();
     items.sort_by(|a, b| a.aabb.mins.x.total_cmp(&b.aabb.mins.x));
-    let mut found = Candidates::default();
-    recycled.begin(parameters);
     for (i, a) in items.iter().enumerate() {
         for b in &items[i + 1..] {
             if b.aabb.mins.x > a.aabb.maxs.x {
@@ -117,22 +177,16 @@ pub fn find(
             if !wanted(a, b) {
                 continue;
             }
-            found.pairs += 1;
             let (x, y) = in_order(a, b);
-            let mut job = job(x, y, prediction);
+            let job = job(x, y, prediction);
             let hooked = !(x.collider.active_hooks() | y.collider.active_hooks()).is_empty();
-            let rotations = [x.pose.rotation, y.pose.rotation];
-            if recycled.needs_update(&job, rotations) || hooked {
-                let thickness = x.mesh.thickness().min(y.mesh.thickness());
-                let starts = [&x.start(), &y.start()];
-                let (ahead, pos12) = Ahead::new(starts, parameters.dt, thickness, prediction);
-                job.pos12 = pos12;
-                found.jobs.push(job);
-                found.ahead.push(ahead);
-            }
+            visit(Near {
+                items: [x, y],
+                job,
+                hooked,
+            });
         }
     }
-    found
 }
 
 fn wanted(a: &Item, b: &Item) -> bool {

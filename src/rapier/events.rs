@@ -88,12 +88,12 @@ pub fn resolve(
     batch: &mut Batch,
     work: &mut Work,
 ) -> Outcome {
-    let pairs = sweep(snapshot, asker.dt, MARGIN * asker.unit);
-    if pairs.is_empty() {
+    let deep = deep(snapshot, narrow_phase, asker.tuning.guarded());
+    if deep.is_empty() && !asker.may_be_fast(snapshot, asker.tuning.fast) {
         return Outcome::default();
     }
+    let pairs = sweep(snapshot, asker.dt, MARGIN * asker.unit);
     let courses = vec![Course::default(); snapshot.bodies.len()];
-    let deep = deep(snapshot, narrow_phase, &pairs, asker.tuning.guarded());
     let mut events = Loop {
         snapshot,
         asker,
@@ -133,20 +133,22 @@ pub fn resolve(
 fn deep(
     snapshot: &Snapshot,
     narrow_phase: &NarrowPhase,
-    pairs: &[[usize; 2]],
     guarded: Real,
 ) -> HashSet<[ColliderHandle; 2]> {
-    let depth = |[i, j]: [usize; 2]| {
-        let [h1, h2] = [i, j].map(|k| snapshot.parts[k].handle);
-        let found = narrow_phase.contact_pair(h1, h2)?;
+    let least = guarded * snapshot.least_thickness();
+    let part = |h: ColliderHandle| snapshot.parts.iter().position(|p| p.handle == h);
+    let mut deep = HashSet::new();
+    for found in narrow_phase.contact_pairs() {
         let points = found.manifolds().iter().flat_map(|m| &m.points);
-        points.map(|p| -p.dist).reduce(Real::max)
-    };
-    let is_deep = |pair: &&[usize; 2]| {
-        depth(**pair).is_some_and(|d| d > guarded * snapshot.thickness(**pair))
-    };
-    let handles = |pair: &[usize; 2]| pair.map(|k| snapshot.parts[k].handle);
-    pairs.iter().filter(is_deep).map(handles).collect()
+        let depth = points.map(|p| -p.dist).fold(0.0, Real::max);
+        if depth > least
+            && let [Some(i), Some(j)] = [found.collider1, found.collider2].map(part)
+            && depth > guarded * snapshot.thickness([i, j])
+        {
+            deep.insert(in_order(snapshot, [i, j]).map(|k| snapshot.parts[k].handle));
+        }
+    }
+    deep
 }
 
 impl Loop<'_> {

@@ -93,6 +93,14 @@ impl Asker<'_> {
         }
     }
 
+    /// Whether a pair can be fast at all, or is watched whatever it does. In a scene at rest none is, and
+    /// no pair need be looked for.
+    pub fn may_be_fast(&self, snapshot: &Snapshot, share: Real) -> bool {
+        let asked = |e: &Effects| e.continuous == Effect::On || e.guard == Effect::On;
+        self.effects.any(asked)
+            || 2.0 * snapshot.most_travel(self.dt) > share * snapshot.least_thickness()
+    }
+
     /// Whether the solver gets contacts of the pair for all that it may reach in the step.
     pub fn speculates(&self, snapshot: &Snapshot, pair: [usize; 2]) -> bool {
         self.effects_of(snapshot, pair).speculative == Effect::On

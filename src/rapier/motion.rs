@@ -321,6 +321,18 @@ impl Snapshot {
         of(i).min(of(j)).min(1.0e6)
     }
 
+    /// How thin the thinnest collider is, a length; surfaces do not count.
+    pub fn least_thickness(&self) -> Real {
+        let solid = self.parts.iter().map(|p| p.thickness).filter(|t| *t > 0.0);
+        solid.fold(1.0e6, Real::min)
+    }
+
+    /// Bound on how far a point of any collider moves in `seconds`.
+    pub fn most_travel(&self, seconds: Real) -> Real {
+        let speed = |b: &Body| b.motion.linvel.length() + b.motion.angvel.length() * b.reach;
+        self.bodies.iter().map(speed).fold(0.0, Real::max) * seconds
+    }
+
     /// Bound on how far a point of one collider moves relative to the other in `seconds`.
     pub fn travel(&self, [i, j]: [usize; 2], seconds: Real) -> Real {
         let [a, b] = [i, j].map(|k| &self.bodies[self.parts[k].body]);

@@ -18,6 +18,9 @@ pub fn muted(
     work: &mut Work,
 ) -> HashSet<Key> {
     let mut keys = HashSet::new();
+    if !asker.may_be_fast(snapshot, asker.tuning.muted) {
+        return keys;
+    }
     for pair in sweep(snapshot, asker.dt, 0.0) {
         let [p, q] = pair.map(|k| &snapshot.parts[k]);
         let plane = p.shape.as_halfspace().or(q.shape.as_halfspace());

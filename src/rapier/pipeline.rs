@@ -79,6 +79,18 @@ impl MedialPipeline {
         &self.batch
     }
 
+    /// For a browser, between two steps: asks the device about the contacts of the next one and waits
+    /// for its answers without blocking. Elsewhere each step asks for the next one by itself, and waits
+    /// only when it comes. What is changed in the world after that goes to the CPU.
+    #[cfg(feature = "gpu")]
+    pub async fn prepare(&mut self, world: &PhysicsWorld) {
+        let parameters = &world.integration_parameters;
+        let (bodies, colliders) = (&world.bodies, &world.colliders);
+        let next = candidates::expect(parameters, bodies, colliders, &self.recycled);
+        self.batch.submit_async(&next).await;
+        self.batch.ready().await;
+    }
+
     /// What a collider calls for, whatever the scene does; [`Effects::default`] leaves it to the scene.
     /// Of two colliders that differ, the one that has an effect on decides.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
@@ -186,10 +198,33 @@ impl MedialPipeline {
                 may_stop,
             );
             report.add(&done);
-            let Some(time) = stopped else { return report };
+            let Some(time) = stopped else {
+                self.send_early(parameters, bodies, colliders, &mut report);
+                return report;
+            };
             report.stops += 1;
             rest.dt -= time;
         }
+    }
+
+    /// The poses are final: a device has the time until the next step for its contacts.
+    fn send_early(
+        &mut self,
+        parameters: &IntegrationParameters,
+        bodies: &RigidBodySet,
+        colliders: &ColliderSet,
+        report: &mut StepReport,
+    ) {
+        if !self.batch.has_device() {
+            return;
+        }
+        let before = self.batch.report().clone();
+        let next = candidates::expect(parameters, bodies, colliders, &self.recycled);
+        self.batch.submit(&next);
+        let after = self.batch.report();
+        report.submissions += after.submissions - before.submissions;
+        report.maps += after.maps - before.maps;
+        report.fallbacks += after.fallbacks - before.fallbacks;
     }
 
     /// A step, or what of it comes before the world stops; the second result is when.
@@ -339,6 +374,7 @@ impl MedialPipeline {
         report.unfit = after.unfit - before.unfit;
         report.submissions = after.submissions - before.submissions;
         report.maps = after.maps - before.maps;
+        report.sent_early = after.sent_early - before.sent_early;
         report.survivors = after.survivors - before.survivors;
         report.fallbacks = after.fallbacks - before.fallbacks;
         (report, outcome.stopped)

@@ -47,14 +47,10 @@ impl Recycled {
     /// Whether rapier will update this pair in full; if so its account starts anew at this pose.
     pub fn needs_update(&mut self, job: &PairJob, rotations: [Rotation; 2]) -> bool {
         let key = ids(job);
+        let recycled = self.recycles(job, rotations);
         if let Some(f) = self.frozen.get_mut(&key) {
             f.seen = self.step;
-            let limit = self.limits[usize::from(!f.touching)];
-            let turned = |k: usize| {
-                let c = f.rotations[k].dot(rotations[k]);
-                2.0 * c * c - 1.0 <= ROTATION_COSINE
-            };
-            if drift(&f.pos12, job) <= limit && limit > 0.0 && !turned(0) && !turned(1) {
+            if recycled {
                 return false;
             }
         }
@@ -66,6 +62,18 @@ impl Recycled {
         };
         self.frozen.insert(key, frozen);
         true
+    }
+
+    /// Whether rapier keeps the contacts of this pair, as far as is known now.
+    pub fn recycles(&self, job: &PairJob, rotations: [Rotation; 2]) -> bool {
+        self.frozen.get(&ids(job)).is_some_and(|f| {
+            let limit = self.limits[usize::from(!f.touching)];
+            let turned = |k: usize| {
+                let c = f.rotations[k].dot(rotations[k]);
+                2.0 * c * c - 1.0 <= ROTATION_COSINE
+            };
+            drift(&f.pos12, job) <= limit && limit > 0.0 && !turned(0) && !turned(1)
+        })
     }
 
     /// Notes whether a pair just updated is in contact.

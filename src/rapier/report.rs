@@ -15,10 +15,12 @@ pub struct StepReport {
     pub settled_by_gpu: u64,
     /// Jobs asked of the GPU that it cannot take; the CPU has them.
     pub unfit: u64,
-    /// Submissions to the GPU.
+    /// Submissions to the GPU: of this step's first contacts, and of the next one's contacts.
     pub submissions: u64,
-    /// Times that the step waited for answers of the GPU.
+    /// Times that the step waited for answers of the GPU: one for each batch.
     pub maps: u64,
+    /// Jobs of the batch that had gone to the GPU at the end of the step before.
+    pub sent_early: u64,
     /// Primitive pairs that the GPU could not prove free.
     pub survivors: u64,
     /// Batches that a GPU was to have and could not take; [`crate::MedialPipeline::batch`] says why.
@@ -76,6 +78,7 @@ impl StepReport {
         self.unfit += part.unfit;
         self.submissions += part.submissions;
         self.maps += part.maps;
+        self.sent_early += part.sent_early;
         self.survivors += part.survivors;
         self.fallbacks += part.fallbacks;
         self.contacts += part.contacts;

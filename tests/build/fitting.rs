@@ -146,27 +146,41 @@ fn a_union_of_balls_is_covered_and_not_left() {
     }
 }
 
+/// Counts that are round, from one of which to the next the builder promises it, up to where it tries
+/// smaller ones in any case.
 #[test]
 fn neither_a_higher_quality_nor_more_primitives_are_worse() {
-    let mesh = wavy_ring();
-    let at = |quality, primitives| {
-        let (_, report) = built(&mesh, quality, primitives, true);
-        assert!(report.primitives <= primitives);
-        assert_eq!(report.euler, 0, "{quality:?} {primitives}");
-        error(&report)
-    };
-    let errors = [50, 100, 200, 500].map(|n| at(Quality::Balanced, n));
-    assert!(errors.is_sorted_by(|a, b| a >= b), "{errors:?}");
-    let (fast, best) = (at(Quality::Fast, 50), at(Quality::Best, 50));
-    assert!(
-        best <= errors[0] && errors[0] <= fast,
-        "{fast} {errors:?} {best}"
-    );
-    assert!(
-        errors[0] < 0.8 * fast,
-        "the fit is worth its time: {fast} {}",
-        errors[0]
-    );
+    let bar = capsule(0.4, 0.15, 16, 5).map(|v| Vector::new(v.x + v.z * v.z, v.y, v.z));
+    let cases = [
+        ("wavy ring", wavy_ring(), 0, [10, 50].as_slice()),
+        ("bent bar", bar, 1, &[10, 300, 600]),
+        ("L", l_shape(), 1, &[20, 250]),
+    ];
+    for (name, mesh, euler, counts) in cases {
+        let at = |quality, primitives| {
+            let (_, report) = built(&mesh, quality, primitives, true);
+            assert!(report.primitives <= primitives);
+            assert_eq!(report.euler, euler, "{name} {quality:?} {primitives}");
+            let better = report.notes.iter().any(|n| n.contains("fit better than"));
+            assert!(!better || report.primitives < primitives, "{name}");
+            error(&report)
+        };
+        let errors: Vec<f32> = counts.iter().map(|n| at(Quality::Balanced, *n)).collect();
+        println!("{name}: {errors:?}");
+        assert!(errors.is_sorted_by(|a, b| a >= b), "{name}: {errors:?}");
+        let (fast, best) = (at(Quality::Fast, counts[0]), at(Quality::Best, counts[0]));
+        assert!(
+            best <= errors[0] && errors[0] <= fast,
+            "{name}: {fast} {errors:?} {best}"
+        );
+        if name == "wavy ring" {
+            assert!(
+                errors[0] < 0.8 * fast,
+                "the fit is worth its time: {fast} {}",
+                errors[0]
+            );
+        }
+    }
 }
 
 /// The certificate after a fit, by points of every triangle; and what may stay uncovered is used.
@@ -175,9 +189,9 @@ fn a_fitted_solid_covers_its_source_or_as_much_as_asked() {
     let mesh = wavy_ring();
     let side = f64::from(mesh.longest_side());
     let mut bloats = Vec::new();
-    for allowed in [0.0, 0.01f32] {
+    for allowed in [0.0, 0.02f32] {
         let options = BuildOptions {
-            primitives: Some(60),
+            primitives: Some(10),
             allow_uncovered: allowed,
             ..Default::default()
         };
@@ -204,7 +218,7 @@ fn the_number_of_threads_does_not_matter() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let (medial, report) = pool
             .expect("threads")
-            .install(|| built(&mesh, Quality::Balanced, 40, true));
+            .install(|| built(&mesh, Quality::Balanced, 10, true));
         let bits =
             |s: &MedialSphere| [s.center.x, s.center.y, s.center.z, s.radius].map(f32::to_bits);
         let spheres: Vec<_> = medial.spheres().iter().map(bits).collect();

@@ -8,11 +8,17 @@
 #[path = "../common/ccd/mod.rs"]
 mod ccd;
 
+#[allow(dead_code, reason = "the creature; its scenes belong to other tests")]
+#[path = "../common/creature.rs"]
+mod creature;
+
 mod batch;
 mod calibration;
 mod culling;
+mod early;
 mod elementary;
 mod failures;
+mod large;
 mod scene;
 mod shaders;
 mod worlds;

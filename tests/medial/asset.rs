@@ -177,7 +177,7 @@ fn other_files_and_versions_are_named() {
         (b"\x89medial\r\n", "not a baked medial mesh"),
         (
             &newer,
-            "version 7 of the format, this crate reads version 1",
+            "version 7 of the format, this crate reads version 2",
         ),
         (&MAGIC, "8 bytes"),
     ];
@@ -205,7 +205,7 @@ fn other_files_and_versions_are_named() {
 /// The checksum of the format, from its description, to forge files with.
 pub fn seal(bytes: &mut [u8]) {
     let end = bytes.len() - 8;
-    let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
+    let mut hash = end as u64;
     let whole = end / 8 * 8;
     let mut last = [0; 8];
     last[..end - whole].copy_from_slice(&bytes[whole..end]);
@@ -213,8 +213,11 @@ pub fn seal(bytes: &mut [u8]) {
         .chunks_exact(8)
         .map(|c| c.try_into().unwrap());
     for word in words.chain([last]) {
-        hash = (hash ^ u64::from_le_bytes(word)).wrapping_mul(0x0000_0100_0000_01b3);
-        hash = hash.rotate_left(29);
+        let mut spread = u64::from_le_bytes(word).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
+        spread = spread.rotate_left(31).wrapping_mul(0x9e37_79b1_85eb_ca87);
+        hash = (hash ^ spread).rotate_left(27);
+        hash = hash.wrapping_mul(0x9e37_79b1_85eb_ca87);
+        hash = hash.wrapping_add(0x85eb_ca77_c2b2_ae63);
     }
     bytes[end..].copy_from_slice(&hash.to_le_bytes());
 }

@@ -240,7 +240,10 @@ fn awkward_numbers_survive() {
     let spheres: Vec<_> = numbers
         .chunks_exact(4)
         .map(|c| MedialSphere::new(Vector::new(c[0], c[1], c[2]), c[3].abs()))
+        // What ends beyond all numbers is refused.
+        .filter(|s| (s.center.abs().max_element() + s.radius).is_finite())
         .collect();
+    assert!(spheres.len() > 900);
     let mesh = MedialMesh::new(spheres, vec![], vec![]).unwrap();
     let mut text = Vec::new();
     mesh.write_ma(&mut text).unwrap();

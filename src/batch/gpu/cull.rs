@@ -135,21 +135,19 @@ impl Cull {
         Ok(())
     }
 
-    /// One submission and one map.
-    pub(super) async fn run(
+    /// One submission, its answers asked for.
+    pub(super) async fn submit(
         &mut self,
         context: &mut Context,
         [up, down]: [&mut Transfer; 2],
         meshes: &mut Meshes,
         asked: Asked<'_>,
-        survivors: &mut Vec<Survivor>,
-    ) -> Result<Found, GpuError> {
+    ) -> Result<(), GpuError> {
         let Asked {
             pairs,
             cluster_pairs,
             lists,
         } = asked;
-        survivors.clear();
         self.reserve(context, pairs, meshes, lists)?;
         let params = CullParams {
             pairs: pairs.len() as u32,
@@ -173,8 +171,7 @@ impl Cull {
                 primitives * size_of::<Primitive>(),
             ),
         ];
-        let counted = 4 * COUNTERS;
-        let listed = self.room[SURVIVORS] as usize * ENTRY[SURVIVORS];
+        let (counted, listed) = self.answered();
         up.begin(context, &items.map(|i| i.0.len())).await?;
         let timed = Clock::bytes(context.clock.as_ref());
         down.begin(context, &[counted, listed, timed]).await?;
@@ -203,11 +200,29 @@ impl Cull {
         up.take_back();
         down.take_back();
         meshes.sent = (meshes.clusters.len(), meshes.primitives.len());
+        Ok(())
+    }
+
+    /// Bytes of the counters and of the list that come back.
+    fn answered(&self) -> (usize, usize) {
+        let listed = self.room[SURVIVORS] as usize * ENTRY[SURVIVORS];
+        (4 * COUNTERS, listed)
+    }
+
+    /// Waits for what the last submission found.
+    pub(super) async fn read(
+        &self,
+        context: &Context,
+        down: &Transfer,
+        survivors: &mut Vec<Survivor>,
+    ) -> Result<Found, GpuError> {
+        survivors.clear();
+        let (counted, listed) = self.answered();
         let (mut counts, mut stages) = ([0u32; COUNTERS], [0.0; STAGES]);
         down.read(context, |bytes| {
             let (head, list) = bytes.split_at(counted);
             bytemuck::bytes_of_mut(&mut counts).copy_from_slice(head);
-            let found = counts[SURVIVORS].min(params.survivor_capacity) as usize;
+            let found = counts[SURVIVORS].min(self.room[SURVIVORS]) as usize;
             survivors.resize(found, Survivor::default());
             let to: &mut [u8] = bytemuck::cast_slice_mut(survivors);
             let size = to.len();

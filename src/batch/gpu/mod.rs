@@ -98,6 +98,11 @@ pub struct Gpu {
     pairs: Vec<Pair>,
     /// Where each pair comes from.
     asked: Vec<Piece>,
+    cluster_pairs: u32,
+    /// Mesh pairs asked about and not yet answered, whether or not any of them was fit.
+    sweeps: usize,
+    /// Whether the device has a batch of which the answers were not read.
+    pending: bool,
     survivors: Vec<Survivor>,
     stages: [f64; clock::STAGES],
     counts: GpuCounts,
@@ -115,6 +120,9 @@ impl Gpu {
             meshes: Meshes::default(),
             pairs: Vec::new(),
             asked: Vec::new(),
+            cluster_pairs: 0,
+            sweeps: 0,
+            pending: false,
             survivors: Vec::new(),
             stages: [0.0; clock::STAGES],
             counts: GpuCounts::default(),
@@ -222,7 +230,7 @@ impl Gpu {
         tolerance: f32,
         bounds: &mut Vec<Bound>,
     ) -> Result<(), GpuError> {
-        self.context.check()?;
+        self.drop_pending().await?;
         let transfers = [&mut self.up, &mut self.down];
         self.counts.submissions += 1;
         self.stages = self
@@ -245,43 +253,45 @@ impl Gpu {
         sweeps: &[Sweep<'_>],
         proposals: &mut Vec<Proposal>,
     ) -> Result<(), GpuError> {
-        self.context.check()?;
-        proposals.clear();
-        proposals.resize(sweeps.len(), Proposal::UNKNOWN);
+        self.submit(sweeps).await?;
+        self.collect(proposals).await
+    }
+
+    /// First half of [`Self::propose`]: sends the mesh pairs off. What was sent before and not collected
+    /// is dropped.
+    pub async fn submit(&mut self, sweeps: &[Sweep<'_>]) -> Result<(), GpuError> {
+        self.drop_pending().await?;
         self.survivors.clear();
+        self.sweeps = sweeps.len();
         self.meshes.begin();
-        let mut cluster_pairs = self.gather(sweeps)?;
+        self.gather(sweeps)?;
         if self.pairs.is_empty() {
             return Ok(());
         }
-        let mut lists = [0; 3];
-        for run in 0..MOST_RUNS {
-            self.counts.submissions += 1;
-            self.counts.reruns += u64::from(run > 0);
-            let transfers = [&mut self.up, &mut self.down];
-            let outcome = self
+        match self.send([0; 3]).await {
+            // Meshes of bodies long gone may fill the device.
+            Err(GpuError::TooLarge { .. }) => {
+                self.meshes.drop_unused();
+                self.gather(sweeps)?;
+                self.send([0; 3]).await
+            }
+            other => other,
+        }
+    }
+
+    /// Second half of [`Self::propose`]: waits for what the device says of the mesh pairs sent last.
+    pub async fn collect(&mut self, proposals: &mut Vec<Proposal>) -> Result<(), GpuError> {
+        self.context.check()?;
+        proposals.clear();
+        proposals.resize(std::mem::take(&mut self.sweeps), Proposal::UNKNOWN);
+        for _ in 0..MOST_RUNS {
+            if !std::mem::take(&mut self.pending) {
+                return Ok(());
+            }
+            let read = self
                 .cull
-                .run(
-                    &mut self.context,
-                    transfers,
-                    &mut self.meshes,
-                    Asked {
-                        pairs: &self.pairs,
-                        cluster_pairs,
-                        lists,
-                    },
-                    &mut self.survivors,
-                )
-                .await;
-            let found = match outcome {
-                // Meshes of bodies long gone may fill the device.
-                Err(GpuError::TooLarge { .. }) if run == 0 => {
-                    self.meshes.drop_unused();
-                    cluster_pairs = self.gather(sweeps)?;
-                    continue;
-                }
-                other => other?,
-            };
+                .read(&self.context, &self.down, &mut self.survivors);
+            let found = read.await?;
             self.stages = found.stages;
             let [tiles, near, survivors] = found.counts;
             self.counts.cluster_pairs = tiles;
@@ -291,13 +301,39 @@ impl Gpu {
                 self.settle(proposals);
                 return Ok(());
             }
-            lists = found.counts.map(|n| n.saturating_add(n / 2));
+            self.counts.reruns += 1;
+            self.send(found.counts.map(|n| n.saturating_add(n / 2)))
+                .await?;
         }
         Err(transfer::refused("lists kept overflowing"))
     }
 
-    /// Packs what is fit for the device; returns the number of cluster pairs.
-    fn gather(&mut self, sweeps: &[Sweep<'_>]) -> Result<u32, GpuError> {
+    /// Sends the pairs gathered, with lists at least that long.
+    async fn send(&mut self, lists: [u32; 3]) -> Result<(), GpuError> {
+        let asked = Asked {
+            pairs: &self.pairs,
+            cluster_pairs: self.cluster_pairs,
+            lists,
+        };
+        let transfers = [&mut self.up, &mut self.down];
+        let (context, meshes) = (&mut self.context, &mut self.meshes);
+        self.cull.submit(context, transfers, meshes, asked).await?;
+        self.counts.submissions += 1;
+        self.pending = true;
+        Ok(())
+    }
+
+    /// The buffer for answers has to be back before the next submission.
+    async fn drop_pending(&mut self) -> Result<(), GpuError> {
+        self.context.check()?;
+        if std::mem::take(&mut self.pending) {
+            self.down.read(&self.context, |_| ()).await?;
+        }
+        Ok(())
+    }
+
+    /// Packs what is fit for the device.
+    fn gather(&mut self, sweeps: &[Sweep<'_>]) -> Result<(), GpuError> {
         self.pairs.clear();
         self.asked.clear();
         let mut cluster_pairs = 0u64;
@@ -322,11 +358,12 @@ impl Gpu {
                 cluster_pairs += u64::from(places[0].clusters) * u64::from(places[1].clusters);
             }
         }
-        u32::try_from(cluster_pairs).map_err(|_| GpuError::TooLarge {
+        self.cluster_pairs = u32::try_from(cluster_pairs).map_err(|_| GpuError::TooLarge {
             what: "cluster pairs",
             bytes: cluster_pairs,
             limit: u32::MAX.into(),
-        })
+        })?;
+        Ok(())
     }
 
     fn settle(&mut self, proposals: &mut [Proposal]) {

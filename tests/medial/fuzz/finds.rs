@@ -1,10 +1,10 @@
 //! What the fuzzing found, kept.
 
 use parry3d::math::{Pose, Rotation, Vector};
-use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
+use parry3d::query::{DefaultQueryDispatcher, PointQuery, QueryDispatcher};
 use parry3d::shape::SharedShape;
 use rapier3d_medial::parry::MedialDispatcher;
-use rapier3d_medial::{MedialMesh, MedialSphere};
+use rapier3d_medial::{AssetError, MedialMesh, MedialSphere, MeshError};
 
 /// The inverse of a pose so far away is not finite: a panic here, and a debug assertion of parry.
 #[test]
@@ -49,4 +49,54 @@ fn poses_that_are_no_numbers_leave_nothing_near() {
         let meets = dispatcher.intersection_test(&pose, &mesh, &*capsule);
         assert!(meets.is_ok_and(|m| !m.intersecting));
     }
+}
+
+/// A sphere whose centre and radius are finite, but not its end: its box was not finite.
+#[test]
+fn spheres_that_end_beyond_all_numbers_are_refused() {
+    let sphere = |x, r| MedialSphere::new(Vector::new(x, -0.2, 0.2), r);
+    for sphere in [sphere(f32::MAX, 1.0e38), sphere(-3.0e38, 1.0e38)] {
+        let refused = MedialMesh::new(vec![sphere], vec![], vec![]);
+        assert!(matches!(
+            refused,
+            Err(MeshError::NotFinite { index: 0, .. })
+        ));
+    }
+    assert!(MedialMesh::new(vec![sphere(1.0e38, 1.0e38)], vec![], vec![]).is_ok());
+}
+
+/// parry's capsule panics at such points where the square of its length is zero; a cone of equal radii
+/// was given to it as one.
+#[test]
+fn points_that_are_no_numbers_are_projected_on_short_cones() {
+    let ball = |x| MedialSphere::new(Vector::new(x, 0.0, 0.0), 0.3);
+    let mesh = MedialMesh::new(vec![ball(0.0), ball(1.0e-30)], vec![[0, 1]], vec![]);
+    let mesh = mesh.expect("a cone");
+    for x in [f32::NAN, f32::INFINITY, f32::MAX] {
+        for solid in [false, true] {
+            mesh.project_local_point(Vector::splat(x), solid);
+        }
+    }
+    let near = mesh.project_local_point(Vector::X, true);
+    assert!((near.point.x - 0.3).abs() < 1.0e-6, "{near:?}");
+}
+
+/// Two bytes set to zero, three apart, cancelled in the checksum of a baked mesh: of a change in the
+/// highest byte of a word so few bits were brought down that one byte of the next word undid them.
+#[test]
+fn two_damaged_bytes_never_cancel() {
+    let baked = MedialMesh::ball(0.7).expect("a ball").to_bytes();
+    let mut unseen = 0;
+    for at in [39, 79] {
+        for first in 1..=255 {
+            for second in 1..=255 {
+                let mut bytes = baked.clone();
+                bytes[at] ^= first;
+                bytes[at + 3] ^= second;
+                let refused = MedialMesh::from_bytes(&bytes);
+                unseen += u32::from(!matches!(refused, Err(AssetError::Damaged { .. })));
+            }
+        }
+    }
+    assert_eq!(unseen, 0, "of 130,050");
 }

@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# Makes the README's pictures again: bash docs/images/make.sh
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+for name in falling_rings convex_hull_comparison chain nut_and_bolt; do
+  cargo run --release --example "$name" -- --out docs/images
+done

@@ -1,0 +1,55 @@
+//! Jobs that went to the device before they were asked: which of them a batch asks again, to the bit.
+
+use super::gpu::Proposal;
+use super::job::Sweep;
+use parry3d::query::NonlinearRigidMotion;
+use std::collections::HashMap;
+
+/// All that a sweep's answer depends on: instance ids, which are never given twice, and numbers, by
+/// their bits.
+#[derive(PartialEq, Eq, Hash)]
+pub(super) struct Key {
+    meshes: [u64; 2],
+    motions: [[u32; 16]; 2],
+    seconds: u32,
+    reach: u64,
+}
+
+impl Key {
+    pub(super) fn of(sweep: &Sweep<'_>) -> Self {
+        let bits = |m: &NonlinearRigidMotion| {
+            let (t, q) = (m.start.translation, m.start.rotation);
+            let (c, v, w) = (m.local_center, m.linvel, m.angvel);
+            [
+                t.x, t.y, t.z, q.x, q.y, q.z, q.w, c.x, c.y, c.z, v.x, v.y, v.z, w.x, w.y, w.z,
+            ]
+            .map(f32::to_bits)
+        };
+        let [m, n] = &sweep.motions;
+        Self {
+            meshes: sweep.meshes.map(|mesh| mesh.instance_id()),
+            motions: [bits(m), bits(n)],
+            seconds: sweep.seconds.to_bits(),
+            reach: sweep.reach.to_bits(),
+        }
+    }
+}
+
+/// Jobs on the device.
+#[derive(Default)]
+pub(super) struct Early {
+    /// Index of each.
+    pub(super) sent: HashMap<Key, u32>,
+    /// What the device said of them, once they are collected.
+    pub(super) proposals: Vec<Proposal>,
+    /// Whether the device still has them.
+    pub(super) pending: bool,
+}
+
+impl Early {
+    /// What the device said of this one, if it was sent.
+    pub(super) fn proposal(&self, sweep: &Sweep<'_>) -> Option<Proposal> {
+        let index = self.sent.get(&Key::of(sweep))?;
+        self.proposals.get(*index as usize).copied()
+    }
+}

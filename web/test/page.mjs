@@ -1,0 +1,92 @@
+// The page end to end in a headless Chromium: node test/page.mjs FOLDER PICTURES. It loads, the rings fall
+// and come to rest, clicks switch what bodies collide as, and nothing is written as an error.
+import assert from "node:assert/strict";
+import { mkdir, writeFile } from "node:fs/promises";
+import { join } from "node:path";
+import { serve } from "../serve.mjs";
+import { launch } from "./chromium.mjs";
+
+const [folder, pictures] = process.argv.slice(2);
+// Seconds that software rendering on a loaded machine may need.
+const PATIENCE = 240;
+const SIZES = {
+  laptop: { width: 1366, height: 768, mobile: false },
+  phone: { width: 390, height: 844, mobile: true },
+};
+
+const server = await serve(folder, 0);
+const url = `http://localhost:${server.address().port}/`;
+await mkdir(pictures, { recursive: true });
+const browser = await launch();
+
+const poses = (page) => page.value("Array.from(state.poses())");
+const places = (poses) => Array.from({ length: poses.length / 7 }, (_, body) => poses.slice(7 * body, 7 * body + 3));
+const heights = (poses) => places(poses).map(([, y]) => y);
+const moved = (a, b) => places(a).map((place, k) => Math.hypot(...place.map((x, i) => x - places(b)[k][i])));
+const fast = (page, steps) => page.value(`(() => { const button = document.getElementById("step"); for (let k = 0; k < ${steps}; k += 1) button.click(); return state.steps; })()`);
+
+async function drawn(page) {
+  // What is on the canvas is no single colour: at least as many as a few bodies, ground and sky have.
+  return page.value(`new Promise((resolve) => requestAnimationFrame(() => {
+    const canvas = document.getElementById("view");
+    const copy = new OffscreenCanvas(64, 64).getContext("2d");
+    copy.drawImage(canvas, 0, 0, 64, 64);
+    const { data } = copy.getImageData(0, 0, 64, 64);
+    resolve(new Set(Array.from({ length: 4096 }, (_, k) => data.slice(4 * k, 4 * k + 3).join())).size);
+  }))`);
+}
+
+async function at_size(name) {
+  const page = await browser.open(url, SIZES[name]);
+  await page.until("window.state?.ready", PATIENCE);
+  const start = await poses(page);
+  assert.equal(start.length, 7 * 16, "fifteen rings and the creature");
+  await page.until("state.steps >= 60", PATIENCE);
+  const later = await poses(page);
+  const falls = moved(start, later);
+  assert.ok(falls.slice(0, -1).every((metres) => metres > 0.3), `each ring falls: ${falls}`);
+  assert.equal(falls.at(-1), 0, "the creature stands");
+  assert.ok((await drawn(page)) > 100, "something is drawn");
+
+  await fast(page, 900 - (await page.value("state.steps")));
+  const rest = await poses(page);
+  await fast(page, 60);
+  const end = await poses(page);
+  assert.ok(end.every(Number.isFinite), "poses are numbers");
+  assert.ok(Math.max(...moved(rest, end)) < 0.01, `rings rest: ${moved(rest, end)}`);
+  assert.ok(heights(end).every((y) => y > -0.02), `none is under the ground: ${heights(end)}`);
+  const hung = heights(end).slice(0, -1).filter((y) => y > 0.3).length;
+  assert.ok(hung >= 1, "a ring hangs");
+  await writeFile(join(pictures, `${name}-medial.png`), await page.picture());
+
+  await page.click("[data-kind=hulls]");
+  await page.until("state.kind === 'hulls'", PATIENCE);
+  assert.equal(await page.value("document.querySelector('[data-kind=hulls]').getAttribute('aria-pressed')"), "true");
+  const switched = await poses(page);
+  await fast(page, 120);
+  const pushed = moved(switched, await poses(page)).filter((metres) => metres > 0.05).length;
+  assert.ok(pushed >= 1, "hulls of rings that hang push each other away");
+  await page.click("#restart");
+  await fast(page, 400);
+  await writeFile(join(pictures, `${name}-hulls.png`), await page.picture());
+
+  for (const kind of ["parts", "triangles", "medial"]) {
+    await page.click(`[data-kind=${kind}]`);
+    await page.until(`state.kind === '${kind}'`, PATIENCE);
+    const steps = await page.value("state.steps");
+    assert.equal(await fast(page, 10), steps + 10);
+  }
+  await page.click("#collider");
+  assert.ok((await drawn(page)) > 100, "colliders are drawn");
+  await writeFile(join(pictures, `${name}-colliders.png`), await page.picture());
+  assert.deepEqual(page.errors, [], "no error on the console");
+  await page.close();
+  console.log(`${name}: ${hung} rings hang, ${pushed} pushed away as hulls`);
+}
+
+try {
+  for (const name of Object.keys(SIZES)) await at_size(name);
+} finally {
+  await browser.close();
+  server.close();
+}
