@@ -12,7 +12,7 @@
 mod common;
 
 use common::arguments::{example_with_out, verdict};
-use common::build::build;
+use common::build::build_as_many;
 use common::creature::creature;
 use common::render::Camera;
 use common::scene::{Actor, Kind, Model, Scene};
@@ -33,7 +33,7 @@ fn main() -> ExitCode {
 fn two_creatures(out: &Path) -> Result<(), String> {
     let (mesh, skeleton) = creature();
     mesh.check_closed()?;
-    let medial = build("build the creature", &mesh, 1236)?;
+    let medial = build_as_many("build the creature", &mesh, 1236)?;
     let creature = Model::new(mesh, skeleton, medial);
     let actor = |place: Vector, turn: Vector, color: Vector| Actor {
         model: Arc::clone(&creature),

@@ -15,6 +15,9 @@ use std::time::Instant;
 /// Tolerance of the medial queries, in metres: that of the true contacts.
 const TOLERANCE: Real = 4.0e-5;
 
+/// Primitives that are enough for three balls melted into one.
+const BLOB: usize = 100;
+
 /// Two bodies in one representation.
 pub struct Bodies {
     /// As the page names it.
@@ -39,13 +42,18 @@ enum Shapes {
 }
 
 impl Bodies {
-    /// Medial meshes with as many primitives each.
+    /// Medial meshes: the creature's with so many primitives, the blob's with that at most.
     pub fn medial(meshes: &[Mesh; 2], primitives: usize) -> Result<Self, BuildError> {
-        let mut options = BuildOptions::default();
-        options.primitives = Some(primitives);
         let start = Instant::now();
-        let build = |m: &Mesh| MedialMesh::from_trimesh(&m.vertices, &m.indices, &options);
-        let built = [build(&meshes[0])?, build(&meshes[1])?];
+        let build = |m: &Mesh, primitives| {
+            let mut options = BuildOptions::default();
+            options.primitives = Some(primitives);
+            MedialMesh::from_trimesh(&m.vertices, &m.indices, &options)
+        };
+        let built = [
+            build(&meshes[0], primitives)?,
+            build(&meshes[1], primitives.min(BLOB))?,
+        ];
         let seconds = start.elapsed().as_secs_f64();
         let error = |k: usize| {
             let h = &built[k].1.hausdorff;

@@ -3,7 +3,7 @@
 //! beside, and the curves of its Figure 8.
 
 use crate::brute_force::{Brute, brute_force};
-use crate::common::build::build;
+use crate::common::build::build_as_many;
 use crate::common::creature::{creature, creature_with_cells};
 use crate::common::decimate::decimated;
 use crate::common::mesh::ring;
@@ -56,7 +56,7 @@ fn creatures(quick: bool) -> Result<Scene, String> {
     } else {
         creature_with_cells(0.0255)
     };
-    let medial = build("two creatures", &mesh, 1236)?;
+    let medial = build_as_many("two creatures", &mesh, 1236)?;
     let model = Model::new(mesh, skeleton, medial);
     let place = |place, turn| RigidBodyBuilder::dynamic().pose(Pose::new(place, turn));
     Ok(Scene::new(vec![
@@ -68,11 +68,11 @@ fn creatures(quick: bool) -> Result<Scene, String> {
 /// Fifteen rings of 27 primitives and 1,200 triangles above a creature of 28 and 1,115.
 fn rings() -> Result<Scene, String> {
     let mesh = ring(0.5, 0.1, 40, 15);
-    let medial = build("a ring", &mesh, 27)?;
+    let medial = build_as_many("a ring", &mesh, 27)?;
     let rings = Model::new(mesh, Skeleton::ring(0.5, 0.1, 40), medial);
     let (fine, skeleton) = creature();
     let mesh = decimated(&fine, 560);
-    let medial = build("a small creature", &mesh, 28)?;
+    let medial = build_as_many("a small creature", &mesh, 28)?;
     let stands = Model::new(mesh, skeleton, medial);
     let mut random = Random(9);
     let mut actors: Vec<Actor> = (0..15)

@@ -1,6 +1,6 @@
 //! Bodies of five shapes above a field of pillars 5 mm thin (the paper's Figures 5 and 9).
 
-use super::build::build;
+use super::build::build_as_many;
 use super::mesh::{Mesh, capsule, ring};
 use super::random::Random;
 use super::scene::{Actor, Model, Scene};
@@ -99,6 +99,6 @@ fn shapes(cell: Real, primitives: usize) -> Result<Vec<Arc<Model>>, String> {
 
 fn model(mesh: Mesh, skeleton: Skeleton, primitives: usize) -> Result<Arc<Model>, String> {
     mesh.check_closed()?;
-    let medial = build("build a shape", &mesh, primitives)?;
+    let medial = build_as_many("build a shape", &mesh, primitives)?;
     Ok(Model::new(mesh, skeleton, medial))
 }
