@@ -3,11 +3,12 @@
 //!
 //! ```text
 //! cargo bench --bench piles                    # 30, 200 and 1,000 rings: minutes
-//! cargo bench --bench piles -- --rings 30
+//! cargo bench --bench piles -- --rings 30 --recycle 0.01
 //! ```
 //!
 //! Every kind gets the same rings at the same places, rapier's defaults, and time to settle. Then
 //! the kinds take turns, nine times: the ratios of one turn are of the same minute of the machine.
+//! `--recycle` sets rapier's contact recycle distance after `attach`, which sets 0.001.
 //! Hulls settle into another heap (they have no hole), so theirs is another scene of equal numbers.
 
 mod common;
@@ -120,6 +121,11 @@ impl Pile {
         let pipeline = (kind == Kind::Medial).then(|| {
             let mut pipeline = MedialPipeline::new(MedialOptions::default());
             pipeline.attach(&mut world);
+            if let Some(distance) = argument("--recycle") {
+                world
+                    .integration_parameters
+                    .normalized_contact_recycle_distance = distance;
+            }
             pipeline
         });
         Self {
@@ -202,10 +208,14 @@ fn piles(rings: usize) {
     }
 }
 
+/// The number after an argument of the command line.
+fn argument(name: &str) -> Option<Real> {
+    let mut all = std::env::args().skip_while(|a| a != name);
+    all.nth(1)?.parse().ok()
+}
+
 fn main() {
-    let arguments: Vec<String> = std::env::args().collect();
-    let wanted = arguments.iter().position(|a| a == "--rings");
-    let wanted = wanted.and_then(|k| arguments.get(k + 1)?.parse().ok());
+    let wanted = argument("--rings").map(|n| n as usize);
     println!("{}; ratio: medial mesh to the row's", processor());
     let sizes = wanted.map_or(vec![30, 200, 1000], |n| vec![n]);
     sizes.into_iter().for_each(piles);
