@@ -3,7 +3,7 @@
 //!
 //! Conservative advancement (Mirtich 1996) over pairs of nodes of two sphere trees, the earliest
 //! pair first: no point of a pair's parts comes nearer than its distance now less the time times
-//! the largest speed, so the pair is put back for the time at which that could reach zero, or split
+//! their largest speed, so the pair is put back for the time at which that could reach zero, or split
 //! where its parts are nearer than they are large. The first two triangles to come within the
 //! tolerance are the contact, for all other pairs wait for later times.
 
@@ -41,7 +41,6 @@ pub struct TriangleBody {
     triangles: Vec<[V; 3]>,
     /// Node 0 is the root; a leaf has one triangle.
     nodes: Vec<Node>,
-    reach: f64,
 }
 
 struct Node {
@@ -61,10 +60,8 @@ impl TriangleBody {
         let vector = |v: Vector| V::new(v.x.into(), v.y.into(), v.z.into());
         let corners = |&t: &[u32; 3]| mesh.corners(t).map(vector);
         let triangles: Vec<[V; 3]> = mesh.indices.iter().map(corners).collect();
-        let reach = triangles.iter().flatten().map(V::norm).fold(0.0, f64::max);
         let mut body = Self {
             nodes: Vec::with_capacity(2 * triangles.len()),
-            reach,
             triangles,
         };
         let mut all: Vec<usize> = (0..body.triangles.len()).collect();
@@ -132,9 +129,8 @@ pub fn first_contact(
     seconds: f64,
     tolerance: f64,
 ) -> Option<f64> {
-    let speed = (motions[0].velocity - motions[1].velocity).norm()
-        + motions[0].turn.norm() * bodies[0].reach
-        + motions[1].turn.norm() * bodies[1].reach;
+    let slide = (motions[0].velocity - motions[1].velocity).norm();
+    let turns = motions.map(|motion| motion.turn.norm());
     let mut queue = BinaryHeap::from([Reverse(Pending {
         time: 0.0,
         nodes: [0, 0],
@@ -147,6 +143,8 @@ pub fn first_contact(
         let parts = [0, 1].map(|k| &bodies[k].nodes[nodes[k]]);
         let [a, b] = [0, 1].map(|k| poses[k] * Point3::from(parts[k].center));
         let apart = (a - b).norm() - parts[0].radius - parts[1].radius;
+        let swing = |k: usize| turns[k] * (parts[k].center.norm() + parts[k].radius);
+        let speed = slide + swing(0) + swing(1);
         let mut put = |time, nodes| queue.push(Reverse(Pending { time, nodes }));
         let larger = usize::from(parts[1].radius > parts[0].radius);
         match (&parts[0].below, &parts[1].below) {
