@@ -229,26 +229,39 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
     /// Replaces two nodes by what is below the larger; two primitives wait until directions no
     /// longer keep them apart. Returns whether an earlier contact is still possible.
     fn expand(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
-        let (a, b) = (self.sides.0.node(i), self.sides.1.node(j));
+        let (a, b) = (*self.sides.0.node(i), *self.sides.1.node(j));
         if let (Below::Primitive(p), Below::Primitive(q)) = (a.below, b.below) {
             self.proofs += 1;
             let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
             let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])];
             return match self.free_until(balls, time) {
                 None => true,
-                Some(free) if free < time + WORTH_WAITING * (self.times[1] - self.times[0]) => {
-                    self.list_tests([i, j], free)
-                }
-                Some(free) => {
-                    let leaves = Candidate::Nodes([i, j]);
-                    self.queue(Entry {
-                        time: free,
-                        depth: 0.0,
-                        candidate: leaves,
-                    });
-                    true
-                }
+                Some(free) if self.soon(free, time) => self.list_tests([i, j], free),
+                Some(free) => self.wait([i, j], free),
             };
+        }
+        // A ball round a large primitive, such as a triangle of the ground, holds all that is near it.
+        // Directions tell how far the node's ball is from the primitive itself.
+        let large = match (a.below, b.below) {
+            (Below::Nodes(..), Below::Primitive(q)) if a.radius * SIMILAR < b.radius => {
+                let ball = Balls::new([(a.start, a.chord, a.radius)].into_iter());
+                let place = self.sides.1.sweep_leaf(j, q);
+                Some([ball, *self.sides.1.balls(place)])
+            }
+            (Below::Primitive(p), Below::Nodes(..)) if b.radius * SIMILAR < a.radius => {
+                let ball = Balls::new([(b.start, b.chord, b.radius)].into_iter());
+                let place = self.sides.0.sweep_leaf(i, p);
+                Some([*self.sides.0.balls(place), ball])
+            }
+            _ => None,
+        };
+        if let Some([first, second]) = large {
+            self.proofs += 1;
+            match self.free_until([&first, &second], time) {
+                None => return true,
+                Some(free) if !self.soon(free, time) => return self.wait([i, j], free),
+                Some(_) => {}
+            }
         }
         // Both at once where they are about as large: the pairs in between would be looked at only to
         // be split. Below that, the larger one.
@@ -261,6 +274,21 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
                 self.push([a, b]);
             }
         }
+        true
+    }
+
+    /// Whether directions gain too little for two candidates to wait.
+    fn soon(&self, free: f64, time: f64) -> bool {
+        free < time + WORTH_WAITING * (self.times[1] - self.times[0])
+    }
+
+    /// Has two nodes wait until `free`.
+    fn wait(&mut self, nodes: [u32; 2], free: f64) -> bool {
+        self.queue(Entry {
+            time: free,
+            depth: 0.0,
+            candidate: Candidate::Nodes(nodes),
+        });
         true
     }
 
