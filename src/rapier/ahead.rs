@@ -17,7 +17,7 @@ use crate::batch::{PairJob, PairResult};
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::parry::answers::Key;
 use parry3d::query::NonlinearRigidMotion;
-use rapier3d::dynamics::RigidBody;
+use rapier3d::dynamics::{IntegrationParameters, RigidBody};
 
 /// How far ahead contacts are computed, in steps. A ring that rolls in another from 0.12 m to the side
 /// reaches, 20 s later, 0.17 m with 0, 0.12 with 0.5, 0.10 with 0.75 and 0.08 with 1. Chains of 5 to 40
@@ -69,12 +69,24 @@ pub struct Ahead {
     turns: [Rotation; 2],
     /// Centre of mass of each, in its own frame.
     centers: [Vector; 2],
+    /// The prediction distance that rapier will ask for.
+    asked: Real,
 }
 
 impl Ahead {
-    /// Of two colliders whose thinner one has thickness `thickness`, in a step of `dt` seconds; with the
-    /// relative pose at which to compute their contacts.
-    pub fn new(starts: [&Start; 2], dt: Real, thickness: Real, prediction: Real) -> (Self, Pose) {
+    /// Of the two colliders of `job`, which is at their poses at the start of a step; with the job that
+    /// computes their contacts.
+    ///
+    /// Of these only those count which the pair's velocities, or what it may move before rapier asks again,
+    /// can close: the others of the prediction distance cost the solver as much as those that bear, and two
+    /// rings that lie on each other have five times as many of them.
+    pub fn new(
+        starts: [&Start; 2],
+        parameters: &IntegrationParameters,
+        job: PairJob,
+    ) -> (Self, PairJob) {
+        let (dt, prediction) = (parameters.dt, parameters.prediction_distance());
+        let thickness = job.mesh1.thickness().min(job.mesh2.thickness());
         let motions = starts.map(|s| s.motion(dt));
         let [a, b] = &motions;
         let swing = |k: usize| {
@@ -96,13 +108,21 @@ impl Ahead {
             pos12: a.start.inv_mul(&b.start),
             turns: [turn(0), turn(1)],
             centers: motions.map(|m| m.local_center),
+            asked: job.prediction,
         };
-        (ahead, poses[0].inv_mul(&poses[1]))
+        let near = prediction.min(parameters.contact_recycle_distance() + speed * dt);
+        let job = PairJob {
+            pos12: poses[0].inv_mul(&poses[1]),
+            prediction: job.prediction - prediction + near,
+            ..job
+        };
+        (ahead, job)
     }
 
-    /// The key under which rapier will ask for the contacts of `job`.
-    pub fn key(&self, job: &PairJob) -> Key {
-        Key::new(&job.mesh1, &job.mesh2, &self.pos12)
+    /// The key under which rapier will ask for the contacts of `job`, and the prediction distance for which
+    /// they serve.
+    pub fn key(&self, job: &PairJob) -> (Key, Real) {
+        (Key::new(&job.mesh1, &job.mesh2, &self.pos12), self.asked)
     }
 
     /// Brings contacts back: normals and lever arms point as they will, gaps are those at the start.

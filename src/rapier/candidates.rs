@@ -2,6 +2,7 @@
 //! at the start of the step.
 
 use super::ahead::{Ahead, Start};
+use super::hanging::is_hooked;
 use super::recycled::Recycled;
 use crate::batch::PairJob;
 use crate::math::{Pose, Real, Rotation};
@@ -74,19 +75,20 @@ pub struct Candidates {
 
 /// Finds all near pairs of medial colliders: at least one of them dynamic and awake, not on the same
 /// body, groups compatible. The order of the two is the narrow phase's (lower collider index
-/// first).
+/// first). Of the colliders of `fresh` rapier will ask for all contacts.
 pub fn find(
     parameters: &IntegrationParameters,
     bodies: &RigidBodySet,
     colliders: &ColliderSet,
+    fresh: &HashSet<ColliderHandle>,
     recycled: &mut Recycled,
 ) -> Candidates {
     let mut found = Candidates::default();
     recycled.begin(parameters);
     for_each_near(parameters, bodies, colliders, |near| {
         found.pairs += 1;
-        if recycled.needs_update(&near.job, near.rotations()) || near.hooked {
-            let (job, ahead) = near.at_the_end(parameters);
+        if recycled.needs_update(&near.job, near.rotations(), near.asked(fresh)) {
+            let (ahead, job) = near.at_the_end(parameters);
             found.jobs.push(job);
             found.ahead.push(ahead);
         }
@@ -99,12 +101,13 @@ pub fn expect(
     parameters: &IntegrationParameters,
     bodies: &RigidBodySet,
     colliders: &ColliderSet,
+    fresh: &HashSet<ColliderHandle>,
     recycled: &Recycled,
 ) -> Vec<PairJob> {
     let mut jobs = Vec::new();
     for_each_near(parameters, bodies, colliders, |near| {
-        if near.hooked || !recycled.recycles(&near.job, near.rotations()) {
-            jobs.push(near.at_the_end(parameters).0);
+        if near.asked(fresh) || !recycled.recycles(&near.job, near.rotations()) {
+            jobs.push(near.at_the_end(parameters).1);
         }
     });
     jobs
@@ -115,8 +118,6 @@ struct Near<'a, 'b> {
     items: [&'a Item<'b>; 2],
     /// At the start of the step.
     job: PairJob,
-    /// Whether the user has hooks on them.
-    hooked: bool,
 }
 
 impl Near<'_, '_> {
@@ -124,15 +125,17 @@ impl Near<'_, '_> {
         self.items.map(|item| item.pose.rotation)
     }
 
+    /// Whether rapier asks for the contacts of one of them in any case: the user has hooks on it, or it is
+    /// `fresh`.
+    fn asked(&self, fresh: &HashSet<ColliderHandle>) -> bool {
+        let asked = |i: &&Item| is_hooked(i.collider) || fresh.contains(&i.handle);
+        self.items.iter().any(asked)
+    }
+
     /// The job at the poses that the velocities lead to.
-    fn at_the_end(self, parameters: &IntegrationParameters) -> (PairJob, Ahead) {
+    fn at_the_end(self, parameters: &IntegrationParameters) -> (Ahead, PairJob) {
         let [x, y] = self.items;
-        let thickness = x.mesh.thickness().min(y.mesh.thickness());
-        let starts = [&x.start(), &y.start()];
-        let prediction = parameters.prediction_distance();
-        let (ahead, pos12) = Ahead::new(starts, parameters.dt, thickness, prediction);
-        let job = PairJob { pos12, ..self.job };
-        (job, ahead)
+        Ahead::new([&x.start(), &y.start()], parameters, self.job)
     }
 }
 
@@ -179,12 +182,7 @@ fn for_each_near(
             }
             let (x, y) = in_order(a, b);
             let job = job(x, y, prediction);
-            let hooked = !(x.collider.active_hooks() | y.collider.active_hooks()).is_empty();
-            visit(Near {
-                items: [x, y],
-                job,
-                hooked,
-            });
+            visit(Near { items: [x, y], job });
         }
     }
 }

@@ -9,6 +9,7 @@ mod effects;
 mod emit;
 mod events;
 mod first_contact;
+mod hanging;
 mod impulse;
 mod motion;
 mod muting;

@@ -9,7 +9,7 @@ use super::recycled::Recycled;
 use super::report::StepReport;
 use super::speculative::Speculators;
 use super::tuning::Tuning;
-use super::{candidates, muting};
+use super::{candidates, hanging, muting};
 use crate::batch::{Backend, Batch};
 use crate::math::{Real, Vector};
 use crate::parry::{Answers, MedialDispatcher};
@@ -25,11 +25,10 @@ use std::sync::Arc;
 use web_time::Instant;
 
 /// Contact recycle distance that [`MedialPipeline::attach`] sets, in units of rapier's length unit
-/// (rapier's own default is 0.05). Recycled contacts are contacts of the past, and what hangs in them
-/// swings on: chains of up to 40 links sleep at 0.001, of up to 16 at 0.002, of up to 5 at 0.01. Less
-/// costs contacts in heaps that still move: twice the time of 0.01 already. A scene without long chains can
-/// set the parameter back after attaching.
-pub const RECYCLE_DISTANCE: Real = 0.001;
+/// (rapier's own default is 0.05). Contacts that a pair can close in this distance, and in what its
+/// velocities add, are computed and solved; so a smaller distance takes more contact computations of
+/// fewer contacts. Contacts in which a body hangs are not recycled beyond 0.001, whatever it is.
+pub const RECYCLE_DISTANCE: Real = 0.005;
 
 /// How a pipeline works.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,7 +86,8 @@ impl MedialPipeline {
     pub async fn prepare(&mut self, world: &PhysicsWorld) {
         let parameters = &world.integration_parameters;
         let (bodies, colliders) = (&world.bodies, &world.colliders);
-        let next = candidates::expect(parameters, bodies, colliders, &self.recycled);
+        let fresh = hanging::find(parameters, bodies, colliders, &world.narrow_phase);
+        let next = candidates::expect(parameters, bodies, colliders, &fresh, &self.recycled);
         self.batch.submit_async(&next).await;
         self.batch.ready().await;
     }
@@ -200,7 +200,7 @@ impl MedialPipeline {
             );
             report.add(&done);
             let Some(time) = stopped else {
-                self.send_early(parameters, bodies, colliders, &mut report);
+                self.send_early(parameters, bodies, colliders, narrow_phase, &mut report);
                 return report;
             };
             report.stops += 1;
@@ -214,13 +214,15 @@ impl MedialPipeline {
         parameters: &IntegrationParameters,
         bodies: &RigidBodySet,
         colliders: &ColliderSet,
+        narrow_phase: &NarrowPhase,
         report: &mut StepReport,
     ) {
         if !self.batch.has_device() {
             return;
         }
         let before = self.batch.report().clone();
-        let next = candidates::expect(parameters, bodies, colliders, &self.recycled);
+        let fresh = hanging::find(parameters, bodies, colliders, narrow_phase);
+        let next = candidates::expect(parameters, bodies, colliders, &fresh, &self.recycled);
         self.batch.submit(&next);
         let after = self.batch.report();
         report.submissions += after.submissions - before.submissions;
@@ -252,7 +254,10 @@ impl MedialPipeline {
         let before = self.batch.report().clone();
         let clock = Instant::now();
         report.medial_colliders = candidates::make_unique(colliders);
-        let found = candidates::find(parameters, bodies, colliders, &mut self.recycled);
+        let fresh = hanging::find(parameters, bodies, colliders, narrow_phase);
+        hanging::ask_anew(&fresh, colliders);
+        let recycled = &mut self.recycled;
+        let found = candidates::find(parameters, bodies, colliders, &fresh, recycled);
         let mut results = self.batch.run(&found.jobs);
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();
@@ -264,7 +269,7 @@ impl MedialPipeline {
             report.culled_nodes += u64::from(result.counts.nodes);
             report.elementary_tests += u64::from(result.counts.tests);
         }
-        let keys = jobs.map(|(job, ahead)| (ahead.key(job), job.prediction));
+        let keys = jobs.map(|(job, ahead)| ahead.key(job));
         self.answers.replace(keys.zip(results));
         self.answers.take_counts();
         report.batch_seconds = clock.elapsed().as_secs_f64();

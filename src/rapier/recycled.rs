@@ -44,10 +44,11 @@ impl Recycled {
         self.limits = [distance, distance.min(parameters.prediction_distance())];
     }
 
-    /// Whether rapier will update this pair in full; if so its account starts anew at this pose.
-    pub fn needs_update(&mut self, job: &PairJob, rotations: [Rotation; 2]) -> bool {
+    /// Whether rapier will update this pair in full, which it does in any case if it is `asked` to; if so
+    /// its account starts anew at this pose.
+    pub fn needs_update(&mut self, job: &PairJob, rotations: [Rotation; 2], asked: bool) -> bool {
         let key = ids(job);
-        let recycled = self.recycles(job, rotations);
+        let recycled = !asked && self.recycles(job, rotations);
         if let Some(f) = self.frozen.get_mut(&key) {
             f.seen = self.step;
             if recycled {

@@ -1,0 +1,129 @@
+//! Bodies that hang: whose contacts pull them away from their centre of mass, as those of convex bodies
+//! never do.
+//!
+//! rapier keeps the contacts of a pair until it has moved by its recycle distance. They are contacts of the
+//! past, and what hangs in them swings on (see [`super::ahead`]). So where contacts that a body hangs in
+//! have moved, rapier is made to ask for all of that body's.
+
+use crate::math::Real;
+use crate::medial::MedialMesh;
+use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodySet};
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, ContactPair, NarrowPhase};
+use rapier3d::pipeline::ActiveHooks;
+use std::collections::HashSet;
+
+/// By how far a contact that a body hangs in may have moved, or its force have swung round the centre of
+/// mass, since it was computed, in units of rapier's length unit. A chain of 20 links does not sleep at 0.001
+/// and does at 0.0005; kept awake and damped, its last link still moves by 1.0 mm then, by 0.5 at this.
+const MOVED: Real = 0.0002;
+
+/// Gap up to which a body hangs in a contact, in units of rapier's length unit.
+const TOUCHING: Real = 0.001;
+
+/// Cosine of the angle between a contact's force and its arm from which it pulls (45°). In a heap rings lie
+/// on each other's inner sides at all angles, and half of them would count at 90°.
+const PULLS: Real = 0.7;
+
+/// A bit of a collider's hooks that means nothing to rapier but that there are some: it keeps no contacts
+/// of such a collider, and calls no hook. It stays until the next step: a collider that is changed after
+/// a step counts as changed by the user.
+const ASK_ANEW: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
+
+/// The colliders that hang in contacts with medial meshes that have moved. Known from the world alone, so
+/// that a world that was saved and loaded goes on as it would have.
+pub fn find(
+    parameters: &IntegrationParameters,
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+    narrow_phase: &NarrowPhase,
+) -> HashSet<ColliderHandle> {
+    let unit = parameters.length_unit;
+    let pairs = narrow_phase.contact_pairs();
+    pairs
+        .filter_map(|pair| {
+            let sides = [pair.collider1, pair.collider2].map(|h| Side::new(h, bodies, colliders));
+            let [Some(a), Some(b)] = sides else {
+                return None;
+            };
+            hanging(pair, [&a, &b], unit)
+        })
+        .collect()
+}
+
+/// A medial collider.
+struct Side<'a> {
+    handle: ColliderHandle,
+    collider: &'a Collider,
+    body: Option<&'a RigidBody>,
+}
+
+impl<'a> Side<'a> {
+    fn new(handle: ColliderHandle, bodies: &'a RigidBodySet, all: &'a ColliderSet) -> Option<Self> {
+        let collider = all.get(handle)?;
+        collider.shape().as_shape::<MedialMesh>()?;
+        let body = collider.parent().and_then(|h| bodies.get(h));
+        Some(Self {
+            handle,
+            collider,
+            body,
+        })
+    }
+
+    /// The body, if the solver moves it.
+    fn moving(&self) -> Option<&'a RigidBody> {
+        self.body.filter(|b| b.is_dynamic() && !b.is_sleeping())
+    }
+}
+
+/// The lighter one of a pair that hangs in contacts which have moved, in a world of this length unit.
+fn hanging(pair: &ContactPair, sides: [&Side; 2], unit: Real) -> Option<ColliderHandle> {
+    let moving = sides.map(Side::moving);
+    let mass = |k: usize| moving[k].map_or(Real::MAX, RigidBody::mass);
+    let lighter = usize::from(mass(1) <= mass(0));
+    moving[lighter]?;
+    let limit = MOVED * unit;
+    let poses = sides.map(|s| *s.collider.position());
+    let manifolds = pair.manifolds().iter();
+    let mut contacts = manifolds.flat_map(|m| m.points.iter().map(move |p| (m, p)));
+    let moved = contacts.any(|(m, p)| {
+        let points = [poses[0] * p.local_p1, poses[1] * p.local_p2];
+        // The force on each, as it turned with it, and as it was.
+        let now = [
+            poses[0].rotation * -m.local_n1,
+            poses[1].rotation * -m.local_n2,
+        ];
+        let then = [-m.data.normal, m.data.normal];
+        let arm = |k: usize| moving[k].map(|b| points[k] - b.center_of_mass());
+        let pulled = |k: usize| arm(k).is_some_and(|arm| arm.dot(then[k]) > PULLS * arm.length());
+        let swung = |k: usize| {
+            let chord = now[k].distance(then[k]);
+            arm(k).is_some_and(|arm| arm.length() * chord > limit)
+        };
+        let gap = points[1] - points[0] - m.data.normal * p.dist;
+        p.dist < TOUCHING * unit
+            && (pulled(0) || pulled(1))
+            && (swung(0) || swung(1) || gap.length() > limit)
+    });
+    moved.then_some(sides[lighter].handle)
+}
+
+/// Makes rapier compute all contacts of these medial colliders anew in its next step, and of no others.
+pub fn ask_anew(fresh: &HashSet<ColliderHandle>, colliders: &mut ColliderSet) {
+    let medial = colliders
+        .iter()
+        .filter(|(_, c)| c.shape().as_shape::<MedialMesh>().is_some());
+    let wrong = medial.filter(|(h, c)| c.active_hooks().contains(ASK_ANEW) != fresh.contains(h));
+    let wrong: Vec<ColliderHandle> = wrong.map(|(handle, _)| handle).collect();
+    for handle in wrong {
+        if let Some(collider) = colliders.get_mut(handle) {
+            let mut hooks = collider.active_hooks();
+            hooks.toggle(ASK_ANEW);
+            collider.set_active_hooks(hooks);
+        }
+    }
+}
+
+/// Whether the user has hooks on a collider.
+pub fn is_hooked(collider: &Collider) -> bool {
+    !collider.active_hooks().difference(ASK_ANEW).is_empty()
+}
