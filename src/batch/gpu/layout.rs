@@ -197,7 +197,9 @@ pub fn constants() -> String {
         ("GILBERT_ROUNDS", GILBERT_ROUNDS),
         ("PROOF_ROUNDS", PROOF_ROUNDS),
     ];
-    let reals = reals.map(|(name, value)| format!("const {name}: f32 = {:e}f;\n", value as f32));
+    // All digits: browsers refuse the shortest ones of the largest number, which are above it.
+    let exact = |value: f64| f64::from(value as f32);
+    let reals = reals.map(|(name, value)| format!("const {name}: f32 = {:e}f;\n", exact(value)));
     let counts = counts.map(|(name, value)| format!("const {name}: u32 = {value}u;\n"));
     reals.concat() + &counts.concat()
 }
