@@ -138,7 +138,8 @@ pub struct Stage {
     pub world: PhysicsWorld,
     /// The actors in it.
     pub bodies: Vec<(RigidBodyHandle, ColliderHandle)>,
-    pipeline: Option<MedialPipeline>,
+    /// What steps it, where bodies are medial.
+    pub pipeline: Option<MedialPipeline>,
 }
 
 impl Stage {
