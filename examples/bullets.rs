@@ -13,19 +13,17 @@
 
 mod common;
 
-use common::arguments::{example_with_out, verdict};
-use common::build::model;
-use common::light::{Facet, facets};
-use common::mesh::{capsule, ring};
+use common::arguments::example_with_out;
+use common::build::{capsule_model, model};
+use common::mesh::ring;
 use common::random::Random;
 use common::render::Camera;
 use common::scene::{Actor, Kind, Model, Scene};
-use common::scene_strip::View;
-use common::skeleton::{Bone, Skeleton};
+use common::scene_strip::{View, exposures};
+use common::skeleton::Skeleton;
 use common::strip::tile;
 use common::table::Table;
 use rapier3d::prelude::*;
-use rapier3d_medial::MedialMesh;
 use std::f32::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
 use std::process::ExitCode;
@@ -64,14 +62,9 @@ fn bullets(out: &Path) -> Result<(), String> {
     };
     let missed = KINDS.map(|kind| count(true, kind));
     let ghosts = KINDS.map(|kind| count(false, kind));
-    table.row(
-        &format!("of {} shots at the tube, missed", SHOTS / 2),
-        missed,
-    );
-    table.row(
-        &format!("of {} through the hole, stopped", SHOTS / 2),
-        ghosts,
-    );
+    let half = SHOTS / 2;
+    table.row(&format!("of {half} shots at the tube, missed"), missed);
+    table.row(&format!("of {half} through the hole, stopped"), ghosts);
 
     let view = View {
         camera: Camera {
@@ -88,28 +81,21 @@ fn bullets(out: &Path) -> Result<(), String> {
     let row = |kind: Kind| {
         let name = kind.name();
         [(at_tube, "AT THE TUBE"), (through, "THROUGH THE HOLE")]
-            .map(|(shot, aim)| view.labelled(&exposures(&shot.scene, kind), &[name, aim]))
+            .map(|(shot, aim)| view.labelled(&exposures(&shot.scene, kind, STEPS), &[name, aim]))
             .to_vec()
     };
     let path = out.join("bullets.png");
     tile(&KINDS.map(row)).save(&path)?;
     println!("{}\n\n{table}", path.display());
-    let mut failures = Vec::new();
-    if missed[0] + ghosts[0] > 0 {
-        failures.push(format!("{} hits missed, {} ghosts", missed[0], ghosts[0]));
+    match missed[0] + ghosts[0] {
+        0 => Ok(()),
+        _ => Err(format!("{} hits missed, {} ghosts", missed[0], ghosts[0])),
     }
-    verdict(failures)
 }
 
 /// Bullet and ring.
 fn models() -> Result<[Arc<Model>; 2], String> {
-    let (half, radius) = BULLET;
-    let ends = [Vector::Y * half, Vector::NEG_Y * half];
-    let radii = [radius; 2];
-    let medial = MedialMesh::capsule(ends[0], ends[1], radius).map_err(|e| e.to_string())?;
-    let mesh = capsule(half, radius, 24);
-    mesh.check_closed()?;
-    let bullet = Model::new(mesh, Skeleton::new(vec![Bone { ends, radii }]), medial);
+    let bullet = capsule_model(BULLET.0, BULLET.1, 24)?;
     let lines = Skeleton::ring(RING.0, RING.1, 40);
     let mesh = ring(RING.0, RING.1, 40, 15);
     Ok([bullet, model("build the ring", (mesh, lines), 40)?])
@@ -130,20 +116,18 @@ fn shot([bullet, ring]: &[Arc<Model>; 2], number: usize, random: &mut Random) ->
     let apart = 7.0 + phase * (SPEEDS[0] - SPEEDS[1]) / 60.0;
     // They meet above the origin.
     let share = SPEEDS[0] / (SPEEDS[0] - SPEEDS[1]);
-    let actor = |model: &Arc<Model>, place: Vector, speed: Real, color: Vector| Actor {
-        model: Arc::clone(model),
-        start: RigidBodyBuilder::dynamic()
+    let body = |place: Vector, speed: Real| {
+        RigidBodyBuilder::dynamic()
             .pose(Pose::new(place + Vector::Y * 1.5, Vector::Z * FRAC_PI_2))
             .linvel(Vector::X * speed)
             .gravity_scale(0.0)
-            .ccd_enabled(true),
-        color,
+            .ccd_enabled(true)
     };
     let from = Vector::new(-apart * share, off * cos, off * sin);
     let to = Vector::X * (apart * (1.0 - share));
     let actors = vec![
-        actor(bullet, from, SPEEDS[0], Vector::new(0.85, 0.25, 0.08)),
-        actor(ring, to, SPEEDS[1], Vector::new(0.10, 0.35, 0.75)),
+        Actor::new(bullet, body(from, SPEEDS[0]), Vector::new(0.85, 0.25, 0.08)),
+        Actor::new(ring, body(to, SPEEDS[1]), Vector::new(0.10, 0.35, 0.75)),
     ];
     Shot {
         scene: Scene::new(actors),
@@ -159,19 +143,4 @@ fn feels(scene: &Scene, kind: Kind) -> bool {
     }
     let velocity = stage.world.bodies[stage.bodies[0].0].linvel();
     (velocity - Vector::X * SPEEDS[0]).length() > 0.01 * SPEEDS[0]
-}
-
-/// Both bodies before the first step and after each, the earlier the paler.
-fn exposures(scene: &Scene, kind: Kind) -> Vec<Facet> {
-    let mut stage = scene.stage(kind);
-    let mut seen = Vec::new();
-    for step in 0..=STEPS {
-        let fade = 0.75 * (1.0 - step as Real / STEPS as Real);
-        for (actor, pose) in scene.actors.iter().zip(stage.poses()) {
-            let color = actor.color.lerp(Vector::splat(0.8), fade);
-            seen.extend(facets(&actor.model.mesh, pose, color));
-        }
-        stage.step();
-    }
-    seen
 }

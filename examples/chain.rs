@@ -46,13 +46,13 @@ fn chain(out: &Path) -> Result<(), String> {
     let runs = [Kind::Medial, Kind::Hulls].map(|kind| scene.run(kind, STEPS, |_, _| ()));
     let view = View {
         camera: Camera {
-            eye: Vector::new(0.3, 2.6, 6.6),
-            target: Vector::new(0.0, 2.0, 0.0),
-            field_of_view: 0.76,
+            eye: Vector::new(0.85, 2.6, 6.6),
+            target: Vector::new(0.55, 2.0, 0.0),
+            field_of_view: 0.82,
             shadows: 4.0,
         },
         tile: [240, 260],
-        steps: &[0, 10, 35, 70, usize::MAX],
+        steps: &[0, 10, 35, 70, 500],
         ghost: 0.0,
     };
     let path = out.join("chain.png");

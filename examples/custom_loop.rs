@@ -12,7 +12,7 @@
 
 mod common;
 
-use common::arguments::{example_with_out, verdict};
+use common::arguments::example_with_out;
 use common::light::{Facet, facets};
 use common::mesh::{capsule, ring};
 use common::random::Random;
@@ -20,7 +20,7 @@ use common::render::Camera;
 use common::scene_strip::{SLATE, View, rainbow};
 use common::skeleton::Skeleton;
 use common::strip::tile;
-use common::threading::{passes, placed};
+use common::threading::{placed, threaded};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 use std::path::Path;
@@ -50,18 +50,16 @@ struct Game {
 }
 
 impl Game {
-    fn new() -> Self {
-        let mut game = Self::default();
-        game.medial
-            .attach_sets(&mut game.parameters, &mut game.narrow_phase);
-        game
-    }
-
-    fn add(&mut self, body: RigidBodyBuilder, collider: ColliderBuilder) -> RigidBodyHandle {
+    fn add(&mut self, body: RigidBodyBuilder, collider: ColliderBuilder) {
         let body = self.bodies.insert(body);
         self.colliders
             .insert_with_parent(collider, body, &mut self.bodies);
-        body
+    }
+
+    /// Of the bodies that move.
+    fn poses(&self) -> Vec<Pose> {
+        let moving = self.bodies.iter().filter(|(_, body)| body.is_dynamic());
+        moving.map(|(_, body)| *body.position()).collect()
     }
 
     fn step(&mut self) {
@@ -89,23 +87,21 @@ fn main() -> ExitCode {
 }
 
 fn custom_loop(out: &Path) -> Result<(), String> {
-    let (major, minor) = RING;
-    let torus = MedialMesh::torus(major, minor, 40).map_err(|e| e.to_string())?;
-    let mut game = Game::new();
+    let torus = MedialMesh::torus(RING.0, RING.1, 40).map_err(|e| e.to_string())?;
+    let mut game = Game::default();
+    game.medial
+        .attach_sets(&mut game.parameters, &mut game.narrow_phase);
     let ground = ColliderBuilder::cuboid(9.0, 0.5, 9.0).translation(Vector::NEG_Y * 0.5);
-    game.add(RigidBodyBuilder::fixed(), ground);
+    game.colliders.insert(ground);
     let pole = ColliderBuilder::capsule_y(POLE.0, POLE.1).translation(Vector::Y * POLE.0);
-    game.add(RigidBodyBuilder::fixed(), pole);
+    game.colliders.insert(pole);
     let mut random = Random(7);
-    let add = |k: usize| {
-        let place = Vector::new(0.0, 3.3 + 0.5 * k as Real, 0.0);
+    for k in 0..RINGS {
         let tilt = random.direction() * random.between(0.0, 0.2);
-        let body = RigidBodyBuilder::dynamic()
-            .pose(Pose::new(place, tilt))
-            .angular_damping(0.5);
-        game.add(body, ColliderBuilder::medial_mesh(torus.clone()))
-    };
-    let rings: Vec<RigidBodyHandle> = (0..RINGS).map(add).collect();
+        let start = Pose::new(Vector::Y * (3.3 + 0.5 * k as Real), tilt);
+        let body = RigidBodyBuilder::dynamic().pose(start).angular_damping(0.5);
+        game.add(body, ColliderBuilder::medial_mesh(torus.clone()));
+    }
 
     let view = View {
         camera: Camera {
@@ -118,58 +114,37 @@ fn custom_loop(out: &Path) -> Result<(), String> {
         steps: &[0, 40, 70, 600],
         ghost: 0.0,
     };
-    let poses = |game: &Game| -> Vec<Pose> {
-        rings
-            .iter()
-            .map(|ring| *game.bodies[*ring].position())
-            .collect()
-    };
     let mut pictures = Vec::new();
     for step in 0..=600 {
         if view.steps.contains(&step) {
-            let label = format!("STEP {step}");
-            pictures.push(view.labelled(&seen(&poses(&game)), &[&label]));
+            pictures.push(view.labelled(&seen(&game.poses()), &[&format!("STEP {step}")]));
         }
         game.step();
     }
     let path = out.join("custom_loop.png");
     tile(&[pictures]).save(&path)?;
 
-    let poses = poses(&game);
-    let circle = Skeleton::ring(major, minor, 40).line();
+    let poses = game.poses();
     let axis = placed(&[Vector::ZERO, Vector::Y * (2.0 * POLE.0)], &Pose::IDENTITY);
-    let off = |pose: &&Pose| passes(&axis, &placed(&circle, pose)) == 0;
-    let off = poses.iter().filter(off).count();
-    let top = poses
-        .iter()
-        .map(|p| p.translation.y + minor)
-        .fold(0.0, Real::max);
-    let due = 2.0 * minor * RINGS as Real;
-    println!(
-        "{}\n\nrings on the pole: {} of {RINGS}",
-        path.display(),
-        RINGS - off
-    );
+    let on = threaded(&axis, &Skeleton::ring(RING.0, RING.1, 40).line(), &poses);
+    let top = RING.1 + poses.iter().map(|p| p.translation.y).fold(0.0, Real::max);
+    let due = 2.0 * RING.1 * RINGS as Real;
+    println!("{}\n\nrings on the pole: {on} of {RINGS}", path.display());
     println!("height of the stack: {top:.3} m, {due:.3} m is due");
-    let mut failures = Vec::new();
-    if off > 0 {
-        failures.push(format!("{off} rings are off the pole"));
-    }
     let allowed = 2.0 * game.parameters.allowed_linear_error() * RINGS as Real;
-    if (top - due).abs() > allowed {
-        failures.push(format!("the stack is {top} m high, not {due} m"));
+    if on == RINGS && (top - due).abs() <= allowed {
+        return Ok(());
     }
-    verdict(failures)
+    Err("the rings do not lie round the pole, one on the other".into())
 }
 
 /// The rings and the pole.
 fn seen(poses: &[Pose]) -> Vec<Facet> {
     let pole = capsule(POLE.0, POLE.1, 32);
-    let mut seen: Vec<Facet> =
-        facets(&pole, Pose::from_translation(Vector::Y * POLE.0), SLATE).collect();
     let ring = ring(RING.0, RING.1, 40, 15);
-    for (k, pose) in poses.iter().enumerate() {
-        seen.extend(facets(&ring, *pose, rainbow(k as Real / RINGS as Real)));
-    }
-    seen
+    let color = |k: usize| rainbow(k as Real / RINGS as Real);
+    let rings = poses.iter().enumerate();
+    let rings = rings.flat_map(|(k, pose)| facets(&ring, *pose, color(k)));
+    let upright = Pose::from_translation(Vector::Y * POLE.0);
+    rings.chain(facets(&pole, upright, SLATE)).collect()
 }

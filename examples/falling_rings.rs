@@ -72,7 +72,7 @@ fn falling_rings(options: Options) -> Result<(), String> {
     let [medial, hulls] =
         [Kind::Medial, Kind::Hulls].map(|kind| scene.run(kind, options.steps, |_, _| ()));
 
-    let width = if options.quick { 240 } else { 480 };
+    let width = if options.quick { 240 } else { 300 };
     let view = View {
         camera: Camera {
             eye: Vector::new(3.4, 4.4, 7.6),

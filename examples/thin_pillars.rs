@@ -30,7 +30,7 @@ fn main() -> ExitCode {
 }
 
 fn thin_pillars(out: &Path) -> Result<(), String> {
-    let scene = field(0.014, 40)?;
+    let scene = field(0.014, 200)?;
     let runs = [Kind::Medial, Kind::Triangles].map(|kind| scene.run(kind, STEPS, |_, _| ()));
     let view = View {
         camera: Camera {

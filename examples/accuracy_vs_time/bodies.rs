@@ -1,15 +1,20 @@
 //! What a body collides as: medial meshes of several sizes, and what rapier's users take today.
 
+use crate::MEMORY;
+use crate::common::decimate::decimated;
 use crate::common::mesh::Mesh;
 use crate::common::surface_error::surface_error;
 use crate::crash::WIDTH;
+use crate::peer_error::shape_error;
 use rapier3d::parry::query::{NonlinearRigidMotion, cast_shapes_nonlinear};
 use rapier3d::parry::shape::{Compound, Shape, SharedShape};
 use rapier3d::parry::transformation::vhacd::VHACDParameters;
 use rapier3d::parry::transformation::voxelization::FillMode;
-use rapier3d::prelude::Real;
+use rapier3d::prelude::{ColliderBuilder, Real};
 use rapier3d_medial::pair::first_contact::{Counts, first_contact_counted};
-use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, ToiOptions, ToiStatus};
+use rapier3d_medial::{
+    BuildError, BuildOptions, MedialColliderBuilder, MedialMesh, Quality, ToiOptions, ToiStatus,
+};
 use std::time::Instant;
 
 /// Tolerance of the medial queries, in metres: that of the true contacts.
@@ -24,9 +29,11 @@ pub struct Bodies {
     pub name: String,
     /// Primitives, parts, triangles or voxels of the creature.
     pub parts: usize,
-    /// Largest distance between the shapes and their sources, both bodies together, where it was
-    /// measured: a contact may come that much nearer or further away.
-    pub shape_error: Option<f64>,
+    /// Largest distance between the shapes and their sources, both bodies together: a contact may
+    /// come that much nearer or further away. The builder's bound; of the peers, from sampled points.
+    pub shape_error: f64,
+    /// Kilobytes that the creature keeps allocated.
+    pub kilobytes: f64,
     /// Only every such motion is asked: some answers take a second each.
     pub every: usize,
     /// Spheres of the creature's medial mesh, 0 of other shapes.
@@ -36,6 +43,30 @@ pub struct Bodies {
     shapes: Shapes,
 }
 
+/// A medial mesh, the bound of its distance from its source, in metres, and the seconds it took.
+struct Built {
+    mesh: MedialMesh,
+    error: f64,
+    seconds: f64,
+}
+
+impl Built {
+    fn new(source: &Mesh, primitives: usize, quality: Quality) -> Result<Self, BuildError> {
+        let start = Instant::now();
+        let mut options = BuildOptions::default();
+        options.primitives = Some(primitives);
+        options.quality = quality;
+        let built = MedialMesh::from_trimesh(&source.vertices, &source.indices, &options);
+        let (mesh, report) = built?;
+        let h = &report.hausdorff;
+        Ok(Self {
+            mesh,
+            error: (h.surface_to_envelope.max(h.envelope_to_surface) + h.sampling).into(),
+            seconds: start.elapsed().as_secs_f64(),
+        })
+    }
+}
+
 enum Shapes {
     Medial([MedialMesh; 2]),
     Parry([SharedShape; 2]),
@@ -43,50 +74,64 @@ enum Shapes {
 
 impl Bodies {
     /// Medial meshes: the creature's with so many primitives, the blob's with that at most.
-    pub fn medial(meshes: &[Mesh; 2], primitives: usize) -> Result<Self, BuildError> {
-        let start = Instant::now();
-        let build = |m: &Mesh, primitives| {
-            let mut options = BuildOptions::default();
-            options.primitives = Some(primitives);
-            MedialMesh::from_trimesh(&m.vertices, &m.indices, &options)
-        };
-        let built = [
-            build(&meshes[0], primitives)?,
-            build(&meshes[1], primitives.min(BLOB))?,
-        ];
-        let seconds = start.elapsed().as_secs_f64();
-        let error = |k: usize| {
-            let h = &built[k].1.hausdorff;
-            f64::from(h.surface_to_envelope.max(h.envelope_to_surface) + h.sampling)
-        };
-        Ok(Self {
-            name: format!("medial mesh, {primitives}"),
-            parts: built[0].1.primitives,
-            spheres: built[0].0.spheres().len(),
-            shape_error: Some(error(0) + error(1)),
-            every: 1,
-            seconds,
-            shapes: Shapes::Medial(built.map(|(mesh, _)| mesh)),
-        })
+    pub fn medial(
+        meshes: &[Mesh; 2],
+        sizes: &[usize],
+        quality: Quality,
+        progress: &dyn Fn(),
+    ) -> Result<Vec<Self>, BuildError> {
+        let mut blob: Option<(usize, Built)> = None;
+        let mut all = Vec::new();
+        for &size in sizes {
+            let wanted = size.min(BLOB);
+            let blob = match &mut blob {
+                Some((count, built)) if *count == wanted => built,
+                other => {
+                    &mut other
+                        .insert((wanted, Built::new(&meshes[1], wanted, quality)?))
+                        .1
+                }
+            };
+            let (creature, bytes) = kept(|| Built::new(&meshes[0], size, quality));
+            let creature = creature?;
+            all.push(Self {
+                name: format!("medial mesh, {size}"),
+                parts: creature.mesh.primitive_count(),
+                spheres: creature.mesh.spheres().len(),
+                shape_error: creature.error + blob.error,
+                kilobytes: bytes as f64 / 1.0e3,
+                every: 1,
+                seconds: creature.seconds + blob.seconds,
+                shapes: Shapes::Medial([creature.mesh, blob.mesh.clone()]),
+            });
+            progress();
+        }
+        Ok(all)
     }
 
     /// Shapes of parry's, made by `build`.
     fn parry(name: &str, meshes: &[Mesh; 2], build: impl Fn(&Mesh) -> SharedShape) -> Self {
         let start = Instant::now();
-        let shapes = [build(&meshes[0]), build(&meshes[1])];
+        let (creature, bytes) = kept(|| build(&meshes[0]));
+        let shapes = [creature, build(&meshes[1])];
         Self {
             name: name.into(),
             seconds: start.elapsed().as_secs_f64(),
             parts: parts(&*shapes[0]),
-            shape_error: None,
+            shape_error: [0, 1]
+                .map(|k| shape_error(&*shapes[k], &meshes[k]))
+                .iter()
+                .sum(),
+            kilobytes: bytes as f64 / 1.0e3,
             spheres: 0,
             every: 1,
             shapes: Shapes::Parry(shapes),
         }
     }
 
-    /// The peers: hull, convex decompositions, and, where there is time, triangles and voxels.
-    pub fn peers(meshes: &[Mesh; 2], quick: bool) -> Vec<Self> {
+    /// The peers: hull, convex decompositions, and, where there is time, triangles, of the source and
+    /// of one drawn together to so many `vertices`, and voxels.
+    pub fn peers(meshes: &[Mesh; 2], vertices: usize, quick: bool) -> Vec<Self> {
         let default = VHACDParameters::default();
         let decomposition = |resolution, concavity| {
             move |m: &Mesh| {
@@ -115,14 +160,22 @@ impl Bodies {
                 meshes,
                 decomposition(default.resolution, default.concavity),
             ),
+        ];
+        if quick {
+            return peers;
+        }
+        let fewer = format!("triangle mesh, {vertices} vertices");
+        peers.extend([
             Self::parry("VHACD, 128 / 0.001", meshes, decomposition(128, 0.001)),
             Self::parry("triangle mesh", meshes, |m| SharedShape::new(m.to_parry())),
+            Self::parry(&fewer, meshes, |m| {
+                SharedShape::new(decimated(m, vertices).to_parry())
+            }),
             Self::parry("voxels, 24 along", meshes, voxels),
-        ];
+        ]);
         for slow in &mut peers[3..] {
             slow.every = 100;
         }
-        peers.truncate(if quick { 3 } else { peers.len() });
         peers
     }
 
@@ -150,6 +203,19 @@ impl Bodies {
         error.map_or(f64::NAN, |e| e.envelope_to_surface.into())
     }
 
+    /// Whether they are medial meshes.
+    pub fn is_medial(&self) -> bool {
+        matches!(self.shapes, Shapes::Medial(_))
+    }
+
+    /// The creature as a collider.
+    pub fn collider(&self) -> ColliderBuilder {
+        match &self.shapes {
+            Shapes::Medial([creature, _]) => ColliderBuilder::medial_mesh(creature.instance()),
+            Shapes::Parry([creature, _]) => ColliderBuilder::new(creature.clone()),
+        }
+    }
+
     /// First contact over one second; `None` where the answer is that there is none.
     pub fn first_contact(&self, motions: [&NonlinearRigidMotion; 2]) -> Option<f64> {
         match &self.shapes {
@@ -160,6 +226,13 @@ impl Bodies {
             }
         }
     }
+}
+
+/// What is built, and the bytes that it keeps.
+fn kept<T>(build: impl FnOnce() -> T) -> (T, usize) {
+    let before = MEMORY.current_usage();
+    let built = build();
+    (built, MEMORY.current_usage().saturating_sub(before))
 }
 
 fn parts(shape: &dyn Shape) -> usize {

@@ -4,15 +4,18 @@
 //!
 //! ```text
 //! cargo run --release --example accuracy_vs_time              # minutes
-//! cargo run --release --example accuracy_vs_time -- --quick   # about a minute
+//! cargo run --release --example accuracy_vs_time -- --quick   # under a minute
 //! ```
-//! Options: `--quick` (fewer motions and sizes), `--mesh FILE` (your own body flies instead of the
-//! creature, scaled to its width), `--out DIR` (default target/accuracy_vs_time).
+//! Options: `--quick` (fewer motions and sizes), `--part NAME` (steps, tolerance, motion, paper or
+//! collisions alone), `--mesh FILE` (your own body flies instead of the creature, scaled to its width),
+//! `--out DIR` (default target/accuracy_vs_time). With `--features gpu,rapier3d/profiler` the paper's
+//! benchmarks run on a device too, where there is one, and rapier's step is told apart.
 //!
 //! Writes a table (CSV) and a plot (SVG) for each experiment, one table of all (`accuracy.csv`) and
 //! one page, `index.html`. Exits with 1 where a medial mesh missed a contact by more than its shape's
 //! error, or a certified query missed one at all.
 
+mod benchmarks;
 mod bodies;
 mod brute_force;
 // The tests use the rest of it.
@@ -26,10 +29,12 @@ mod elementary;
 mod outcome;
 mod page;
 mod paper;
+mod peer_error;
 mod plot;
 mod random;
 mod report;
 mod representations;
+mod stack;
 mod steps;
 mod trees;
 mod volumes;
@@ -39,6 +44,8 @@ use common::arguments::Arguments;
 use common::mesh::Mesh;
 use common::progress::bar;
 use crash::Crash;
+use peak_alloc::PeakAlloc;
+use rapier3d_medial::Quality;
 use rapier3d_medial::build::mesh_file;
 use report::Section;
 use std::error::Error;
@@ -46,6 +53,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
+
+/// Counts what is allocated, to tell what a shape keeps.
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// The experiments, as `--part` names them.
+const PARTS: [&str; 5] = ["steps", "tolerance", "motion", "paper", "collisions"];
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -62,6 +76,7 @@ fn main() -> ExitCode {
 fn run() -> Result<()> {
     let mut arguments = Arguments::from_env();
     let quick = arguments.flag("--quick");
+    let part: Option<String> = arguments.value("--part")?;
     let mesh: Option<PathBuf> = arguments.value("--mesh")?;
     let out = arguments.value("--out")?;
     let out: PathBuf = out.unwrap_or_else(|| "target/accuracy_vs_time".into());
@@ -79,17 +94,29 @@ fn run() -> Result<()> {
         sections.extend(more);
         write(&sections, &out)
     };
+    if let Some(unknown) = part.as_ref().filter(|part| !PARTS.contains(&part.as_str())) {
+        return Err(format!("--part cannot be `{unknown}`: it is one of {PARTS:?}").into());
+    }
     let queries = if quick { 1_000 } else { 6_000 };
     let seconds = if quick { 1.0 } else { 4.0 };
-    add(with_bar("steps", 40, |tick| steps::measure(seconds, tick)).map(|s| vec![s])?)?;
-    add(with_bar("tolerance", 24, |tick| {
-        vec![elementary::tolerance(queries, tick)]
-    }))?;
-    add(with_bar("motion", 6, |tick| {
-        vec![elementary::motion(queries / 4, tick)]
-    }))?;
-    add(with_bar("paper", 6, |tick| paper::measure(quick, tick))?)?;
-    collisions(quick, own, &mut add)?;
+    for name in PARTS {
+        if part.as_ref().is_some_and(|part| part != name) {
+            continue;
+        }
+        match name {
+            "steps" => {
+                add(with_bar(name, 40, |tick| steps::measure(seconds, tick)).map(|s| vec![s])?)?
+            }
+            "tolerance" => add(with_bar(name, 24, |tick| {
+                vec![elementary::tolerance(queries, tick)]
+            }))?,
+            "motion" => add(with_bar(name, 6, |tick| {
+                vec![elementary::motion(queries / 4, tick)]
+            }))?,
+            "paper" => add(with_bar(name, 9, |tick| paper::measure(quick, tick))?)?,
+            _ => collisions(quick, &own, &mut add)?,
+        }
+    }
     println!("{}", out.join("index.html").display());
     println!("{:.0} s", start.elapsed().as_secs_f64());
     check(&sections)
@@ -98,33 +125,32 @@ fn run() -> Result<()> {
 /// The creature and the blob: all representations, the grid, the trees.
 fn collisions(
     quick: bool,
-    own: Option<Mesh>,
+    own: &Option<Mesh>,
     add: &mut dyn FnMut(Vec<Section>) -> Result<()>,
 ) -> Result<()> {
-    let (motions, sizes): (usize, &[usize]) = if quick {
-        (4, &[20, 100, 500])
+    let (motions, sizes, quality): (usize, &[usize], _) = if quick {
+        (4, &[20, 100, 500], Quality::Fast)
     } else {
-        (40, &[20, 50, 100, 500, 1000, 2000, 5000])
+        let sizes = &[20, 50, 100, 500, 1000, 2000, 5000];
+        (40, sizes, Quality::default())
     };
     let cells = crash::SPEEDS.len() * crash::TURNS.len();
-    let truth = bar("truth", motions * cells);
-    let crash = Crash::new(own, motions, || truth.inc(1));
-    truth.finish();
-    let building = bar("build", sizes.len() + 1);
-    let mut medial = Vec::new();
-    for &size in sizes {
-        medial.push(Bodies::medial(&crash.meshes, size)?);
-        building.inc(1);
-    }
-    let peers = Bodies::peers(&crash.meshes, quick);
-    building.finish();
+    let crash = with_bar("truth", motions * cells, |tick| {
+        Crash::new(own.clone(), motions, tick)
+    });
+    let medial = with_bar("build", sizes.len(), |tick| {
+        Bodies::medial(&crash.meshes, sizes, quality, tick)
+    })?;
+    let find = |size| sizes.iter().position(|s| *s == size);
+    let default = &medial[find(500).expect("a size that is always built")];
+    let peers = with_bar("peers", 1, |_| {
+        Bodies::peers(&crash.meshes, default.spheres, quick)
+    });
     let asked = |b: &Bodies| crash.cases.len().div_ceil(b.every);
     let ticks = medial.iter().chain(&peers).map(asked).sum();
     add(with_bar("representations", ticks, |tick| {
-        vec![representations::measure(&crash, &medial, &peers, tick)]
+        representations::measure(&crash, &medial, &peers, tick)
     }))?;
-    let find = |size| sizes.iter().position(|s| *s == size);
-    let default = &medial[find(500).expect("a size that is always built")];
     add(with_bar("grid", crash.cases.len(), |tick| {
         vec![representations::grid(&crash, default, tick)]
     }))?;
@@ -146,10 +172,12 @@ fn collisions(
 }
 
 /// Runs an experiment under a progress bar of some ticks.
-fn with_bar<T>(name: &'static str, ticks: usize, run: impl FnOnce(&dyn Fn()) -> T) -> T {
+fn with_bar<T>(name: &'static str, ticks: usize, run: impl FnOnce(&(dyn Fn() + Sync)) -> T) -> T {
     let bar = bar(name, ticks);
+    let start = Instant::now();
     let result = run(&|| bar.inc(1));
     bar.finish();
+    println!("{name}: {:.1} s", start.elapsed().as_secs_f64());
     result
 }
 

@@ -103,7 +103,7 @@ pub fn queries(
             looked.triangles += u64::from(counts.tests);
             found
         };
-        let allowed = bodies.shape_error.unwrap_or(f64::INFINITY);
+        let allowed = bodies.shape_error;
         let outcome = Outcome::of(crash, allowed, cases(), query, progress);
         let point = add(
             bodies.name.clone(),

@@ -1,14 +1,13 @@
 //! Bodies of five shapes above a field of pillars 5 mm thin (the paper's Figures 5 and 9).
 
-use super::build::build_as_many;
-use super::mesh::{Mesh, capsule, ring};
+use super::build::{build_as_many, capsule_model};
+use super::mesh::{Mesh, ring};
 use super::random::Random;
 use super::scene::{Actor, Model, Scene};
 use super::scene_strip::{SLATE, rainbow};
-use super::skeleton::{Bone, Skeleton};
+use super::skeleton::Skeleton;
 use super::skin::{Limb, skin};
 use rapier3d::prelude::*;
-use rapier3d_medial::MedialMesh;
 use std::sync::Arc;
 
 /// Half the height of a pillar's axis, and its radius, in metres.
@@ -18,7 +17,7 @@ const FIELD: (usize, Real) = (6, 0.32);
 const BODIES: usize = 15;
 
 /// The bodies above the field, thrown down and to the side; then the pillars. `cell`, in metres, is the
-/// side of a grid's cubes that the bodies' meshes are made with, `primitives` what each collides as.
+/// side of a grid's cubes that the bodies' meshes are made with; the five shapes share `primitives`.
 pub fn field(cell: Real, primitives: usize) -> Result<Scene, String> {
     let shapes = shapes(cell, primitives)?;
     let mut random = Random(11);
@@ -41,22 +40,12 @@ pub fn field(cell: Real, primitives: usize) -> Result<Scene, String> {
     });
     let mut actors: Vec<Actor> = bodies.collect();
     let (half, radius) = PILLAR;
-    let ends = [Vector::Y * half, Vector::NEG_Y * half];
-    let skeleton = Skeleton::new(vec![Bone {
-        ends,
-        radii: [radius; 2],
-    }]);
-    let medial = MedialMesh::capsule(ends[0], ends[1], radius).map_err(|e| e.to_string())?;
-    let pillar = Model::new(capsule(half, radius, 8), skeleton, medial);
+    let pillar = capsule_model(half, radius, 8)?;
     let (side, apart) = FIELD;
     actors.extend((0..side * side).map(|k| {
         let at = |n: usize| apart * (n as Real - (side - 1) as Real / 2.0);
         let place = Vector::new(at(k / side), half + radius, at(k % side));
-        Actor {
-            model: Arc::clone(&pillar),
-            start: RigidBodyBuilder::fixed().translation(place),
-            color: SLATE,
-        }
+        Actor::new(&pillar, RigidBodyBuilder::fixed().translation(place), SLATE)
     }));
     Ok(Scene::new(actors))
 }
@@ -89,10 +78,14 @@ fn shapes(cell: Real, primitives: usize) -> Result<Vec<Arc<Model>>, String> {
         .to_vec();
     let along = (0.45 / cell) as u32;
     let mesh = ring(0.2, 0.04, along, (0.17 / cell) as u32);
-    let mut shapes = vec![model(mesh, Skeleton::ring(0.2, 0.04, along), primitives)?];
-    for limbs in [jack, hook, bell, legs] {
-        let (mesh, skeleton) = skin(&limbs, cell);
-        shapes.push(model(mesh, skeleton, primitives)?);
+    let mut sources = vec![(mesh, Skeleton::ring(0.2, 0.04, along))];
+    sources.extend([jack, hook, bell, legs].map(|limbs| skin(&limbs, cell)));
+    // Where a shape has use for fewer than its share, the next ones get the rest.
+    let (mut left, mut shapes) = (primitives, Vec::new());
+    for (number, (mesh, skeleton)) in sources.into_iter().enumerate() {
+        let shape = model(mesh, skeleton, left / (5 - number))?;
+        left = left.saturating_sub(shape.medial.primitive_count());
+        shapes.push(shape);
     }
     Ok(shapes)
 }

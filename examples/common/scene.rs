@@ -95,6 +95,17 @@ pub struct Actor {
     pub color: Vector,
 }
 
+impl Actor {
+    /// A body that starts so.
+    pub fn new(model: &Arc<Model>, start: RigidBodyBuilder, color: Vector) -> Self {
+        Self {
+            model: Arc::clone(model),
+            start,
+            color,
+        }
+    }
+}
+
 /// Bodies and where they start. The ground is a fixed box, and none of the actors.
 pub struct Scene {
     /// The bodies.
@@ -127,7 +138,8 @@ pub struct Stage {
     pub world: PhysicsWorld,
     /// The actors in it.
     pub bodies: Vec<(RigidBodyHandle, ColliderHandle)>,
-    pipeline: Option<MedialPipeline>,
+    /// What steps it, where bodies are medial.
+    pub pipeline: Option<MedialPipeline>,
 }
 
 impl Stage {

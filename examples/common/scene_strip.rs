@@ -4,7 +4,7 @@ use super::light::{Facet, facets};
 use super::mesh::ball;
 use super::progress::bar;
 use super::render::{Camera, Image, render};
-use super::scene::{Run, Scene};
+use super::scene::{Kind, Run, Scene};
 use super::strip::tile;
 use rapier3d::prelude::{Pose, Real, Vector};
 use std::f32::consts::TAU;
@@ -86,6 +86,21 @@ pub fn seen(scene: &Scene, poses: &[Pose]) -> Vec<Facet> {
     actors
         .flat_map(|(actor, pose)| facets(&actor.model.mesh, *pose, actor.color))
         .collect()
+}
+
+/// All bodies before the first step and after each, the earlier the paler.
+pub fn exposures(scene: &Scene, kind: Kind, steps: usize) -> Vec<Facet> {
+    let mut stage = scene.stage(kind);
+    let mut seen = Vec::new();
+    for step in 0..=steps {
+        let fade = 0.75 * (1.0 - step as Real / steps as Real);
+        for (actor, pose) in scene.actors.iter().zip(stage.poses()) {
+            let color = actor.color.lerp(Vector::splat(0.8), fade);
+            seen.extend(facets(&actor.model.mesh, pose, color));
+        }
+        stage.step();
+    }
+    seen
 }
 
 /// The colours of the rainbow, `share` in [0, 1] of the way round.

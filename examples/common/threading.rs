@@ -11,6 +11,12 @@ pub fn placed(points: &[Vector], pose: &Pose) -> Vec<V> {
     points.iter().map(|p| V::from(world(p))).collect()
 }
 
+/// How many bodies the line runs through, where `rim` is a loop of each.
+pub fn threaded(line: &[V], rim: &[Vector], bodies: &[Pose]) -> usize {
+    let through = |pose: &&Pose| passes(line, &placed(rim, pose)) != 0;
+    bodies.iter().filter(through).count()
+}
+
 /// How often the line from point to point runs through the loop, from below less from above. For a
 /// closed line (its first point repeated as its last) it is the linking number of the two.
 ///

@@ -307,8 +307,10 @@ where
             return Err(Unsupported);
         }
         // What a load on one body is above: of two medial meshes the lighter lies on the other.
+        // (Their masses are known, where the volume of a solid would have to be measured first.)
+        let weight = |mesh: &MedialMesh| mesh.mass_properties(1.0).mass();
         let (side, mesh) = match meshes {
-            (Some(mesh1), Some(mesh2)) if mesh1.volume() > mesh2.volume() => (1, mesh2),
+            (Some(mesh1), Some(mesh2)) if weight(mesh1) > weight(mesh2) => (1, mesh2),
             (Some(mesh1), _) => (0, mesh1),
             (None, Some(mesh2)) => (1, mesh2),
             (None, None) => return Err(Unsupported),

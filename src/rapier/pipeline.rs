@@ -80,6 +80,12 @@ impl MedialPipeline {
         &self.batch
     }
 
+    /// Has batches computed elsewhere from now on, and gives back the backend before; between two steps.
+    /// The world goes on the same, bit by bit.
+    pub fn replace_batch(&mut self, batch: Batch) -> Batch {
+        std::mem::replace(&mut self.batch, batch)
+    }
+
     /// For a browser, between two steps: asks the device about the contacts of the next one and waits
     /// for its answers without blocking. Elsewhere each step asks for the next one by itself, and waits
     /// only when it comes. What is changed in the world after that goes to the CPU.

@@ -65,6 +65,27 @@ fn wgpu_limit() -> u32 {
     (1 << 16) - 1
 }
 
+/// Browsers refuse a literal above the largest `f32`, be it by less than half a digit.
+#[test]
+fn constants_are_numbers_of_single_precision() {
+    for module in MODULES {
+        let mut found = 0;
+        for line in module.source().lines() {
+            let Some((name, rest)) = line
+                .strip_prefix("const ")
+                .and_then(|l| l.split_once(": f32 = "))
+            else {
+                continue;
+            };
+            let digits = rest.trim_end_matches("f;");
+            let value: f64 = digits.parse().expect(name);
+            assert_eq!(value, f64::from(value as f32), "{name}");
+            found += 1;
+        }
+        assert!(found >= 8, "{}: {found}", module.name);
+    }
+}
+
 #[test]
 fn structs_lie_as_on_the_host() {
     let mut compared = 0;

@@ -1,8 +1,9 @@
 //! Falling rings for a page in the browser: the scene of the example `falling_rings` as a class of
-//! JavaScript. Poses and meshes go out as flat arrays; `site/main.js` draws them.
+//! JavaScript. A device opened by `open_device` goes from stage to stage. Poses and meshes go out as flat arrays; `site/main.js` draws them.
 
 #[path = "../../examples/common/mod.rs"]
 mod common;
+mod state;
 
 use common::creature::creature;
 use common::falling::{falling_on, falling_ring};
@@ -10,7 +11,12 @@ use common::mesh::Mesh;
 use common::scene::{Kind, Model, Scene, Stage};
 use common::surfaces::surface;
 use rapier3d::prelude::Vector;
-use rapier3d_medial::{BuildOptions, Effect, Effects, MedialMesh, StepReport};
+use rapier3d_medial::batch::Batch;
+use rapier3d_medial::batch::gpu::{Gpu, GpuOptions};
+use rapier3d_medial::{
+    Backend, BuildOptions, Effect, Effects, MedialMesh, MedialPipeline, StepReport,
+};
+use state::state_hash;
 use wasm_bindgen::prelude::*;
 
 const RINGS: usize = 15;
@@ -23,6 +29,11 @@ pub struct Demo {
     kind: Kind,
     effects: Effects,
     report: StepReport,
+    /// Whether batches are to go to the device.
+    on_gpu: bool,
+    /// The device, while the stage does not have it.
+    device: Option<Batch>,
+    settled_by_gpu: u64,
 }
 
 /// Builds the medial mesh of a ring or of the creature, of so many primitives at most, as a baked file.
@@ -80,25 +91,68 @@ impl Demo {
             kind,
             effects: Effects::default(),
             report: StepReport::default(),
+            on_gpu: false,
+            device: None,
+            settled_by_gpu: 0,
         })
+    }
+
+    /// Opens a WebGPU device; whether it is more than code on the CPU. An error says why there is none.
+    pub async fn open_device(&mut self) -> Result<bool, JsError> {
+        let options = GpuOptions {
+            software: true,
+            ..GpuOptions::default()
+        };
+        let batch = Batch::open_async(Backend::Gpu, options).await;
+        if let Some(error) = &batch.report().error {
+            return Err(JsError::new(&error.to_string()));
+        }
+        let hardware = batch.gpu().is_some_and(Gpu::is_hardware);
+        self.device = Some(batch);
+        Ok(hardware)
+    }
+
+    /// Whether batches are to go to the device, if there is one; from the next step on.
+    pub fn set_gpu(&mut self, on: bool) {
+        self.on_gpu = on;
+        self.take_device();
+        self.lend_device();
+    }
+
+    /// Whether the device serves.
+    pub fn on_gpu(&self) -> bool {
+        self.batch().is_some_and(Batch::has_device)
+    }
+
+    /// Why the device has failed, if it has.
+    pub fn device_error(&self) -> Option<String> {
+        let error = self.batch()?.report().error.as_ref()?;
+        Some(error.to_string())
+    }
+
+    /// Before a step: asks the device about its contacts, and waits for the answers without blocking.
+    pub async fn prepare(&mut self) {
+        if let Some(pipeline) = &mut self.stage.pipeline {
+            pipeline.prepare(&self.stage.world).await;
+        }
     }
 
     /// Steps the world by a sixtieth of a second.
     pub fn step(&mut self) {
         self.report = self.stage.step();
+        self.settled_by_gpu += self.report.settled_by_gpu;
     }
 
     /// Back to the start.
     pub fn restart(&mut self) {
-        self.stage = self.scene.stage(self.kind);
-        self.stage.set_effects(self.effects);
+        self.play(self.scene.stage(self.kind));
+        self.settled_by_gpu = 0;
     }
 
     /// Goes on with colliders of another kind.
     pub fn set_kind(&mut self, kind: &str) -> Result<(), JsError> {
         self.kind = Kind::named(kind).map_err(|e| JsError::new(&e))?;
-        self.stage = self.scene.stage_from(self.kind, &self.stage);
-        self.stage.set_effects(self.effects);
+        self.play(self.scene.stage_from(self.kind, &self.stage));
         Ok(())
     }
 
@@ -166,6 +220,48 @@ impl Demo {
     /// Elementary tests of the last step.
     pub fn elementary_tests(&self) -> f64 {
         self.report.elementary_tests as f64
+    }
+
+    /// Jobs of batches since the start that the device answered.
+    pub fn settled_by_gpu(&self) -> f64 {
+        self.settled_by_gpu as f64
+    }
+
+    /// A hash of every bit of every body's pose and velocity.
+    pub fn state_hash(&self) -> String {
+        format!("{:016x}", state_hash(&self.stage.world))
+    }
+}
+
+impl Demo {
+    fn play(&mut self, stage: Stage) {
+        self.take_device();
+        self.stage = stage;
+        self.stage.set_effects(self.effects);
+        self.lend_device();
+    }
+
+    fn batch(&self) -> Option<&Batch> {
+        self.stage.pipeline.as_ref().map(MedialPipeline::batch)
+    }
+
+    /// The stage goes on without the device.
+    fn take_device(&mut self) {
+        if self.on_gpu()
+            && let Some(pipeline) = &mut self.stage.pipeline
+        {
+            self.device = Some(pipeline.replace_batch(Batch::default()));
+        }
+    }
+
+    /// The stage gets the device, if it is to have it.
+    fn lend_device(&mut self) {
+        if self.on_gpu
+            && let Some(pipeline) = &mut self.stage.pipeline
+            && let Some(device) = self.device.take()
+        {
+            pipeline.replace_batch(device);
+        }
     }
 }
 

@@ -9,6 +9,8 @@ export async function launch(program = process.env.CHROMIUM ?? "chromium") {
   const browser = spawn(program, [
     "--headless=new", "--no-sandbox", "--remote-debugging-pipe", `--user-data-dir=${profile}`,
     "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
+    // WebGPU by SwiftShader, where there is no better.
+    "--enable-unsafe-webgpu",
     "--hide-scrollbars", "--no-first-run", "--disable-dev-shm-usage", "about:blank",
   ], { stdio: ["ignore", "ignore", "pipe", "pipe", "pipe"] });
   const [, , errors, input, output] = browser.stdio;
@@ -41,8 +43,8 @@ export async function launch(program = process.env.CHROMIUM ?? "chromium") {
       input.write(JSON.stringify({ id: number, method, params, sessionId }) + "\0");
     });
 
-  // A page of a size, and what it has written as errors.
-  async function open(url, { width, height, mobile }) {
+  // A page of a size, and what it has written as errors; `first` is run before the page's own code.
+  async function open(url, { width, height, mobile }, first = "") {
     const { targetId } = await send("Target.createTarget", { url: "about:blank" });
     const { sessionId } = await send("Target.attachToTarget", { targetId, flatten: true });
     const call = (method, params) => send(method, params, sessionId);
@@ -55,6 +57,7 @@ export async function launch(program = process.env.CHROMIUM ?? "chromium") {
     });
     await Promise.all(["Runtime.enable", "Log.enable", "Page.enable"].map((method) => call(method)));
     await call("Emulation.setDeviceMetricsOverride", { width, height, mobile, deviceScaleFactor: mobile ? 2 : 1 });
+    await call("Page.addScriptToEvaluateOnNewDocument", { source: first });
     await call("Page.navigate", { url });
 
     async function value(expression) {

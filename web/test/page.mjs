@@ -1,5 +1,6 @@
 // The page end to end in a headless Chromium: node test/page.mjs FOLDER PICTURES. It loads, the rings fall
-// and come to rest, clicks switch what bodies collide as, and nothing is written as an error.
+// and come to rest, clicks switch what bodies collide as, and nothing is written as an error. Worlds end
+// the same, bit by bit, on the GPU as on the CPU, and without WebGPU the CPU serves.
 import assert from "node:assert/strict";
 import { mkdir, writeFile } from "node:fs/promises";
 import { join } from "node:path";
@@ -19,11 +20,16 @@ const url = `http://localhost:${server.address().port}/`;
 await mkdir(pictures, { recursive: true });
 const browser = await launch();
 
-const poses = (page) => page.value("Array.from(state.poses())");
+const poses = (page) => page.value("Array.from(state.poses)");
 const places = (poses) => Array.from({ length: poses.length / 7 }, (_, body) => poses.slice(7 * body, 7 * body + 3));
 const heights = (poses) => places(poses).map(([, y]) => y);
 const moved = (a, b) => places(a).map((place, k) => Math.hypot(...place.map((x, i) => x - places(b)[k][i])));
-const fast = (page, steps) => page.value(`(() => { const button = document.getElementById("step"); for (let k = 0; k < ${steps}; k += 1) button.click(); return state.steps; })()`);
+async function fast(page, steps) {
+  const before = await page.value(`(() => { const button = document.getElementById("step"); for (let k = 0; k < ${steps}; k += 1) button.click(); return state.steps; })()`);
+  await page.until(`state.steps >= ${before + steps}`, PATIENCE);
+  return page.value("state.steps");
+}
+const pressed = (page, selector) => page.value(`document.querySelector("${selector}").getAttribute("aria-pressed")`);
 
 async function drawn(page) {
   // What is on the canvas is no single colour: at least as many as a few bodies, ground and sky have.
@@ -34,6 +40,60 @@ async function drawn(page) {
     const { data } = copy.getImageData(0, 0, 64, 64);
     resolve(new Set(Array.from({ length: 4096 }, (_, k) => data.slice(4 * k, 4 * k + 3).join())).size);
   }))`);
+}
+
+// The scene from its start on a backend: after each of some numbers of steps the hash of all bodies'
+// states, and how many jobs the GPU has answered.
+async function run_on(page, backend) {
+  await page.click("#step");
+  await page.click(`[data-backend=${backend}]`);
+  await page.click("#restart");
+  await page.until(`state.steps === 0 && state.on_gpu === ${backend === "gpu"}`, PATIENCE);
+  assert.equal(await pressed(page, `[data-backend=${backend}]`), "true");
+  const hashes = [await page.value("state.hash")];
+  for (const steps of [60, 60, 120, 240]) {
+    await fast(page, steps);
+    hashes.push(await page.value("state.hash"));
+  }
+  assert.equal(await page.value("state.steps"), 480);
+  return { hashes, settled: await page.value("state.settled"), says: await page.value("document.getElementById('runs').textContent") };
+}
+
+async function backends() {
+  const page = await browser.open(url, SIZES.laptop);
+  await page.until("window.state?.ready", PATIENCE);
+  const device = await run_on(page, "gpu");
+  await writeFile(join(pictures, "laptop-gpu.png"), await page.picture());
+  const cpu = await run_on(page, "cpu");
+  assert.match(device.says, /^GPU/);
+  assert.match(cpu.says, /^CPU/);
+  assert.equal(new Set(cpu.hashes).size, 5, "the world moves");
+  assert.deepEqual(device.hashes, cpu.hashes, "worlds are the same on either backend");
+  assert.ok(device.settled > 0, "the GPU answers");
+  assert.equal(cpu.settled, 0);
+  // In mid-run, and with colliders that have nothing for it.
+  await page.click("[data-backend=gpu]");
+  await fast(page, 10);
+  await page.click("[data-kind=hulls]");
+  await fast(page, 10);
+  await page.click("[data-kind=medial]");
+  await fast(page, 10);
+  assert.ok(await page.value("state.on_gpu"), "the device goes from stage to stage");
+  assert.deepEqual(page.errors, [], "no error on the console");
+  await page.close();
+  console.log(`backends: ${device.hashes.at(-1)} on both after 480 steps, ${device.settled} jobs answered by the GPU`);
+}
+
+async function no_webgpu() {
+  const page = await browser.open(url, SIZES.phone, "Object.defineProperty(navigator, 'gpu', { value: undefined })");
+  await page.until("window.state?.ready", PATIENCE);
+  assert.match(await page.value("document.getElementById('runs').textContent"), /^CPU: no GPU adapter$/);
+  assert.ok(await page.value("document.querySelector('[data-backend=gpu]').disabled"));
+  await fast(page, 60);
+  assert.ok(heights(await poses(page)).every(Number.isFinite));
+  assert.deepEqual(page.errors, [], "no error on the console");
+  await writeFile(join(pictures, "phone-no-webgpu.png"), await page.picture());
+  await page.close();
 }
 
 async function at_size(name) {
@@ -61,12 +121,13 @@ async function at_size(name) {
 
   await page.click("[data-kind=hulls]");
   await page.until("state.kind === 'hulls'", PATIENCE);
-  assert.equal(await page.value("document.querySelector('[data-kind=hulls]').getAttribute('aria-pressed')"), "true");
+  assert.equal(await pressed(page, "[data-kind=hulls]"), "true");
   const switched = await poses(page);
   await fast(page, 120);
   const pushed = moved(switched, await poses(page)).filter((metres) => metres > 0.05).length;
   assert.ok(pushed >= 1, "hulls of rings that hang push each other away");
   await page.click("#restart");
+  await page.until("state.steps === 0", PATIENCE);
   await fast(page, 400);
   await writeFile(join(pictures, `${name}-hulls.png`), await page.picture());
 
@@ -85,6 +146,8 @@ async function at_size(name) {
 }
 
 try {
+  await backends();
+  await no_webgpu();
   for (const name of Object.keys(SIZES)) await at_size(name);
 } finally {
   await browser.close();

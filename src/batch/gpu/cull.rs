@@ -42,8 +42,8 @@ pub(super) struct Cull {
 /// What one run is asked.
 pub(super) struct Asked<'a> {
     pub(super) pairs: &'a [Pair],
-    /// Cluster pairs of all of them.
-    pub(super) cluster_pairs: u32,
+    /// Groups of all of them.
+    pub(super) groups: u32,
     /// How long the lists have to be at least.
     pub(super) lists: [u32; 3],
 }
@@ -145,13 +145,13 @@ impl Cull {
     ) -> Result<(), GpuError> {
         let Asked {
             pairs,
-            cluster_pairs,
+            groups,
             lists,
         } = asked;
         self.reserve(context, pairs, meshes, lists)?;
         let params = CullParams {
             pairs: pairs.len() as u32,
-            cluster_pairs,
+            groups,
             tile_capacity: self.room[TILES],
             near_capacity: self.room[NEAR],
             survivor_capacity: self.room[SURVIVORS],
@@ -180,16 +180,12 @@ impl Cull {
             up.send(&mut encoder, bytes, self.buffer(buffer), at as u64)?;
         }
         encoder.clear_buffer(self.buffer(COUNTS), 0, None);
-        let groups = self.buffer(GROUPS);
-        self.stages[0].run(
-            context,
-            &mut encoder,
-            cluster_pairs.div_ceil(CLUSTER as u32),
-        );
+        let counted_groups = self.buffer(GROUPS);
+        self.stages[0].run(context, &mut encoder, groups);
         self.stages[1].run(context, &mut encoder, 1);
-        self.stages[2].run_indirect(context, &mut encoder, groups, 0);
+        self.stages[2].run_indirect(context, &mut encoder, counted_groups, 0);
         self.stages[3].run(context, &mut encoder, 1);
-        self.stages[4].run_indirect(context, &mut encoder, groups, 12);
+        self.stages[4].run_indirect(context, &mut encoder, counted_groups, 12);
         down.receive(&mut encoder, self.buffer(COUNTS), counted);
         down.receive(&mut encoder, self.buffer(LISTS[SURVIVORS]), listed);
         if let Some(clock) = &context.clock {
@@ -233,6 +229,15 @@ impl Cull {
         })
         .await?;
         let counts = [counts[TILES], counts[NEAR], counts[SURVIVORS]];
+        // Beyond this many the next counter may have gone round.
+        let most = u32::MAX / (CLUSTER * CLUSTER) as u32;
+        if counts[0] > most {
+            return Err(GpuError::TooLarge {
+                what: "cluster pairs that meet",
+                bytes: counts[0].into(),
+                limit: most.into(),
+            });
+        }
         let complete = (0..3).all(|k| counts[k] <= self.room[k]);
         Ok(Found {
             counts,

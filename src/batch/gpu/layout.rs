@@ -59,12 +59,12 @@ twins! {
     ElementaryParams {
         /// How many there are.
         count: u32 = "u32",
-        /// 1: sphere–slab, 0: cone–cone.
-        triangle: u32 = "u32",
         /// Distance under which a query is left to the CPU.
         tolerance: f32 = "f32",
         /// Cap of the iterations.
         max_iterations: u32 = "u32",
+        /// Nothing.
+        pad: u32 = "u32",
     }
     /// Up to 64 primitives that follow each other, in the body's frame.
     Cluster {
@@ -99,6 +99,8 @@ twins! {
         /// Centre of rotation in the body's frame, and the sagitta per length of lever arm: an eighth
         /// of the squared angle.
         turn: [f32; 4] = "vec4<f32>",
+        /// Centre and radius of a ball round the mesh, in the body's frame.
+        bound: [f32; 4] = "vec4<f32>",
         /// Index of the mesh's first cluster.
         first_cluster: u32 = "u32",
         /// How many it has.
@@ -112,7 +114,7 @@ twins! {
         sides: [Side; 2] = "array<Side, 2>",
         /// Distance that counts as contact, with the slack for rounding.
         reach: f32 = "f32",
-        /// Number of its first cluster pair in the batch.
+        /// Number of its first group in the batch: there is one for each 64 clusters of the first body.
         first: u32 = "u32",
         /// Nothing.
         pad: [u32; 2] = "vec2<u32>",
@@ -141,8 +143,8 @@ twins! {
     CullParams {
         /// How many there are.
         pairs: u32 = "u32",
-        /// Cluster pairs of all of them.
-        cluster_pairs: u32 = "u32",
+        /// Groups of all of them.
+        groups: u32 = "u32",
         /// Room in the list of cluster pairs.
         tile_capacity: u32 = "u32",
         /// Room in the list of primitive pairs.
@@ -197,7 +199,9 @@ pub fn constants() -> String {
         ("GILBERT_ROUNDS", GILBERT_ROUNDS),
         ("PROOF_ROUNDS", PROOF_ROUNDS),
     ];
-    let reals = reals.map(|(name, value)| format!("const {name}: f32 = {:e}f;\n", value as f32));
+    // All digits: browsers refuse the shortest ones of the largest number, which are above it.
+    let exact = |value: f64| f64::from(value as f32);
+    let reals = reals.map(|(name, value)| format!("const {name}: f32 = {:e}f;\n", exact(value)));
     let counts = counts.map(|(name, value)| format!("const {name}: u32 = {value}u;\n"));
     reals.concat() + &counts.concat()
 }

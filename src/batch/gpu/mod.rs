@@ -98,7 +98,8 @@ pub struct Gpu {
     pairs: Vec<Pair>,
     /// Where each pair comes from.
     asked: Vec<Piece>,
-    cluster_pairs: u32,
+    /// Groups of 64 clusters of first meshes.
+    groups: u32,
     /// Mesh pairs asked about and not yet answered, whether or not any of them was fit.
     sweeps: usize,
     /// Whether the device has a batch of which the answers were not read.
@@ -120,7 +121,7 @@ impl Gpu {
             meshes: Meshes::default(),
             pairs: Vec::new(),
             asked: Vec::new(),
-            cluster_pairs: 0,
+            groups: 0,
             sweeps: 0,
             pending: false,
             survivors: Vec::new(),
@@ -312,7 +313,7 @@ impl Gpu {
     async fn send(&mut self, lists: [u32; 3]) -> Result<(), GpuError> {
         let asked = Asked {
             pairs: &self.pairs,
-            cluster_pairs: self.cluster_pairs,
+            groups: self.groups,
             lists,
         };
         let transfers = [&mut self.up, &mut self.down];
@@ -336,6 +337,7 @@ impl Gpu {
     fn gather(&mut self, sweeps: &[Sweep<'_>]) -> Result<(), GpuError> {
         self.pairs.clear();
         self.asked.clear();
+        self.groups = 0;
         let mut cluster_pairs = 0u64;
         for (index, sweep) in sweeps.iter().enumerate() {
             let places = sweep.meshes.map(|mesh| self.meshes.place(mesh));
@@ -353,16 +355,22 @@ impl Gpu {
                 });
             }
             for pair in &mut self.pairs[kept..] {
-                // Checked below.
-                pair.first = cluster_pairs as u32;
+                // No more than cluster pairs, which are checked.
+                pair.first = self.groups;
+                self.groups = self
+                    .groups
+                    .saturating_add(places[0].clusters.div_ceil(layout::CLUSTER as u32));
                 cluster_pairs += u64::from(places[0].clusters) * u64::from(places[1].clusters);
             }
         }
-        self.cluster_pairs = u32::try_from(cluster_pairs).map_err(|_| GpuError::TooLarge {
-            what: "cluster pairs",
-            bytes: cluster_pairs,
-            limit: u32::MAX.into(),
-        })?;
+        // Their counter must not go round.
+        if cluster_pairs > u32::MAX.into() {
+            return Err(GpuError::TooLarge {
+                what: "cluster pairs",
+                bytes: cluster_pairs,
+                limit: u32::MAX.into(),
+            });
+        }
         Ok(())
     }
 

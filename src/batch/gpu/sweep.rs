@@ -53,6 +53,7 @@ impl Sweep<'_> {
             side.first_cluster = places[k].first_cluster;
             side.clusters = places[k].clusters;
             let root = &self.meshes[k].tree().nodes()[0];
+            side.bound = [root.center.x, root.center.y, root.center.z, root.radius];
             let extent = f64::from((root.center - center).length() + root.radius);
             let lever = f64::from(center.length()) + extent;
             let away = |rows: &[[f32; 4]; 3]| {
