@@ -35,6 +35,9 @@ use std::time::Instant;
 
 /// Interleaved repetitions; the fastest of each counts, because other programs interrupt some.
 const ROUNDS: usize = 7;
+
+/// More of them where a batch takes a few milliseconds, which an interruption would double.
+const SHORT_ROUNDS: usize = 70;
 /// Tests in one batch where all tests of two meshes are asked: what the portable binding holds.
 const CHUNK: usize = 1 << 19;
 
@@ -128,7 +131,12 @@ fn elementary(gpu: &mut Gpu) -> Vec<Value> {
         let paths: Vec<_> = (0..count).map(|_| path(&mut random)).collect();
         let mut bounds = Vec::new();
         let mut times = [const { Vec::new() }; 5];
-        for _ in 0..ROUNDS {
+        let rounds = if count <= 10_000 {
+            SHORT_ROUNDS
+        } else {
+            ROUNDS
+        };
+        for _ in 0..rounds {
             times[0].push(milliseconds(|| {
                 for path in &paths {
                     black_box(bracket(path, Domain::Box, &LIMITS));
@@ -279,7 +287,7 @@ fn mesh_pairs(gpu: &mut Gpu) -> Vec<Value> {
         let mut proposals = Vec::new();
         let mut times = [const { Vec::new() }; 4];
         let mut answers = Vec::new();
-        for _ in 0..ROUNDS {
+        for _ in 0..SHORT_ROUNDS {
             times[0].push(milliseconds(|| answers = cpu::run(&jobs)));
             times[3].push(milliseconds(|| {
                 let (first, second) = jobs.split_at(jobs.len() / 2);

@@ -19,21 +19,26 @@ const MAX_ITERATIONS: u32 = 24;
 /// Lengths from here, in the user's unit, stay on the CPU: their products would overflow.
 const LARGEST: f32 = 1.0e8;
 
+/// Bytes of a query.
+const QUERY: usize = size_of::<Query>();
+
 pub(super) struct Elementary {
-    stage: Stage,
+    /// Cone–cone and sphere–slab.
+    stages: Vec<Stage>,
     params: Growing,
     queries: Growing,
     bounds: Growing,
-    packed: Vec<Query>,
     bound: bool,
 }
 
 impl Elementary {
     pub(super) fn new(context: &mut Context) -> Result<Self, GpuError> {
-        let stage = Stage::all(context, &ELEMENTARY).remove(0);
+        let mut stages = Stage::all(context, &ELEMENTARY);
+        // One of them runs in a submission.
+        stages.iter_mut().for_each(|stage| stage.index = 0);
         let storage = BufferUsages::STORAGE;
         Ok(Self {
-            stage,
+            stages,
             params: Growing::new(
                 context,
                 "parameters",
@@ -42,7 +47,6 @@ impl Elementary {
             )?,
             queries: Growing::new(context, "queries", 1, storage | BufferUsages::COPY_DST)?,
             bounds: Growing::new(context, "bounds", 1, storage | BufferUsages::COPY_SRC)?,
-            packed: Vec::new(),
             bound: false,
         })
     }
@@ -64,34 +68,38 @@ impl Elementary {
         if paths.is_empty() {
             return Ok(stages);
         }
-        self.packed.clear();
-        let packed = paths.iter().map(|path| pack(path, tolerance));
-        self.packed.extend(packed);
         let params = ElementaryParams {
             count: paths.len() as u32,
-            triangle: u32::from(domain == Domain::Triangle),
             tolerance,
             max_iterations: MAX_ITERATIONS,
+            pad: 0,
         };
         let params = bytemuck::bytes_of(&params);
-        let queries: &[u8] = bytemuck::cast_slice(&self.packed);
+        let queries = paths.len() * QUERY;
         let answers = paths.len() * size_of::<Bound>();
-        let fresh = self.queries.reserve(context, queries.len() as u64)?
+        let fresh = self.queries.reserve(context, queries as u64)?
             | self.bounds.reserve(context, answers as u64)?;
         if fresh || !self.bound {
             let buffers = [&self.params, &self.queries, &self.bounds];
             let numbered = [0, 1, 2].map(|k| (k as u32, &buffers[k].buffer));
-            self.stage.bind(context, &numbered);
+            for stage in &mut self.stages {
+                stage.bind(context, &numbered);
+            }
             self.bound = true;
         }
-        up.begin(context, &[params.len(), queries.len()]).await?;
+        up.begin(context, &[params.len(), queries]).await?;
         let timed = Clock::bytes(context.clock.as_ref());
         down.begin(context, &[answers, timed]).await?;
         let mut encoder = context.device.create_command_encoder(&Default::default());
         up.send(&mut encoder, params, &self.params.buffer, 0)?;
-        up.send(&mut encoder, queries, &self.queries.buffer, 0)?;
-        self.stage
-            .run(context, &mut encoder, paths.len().div_ceil(CLUSTER) as u32);
+        let packed = paths.iter().map(|path| pack(path, domain, tolerance));
+        let packed = packed.map(bytemuck::cast::<Query, [u8; QUERY]>);
+        up.send_each(&mut encoder, packed, &self.queries.buffer)?;
+        self.stages[usize::from(domain == Domain::Triangle)].run(
+            context,
+            &mut encoder,
+            paths.len().div_ceil(CLUSTER) as u32,
+        );
         down.receive(&mut encoder, &self.bounds.buffer, answers);
         if let Some(clock) = &context.clock {
             clock.receive(&mut encoder, down, 1);
@@ -115,14 +123,18 @@ impl Elementary {
 
 /// The device proves distances above the tolerance: rounded up, it is part of the radius sums. What
 /// is not finite, or too large to square, goes as a contact, for the CPU to judge.
-fn pack(path: &LinearPath<f32>, tolerance: f32) -> Query {
+fn pack(path: &LinearPath<f32>, domain: Domain, tolerance: f32) -> Query {
     let with = |v: Vec3<f32>, w: f32| [v.x, v.y, v.z, w];
+    // A triangle's last corner stands for the fourth too.
+    let last = if domain == Domain::Triangle { 2 } else { 3 };
+    let corners = [0, 1, 2, last];
     let query = Query {
-        start: [0, 1, 2, 3].map(|k| with(path.start[k], (path.radius[k] + tolerance).next_up())),
-        rate: path.rate.map(|v| with(v, 0.0)),
+        start: corners.map(|k| with(path.start[k], (path.radius[k] + tolerance).next_up())),
+        rate: corners.map(|k| with(path.rate[k], 0.0)),
     };
-    let mut numbers = query.start.iter().chain(&query.rate).flatten();
-    if numbers.all(|x| x.abs() < LARGEST) {
+    let numbers = query.start.iter().chain(&query.rate).flatten();
+    // Of all, whatever the first says: that is done eight at a time.
+    if numbers.fold(true, |sound, x| sound & (x.abs() < LARGEST)) {
         return query;
     }
     Query {

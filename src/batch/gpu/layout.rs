@@ -59,12 +59,12 @@ twins! {
     ElementaryParams {
         /// How many there are.
         count: u32 = "u32",
-        /// 1: sphere–slab, 0: cone–cone.
-        triangle: u32 = "u32",
         /// Distance under which a query is left to the CPU.
         tolerance: f32 = "f32",
         /// Cap of the iterations.
         max_iterations: u32 = "u32",
+        /// Nothing.
+        pad: u32 = "u32",
     }
     /// Up to 64 primitives that follow each other, in the body's frame.
     Cluster {

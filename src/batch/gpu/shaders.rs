@@ -27,7 +27,7 @@ pub const ELEMENTARY: Module = Module {
         include_str!("../../../shaders/certificate.wgsl"),
         include_str!("../../../shaders/elementary.wgsl"),
     ],
-    stages: &["elementary"],
+    stages: &["cones", "slabs"],
 };
 
 /// Mesh pairs to primitive pairs that are not proven free.

@@ -11,8 +11,8 @@ use wgpu::{
 /// One entry point of a shader.
 pub(super) struct Stage {
     pipeline: ComputePipeline,
-    /// Its place in the module.
-    index: u32,
+    /// Its place among those that are timed together.
+    pub(super) index: u32,
     bound: Option<BindGroup>,
 }
 

@@ -116,6 +116,23 @@ impl Transfer {
         Ok(())
     }
 
+    /// As [`Self::send`], of many items as they are made: to where the device copies from and nowhere
+    /// else in between.
+    pub(super) fn send_each<const N: usize>(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        items: impl ExactSizeIterator<Item = [u8; N]>,
+        to: &Buffer,
+    ) -> Result<(), GpuError> {
+        let (from, bytes) = (self.used as u64, items.len() * N);
+        let range = from..from + bytes as u64;
+        let mut view = self.room.buffer.get_mapped_range_mut(range).map_err(of)?;
+        view.slice(..).into_chunks::<N>().0.write_iter(items);
+        encoder.copy_buffer_to_buffer(&self.room.buffer, from, to, 0, bytes as u64);
+        self.used += bytes.next_multiple_of(ALIGNMENT);
+        Ok(())
+    }
+
     /// Has the start of a buffer of the device copied, `bytes` long.
     pub(super) fn receive(&mut self, encoder: &mut CommandEncoder, from: &Buffer, bytes: usize) {
         let at = self.used as u64;
