@@ -12,15 +12,23 @@
 @group(0) @binding(7) var<storage, read_write> survivors: array<Survivor>;
 @group(0) @binding(8) var<storage, read_write> dispatch: array<u32>;
 
-// Of each side what may meet anything of the other, and the whole that it was tested against.
-var<workgroup> whole: array<Swept, 2>;
+// The pair of a group, once for all its threads: what they read in step costs one reading.
+var<workgroup> placed: array<Side, 2>;
+var<workgroup> reach: f32;
+// Of each side what may meet anything of the other.
 var<workgroup> kept: array<array<Swept, 64>, 2>;
 var<workgroup> kept_index: array<array<u32, 64>, 2>;
 var<workgroup> kept_count: array<atomic<u32>, 2>;
 
-fn keep(pair: u32, side: u32, index: u32, ball: vec4<f32>) {
-  let swept = sweep(pair, side, ball);
-  if (!meet(pair, whole[1u - side], swept)) { return; }
+fn fetch(pair: u32, lane: u32) {
+  if (lane < 2u) {
+    placed[lane] = pairs[pair].sides[lane];
+    atomicStore(&kept_count[lane], 0u);
+  }
+  if (lane == 0u) { reach = pairs[pair].reach; }
+}
+
+fn keep(side: u32, index: u32, swept: Swept) {
   let k = atomicAdd(&kept_count[side], 1u);
   kept[side][k] = swept;
   kept_index[side][k] = index;
@@ -42,26 +50,34 @@ fn pair_of(group: u32) -> u32 {
 @compute @workgroup_size(64)
 fn cull_clusters(@builtin(workgroup_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
   let group = id.x + id.y * groups.x;
-  if (group >= params.groups) { return; }
-  let pair = pair_of(group);
-  let first = pairs[pair].sides[0].first_cluster;
-  let second = pairs[pair].sides[1].first_cluster;
-  let others = pairs[pair].sides[1].clusters;
-  let own = (group - pairs[pair].first) * 64u + lane;
-  if (lane < 2u) {
-    whole[lane] = sweep(pair, lane, pairs[pair].sides[lane].bound);
-    atomicStore(&kept_count[lane], 0u);
-  }
+  let live = group < params.groups;
+  let pair = pair_of(min(group, params.groups - 1u));
+  let others = select(0u, pairs[pair].sides[1].clusters, live);
+  fetch(pair, lane);
   workgroupBarrier();
-  if (own < pairs[pair].sides[0].clusters) { keep(pair, 0u, first + own, clusters[first + own].bound); }
+  let a = placed[0];
+  let b = placed[1];
+  let within = reach;
+  let whole_a = sweep(a, a.bound);
+  let whole_b = sweep(b, b.bound);
+  let own = (group - pairs[pair].first) * 64u + lane;
+  if (live && own < a.clusters) {
+    let swept = sweep(a, clusters[a.first_cluster + own].bound);
+    if (meet(swept, whole_b, within)) { keep(0u, a.first_cluster + own, swept); }
+  }
   for (var base = 0u; base < others; base += 64u) {
-    if (base + lane < others) { keep(pair, 1u, second + base + lane, clusters[second + base + lane].bound); }
+    if (base + lane < others) {
+      let index = b.first_cluster + base + lane;
+      let swept = sweep(b, clusters[index].bound);
+      if (meet(whole_a, swept, within)) { keep(1u, index, swept); }
+    }
     workgroupBarrier();
     let rows = atomicLoad(&kept_count[0]);
     let columns = atomicLoad(&kept_count[1]);
     for (var i = lane >> 3u; i < rows; i += 8u) {
+      let row = kept[0][i];
       for (var j = lane & 7u; j < columns; j += 8u) {
-        if (meet(pair, kept[0][i], kept[1][j])) {
+        if (meet(row, kept[1][j], within)) {
           let k = atomicAdd(&counters[TILES], 1u);
           if (k < params.tile_capacity) { tiles[k] = Tile(pair, kept_index[0][i], kept_index[1][j]); }
         }
@@ -87,6 +103,20 @@ fn arrange_primitives() {
   set_dispatch(0u, min(atomicLoad(&counters[TILES]), params.tile_capacity), 1u);
 }
 
+fn chosen_side(second: bool, a: Side, b: Side) -> Side {
+  var s = a;
+  for (var k = 0u; k < 3u; k++) {
+    s.start[k] = select(a.start[k], b.start[k], second);
+    s.end[k] = select(a.end[k], b.end[k], second);
+  }
+  s.turn = select(a.turn, b.turn, second);
+  return s;
+}
+
+fn chosen_swept(second: bool, a: Swept, b: Swept) -> Swept {
+  return Swept(select(a.start, b.start, second), select(a.chord, b.chord, second), select(a.radius, b.radius, second));
+}
+
 // One group for each cluster pair. Primitives that miss the other cluster's ball are gone before they
 // are paired.
 @compute @workgroup_size(64)
@@ -94,17 +124,24 @@ fn cull_primitives(@builtin(workgroup_id) id: vec3<u32>, @builtin(num_workgroups
   let group = id.x + id.y * groups.x;
   let live = group < min(atomicLoad(&counters[TILES]), params.tile_capacity);
   let tile = tiles[select(0u, group, live)];
-  let a = clusters[tile.a];
-  let b = clusters[tile.b];
-  if (lane < 2u) {
-    whole[lane] = sweep(tile.pair, lane, select(a.bound, b.bound, lane == 1u));
-    atomicStore(&kept_count[lane], 0u);
-  }
+  fetch(tile.pair, lane);
   workgroupBarrier();
-  for (var k = select(a.count + b.count, lane, live); k < a.count + b.count; k += 64u) {
-    let side = u32(k >= a.count);
-    let index = select(a.first + k, b.first + k - a.count, side == 1u);
-    keep(tile.pair, side, index, primitives[index].bound);
+  let a = placed[0];
+  let b = placed[1];
+  let within = reach;
+  let first = clusters[tile.a];
+  let second = clusters[tile.b];
+  let whole_a = sweep(a, first.bound);
+  let whole_b = sweep(b, second.bound);
+  // One half of the threads for each side.
+  let is_b = lane >= 32u;
+  let other = chosen_swept(is_b, whole_b, whole_a);
+  let side = chosen_side(is_b, a, b);
+  let start = select(first.first, second.first, is_b);
+  let count = select(0u, select(first.count, second.count, is_b), live);
+  for (var k = lane & 31u; k < count; k += 32u) {
+    let swept = sweep(side, primitives[start + k].bound);
+    if (meet(swept, other, within)) { keep(u32(is_b), start + k, swept); }
   }
   workgroupBarrier();
   // Row i, column j: bit j / 8 of byte i / 8 of the thread that has it.
@@ -112,13 +149,14 @@ fn cull_primitives(@builtin(workgroup_id) id: vec3<u32>, @builtin(num_workgroups
   let columns = atomicLoad(&kept_count[1]);
   var found = array<u32, 2>(0u, 0u);
   for (var i = lane >> 3u; i < rows; i += 8u) {
+    let row = kept[0][i];
     for (var j = lane & 7u; j < columns; j += 8u) {
-      if (meet(tile.pair, kept[0][i], kept[1][j])) { found[i >> 5u] |= 1u << ((i & 24u) + (j >> 3u)); }
+      if (meet(row, kept[1][j], within)) { found[i >> 5u] |= 1u << ((i & 24u) + (j >> 3u)); }
     }
   }
-  let count = countOneBits(found[0]) + countOneBits(found[1]);
-  if (count == 0u) { return; }
-  var k = atomicAdd(&counters[NEAR], count);
+  let hits = countOneBits(found[0]) + countOneBits(found[1]);
+  if (hits == 0u) { return; }
+  var k = atomicAdd(&counters[NEAR], hits);
   for (var word = 0u; word < 2u; word++) {
     var bits = found[word];
     while (bits != 0u) {

@@ -9,28 +9,27 @@ fn place(m: array<vec4<f32>, 3>, p: vec3<f32>) -> vec3<f32> {
 }
 
 // The lever arm is bounded by the distance from the centre of rotation.
-fn sweep(pair: u32, side: u32, sphere: vec4<f32>) -> Swept {
-  let start = place(pairs[pair].sides[side].start, sphere.xyz);
-  let end = place(pairs[pair].sides[side].end, sphere.xyz);
-  let turn = pairs[pair].sides[side].turn;
-  return Swept(start, end - start, sphere.w + turn.w * distance(sphere.xyz, turn.xyz));
+fn sweep(side: Side, sphere: vec4<f32>) -> Swept {
+  let start = place(side.start, sphere.xyz);
+  let end = place(side.end, sphere.xyz);
+  return Swept(start, end - start, sphere.w + side.turn.w * distance(sphere.xyz, side.turn.xyz));
 }
 
-// Whether two swept spheres come within the pair's reach.
-fn meet(pair: u32, a: Swept, b: Swept) -> bool {
+// Whether two swept spheres come within reach.
+fn meet(a: Swept, b: Swept, reach: f32) -> bool {
   let y = b.start - a.start;
   let rate = b.chord - a.chord;
   // An inexact time of closest approach costs less than the slack: the distance is flat there.
   let t = clamp(-dot(y, rate) / max(dot(rate, rate), TINY), 0.0, 1.0);
-  return !(length(y + rate * t) > a.radius + b.radius + pairs[pair].reach);
+  return !(length(y + rate * t) > a.radius + b.radius + reach);
 }
 
 struct Simplex { spheres: array<Swept, 3>, count: u32 }
 
-fn simplex(pair: u32, side: u32, primitive: u32) -> Simplex {
+fn simplex(side: Side, primitive: u32) -> Simplex {
   var s: Simplex;
   s.count = primitives[primitive].count;
-  for (var k = 0u; k < 3u; k++) { s.spheres[k] = sweep(pair, side, primitives[primitive].spheres[k]); }
+  for (var k = 0u; k < 3u; k++) { s.spheres[k] = sweep(side, primitives[primitive].spheres[k]); }
   return s;
 }
 
@@ -78,8 +77,8 @@ fn direction(a: ptr<function, Simplex>, b: ptr<function, Simplex>, t: f32) -> ve
 // Time before which two primitives are proven to stay out of the pair's reach; 1: all the step. A
 // fixed direction's gap is concave in time along chords, so it lies above its own chord.
 fn free_until(pair: u32, i: u32, j: u32) -> f32 {
-  var a = simplex(pair, 0u, i);
-  var b = simplex(pair, 1u, j);
+  var a = simplex(pairs[pair].sides[0], i);
+  var b = simplex(pairs[pair].sides[1], j);
   let reach = pairs[pair].reach;
   var lower = 0.0;
   for (var round = 0u; round < PROOF_ROUNDS; round++) {

@@ -7,9 +7,10 @@ use crate::ccd::rng::Rng;
 use crate::scene;
 use pollster::block_on;
 use rapier3d::parry::query::NonlinearRigidMotion;
-use rapier3d_medial::MedialMesh;
 use rapier3d_medial::batch::Sweep;
 use rapier3d_medial::batch::gpu::{Gpu, GpuOptions};
+use rapier3d_medial::math::{Pose, Vector};
+use rapier3d_medial::{MedialMesh, MedialSphere};
 use std::collections::HashMap;
 
 struct Drawn {
@@ -104,6 +105,64 @@ fn no_pair_within_reach_is_lost() {
         survivors < 3 * meeting,
         "{survivors} survive, {meeting} meet"
     );
+}
+
+/// Planted, in a chain of more clusters than a group has threads, as the first mesh and as the second:
+/// a ball in the middle of a link finds that link. The chain finds each of its own links.
+#[test]
+fn long_meshes_lose_no_link() {
+    let Some(mut gpu) = scene::gpu(scene::options()) else {
+        return;
+    };
+    let links = 6000;
+    let knot = |k: u32| {
+        let x = 0.1 * k as f32;
+        MedialSphere::new(Vector::new(x, (0.05 * k as f32).sin(), 0.0), 0.03)
+    };
+    let spheres = (0..=links).map(knot).collect();
+    let edges = (0..links).map(|k| [k, k + 1]).collect();
+    let chain = MedialMesh::new(spheres, edges, vec![]).expect("a chain");
+    let ball = MedialSphere::new(Vector::ZERO, 0.01);
+    let ball = MedialMesh::new(vec![ball], vec![], vec![]).expect("a ball");
+    let middle = |k: usize| {
+        let link = chain.primitive(k);
+        let [a, b] = [0, 1].map(|i| link.spheres()[i].center);
+        Pose::from_translation((a + b) / 2.0)
+    };
+    let asked: Vec<usize> = (0..40).map(|k| k * 5999 / 39).collect();
+    let mut drawn = Vec::new();
+    for &k in &asked {
+        let poses = [Pose::IDENTITY, middle(k)];
+        let motions = poses.map(NonlinearRigidMotion::constant_position);
+        let [chained, balled] = motions;
+        drawn.push(Drawn {
+            meshes: [chain.clone(), ball.clone()],
+            motions: [chained, balled],
+            reach: 0.0,
+        });
+        drawn.push(Drawn {
+            meshes: [ball.clone(), chain.clone()],
+            motions: [balled, chained],
+            reach: 0.0,
+        });
+    }
+    let still = NonlinearRigidMotion::identity();
+    drawn.push(Drawn {
+        meshes: [chain.clone(), chain.clone()],
+        motions: [still; 2],
+        reach: 0.0,
+    });
+    let found = propose(&mut gpu, &drawn);
+    for (n, &k) in asked.iter().enumerate() {
+        let (pair, link) = (2 * n as u32, k as u32);
+        assert!(found.contains_key(&(pair, link, 0)), "{link}");
+        assert!(found.contains_key(&(pair + 1, 0, link)), "{link}");
+    }
+    let last = 2 * asked.len() as u32;
+    assert!((0..links).all(|k| found.contains_key(&(last, k, k))));
+    // Neighbours come too, and no more.
+    let most = 3 * (2 * asked.len() + links as usize);
+    assert!(found.len() <= most, "{} of {most}", found.len());
 }
 
 /// Lists of one entry overflow at every stage: they grow, the runs are counted, nothing is lost.

@@ -62,7 +62,7 @@ fn worlds_are_the_same_on_either_backend() {
     cpu.attach(&mut on_cpu);
     device.attach(&mut on_gpu);
     let (mut jobs, mut first_contacts, mut settled, mut events) = (0, 0, 0, 0);
-    let (mut contacts, mut early, mut made) = (0, 0, 0);
+    let (mut contacts, mut early, mut made) = (0, 0, (0, 0));
     let (mut reruns, mut unsent) = (0, 0);
     for step in 0..STEPS {
         let report = cpu.step(&mut on_cpu);
@@ -81,7 +81,8 @@ fn worlds_are_the_same_on_either_backend() {
         contacts += report.jobs as u64;
         early += report.sent_early;
         if step == STEPS / 2 {
-            made = device.batch().gpu_counts().buffers_made;
+            let counts = device.batch().gpu_counts();
+            made = (counts.buffers_made, counts.bindings_made);
         }
         // What the user changes between two steps was not sent.
         if step % 100 == 99 {
@@ -101,7 +102,8 @@ fn worlds_are_the_same_on_either_backend() {
     assert!(reruns <= 3 && unsent <= 6, "{reruns}, {unsent}");
     let gpu = device.batch().gpu_counts();
     assert_eq!((gpu.meshes, gpu.submissions), (2, gpu.maps));
-    assert_eq!(gpu.buffers_made, made, "after warm-up");
+    let all = (gpu.buffers_made, gpu.bindings_made);
+    assert_eq!(all, made, "after warm-up");
     assert!(early * 20 > contacts * 19, "{early} of {contacts}");
     println!("{early} of {contacts} jobs sent early");
     println!("{jobs} jobs, {settled} settled by the GPU, {events} events, {gpu:?}");

@@ -59,6 +59,8 @@ pub struct Context {
     fault: Fault,
     /// Buffers made so far: none are in a step like those before.
     pub(super) buffers_made: u64,
+    /// Groups of bindings made so far, likewise.
+    pub(super) bindings_made: u64,
     name: String,
     driver: String,
     hardware: bool,
@@ -120,6 +122,7 @@ impl Context {
             },
             fault,
             buffers_made: 0,
+            bindings_made: 0,
             name: format!("{} ({:?})", info.name, info.backend),
             driver: format!("{} {}", info.driver, info.driver_info),
             hardware,

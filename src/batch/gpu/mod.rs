@@ -54,6 +54,8 @@ pub struct GpuCounts {
     pub survivors: u32,
     /// Buffers made since the device was opened: constant in steps like those before.
     pub buffers_made: u64,
+    /// Groups of bindings made since then: likewise.
+    pub bindings_made: u64,
     /// Meshes on the device.
     pub meshes: usize,
 }
@@ -182,6 +184,7 @@ impl Gpu {
         GpuCounts {
             maps: self.down.maps,
             buffers_made: self.context.buffers_made,
+            bindings_made: self.context.bindings_made,
             meshes: self.meshes.len(),
             ..self.counts
         }

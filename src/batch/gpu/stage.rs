@@ -32,7 +32,11 @@ impl Stage {
                     layout: None,
                     module: &shader,
                     entry_point: Some(name),
-                    compilation_options: PipelineCompilationOptions::default(),
+                    // Groups write what they read.
+                    compilation_options: PipelineCompilationOptions {
+                        zero_initialize_workgroup_memory: false,
+                        ..Default::default()
+                    },
                     cache: None,
                 }),
             bound: None,
@@ -41,7 +45,7 @@ impl Stage {
     }
 
     /// Binds buffers; they stay bound until the next call.
-    pub(super) fn bind(&mut self, context: &Context, buffers: &[(u32, &Buffer)]) {
+    pub(super) fn bind(&mut self, context: &mut Context, buffers: &[(u32, &Buffer)]) {
         let entries: Vec<_> = buffers
             .iter()
             .map(|&(binding, buffer)| BindGroupEntry {
@@ -54,6 +58,7 @@ impl Stage {
             layout: &self.pipeline.get_bind_group_layout(0),
             entries: &entries,
         });
+        context.bindings_made += 1;
         self.bound = Some(group);
     }
 

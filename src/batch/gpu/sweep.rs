@@ -22,13 +22,11 @@ const MAX_PIECES: f64 = 32.0;
 
 impl Sweep<'_> {
     /// The times of its pieces, as the device gets them.
-    pub(super) fn pieces(&self) -> Vec<[f64; 2]> {
+    pub(super) fn pieces(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
         let angle = |m: &RigidMotion<f64>| m.angle() / PIECE_ANGLE;
         let most = self.paths().iter().map(angle).fold(1.0, f64::max);
         let count = most.ceil().min(MAX_PIECES);
-        (0..count as u32)
-            .map(|k| [k, k + 1].map(|k| f64::from(k) / count))
-            .collect()
+        (0..count as u32).map(move |k| [k, k + 1].map(|k| f64::from(k) / count))
     }
 
     fn paths(&self) -> [RigidMotion<f64>; 2] {
