@@ -29,6 +29,10 @@ const AHEAD: Real = 1.0;
 /// in the other, or past it.
 const REACH: Real = 0.25;
 
+/// Least gap that may close in a step from rest, in units of rapier's prediction distance, and the
+/// acceleration, in length units per second squared, that may do it: that of a fall.
+const ROOM: (Real, Real) = (0.25, 10.0);
+
 /// A collider at the start of a step.
 pub struct Start<'a> {
     /// Its body.
@@ -77,7 +81,7 @@ impl Ahead {
     /// Of the two colliders of `job`, which is at their poses at the start of a step; with the job that
     /// computes their contacts.
     ///
-    /// Of these only those count which the pair's velocities, or what it may move before rapier asks again,
+    /// Of these only those count which its velocities, a fall, or what it may move before rapier asks again
     /// can close: the others of the prediction distance cost the solver as much as those that bear, and two
     /// rings that lie on each other have five times as many of them.
     pub fn new(
@@ -110,7 +114,10 @@ impl Ahead {
             centers: motions.map(|m| m.local_center),
             asked: job.prediction,
         };
-        let near = prediction.min(parameters.contact_recycle_distance() + speed * dt);
+        let fall = ROOM.1 * parameters.length_unit * dt * dt;
+        let kept = parameters.contact_recycle_distance();
+        let room = kept.max(ROOM.0 * prediction).max(fall);
+        let near = prediction.min(room + speed * dt);
         let job = PairJob {
             pos12: poses[0].inv_mul(&poses[1]),
             prediction: job.prediction - prediction + near,

@@ -260,6 +260,74 @@ fn what_swings_does_not_swing_wider() {
     assert!(alone > 1.2, "rapier alone: {alone}");
 }
 
+/// Hooks of the user that nobody is to call.
+struct Never;
+
+impl PhysicsHooks for Never {
+    fn filter_contact_pair(&self, _: &PairFilterContext) -> Option<SolverFlags> {
+        panic!("nobody asked for it")
+    }
+    fn modify_solver_contacts(&self, _: &mut ContactModificationContext) {
+        panic!("nobody asked for it")
+    }
+}
+
+/// Contacts that a body hangs in are computed in all but the slowest steps of its swing, those of a ball
+/// that rolls as slowly only now and then; and it is the batch that computes them.
+#[test]
+fn contacts_that_bodies_hang_in_are_computed_anew() {
+    let computed = |body: RigidBodyBuilder, mesh: &MedialMesh, on: &MedialMesh| {
+        let mut world = PhysicsWorld::new();
+        world.insert_collider(medial(on), None);
+        world.insert(body.can_sleep(false), medial(mesh));
+        let mut pipeline = attached(&mut world);
+        let steps = (0..120).map(|_| pipeline.step_with_events(&mut world, &Never, &()));
+        steps.fold([0, 0], |[jobs, hits], r| {
+            assert_eq!(r.cache_misses, 0);
+            [jobs + r.jobs, hits + r.cache_hits as usize]
+        })
+    };
+    let bar = MedialMesh::capsule(Vector::NEG_Z, Vector::Z, 0.1).expect("a bar");
+    let down = MAJOR - MINOR - 0.1;
+    let aside = Vector::new(0.05, -(down * down - 0.05 * 0.05).sqrt(), 0.0);
+    let hanging = RigidBodyBuilder::dynamic().pose(Pose::new(aside, Vector::X * FRAC_PI_2));
+    let [jobs, hits] = computed(hanging, &ring(27, MAJOR, MINOR), &bar);
+    println!("hangs: {jobs} jobs, {hits} of them asked for");
+    assert!(jobs > 100 && hits == jobs, "{jobs} {hits}");
+    let ball = MedialMesh::ball(0.3).expect("a ball");
+    let plate = MedialMesh::round_plate(1.0, 1.0, 0.1).expect("a plate");
+    let rolling = RigidBodyBuilder::dynamic()
+        .translation(Vector::Y * 0.4)
+        .linvel(Vector::X * 0.015)
+        .angvel(Vector::NEG_Z * 0.05);
+    let [jobs, hits] = computed(rolling, &ball, &plate);
+    println!("rolls: {jobs} jobs, {hits} of them asked for");
+    assert!((2..60).contains(&jobs) && hits == jobs, "{jobs} {hits}");
+}
+
+/// Of two rings that face each other those contacts are computed, and solved, that can close.
+#[test]
+fn contacts_that_cannot_close_are_left_out() {
+    let mesh = ring(27, MAJOR, MINOR);
+    let contacts = |gap: Real, speed: Real, dt: Real| {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        world.integration_parameters.dt = dt;
+        world.insert_collider(medial(&mesh), None);
+        let body = RigidBodyBuilder::dynamic()
+            .translation(Vector::Y * (2.0 * MINOR + gap))
+            .linvel(Vector::NEG_Y * speed);
+        world.insert(body, medial(&mesh));
+        attached(&mut world).step(&mut world).contacts
+    };
+    let dt = 1.0 / 60.0;
+    assert_eq!(contacts(0.007, 0.0, dt), 0);
+    assert!(contacts(0.003, 0.0, dt) > 0);
+    assert!(contacts(0.015, 1.0, dt) > 0);
+    // In a thirtieth of a second a body falls by a centimetre.
+    assert!(contacts(0.007, 0.0, 2.0 * dt) > 0);
+}
+
 #[test]
 #[ignore = "a minute"]
 fn full_chain() {
@@ -277,6 +345,10 @@ fn full_chain() {
                  linked {linked}"
             );
         }
+    }
+    for links in [5, 8, 10, 12, 14, 16, 18, 22, 25, 28, 30, 35, 40] {
+        let (slept, ..) = chain(&medial, 0.0, links, 1200, 0);
+        println!("{links} links, damping 0, medial: sleeps {slept:?}");
     }
 }
 
