@@ -160,7 +160,7 @@ pub fn tolerance(queries: usize, progress: &dyn Fn()) -> Section {
         note: NOTE,
         plot: Plot::Front {
             time: "one query, nanoseconds",
-            error: "error of the time of impact, fractions of the step, 95th percentile",
+            error: "error of the time, fractions of the step, 95th percentile",
             series,
         },
         head,
@@ -227,7 +227,7 @@ pub fn motion(queries: usize, progress: &dyn Fn()) -> Section {
         note: NOTE,
         plot: Plot::Front {
             time: "one query, nanoseconds",
-            error: "error of the time of impact, fractions of the step, 95th percentile",
+            error: "error of the time, fractions of the step, 95th percentile",
             series,
         },
         head,

@@ -65,6 +65,31 @@ fn number(value: f64, log: bool) -> String {
     }
 }
 
+/// Where the legend, about a third of the width and of the height, hides fewest points.
+fn freest(points: &[Place], [across, up]: &[Range<f64>; 2]) -> SeriesLabelPosition {
+    use SeriesLabelPosition::*;
+    const PART: f64 = 0.36;
+    let share = |value: f64, range: &Range<f64>| (value - range.start) / (range.end - range.start);
+    let hidden = |[left, low]: [f64; 2]| {
+        let within = |p: &&Place| {
+            let [x, y] = [share(p.0, across) - left, share(p.1, up) - low];
+            (0.0..PART).contains(&x) && (0.0..PART).contains(&y)
+        };
+        points.iter().filter(within).count()
+    };
+    let (far, half) = (1.0 - PART, (1.0 - PART) / 2.0);
+    let corners = [
+        (UpperRight, [far, far]),
+        (LowerLeft, [0.0, 0.0]),
+        (UpperLeft, [0.0, far]),
+        (LowerRight, [far, 0.0]),
+        (MiddleRight, [far, half]),
+        (MiddleLeft, [0.0, half]),
+    ];
+    let best = corners.into_iter().min_by_key(|(_, place)| hidden(*place));
+    best.map_or(UpperRight, |(position, _)| position)
+}
+
 /// The plot as SVG.
 pub fn svg(plot: &Plot) -> Result<String, Box<dyn Error>> {
     match plot {
@@ -112,14 +137,15 @@ fn drawn(
             .flat_map(|(_, p)| p.iter().map(|p| (p.time, p.error)));
         let on_lines = lines.iter().flat_map(|(_, line)| line.iter().copied());
         let all: Vec<Place> = dots.chain(on_lines).map(|p| axes.place(p)).collect();
+        let ranges = [
+            axes.range(all.iter().map(|p| p.0), 0),
+            axes.range(all.iter().map(|p| p.1), 1),
+        ];
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
             .x_label_area_size(52)
             .y_label_area_size(82)
-            .build_cartesian_2d(
-                axes.range(all.iter().map(|p| p.0), 0),
-                axes.range(all.iter().map(|p| p.1), 1),
-            )?;
+            .build_cartesian_2d(ranges[0].clone(), ranges[1].clone())?;
         chart
             .configure_mesh()
             .x_desc(axes.x)
@@ -160,15 +186,9 @@ fn drawn(
             };
             chart.draw_series(points.iter().map(label))?;
         }
-        // A front falls to the right, which leaves the lower left free; many settings leave the middle.
-        let corner = match points {
-            [] => SeriesLabelPosition::UpperRight,
-            [_, _, _, _, _, ..] => SeriesLabelPosition::MiddleLeft,
-            _ => SeriesLabelPosition::LowerLeft,
-        };
         chart
             .configure_series_labels()
-            .position(corner)
+            .position(freest(&all, &ranges))
             .background_style(WHITE.mix(0.85))
             .border_style(BLACK.mix(0.3))
             .label_font(("sans-serif", 16))

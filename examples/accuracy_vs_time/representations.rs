@@ -28,6 +28,9 @@ const HEAD: [&str; 18] = [
     "tests a step",
 ];
 
+/// Metres that parry's casts leave between bodies at the time of their answer.
+const PARRYS: f64 = 2.0e-4;
+
 /// What of it is plotted against the number of primitives.
 const SIZE: [usize; 7] = [0, 1, 4, 13, 14, 16, 17];
 
@@ -49,7 +52,6 @@ pub fn measure(
             let outcome = outcome(crash, bodies, cases, progress);
             let time = quantile(&outcome.microseconds, 0.5);
             let stack = stack(bodies, &crash.meshes[0]);
-            let step = stack.milliseconds.iter().sum::<f64>() / stack.milliseconds.len() as f64;
             rows.push(vec![
                 bodies.name.clone(),
                 bodies.parts.to_string(),
@@ -67,14 +69,14 @@ pub fn measure(
                 format!("{:.2e}", outcome.error(0.95)),
                 format!("{time:.1}"),
                 format!("{:.1}", quantile(&outcome.microseconds, 0.95)),
-                format!("{step:.3}"),
+                format!("{:.3}", stack.milliseconds),
                 stack
                     .tests
                     .map_or("-".into(), |tests| format!("{tests:.0}")),
             ]);
             if bodies.is_medial() {
                 let parts = bodies.parts as f64;
-                steps.push((parts, step));
+                steps.push((parts, stack.milliseconds));
                 queries.push((parts, time / 1.0e3));
             }
             let error = outcome.error(0.95);
@@ -95,8 +97,8 @@ pub fn measure(
         name: "sizes",
         title: "Query and step by number of primitives (the paper's Figure 16 and Table 4)",
         text: "The medial meshes of the table above: one continuous query of creature and blob, median, \
-               and a whole step, mean, while three creatures fall on each other and come to lie, three \
-               seconds in all. The step is rapier's with this crate's hook, on one core."
+               and a whole step, mean, while three creatures fall on each other and come to lie: three \
+               seconds, five times. The step is rapier's with this crate's hook, on one core."
             .into(),
         note: "",
         plot: Plot::Lines {
@@ -119,8 +121,8 @@ pub fn measure(
              and answers at whose time the triangles were further apart than the two shapes are off, as \
              the builder bounds it (of parry's shapes: as measured at points of both surfaces). Memory is \
              what the creature's shape keeps allocated. A step is one of three creatures that fall on each \
-             other, rapier's with this crate's hook or alone, mean over three seconds. Triangle meshes and \
-             voxels answer every hundredth motion: they take long."
+             other, rapier's with this crate's hook or alone, mean over three seconds, five \
+             times. Triangle meshes and voxels answer every hundredth motion: they take long."
         ),
         note: "A coarser mesh is answered sooner, a finer one is nearer; a decomposition into convex \
                parts touches at the right time where only tips meet, and takes longer.",
@@ -141,7 +143,10 @@ fn outcome<'a>(
     cases: impl IntoIterator<Item = &'a Case>,
     progress: &dyn Fn(),
 ) -> Outcome {
-    let allowed = bodies.shape_error;
+    let allowed = match bodies.is_medial() {
+        true => bodies.shape_error,
+        false => bodies.shape_error + PARRYS,
+    };
     let query = |case: &Case| {
         let [a, b] = case.motions.each_ref().map(parry_motion);
         bodies.first_contact([&a, &b])

@@ -135,6 +135,7 @@ struct InfoArguments {
 struct InfoSummary {
     #[serde(flatten)]
     mesh: Description,
+    volume: f32,
     #[serde(skip_serializing_if = "Option::is_none")]
     errors: Option<Errors>,
 }
@@ -338,11 +339,15 @@ fn info(arguments: &InfoArguments) -> Result<(), Failure> {
         Some(path) => Some(measure(&mesh, &mesh_file::read(path)?)?),
         None => None,
     };
-    let mesh = describe(&mesh);
-    let summary = InfoSummary { mesh, errors };
+    let summary = InfoSummary {
+        mesh: describe(&mesh),
+        volume: mesh.volume(),
+        errors,
+    };
     print(arguments.json, &summary, || {
         let errors = summary.errors.as_ref();
-        summary.mesh.text() + &errors.map_or(String::new(), |e| e.text("errors"))
+        let volume = format!("volume      {}\n", summary.volume);
+        summary.mesh.text() + &volume + &errors.map_or(String::new(), |e| e.text("errors"))
     })
 }
 

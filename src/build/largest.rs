@@ -13,9 +13,11 @@ use crate::error::BuildError;
 /// Distances below this (longest side 1) have the slack of this one: nobody needs them closer.
 const SMALL: f64 = 2e-3;
 
-/// The slack doubles each time that so many pieces were examined: about a quarter of a second.
+/// A search may be ahead of its budget by this share of it: large errors lie close together. From
+/// there the slack doubles with each further [`STEP`], and falls again when the rest catches up.
 /// Uniform errors, from which no piece stands out, need it.
-const BUDGET: usize = 400_000;
+const AHEAD: f64 = 0.5;
+const STEP: f64 = 0.125;
 
 /// Pieces smaller than this (longest side 1) are not cut, whatever they may hide.
 const FINEST: f64 = 1e-4;
@@ -87,35 +89,53 @@ pub struct Search<'a, S: Side> {
     side: &'a mut S,
     /// The largest distance found.
     pub best: f64,
+    /// Distances up to this do not matter.
+    floor: f64,
     effort: Effort,
     /// Pieces that gave large distances.
     leaders: Vec<(f64, S::Piece)>,
     /// Radius of the largest piece that was given up.
     given_up: f64,
+    /// Pieces to examine, those examined, and the share of the surface that is done.
+    budget: f64,
     examined: usize,
+    done: f64,
+    /// Largest slack with which a piece was dropped.
+    widest: f64,
 }
 
 impl<'a, S: Side> Search<'a, S> {
-    /// A search that starts with the distance `start`.
-    pub fn new(side: &'a mut S, start: f64, effort: Effort) -> Self {
+    /// A search for distances above `floor`, with the distance `start` found before, over about
+    /// `budget` pieces.
+    pub fn new(side: &'a mut S, start: f64, floor: f64, effort: Effort, budget: f64) -> Self {
         Self {
             side,
             best: start,
+            floor,
             effort,
             leaders: Vec::new(),
             given_up: 0.0,
+            budget,
             examined: 0,
+            done: 0.0,
+            widest: 0.0,
         }
     }
 
-    /// By how much a distance may exceed the best, unless it ended early.
+    /// By how much a distance may exceed the best and the floor, unless it ended early.
     pub fn slack(&self) -> f64 {
-        self.slack_now().max(self.given_up)
+        self.widest.max(self.given_up)
+    }
+
+    /// What a distance must exceed to matter.
+    fn high(&self) -> f64 {
+        self.best.max(self.floor)
     }
 
     fn slack_now(&self) -> f64 {
-        let doubled = 1u64 << (self.examined / BUDGET).min(32);
-        self.effort.slack * self.best.max(SMALL) * doubled as f64
+        let ahead = self.examined as f64 / self.budget - self.done - AHEAD;
+        let doubled = (ahead / STEP).ceil().clamp(0.0, 32.0);
+        self.effort.slack * self.high().max(SMALL) * doubled.exp2()
     }
 
     /// Cuts pieces level by level, until none is left or there are many, which are returned.
@@ -140,19 +160,23 @@ impl<'a, S: Side> Search<'a, S> {
     /// Settles piece after piece, and then looks closer at those that gave the most.
     pub fn in_depth(
         &mut self,
-        pieces: impl ExactSizeIterator<Item = S::Piece>,
+        pieces: impl Iterator<Item = S::Piece> + Clone,
         mut tick: impl FnMut(f64) -> Result<(), BuildError>,
     ) -> Result<(), BuildError> {
-        let count = pieces.len().max(1) as f64;
+        let size = |side: &S, piece: &S::Piece| side.radius(piece).powi(2);
+        let whole: f64 = pieces.clone().map(|piece| size(self.side, &piece)).sum();
+        let mut done = 0.0;
         let mut waiting = Vec::new();
-        for (i, piece) in pieces.enumerate() {
+        for piece in pieces {
+            self.done = done / whole.max(f64::MIN_POSITIVE);
+            done += size(self.side, &piece);
             waiting.push(piece);
             while let Some(piece) = waiting.pop() {
                 if self.best > self.effort.enough {
                     return Ok(());
                 }
                 if self.examined.is_multiple_of(128) {
-                    tick(i as f64 / count)?;
+                    tick(self.done)?;
                 }
                 self.examine(piece, self.slack_now(), &mut waiting);
             }
@@ -161,7 +185,8 @@ impl<'a, S: Side> Search<'a, S> {
         waiting.extend(self.leaders.iter().rev().map(|leader| leader.1));
         for _ in 0..POLISH_BUDGET {
             let Some(piece) = waiting.pop() else { break };
-            self.examine(piece, POLISH * self.best, &mut waiting);
+            let slack = (1.0 + POLISH) * self.best - self.high();
+            self.examine(piece, slack, &mut waiting);
         }
         Ok(())
     }
@@ -176,8 +201,9 @@ impl<'a, S: Side> Search<'a, S> {
     /// Looks at a piece; cuts it unless it can be dropped.
     fn examine(&mut self, piece: S::Piece, slack: f64, pieces: &mut Vec<S::Piece>) {
         self.examined += 1;
+        self.widest = self.widest.max(slack);
         let rho = self.side.radius(&piece);
-        let allowed = self.best + slack - rho;
+        let allowed = self.high() + slack - rho;
         let (sample, bound) = match self.side.look(&piece, rho, self.best, allowed) {
             Look::Settled => return,
             Look::Hidden => (0.0, f64::INFINITY),
@@ -193,7 +219,7 @@ impl<'a, S: Side> Search<'a, S> {
                 self.keep_leaders();
             }
         }
-        if bound <= self.best + slack - rho {
+        if bound <= self.high() + slack - rho {
             return;
         }
         if rho > FINEST {

@@ -29,6 +29,7 @@ mod pipeline;
 mod prepared;
 mod primitive_tree;
 mod quadric;
+mod queue;
 mod random;
 mod refit;
 mod residuals;

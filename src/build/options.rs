@@ -68,8 +68,8 @@ pub struct Hausdorff {
     pub uncovered: Real,
     /// How far the solid sticks out of the source surface, at the points examined.
     pub bloat: Real,
-    /// No point of either surface exceeds its distance above by more than this: a quarter of the
-    /// error, or more where the error is below two thousandths of the size.
+    /// No point of either surface is farther from the other than [`Self::error`] and this: a quarter
+    /// of the error, or more where the error is below two thousandths of the size.
     pub sampling: Real,
 }
 

@@ -13,7 +13,9 @@
 
 use super::bounds::Point;
 use super::draft::Draft;
-use super::residuals::{EnvelopeSample, GUESS, Residuals, Row, envelope_samples, residuals};
+use super::residuals::{
+    EnvelopeSample, GUESS, Residuals, Row, UNKNOWN, envelope_samples, residuals,
+};
 use super::samples::Sample;
 use super::solid::Solid;
 use super::triangle_tree::TriangleTree;
@@ -53,9 +55,9 @@ pub struct Target<'a> {
 impl Target<'_> {
     /// Rows of a draft, with fresh envelope samples.
     pub fn residuals(&self, draft: &Draft, watch: &mut Watch) -> Result<Residuals, BuildError> {
-        let envelope = envelope_samples(&Solid::new(draft), COARSE * self.spacing, watch)?;
-        let mut hints = vec![0; self.samples.len()];
-        self.examine(draft, &mut hints, &envelope, watch)
+        let mut envelope = envelope_samples(&Solid::new(draft), COARSE * self.spacing, watch)?;
+        let mut hints = vec![UNKNOWN; self.samples.len()];
+        self.examine(draft, &mut hints, &mut envelope, watch)
     }
 
     /// The largest residual of a draft if it is below `limit`; the search ends at the first that is not,
@@ -98,7 +100,7 @@ impl Target<'_> {
         &self,
         draft: &Draft,
         hints: &mut [u32],
-        envelope: &[EnvelopeSample],
+        envelope: &mut [EnvelopeSample],
         watch: &mut Watch,
     ) -> Result<Residuals, BuildError> {
         residuals(draft, self.tree, &self.samples, hints, envelope, watch)
@@ -117,7 +119,7 @@ pub fn refit(
     let mut damping = vec![DAMPING; n];
     let mut best: Option<(f64, Draft)> = None;
     let mut before: Option<(Draft, Vec<f64>)> = None;
-    let mut hints = vec![0; target.samples.len()];
+    let mut hints = vec![UNKNOWN; target.samples.len()];
     let mut envelope = Vec::new();
     let mut failures = 0;
     let short = iterations <= 2;
@@ -128,7 +130,7 @@ pub fn refit(
         if iteration % REFRESH == 0 || last {
             envelope = envelope_samples(&Solid::new(draft), spacing, watch)?;
         }
-        let mut found = target.examine(draft, &mut hints, &envelope, watch)?;
+        let mut found = target.examine(draft, &mut hints, &mut envelope, watch)?;
         if best.as_ref().is_none_or(|b| found.score < b.0) {
             best = Some((found.score, draft.clone()));
             failures = 0;
@@ -146,12 +148,12 @@ pub fn refit(
             damping
                 .iter_mut()
                 .for_each(|d| *d = (*d * 10.0).min(MOST_DAMPING));
-            found = target.examine(draft, &mut hints, &envelope, watch)?;
+            found = target.examine(draft, &mut hints, &mut envelope, watch)?;
             energy = energies(&found.rows, n);
         } else if let Some((old, old_energy)) = &before
             && put_back(draft, old, &energy, old_energy, &mut damping)
         {
-            found = target.examine(draft, &mut hints, &envelope, watch)?;
+            found = target.examine(draft, &mut hints, &mut envelope, watch)?;
             energy = energies(&found.rows, n);
         }
         before = Some((draft.clone(), energy));

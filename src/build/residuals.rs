@@ -48,7 +48,12 @@ pub struct EnvelopeSample {
     primitive: u32,
     weights: [f64; 3],
     normal: Point,
+    /// The triangle that was nearest to it, or [`UNKNOWN`].
+    triangle: u32,
 }
+
+/// No triangle yet, or no primitive: the sample before, which is likely near, gives the hint.
+pub const UNKNOWN: u32 = u32::MAX;
 
 impl EnvelopeSample {
     /// Where it is now, and the corners of its primitive.
@@ -107,6 +112,7 @@ pub fn envelope_samples(
                     primitive: near.primitive,
                     weights: near.signed.weights,
                     normal: direction(point - solid.ball(&near).center),
+                    triangle: UNKNOWN,
                 });
             }
         }
@@ -121,7 +127,7 @@ pub fn residuals(
     tree: &TriangleTree,
     samples: &[Sample],
     hints: &mut [u32],
-    envelope: &[EnvelopeSample],
+    envelope: &mut [EnvelopeSample],
     watch: &mut Watch,
 ) -> Result<Residuals, BuildError> {
     let solid = Solid::new(draft);
@@ -131,8 +137,10 @@ pub fn residuals(
         .zip(hints.iter().copied())
         .collect();
     let mut rows = map_chunks(&paired, watch, |chunk| {
+        let mut last = 0;
         let row = |&(point, hint): &(Point, u32)| {
-            let near = solid.nearest(point, hint);
+            let near = solid.nearest(point, if hint == UNKNOWN { last } else { hint });
+            last = near.primitive;
             Row {
                 corners: solid.primitives()[near.primitive as usize],
                 weights: near.signed.weights,
@@ -150,10 +158,16 @@ pub fn residuals(
     }
     let surface_rows = rows.len();
     let share = surface_rows as f64 / envelope.len().max(1) as f64;
-    rows.extend(map_chunks(envelope, watch, |chunk| {
+    let outer = map_chunks(envelope, watch, |chunk| {
+        let mut hint = 0;
         let row = |sample: &EnvelopeSample| {
             let (point, corners) = sample.at(draft, &solid);
-            let off = point - tree.closest(point, GUESS);
+            if sample.triangle != UNKNOWN {
+                hint = sample.triangle;
+            }
+            let (nearest, triangle) = tree.closest_from(point, hint);
+            hint = triangle;
+            let off = point - nearest;
             let (distance, along) = (off.length(), off.dot(sample.normal));
             // Where the way to the surface is across the normal, growing does not help.
             let cosine = if distance > 1e-9 {
@@ -161,7 +175,7 @@ pub fn residuals(
             } else {
                 1.0
             };
-            Row {
+            let row = Row {
                 corners,
                 weights: sample.weights,
                 normal: sample.normal,
@@ -169,10 +183,15 @@ pub fn residuals(
                 weight: share * cosine * cosine,
                 point,
                 primitive: sample.primitive,
-            }
+            };
+            (row, triangle)
         };
         chunk.iter().map(row).collect()
-    })?);
+    })?;
+    for (sample, (row, triangle)) in envelope.iter_mut().zip(outer) {
+        sample.triangle = triangle;
+        rows.push(row);
+    }
     watch.hold(bytes_of(&rows) + bytes_of(&paired) + size_of_val(envelope));
     let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
     let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();

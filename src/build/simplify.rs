@@ -12,12 +12,11 @@ use super::bounds::{Point, direction};
 use super::complex::Complex;
 use super::draft::{Ball, Draft};
 use super::quadric::{Quadric, cone_normals, slab_normals};
+use super::queue::{Candidate, Queue};
 use super::triangle_tree::TriangleTree;
 use super::voids::open_voids;
 use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 /// Added to the error before the stability ratio scales it (Q-MAT's `k`, in units of the longest
 /// side): orders the collapses that cost nothing by their stability.
@@ -43,38 +42,14 @@ pub const BOUNDARY_WEIGHT_SOLID: f64 = 0.1;
 /// See [`BOUNDARY_WEIGHT_SOLID`].
 pub const BOUNDARY_WEIGHT_SHEET: f64 = 1.0;
 
-/// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).
-#[derive(Clone, Copy, PartialEq)]
-struct Candidate {
-    cost: f64,
-    a: u32,
-    b: u32,
-    /// Versions of both when the cost was computed; an older one is stale.
-    versions: [u32; 2],
-}
-
-impl Eq for Candidate {}
-
-impl Ord for Candidate {
-    /// The cheapest is the greatest, for it leaves the heap first; ties by index.
-    fn cmp(&self, o: &Self) -> Ordering {
-        let tie = (o.a, o.b).cmp(&(self.a, self.b));
-        o.cost.total_cmp(&self.cost).then(tie)
-    }
-}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
-        Some(self.cmp(o))
-    }
-}
-
 /// A medial mesh on its way to fewer primitives.
 pub struct Simplifier<'a> {
     complex: Complex,
     quadrics: Vec<Quadric>,
     versions: Vec<u32>,
-    heap: BinaryHeap<Candidate>,
+    queue: Queue,
+    /// No triangle is nearer to each ball's centre than this, as far as is known.
+    clear: Vec<f64>,
     /// Edges that the topology rule held back.
     blocked: Vec<Candidate>,
     /// Whether anything was collapsed since the blocked edges were last tried.
@@ -97,7 +72,8 @@ impl<'a> Simplifier<'a> {
             quadrics: quadrics(&complex, boundary_weight, watch)?,
             complex,
             versions: vec![0; n],
-            heap: BinaryHeap::new(),
+            queue: Queue::default(),
+            clear: vec![0.0; n],
             blocked: Vec::new(),
             progressed: false,
             keep_topology: true,
@@ -115,8 +91,8 @@ impl<'a> Simplifier<'a> {
 
     /// Bytes of its arrays.
     fn bytes(&self) -> usize {
-        let heap = self.heap.capacity() * size_of::<Candidate>();
-        self.complex.bytes() + bytes_of(&self.quadrics) + bytes_of(&self.versions) + heap
+        let of_each = bytes_of(&self.quadrics) + bytes_of(&self.versions) + bytes_of(&self.clear);
+        self.complex.bytes() + of_each + self.queue.bytes()
     }
 
     /// Number of primitives now.
@@ -147,7 +123,9 @@ impl<'a> Simplifier<'a> {
                 watch.at(done / (start - target).max(1) as f64)?;
             }
             steps += 1;
-            match self.heap.pop() {
+            let (versions, queue) = (&self.versions, &mut self.queue);
+            let current = |c: &Candidate| [c.a, c.b].map(|v| versions[v as usize]) == c.versions;
+            match queue.pop(current) {
                 Some(candidate) => self.take(candidate),
                 None if self.retry() => {}
                 None => break,
@@ -157,9 +135,8 @@ impl<'a> Simplifier<'a> {
     }
 
     fn take(&mut self, candidate: Candidate) {
-        let Candidate { a, b, versions, .. } = candidate;
-        let current = [a, b].map(|v| self.versions[v as usize]) == versions;
-        if !current || !self.complex.is_alive(a) || !self.complex.is_alive(b) {
+        let Candidate { a, b, .. } = candidate;
+        if !self.complex.is_alive(a) || !self.complex.is_alive(b) {
             return;
         }
         if a == b {
@@ -172,15 +149,34 @@ impl<'a> Simplifier<'a> {
         }
         let (_, mut ball) = self.merge(a, b);
         // On round bodies all planes agree on many balls, of which some reach far out of the solid.
-        if self
-            .tree
-            .any_within(ball.center, ball.radius * (1.0 - BULGE))
-        {
-            (_, ball) = self.cheapest(a, b, None);
+        if !self.is_clear(a, b, &ball) {
+            (_, ball) = self.cheapest(a, b);
+            self.clear[a as usize] = 0.0;
         }
         self.collapse(a, b, ball);
         self.progressed = true;
         self.push_around(a, |_| true);
+    }
+
+    /// Whether the ball that `a` and `b` are merged into sticks out of the solid by no more than
+    /// [`BULGE`]. What the tree says about its centre is kept as that of `a`.
+    fn is_clear(&mut self, a: u32, b: u32, ball: &Ball) -> bool {
+        let enough = ball.radius * (1.0 - BULGE);
+        let left = |v: u32| {
+            let way = ball.center - self.complex.balls[v as usize].center;
+            self.clear[v as usize] - way.length()
+        };
+        let mut clear = left(a).max(left(b));
+        if clear < enough {
+            let further = ball.radius * (1.0 - 0.25 * BULGE);
+            let (center, tree) = (ball.center, self.tree);
+            clear = match tree.closest_within(center, further) {
+                Some(point) => (point - center).length(),
+                None => further,
+            };
+        }
+        self.clear[a as usize] = clear;
+        clear > enough
     }
 
     /// Merges ball `b` into `a`, which becomes `ball`.
@@ -211,7 +207,9 @@ impl<'a> Simplifier<'a> {
             self.keep_topology = false;
         }
         self.progressed = false;
-        self.heap.extend(self.blocked.drain(..));
+        for candidate in self.blocked.drain(..) {
+            self.queue.push(candidate);
+        }
         true
     }
 
@@ -244,7 +242,7 @@ impl<'a> Simplifier<'a> {
 
     fn push(&mut self, a: u32, b: u32, cost: f64) {
         let versions = [a, b].map(|v| self.versions[v as usize]);
-        self.heap.push(Candidate {
+        self.queue.push(Candidate {
             cost,
             a,
             b,
@@ -260,14 +258,26 @@ impl<'a> Simplifier<'a> {
         let length = (ball_b.center - ball_a.center).length();
         let near = |m: &Ball| (m.center - middle.center).length() <= REACH * length;
         let minimiser = quadric.minimiser(&middle);
-        self.cheapest(a, b, minimiser.filter(|m| m.radius > 0.0 && near(m)))
+        let minimiser = minimiser.filter(|m| m.radius > 0.0 && near(m));
+        self.cheapest_by(&quadric, [ball_a, ball_b, middle], minimiser)
     }
 
-    /// The cheapest of two balls, their middle and a fourth to merge the two into, and its cost.
-    fn cheapest(&self, a: u32, b: u32, minimiser: Option<Ball>) -> (f64, Ball) {
+    /// The cheapest of two balls and their middle to merge the two into.
+    fn cheapest(&self, a: u32, b: u32) -> (f64, Ball) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
         let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let (error, ball) = [ball_a, ball_b, middle(&ball_a, &ball_b)]
+        self.cheapest_by(&quadric, [ball_a, ball_b, middle(&ball_a, &ball_b)], None)
+    }
+
+    /// The cheapest of two balls, their middle and a fourth, and its cost.
+    fn cheapest_by(
+        &self,
+        quadric: &Quadric,
+        balls: [Ball; 3],
+        minimiser: Option<Ball>,
+    ) -> (f64, Ball) {
+        let [ball_a, ball_b, _] = balls;
+        let (error, ball) = balls
             .into_iter()
             .chain(minimiser)
             .map(|ball| (quadric.error(&ball), ball))

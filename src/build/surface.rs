@@ -192,7 +192,7 @@ impl Surface {
     }
 
     /// Corners of all triangles, in order.
-    pub fn all_corners(&self) -> impl ExactSizeIterator<Item = [Point; 3]> + '_ {
+    pub fn all_corners(&self) -> impl ExactSizeIterator<Item = [Point; 3]> + Clone + '_ {
         (0..self.triangles.len()).map(|i| self.corners(i))
     }
 }

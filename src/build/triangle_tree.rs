@@ -137,6 +137,13 @@ impl TriangleTree {
         }
     }
 
+    /// As [`Self::distance_from`], but the point of the surface.
+    pub fn closest_from(&self, p: Point, hint: u32) -> (Point, u32) {
+        let (_, triangle) = self.distance_from(p, hint);
+        let corners = &self.corners[triangle as usize];
+        (closest_on_triangle(p, corners), triangle)
+    }
+
     /// Whether a triangle is within `distance`.
     pub fn is_within(&self, triangle: u32, p: Point, distance: f64) -> bool {
         distance >= 0.0 && self.distance_sq_to(triangle, p) <= distance * distance
@@ -273,9 +280,12 @@ impl TriangleTree {
     /// the share of directions that hit it where it is open.
     pub fn winding(&self, p: Point) -> f64 {
         let mut solid_angle = 0.0;
-        let mut stack = vec![0u32];
-        while let Some(index) = stack.pop() {
-            let node = &self.nodes[index as usize];
+        // Halving keeps the depth below 32, and each level leaves one node waiting.
+        let mut stack = [0u32; 64];
+        let mut len = 1;
+        while len > 0 {
+            len -= 1;
+            let node = &self.nodes[stack[len] as usize];
             let to = node.dipole.center - p;
             let distance_sq = to.length_sq();
             let far = FAR * node.dipole.radius;
@@ -292,7 +302,9 @@ impl TriangleTree {
                     }
                 }
             } else {
-                stack.extend([first as u32, first as u32 + 1]);
+                stack[len] = first as u32;
+                stack[len + 1] = first as u32 + 1;
+                len += 2;
             }
         }
         solid_angle / (4.0 * std::f64::consts::PI)

@@ -10,6 +10,7 @@ pub struct Errors {
     surface_to_envelope: f32,
     envelope_to_surface: f32,
     uncovered: f32,
+    sampling: f32,
 }
 
 /// What a medial mesh is made of. Lengths in the file's unit.
@@ -20,7 +21,6 @@ pub struct Description {
     slabs: usize,
     cones: usize,
     lone_spheres: usize,
-    volume: f32,
     box_min: [f32; 3],
     box_max: [f32; 3],
     thickness: f32,
@@ -35,7 +35,6 @@ pub fn describe(mesh: &MedialMesh) -> Description {
         slabs: count(|p| matches!(p, MedialPrimitive::Slab(_))),
         cones: count(|p| matches!(p, MedialPrimitive::Cone(_))),
         lone_spheres: count(|p| matches!(p, MedialPrimitive::Sphere(_))),
-        volume: mesh.volume(),
         box_min: aabb.mins.to_array(),
         box_max: aabb.maxs.to_array(),
         thickness: mesh.thickness(),
@@ -47,6 +46,7 @@ pub fn relative(hausdorff: &Hausdorff, longest_side: f32) -> Errors {
         surface_to_envelope: hausdorff.surface_to_envelope / longest_side,
         envelope_to_surface: hausdorff.envelope_to_surface / longest_side,
         uncovered: hausdorff.uncovered / longest_side,
+        sampling: hausdorff.sampling / longest_side,
     }
 }
 
@@ -55,13 +55,12 @@ impl Description {
         let [lo, hi] = [self.box_min, self.box_max].map(|[x, y, z]| format!("({x}, {y}, {z})"));
         format!(
             "spheres     {}\nprimitives  {}: slabs {}, cones {}, lone spheres {}\n\
-             volume      {}\nbox         {lo} to {hi}\nthickness   {}\n",
+             box         {lo} to {hi}\nthickness   {}\n",
             self.spheres,
             self.primitives,
             self.slabs,
             self.cones,
             self.lone_spheres,
-            self.volume,
             self.thickness,
         )
     }
@@ -72,8 +71,9 @@ impl Errors {
         format!(
             "{title} (longest side of the source's box = 1)\n\
              \x20 surface to envelope  {:.5}\n  envelope to surface  {:.5}\n\
-             \x20 uncovered            {:.5}\n",
-            self.surface_to_envelope, self.envelope_to_surface, self.uncovered,
+             \x20 uncovered            {:.5}\n\
+             \x20 between samples      {:.5} more at most\n",
+            self.surface_to_envelope, self.envelope_to_surface, self.uncovered, self.sampling,
         )
     }
 }
