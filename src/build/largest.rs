@@ -66,6 +66,8 @@ pub trait Side {
 pub struct Effort {
     /// Slack as a share of the largest distance.
     pub slack: f64,
+    /// Share of the budget that it may take.
+    pub share: f64,
     /// Once a larger distance is found the search ends.
     pub enough: f64,
 }
@@ -74,12 +76,14 @@ impl Effort {
     /// For what a build returns.
     pub const CLOSE: Self = Self {
         slack: 0.25,
+        share: 1.0,
         enough: f64::INFINITY,
     };
 
-    /// For what it reports besides: a quarter of the time.
+    /// For what it reports besides: four times the slack, and half of the budget.
     pub const ROUGH: Self = Self {
         slack: 1.0,
+        share: 0.5,
         enough: f64::INFINITY,
     };
 }
@@ -106,7 +110,7 @@ pub struct Search<'a, S: Side> {
 
 impl<'a, S: Side> Search<'a, S> {
     /// A search for distances above `floor`, with the distance `start` found before, over about
-    /// `budget` pieces.
+    /// the effort's share of `budget` pieces.
     pub fn new(side: &'a mut S, start: f64, floor: f64, effort: Effort, budget: f64) -> Self {
         Self {
             side,
@@ -115,7 +119,7 @@ impl<'a, S: Side> Search<'a, S> {
             effort,
             leaders: Vec::new(),
             given_up: 0.0,
-            budget,
+            budget: budget * effort.share,
             examined: 0,
             done: 0.0,
             widest: 0.0,
