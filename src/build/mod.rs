@@ -41,6 +41,7 @@ mod start;
 mod subdivide;
 mod surface;
 mod swaps;
+mod triangle;
 mod triangle_tree;
 mod voids;
 mod watch;
