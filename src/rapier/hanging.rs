@@ -82,6 +82,7 @@ fn hanging(pair: &ContactPair, sides: [&Side; 2], unit: Real) -> Option<Collider
     let lighter = usize::from(mass(1) <= mass(0));
     moving[lighter]?;
     let limit = MOVED * unit;
+    let skins: Real = sides.iter().map(|s| s.collider.contact_skin()).sum();
     let poses = sides.map(|s| *s.collider.position());
     let manifolds = pair.manifolds().iter();
     let mut contacts = manifolds.flat_map(|m| m.points.iter().map(move |p| (m, p)));
@@ -100,7 +101,7 @@ fn hanging(pair: &ContactPair, sides: [&Side; 2], unit: Real) -> Option<Collider
             arm(k).is_some_and(|arm| arm.length() * chord > limit)
         };
         let gap = points[1] - points[0] - m.data.normal * p.dist;
-        p.dist < TOUCHING * unit
+        p.dist - skins < TOUCHING * unit
             && (pulled(0) || pulled(1))
             && (swung(0) || swung(1) || gap.length() > limit)
     });
