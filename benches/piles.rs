@@ -8,7 +8,7 @@
 //!
 //! Every kind gets the same rings at the same places, rapier's defaults, and time to settle. Then
 //! the kinds take turns, nine times: the ratios of one turn are of the same minute of the machine.
-//! `--recycle` sets rapier's contact recycle distance after `attach`, which sets 0.001.
+//! `--recycle` sets rapier's contact recycle distance after `attach`, which sets 0.005.
 //! Hulls settle into another heap (they have no hole), so theirs is another scene of equal numbers.
 
 mod common;
