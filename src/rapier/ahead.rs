@@ -29,9 +29,9 @@ const AHEAD: Real = 1.0;
 /// in the other, or past it.
 const REACH: Real = 0.25;
 
-/// Least gap that may close in a step from rest, in units of rapier's prediction distance, and the
-/// acceleration, in length units per second squared, that may do it: that of a fall.
-const ROOM: (Real, Real) = (0.25, 10.0);
+/// Gap up to which contacts are looked for in any case, in units of rapier's prediction distance: bodies
+/// are pushed by others too.
+const ROOM: Real = 0.25;
 
 /// A collider at the start of a step.
 pub struct Start<'a> {
@@ -49,6 +49,15 @@ impl Start<'_> {
     fn center(&self) -> Vector {
         self.body.map_or(Vector::ZERO, |b| {
             self.offset.inverse() * b.mass_properties().local_mprops.local_com
+        })
+    }
+
+    /// What gravity and the user's forces do to it, unless something holds it.
+    fn acceleration(&self, gravity: Vector) -> Vector {
+        let body = self.body.filter(|b| b.is_dynamic());
+        body.map_or(Vector::ZERO, |b| {
+            let inverse_mass = b.mass_properties().local_mprops.inv_mass;
+            gravity * b.gravity_scale() + b.user_force() * inverse_mass
         })
     }
 
@@ -81,11 +90,12 @@ impl Ahead {
     /// Of the two colliders of `job`, which is at their poses at the start of a step; with the job that
     /// computes their contacts.
     ///
-    /// Of these only those count which its velocities, a fall, or what it may move before rapier asks again
-    /// can close: the others of the prediction distance cost the solver as much as those that bear, and two
+    /// Of these only those count which its velocities, gravity and forces, or what it may move before rapier
+    /// asks again can close: the others of the prediction distance cost the solver as much as those that bear, and two
     /// rings that lie on each other have five times as many of them.
     pub fn new(
         starts: [&Start; 2],
+        gravity: Vector,
         parameters: &IntegrationParameters,
         job: PairJob,
     ) -> (Self, PairJob) {
@@ -114,9 +124,11 @@ impl Ahead {
             centers: motions.map(|m| m.local_center),
             asked: job.prediction,
         };
-        let fall = ROOM.1 * parameters.length_unit * dt * dt;
+        let [a1, a2] = starts.map(|s| s.acceleration(gravity));
+        // Either may be held by something.
+        let pull = a1.length().max(a2.length()).max(a1.distance(a2));
         let kept = parameters.contact_recycle_distance();
-        let room = kept.max(ROOM.0 * prediction).max(fall);
+        let room = kept.max(ROOM * prediction).max(pull * dt * dt);
         let near = prediction.min(room + speed * dt);
         let job = PairJob {
             pos12: poses[0].inv_mul(&poses[1]),

@@ -5,7 +5,7 @@ use super::ahead::{Ahead, Start};
 use super::hanging::is_hooked;
 use super::recycled::Recycled;
 use crate::batch::PairJob;
-use crate::math::{Pose, Real, Rotation};
+use crate::math::{Pose, Real, Rotation, Vector};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle, RigidBodySet};
@@ -77,6 +77,7 @@ pub struct Candidates {
 /// body, groups compatible. The order of the two is the narrow phase's (lower collider index
 /// first). Of the colliders of `fresh` rapier will ask for all contacts.
 pub fn find(
+    gravity: Vector,
     parameters: &IntegrationParameters,
     bodies: &RigidBodySet,
     colliders: &ColliderSet,
@@ -88,7 +89,7 @@ pub fn find(
     for_each_near(parameters, bodies, colliders, |near| {
         found.pairs += 1;
         if recycled.needs_update(&near.job, near.rotations(), near.asked(fresh)) {
-            let (ahead, job) = near.at_the_end(parameters);
+            let (ahead, job) = near.at_the_end(gravity, parameters);
             found.jobs.push(job);
             found.ahead.push(ahead);
         }
@@ -98,6 +99,7 @@ pub fn find(
 
 /// What [`find`] will find at the next step, if nothing is changed until then.
 pub fn expect(
+    gravity: Vector,
     parameters: &IntegrationParameters,
     bodies: &RigidBodySet,
     colliders: &ColliderSet,
@@ -107,7 +109,7 @@ pub fn expect(
     let mut jobs = Vec::new();
     for_each_near(parameters, bodies, colliders, |near| {
         if near.asked(fresh) || !recycled.recycles(&near.job, near.rotations()) {
-            jobs.push(near.at_the_end(parameters).1);
+            jobs.push(near.at_the_end(gravity, parameters).1);
         }
     });
     jobs
@@ -133,9 +135,9 @@ impl Near<'_, '_> {
     }
 
     /// The job at the poses that the velocities lead to.
-    fn at_the_end(self, parameters: &IntegrationParameters) -> (Ahead, PairJob) {
+    fn at_the_end(self, gravity: Vector, parameters: &IntegrationParameters) -> (Ahead, PairJob) {
         let [x, y] = self.items;
-        Ahead::new([&x.start(), &y.start()], parameters, self.job)
+        Ahead::new([&x.start(), &y.start()], gravity, parameters, self.job)
     }
 }
 

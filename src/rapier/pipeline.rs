@@ -94,7 +94,8 @@ impl MedialPipeline {
         let parameters = &world.integration_parameters;
         let (bodies, colliders) = (&world.bodies, &world.colliders);
         let fresh = hanging::find(parameters, bodies, colliders, &world.narrow_phase);
-        let next = candidates::expect(parameters, bodies, colliders, &fresh, &self.recycled);
+        let (gravity, recycled) = (world.gravity, &self.recycled);
+        let next = candidates::expect(gravity, parameters, bodies, colliders, &fresh, recycled);
         self.batch.submit_async(&next).await;
         self.batch.ready().await;
     }
@@ -207,7 +208,14 @@ impl MedialPipeline {
             );
             report.add(&done);
             let Some(time) = stopped else {
-                self.send_early(parameters, bodies, colliders, narrow_phase, &mut report);
+                self.send_early(
+                    gravity,
+                    parameters,
+                    bodies,
+                    colliders,
+                    narrow_phase,
+                    &mut report,
+                );
                 return report;
             };
             report.stops += 1;
@@ -218,6 +226,7 @@ impl MedialPipeline {
     /// The poses are final: a device has the time until the next step for its contacts.
     fn send_early(
         &mut self,
+        gravity: Vector,
         parameters: &IntegrationParameters,
         bodies: &RigidBodySet,
         colliders: &ColliderSet,
@@ -229,7 +238,8 @@ impl MedialPipeline {
         }
         let before = self.batch.report().clone();
         let fresh = hanging::find(parameters, bodies, colliders, narrow_phase);
-        let next = candidates::expect(parameters, bodies, colliders, &fresh, &self.recycled);
+        let recycled = &self.recycled;
+        let next = candidates::expect(gravity, parameters, bodies, colliders, &fresh, recycled);
         self.batch.submit(&next);
         let after = self.batch.report();
         report.submissions += after.submissions - before.submissions;
@@ -264,7 +274,7 @@ impl MedialPipeline {
         let fresh = hanging::find(parameters, bodies, colliders, narrow_phase);
         hanging::ask_anew(&fresh, colliders);
         let recycled = &mut self.recycled;
-        let found = candidates::find(parameters, bodies, colliders, &fresh, recycled);
+        let found = candidates::find(gravity, parameters, bodies, colliders, &fresh, recycled);
         let mut results = self.batch.run(&found.jobs);
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();

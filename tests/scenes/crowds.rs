@@ -309,23 +309,36 @@ fn contacts_that_bodies_hang_in_are_computed_anew() {
 #[test]
 fn contacts_that_cannot_close_are_left_out() {
     let mesh = ring(27, MAJOR, MINOR);
-    let contacts = |gap: Real, speed: Real, dt: Real| {
+    let contacts = |gap: Real, change: &dyn Fn(&mut PhysicsWorld, RigidBodyHandle)| {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
-        world.integration_parameters.dt = dt;
         world.insert_collider(medial(&mesh), None);
-        let body = RigidBodyBuilder::dynamic()
-            .translation(Vector::Y * (2.0 * MINOR + gap))
-            .linvel(Vector::NEG_Y * speed);
-        world.insert(body, medial(&mesh));
-        attached(&mut world).step(&mut world).contacts
+        let at = Vector::Y * (2.0 * MINOR + gap);
+        let body = RigidBodyBuilder::dynamic().translation(at);
+        let body = world.insert(body, medial(&mesh)).0;
+        let mut pipeline = attached(&mut world);
+        change(&mut world, body);
+        pipeline.step(&mut world).contacts
     };
-    let dt = 1.0 / 60.0;
-    assert_eq!(contacts(0.007, 0.0, dt), 0);
-    assert!(contacts(0.003, 0.0, dt) > 0);
-    assert!(contacts(0.015, 1.0, dt) > 0);
-    // In a thirtieth of a second a body falls by a centimetre.
-    assert!(contacts(0.007, 0.0, 2.0 * dt) > 0);
+    assert_eq!(contacts(0.007, &|_, _| ()), 0);
+    assert!(contacts(0.003, &|_, _| ()) > 0);
+    let fast = |world: &mut PhysicsWorld, body: RigidBodyHandle| {
+        world.bodies[body].set_linvel(Vector::NEG_Y, true);
+    };
+    assert!(contacts(0.015, &fast) > 0);
+    // In a sixtieth of a second a body falls by 3 mm, in a thirtieth by 11.
+    let falls = |world: &mut PhysicsWorld, _| world.gravity = Vector::NEG_Y * 9.81;
+    assert_eq!(contacts(0.007, &falls), 0);
+    let falls_longer = |world: &mut PhysicsWorld, _| {
+        world.gravity = Vector::NEG_Y * 9.81;
+        world.integration_parameters.dt = 1.0 / 30.0;
+    };
+    assert!(contacts(0.007, &falls_longer) > 0);
+    let pushed = |world: &mut PhysicsWorld, body: RigidBodyHandle| {
+        let force = Vector::NEG_Y * 50.0 * mesh.mass_properties(1.0).mass();
+        world.bodies[body].add_force(force, true);
+    };
+    assert!(contacts(0.012, &pushed) > 0);
 }
 
 #[test]
