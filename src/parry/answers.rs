@@ -3,7 +3,7 @@
 //! The key is both instance ids and every bit of the relative pose: an answer is either exactly the
 //! one asked for, or not there and computed on the spot.
 
-use crate::batch::PairResult;
+use crate::batch::{Job, PairJob, PairResult};
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::BoundingVolume;
@@ -73,10 +73,15 @@ impl OnePoint {
     }
 }
 
+/// Contacts of a pair that the batch did not have, as the batch would have computed them: so it makes no
+/// difference to the world what was expected. `None`: it would not have.
+pub type Compute = Box<dyn Fn(PairJob) -> Option<PairResult> + Send + Sync>;
+
 /// Answers of one batch, shared by a pipeline and its dispatcher.
 #[derive(Default)]
 pub struct Answers {
     known: RwLock<HashMap<Key, (Real, PairResult)>>,
+    compute: RwLock<Option<Compute>>,
     hits: AtomicU64,
     misses: AtomicU64,
     casts: AtomicU64,
@@ -91,8 +96,13 @@ pub struct Answers {
 
 impl Answers {
     /// Forgets the old answers and takes those of a new batch, each with the prediction distance it
-    /// holds for.
-    pub fn replace(&self, answers: impl Iterator<Item = ((Key, Real), PairResult)>) {
+    /// holds for; `compute` is for the others.
+    pub fn replace(
+        &self,
+        answers: impl Iterator<Item = ((Key, Real), PairResult)>,
+        compute: Compute,
+    ) {
+        *self.compute.write().unwrap_or_else(PoisonError::into_inner) = Some(compute);
         let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
         known.clear();
         known.extend(answers.map(|((key, prediction), result)| (key, (prediction, result))));
@@ -117,18 +127,26 @@ impl Answers {
         drop(known);
         // rapier's boxes are wider than the batch's: most of what was not expected is apart.
         let reach = mesh1.aabb().loosened(prediction);
-        let (contacts, counts) = if reach.intersects(&mesh2.aabb().transform_by(pos12)) {
-            crate::pair::contacts(mesh1, mesh2, pos12, prediction)
+        let result = if reach.intersects(&mesh2.aabb().transform_by(pos12)) {
+            let job = PairJob {
+                mesh1: mesh1.clone(),
+                mesh2: mesh2.clone(),
+                pos12: *pos12,
+                prediction,
+            };
+            let compute = self.compute.read().unwrap_or_else(PoisonError::into_inner);
+            let ahead = compute.as_ref().and_then(|compute| compute(job.clone()));
+            ahead.unwrap_or_else(|| job.answer())
         } else {
-            Default::default()
+            PairResult::default()
         };
         self.misses.fetch_add(1, Ordering::Relaxed);
         self.missed
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .push([mesh1.instance_id(), mesh2.instance_id()]);
-        self.count(counts.nodes, counts.tests);
-        with(&PairResult { contacts, counts })
+        self.count(result.counts.nodes, result.counts.tests);
+        with(&result)
     }
 
     /// From now on these pairs have no contacts, and no others: someone else takes care of them.

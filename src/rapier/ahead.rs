@@ -13,11 +13,12 @@
 //! `θ = 1`, backward Euler for directions, nothing grows, and they sleep.
 
 use super::motion::velocities;
-use crate::batch::{PairJob, PairResult};
+use crate::batch::{Job, PairJob, PairResult};
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::parry::answers::Key;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{IntegrationParameters, RigidBody};
+use std::collections::HashMap;
 
 /// How far ahead contacts are computed, in steps. A ring that rolls in another from 0.12 m to the side
 /// reaches, 20 s later, 0.17 m with 0, 0.12 with 0.5, 0.10 with 0.75 and 0.08 with 1. Chains of 5 to 40
@@ -34,43 +35,65 @@ const REACH: Real = 0.25;
 const ROOM: Real = 0.25;
 
 /// A collider at the start of a step.
-pub struct Start<'a> {
-    /// Its body.
-    pub body: Option<&'a RigidBody>,
-    /// Its pose.
-    pub pose: Pose,
-    /// Its pose in the body's frame.
-    pub offset: Pose,
+pub struct Start {
+    /// The motion its velocities announce.
+    motion: NonlinearRigidMotion,
+    /// What gravity and the user's forces do to its body, unless something holds it.
+    acceleration: Vector,
     /// Bound on the distance of its points from its origin.
-    pub extent: Real,
+    extent: Real,
+    /// Its contact skin.
+    skin: Real,
 }
 
-impl Start<'_> {
-    fn center(&self) -> Vector {
-        self.body.map_or(Vector::ZERO, |b| {
-            self.offset.inverse() * b.mass_properties().local_mprops.local_com
-        })
-    }
-
-    /// What gravity and the user's forces do to it, unless something holds it.
-    fn acceleration(&self, gravity: Vector) -> Vector {
-        let body = self.body.filter(|b| b.is_dynamic());
-        body.map_or(Vector::ZERO, |b| {
+impl Start {
+    /// Of a collider at `pose`, and at `offset` in its body's frame.
+    pub fn new(
+        body: Option<&RigidBody>,
+        [pose, offset]: [Pose; 2],
+        [extent, skin]: [Real; 2],
+        gravity: Vector,
+        dt: Real,
+    ) -> Self {
+        let [linvel, angvel] = body.map_or([Vector::ZERO; 2], |b| velocities(b, dt));
+        let center = |b: &RigidBody| offset.inverse() * b.mass_properties().local_mprops.local_com;
+        let acceleration = |b: &RigidBody| {
             let inverse_mass = b.mass_properties().local_mprops.inv_mass;
             gravity * b.gravity_scale() + b.user_force() * inverse_mass
-        })
-    }
-
-    /// The motion its velocities announce.
-    fn motion(&self, dt: Real) -> NonlinearRigidMotion {
-        let still = [Vector::ZERO; 2];
-        let [linvel, angvel] = self.body.map_or(still, |b| velocities(b, dt));
-        NonlinearRigidMotion {
-            start: self.pose,
-            local_center: self.center(),
-            linvel,
-            angvel,
+        };
+        let moved = body.filter(|b| b.is_dynamic());
+        Self {
+            motion: NonlinearRigidMotion {
+                start: pose,
+                local_center: body.map_or(Vector::ZERO, center),
+                linvel,
+                angvel,
+            },
+            acceleration: moved.map_or(Vector::ZERO, acceleration),
+            extent,
+            skin,
         }
+    }
+}
+
+/// All medial colliders at the start of a step, by instance id.
+pub struct Starts {
+    /// Each of them.
+    pub all: HashMap<u64, Start>,
+    /// Of the step.
+    pub parameters: IntegrationParameters,
+}
+
+impl Starts {
+    /// The contacts of a pair that rapier asks for unexpectedly, as the batch would have computed them;
+    /// `None` if it is not at its start, or rapier looks further than usual.
+    pub fn contacts(&self, job: PairJob) -> Option<PairResult> {
+        let [a, b] = [&job.mesh1, &job.mesh2].map(|m| self.all.get(&m.instance_id()));
+        let starts = [a?, b?];
+        let at_start = starts[0].motion.start.inv_mul(&starts[1].motion.start) == job.pos12;
+        let skins = starts[0].skin + starts[1].skin;
+        let usual = job.prediction == self.parameters.prediction_distance() + skins;
+        (at_start && usual).then(|| Ahead::contacts(starts, &self.parameters, job))
     }
 }
 
@@ -90,19 +113,18 @@ impl Ahead {
     /// Of the two colliders of `job`, which is at their poses at the start of a step; with the job that
     /// computes their contacts.
     ///
-    /// Of these only those count which its velocities, gravity and forces, or what it may move before rapier
-    /// asks again can close: the others of the prediction distance cost the solver as much as those that bear, and two
-    /// rings that lie on each other have five times as many of them.
+    /// Of these only those count which their velocities, gravity and forces can close in the step, after what
+    /// the pair may have moved before rapier asked: the others of the prediction distance cost the solver as
+    /// much as those that bear. What a third body pushes further than [`ROOM`] meets in the next step.
     pub fn new(
         starts: [&Start; 2],
-        gravity: Vector,
         parameters: &IntegrationParameters,
         job: PairJob,
     ) -> (Self, PairJob) {
         let (dt, prediction) = (parameters.dt, parameters.prediction_distance());
         let thickness = job.mesh1.thickness().min(job.mesh2.thickness());
-        let motions = starts.map(|s| s.motion(dt));
-        let [a, b] = &motions;
+        let motions = starts.map(|s| &s.motion);
+        let [a, b] = motions;
         let swing = |k: usize| {
             let arm = motions[k].local_center.length() + starts[k].extent;
             motions[k].angvel.length() * arm
@@ -124,11 +146,11 @@ impl Ahead {
             centers: motions.map(|m| m.local_center),
             asked: job.prediction,
         };
-        let [a1, a2] = starts.map(|s| s.acceleration(gravity));
+        let [a1, a2] = starts.map(|s| s.acceleration);
         // Either may be held by something.
         let pull = a1.length().max(a2.length()).max(a1.distance(a2));
         let kept = parameters.contact_recycle_distance();
-        let room = kept.max(ROOM * prediction).max(pull * dt * dt);
+        let room = kept + ROOM * prediction + pull * dt * dt;
         let near = prediction.min(room + speed * dt);
         let job = PairJob {
             pos12: poses[0].inv_mul(&poses[1]),
@@ -136,6 +158,18 @@ impl Ahead {
             ..job
         };
         (ahead, job)
+    }
+
+    /// The contacts of `job`, as they are handed on from a batch.
+    pub fn contacts(
+        starts: [&Start; 2],
+        parameters: &IntegrationParameters,
+        job: PairJob,
+    ) -> PairResult {
+        let (ahead, job) = Self::new(starts, parameters, job);
+        let mut result = job.answer();
+        ahead.bring_back(&mut result);
+        result
     }
 
     /// The key under which rapier will ask for the contacts of `job`, and the prediction distance for which

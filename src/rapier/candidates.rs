@@ -1,7 +1,7 @@
 //! Which pairs of medial colliders may need manifolds in this step: sweep and prune over their boxes
 //! at the start of the step.
 
-use super::ahead::{Ahead, Start};
+use super::ahead::{Ahead, Start, Starts};
 use super::hanging::is_hooked;
 use super::recycled::Recycled;
 use crate::batch::PairJob;
@@ -44,15 +44,17 @@ struct Item<'a> {
 }
 
 impl Item<'_> {
-    fn start(&self) -> Start<'_> {
+    fn start(&self, gravity: Vector, dt: Real) -> Start {
         let aabb = self.mesh.aabb();
         let offset = self.collider.position_wrt_parent();
-        Start {
-            body: self.parent.map(|(_, body)| body),
-            pose: self.pose,
-            offset: offset.copied().unwrap_or(Pose::IDENTITY),
-            extent: aabb.mins.abs().max(aabb.maxs.abs()).length(),
-        }
+        let extent = aabb.mins.abs().max(aabb.maxs.abs()).length();
+        Start::new(
+            self.parent.map(|(_, body)| body),
+            [self.pose, offset.copied().unwrap_or(Pose::IDENTITY)],
+            [extent, self.collider.contact_skin()],
+            gravity,
+            dt,
+        )
     }
 
     /// Moves by the solver, and is awake.
@@ -63,7 +65,6 @@ impl Item<'_> {
 }
 
 /// Near pairs of medial colliders, and of them those that the narrow phase will ask for.
-#[derive(Default)]
 pub struct Candidates {
     /// How many near pairs there are.
     pub pairs: usize,
@@ -71,6 +72,8 @@ pub struct Candidates {
     pub jobs: Vec<PairJob>,
     /// Where the answers to these belong.
     pub ahead: Vec<Ahead>,
+    /// What those need that rapier asks for besides.
+    pub starts: Starts,
 }
 
 /// Finds all near pairs of medial colliders: at least one of them dynamic and awake, not on the same
@@ -84,17 +87,32 @@ pub fn find(
     fresh: &HashSet<ColliderHandle>,
     recycled: &mut Recycled,
 ) -> Candidates {
-    let mut found = Candidates::default();
+    let items = items(parameters, bodies, colliders);
+    let starts = starts(&items, gravity, parameters);
     recycled.begin(parameters);
-    for_each_near(parameters, bodies, colliders, |near| {
-        found.pairs += 1;
+    let (mut pairs, mut jobs, mut ahead) = (0, Vec::new(), Vec::new());
+    for_each_near(&items, parameters, |near| {
+        pairs += 1;
         if recycled.needs_update(&near.job, near.rotations(), near.asked(fresh)) {
-            let (ahead, job) = near.at_the_end(gravity, parameters);
-            found.jobs.push(job);
-            found.ahead.push(ahead);
+            let (from, job) = near.at_the_end(&starts);
+            jobs.push(job);
+            ahead.push(from);
         }
     });
-    found
+    Candidates {
+        pairs,
+        jobs,
+        ahead,
+        starts,
+    }
+}
+
+fn starts(items: &[Item], gravity: Vector, parameters: &IntegrationParameters) -> Starts {
+    let start = |item: &Item| (item.mesh.instance_id(), item.start(gravity, parameters.dt));
+    Starts {
+        all: items.iter().map(start).collect(),
+        parameters: *parameters,
+    }
 }
 
 /// What [`find`] will find at the next step, if nothing is changed until then.
@@ -106,10 +124,12 @@ pub fn expect(
     fresh: &HashSet<ColliderHandle>,
     recycled: &Recycled,
 ) -> Vec<PairJob> {
+    let items = items(parameters, bodies, colliders);
+    let starts = starts(&items, gravity, parameters);
     let mut jobs = Vec::new();
-    for_each_near(parameters, bodies, colliders, |near| {
+    for_each_near(&items, parameters, |near| {
         if near.asked(fresh) || !recycled.recycles(&near.job, near.rotations()) {
-            jobs.push(near.at_the_end(gravity, parameters).1);
+            jobs.push(near.at_the_end(&starts).1);
         }
     });
     jobs
@@ -135,19 +155,18 @@ impl Near<'_, '_> {
     }
 
     /// The job at the poses that the velocities lead to.
-    fn at_the_end(self, gravity: Vector, parameters: &IntegrationParameters) -> (Ahead, PairJob) {
-        let [x, y] = self.items;
-        Ahead::new([&x.start(), &y.start()], gravity, parameters, self.job)
+    fn at_the_end(self, starts: &Starts) -> (Ahead, PairJob) {
+        let of = |item: &Item| &starts.all[&item.mesh.instance_id()];
+        Ahead::new(self.items.map(of), &starts.parameters, self.job)
     }
 }
 
-/// Visits each near pair.
-fn for_each_near(
+/// The medial colliders, from left to right.
+fn items<'a>(
     parameters: &IntegrationParameters,
-    bodies: &RigidBodySet,
-    colliders: &ColliderSet,
-    mut visit: impl FnMut(Near<'_, '_>),
-) {
+    bodies: &'a RigidBodySet,
+    colliders: &'a ColliderSet,
+) -> Vec<Item<'a>> {
     let prediction = parameters.prediction_distance();
     let mut items: Vec<Item> = colliders
         .iter_enabled()
@@ -174,6 +193,16 @@ fn for_each_near(
         })
         .collect();
     items.sort_by(|a, b| a.aabb.mins.x.total_cmp(&b.aabb.mins.x));
+    items
+}
+
+/// Visits each near pair of them.
+fn for_each_near<'a, 'b>(
+    items: &'a [Item<'b>],
+    parameters: &IntegrationParameters,
+    mut visit: impl FnMut(Near<'a, 'b>),
+) {
+    let prediction = parameters.prediction_distance();
     for (i, a) in items.iter().enumerate() {
         for b in &items[i + 1..] {
             if b.aabb.mins.x > a.aabb.maxs.x {
@@ -218,6 +247,7 @@ fn job(x: &Item, y: &Item, prediction: Real) -> PairJob {
         mesh1: x.mesh.clone(),
         mesh2: y.mesh.clone(),
         pos12: x.pose.inv_mul(&y.pose),
-        prediction: prediction + x.collider.contact_skin() + y.collider.contact_skin(),
+        // Added up as rapier does.
+        prediction: prediction + (x.collider.contact_skin() + y.collider.contact_skin()),
     }
 }

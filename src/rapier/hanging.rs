@@ -3,7 +3,7 @@
 //!
 //! rapier keeps the contacts of a pair until it has moved by its recycle distance. They are contacts of the
 //! past, and what hangs in them swings on (see [`super::ahead`]). So where contacts that a body hangs in
-//! have moved, rapier is made to ask for all of that body's.
+//! have moved, rapier is made to ask for all of that collider's.
 
 use crate::math::Real;
 use crate::medial::MedialMesh;
@@ -108,12 +108,12 @@ fn hanging(pair: &ContactPair, sides: [&Side; 2], unit: Real) -> Option<Collider
     moved.then_some(sides[lighter].handle)
 }
 
-/// Makes rapier compute all contacts of these medial colliders anew in its next step, and of no others.
+/// Makes rapier compute all contacts of these colliders anew in its next step, and of no others.
 pub fn ask_anew(fresh: &HashSet<ColliderHandle>, colliders: &mut ColliderSet) {
-    let medial = colliders
+    let is_asked = |c: &Collider| c.active_hooks().contains(ASK_ANEW);
+    let wrong = colliders
         .iter()
-        .filter(|(_, c)| c.shape().as_shape::<MedialMesh>().is_some());
-    let wrong = medial.filter(|(h, c)| c.active_hooks().contains(ASK_ANEW) != fresh.contains(h));
+        .filter(|(h, c)| is_asked(c) != fresh.contains(h));
     let wrong: Vec<ColliderHandle> = wrong.map(|(handle, _)| handle).collect();
     for handle in wrong {
         if let Some(collider) = colliders.get_mut(handle) {

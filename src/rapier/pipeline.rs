@@ -287,7 +287,10 @@ impl MedialPipeline {
             report.elementary_tests += u64::from(result.counts.tests);
         }
         let keys = jobs.map(|(job, ahead)| ahead.key(job));
-        self.answers.replace(keys.zip(results));
+        let answers = keys.zip(results);
+        let starts = found.starts;
+        let compute = Box::new(move |job| starts.contacts(job));
+        self.answers.replace(answers, compute);
         self.answers.take_counts();
         report.batch_seconds = clock.elapsed().as_secs_f64();
 
