@@ -14,7 +14,7 @@ use std::collections::HashSet;
 
 /// By how far a contact that a body hangs in may have moved, or its force have swung round the centre of
 /// mass, since it was computed, in units of rapier's length unit. A chain of 20 links does not sleep at 0.001
-/// and does at 0.0005; kept awake and damped, its last link still moves by 1.0 mm then, by 0.5 at this.
+/// and does at 0.0005; kept awake and damped, its last link moves by a millimetre then, by 0.7 of it at this.
 const MOVED: Real = 0.0002;
 
 /// Gap up to which a body hangs in a contact, in units of rapier's length unit.
