@@ -16,6 +16,7 @@ mod fast_pairs;
 )]
 #[path = "../common/golden.rs"]
 mod golden;
+mod hanging;
 mod heaps;
 mod impacts;
 mod knots;

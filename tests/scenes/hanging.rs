@@ -1,0 +1,277 @@
+//! Chains and rings that hang, and which contacts are computed when: those that can close in a step, and
+//! anew those that a body hangs in (`src/rapier/ahead.rs`, `src/rapier/hanging.rs`).
+//!
+//! The full run: `cargo test --release --test scenes -- --ignored --nocapture full_chain`.
+
+use crate::bodies::*;
+use crate::crowds::{compound, medial};
+use crate::heaps::*;
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+use std::f32::consts::FRAC_PI_2;
+
+/// A chain hung from a fixed ring: steps until it sleeps, and how far its lowest ring moves in the
+/// `seconds` after `settle` steps, with sleep turned off.
+fn chain(
+    collider: &dyn Fn(&MedialMesh) -> ColliderBuilder,
+    damping: Real,
+    links: usize,
+    settle: usize,
+    seconds: usize,
+) -> (Option<usize>, Real, bool) {
+    let mesh = ring(27, MAJOR, MINOR);
+    let pitch = 2.0 * (MAJOR - MINOR);
+    let hang = || {
+        let mut world = PhysicsWorld::new();
+        let mut rings = Vec::new();
+        for i in 0..links {
+            let turn = if i % 2 == 0 { Vector::X } else { Vector::Z } * FRAC_PI_2;
+            let pose = Pose::new(Vector::new(0.0, -pitch * i as Real, 0.0), turn);
+            let body = if i == 0 {
+                RigidBodyBuilder::fixed()
+            } else {
+                RigidBodyBuilder::dynamic()
+            };
+            let body = body
+                .pose(pose)
+                .angular_damping(damping)
+                .linear_damping(damping);
+            rings.push(world.insert(body, collider(&mesh).density(1000.0)).0);
+        }
+        let pipeline = attached(&mut world);
+        (world, pipeline, rings)
+    };
+    let (mut world, mut pipeline, _) = hang();
+    let slept = steps_until_sleep(&mut world, &mut pipeline, settle);
+    let (mut world, mut pipeline, rings) = hang();
+    for (_, body) in world.bodies.iter_mut() {
+        *body.activation_mut() = RigidBodyActivation::cannot_sleep();
+    }
+    let lowest = *rings.last().expect("links");
+    for _ in 0..settle {
+        pipeline.step(&mut world);
+    }
+    let at = world.bodies[lowest].translation();
+    let mut moved: Real = 0.0;
+    for _ in 0..60 * seconds {
+        pipeline.step(&mut world);
+        moved = moved.max(world.bodies[lowest].translation().distance(at));
+    }
+    let lines: Vec<_> = rings
+        .iter()
+        .map(|h| line(&mesh, world.bodies[*h].position()))
+        .collect();
+    let linked = lines.windows(2).all(|w| linking(&w[0], &w[1]).abs() == 1);
+    (slept, moved, linked)
+}
+
+#[test]
+fn a_chain_of_four_sleeps() {
+    let (slept, _, linked) = chain(&medial, 0.0, 4, 600, 1);
+    assert!(slept.is_some() && linked, "{slept:?}");
+}
+
+/// Of rapier's compounds none does (`full_chain`).
+#[test]
+fn a_chain_of_twenty_sleeps() {
+    let (slept, moved, linked) = chain(&medial, 0.0, 20, 600, 5);
+    println!("slept {slept:?}, moves {moved} m when kept awake");
+    assert!(slept.is_some() && linked, "{slept:?}");
+}
+
+/// How far to the side a ring that rolls in a fixed one still swings in the last of `seconds`, in units
+/// of its first swing.
+fn swing(seconds: usize, hooked: bool) -> Real {
+    let mesh = ring(27, MAJOR, MINOR);
+    let mut world = PhysicsWorld::new();
+    let pivot = Vector::new(0.0, -MAJOR, 0.0);
+    let tilt = Pose::rotation(Vector::X * 0.4);
+    let aside = Pose::from_translation(pivot) * tilt * Pose::from_translation(-pivot);
+    let hang = |turn: Vector, down: Real| Pose::new(Vector::new(0.0, -down, 0.0), turn * FRAC_PI_2);
+    let fixed = RigidBodyBuilder::fixed().pose(hang(Vector::X, 0.0));
+    let dynamic = RigidBodyBuilder::dynamic().pose(aside * hang(Vector::Z, 2.0 * (MAJOR - MINOR)));
+    world.insert(fixed, medial(&mesh));
+    let ring = world.insert(dynamic.can_sleep(false), medial(&mesh)).0;
+    let mut pipeline = attached(&mut world);
+    let widest = |world: &mut PhysicsWorld, steps: usize, pipeline: &mut MedialPipeline| {
+        let mut widest: Real = 0.0;
+        for _ in 0..steps {
+            if hooked {
+                pipeline.step(world);
+            } else {
+                world.step();
+            }
+            widest = widest.max(world.bodies[ring].translation().z.abs());
+        }
+        widest
+    };
+    let first = widest(&mut world, 120, &mut pipeline);
+    widest(&mut world, 60 * (seconds - 4), &mut pipeline);
+    widest(&mut world, 120, &mut pipeline) / first
+}
+
+/// Nothing feeds a ring that rolls in another without slip, and nothing but the solver damps it.
+#[test]
+fn what_swings_does_not_swing_wider() {
+    let (hooked, alone) = (swing(20, true), swing(20, false));
+    println!("after 20 s {hooked} of the first swing, at rapier's own step {alone}");
+    assert!((0.6..1.0).contains(&hooked), "{hooked}");
+    assert!(alone > 1.2, "rapier alone: {alone}");
+}
+
+/// Hooks of the user that nobody is to call.
+struct Never;
+
+impl PhysicsHooks for Never {
+    fn filter_contact_pair(&self, _: &PairFilterContext) -> Option<SolverFlags> {
+        panic!("nobody asked for it")
+    }
+    fn modify_solver_contacts(&self, _: &mut ContactModificationContext) {
+        panic!("nobody asked for it")
+    }
+}
+
+/// Contacts that a body hangs in are computed in all but the slowest steps of its swing, those of a ball
+/// that rolls as slowly only now and then; and it is the batch that computes them.
+#[test]
+fn contacts_that_bodies_hang_in_are_computed_anew() {
+    let computed = |body: RigidBodyBuilder, mesh: &MedialMesh, on: &MedialMesh| {
+        let mut world = PhysicsWorld::new();
+        world.insert_collider(medial(on), None);
+        world.insert(body.can_sleep(false), medial(mesh));
+        let mut pipeline = attached(&mut world);
+        let steps = (0..120).map(|_| pipeline.step_with_events(&mut world, &Never, &()));
+        steps.fold([0, 0], |[jobs, hits], r| {
+            assert_eq!(r.cache_misses, 0);
+            [jobs + r.jobs, hits + r.cache_hits as usize]
+        })
+    };
+    let bar = MedialMesh::capsule(Vector::NEG_Z, Vector::Z, 0.1).expect("a bar");
+    let down = MAJOR - MINOR - 0.1;
+    let aside = Vector::new(0.05, -(down * down - 0.05 * 0.05).sqrt(), 0.0);
+    let hanging = RigidBodyBuilder::dynamic().pose(Pose::new(aside, Vector::X * FRAC_PI_2));
+    let [jobs, hits] = computed(hanging, &ring(27, MAJOR, MINOR), &bar);
+    println!("hangs: {jobs} jobs, {hits} of them asked for");
+    assert!(jobs > 100 && hits == jobs, "{jobs} {hits}");
+    let ball = MedialMesh::ball(0.3).expect("a ball");
+    let plate = MedialMesh::round_plate(1.0, 1.0, 0.1).expect("a plate");
+    let rolling = RigidBodyBuilder::dynamic()
+        .translation(Vector::Y * 0.4)
+        .linvel(Vector::X * 0.015)
+        .angvel(Vector::NEG_Z * 0.05);
+    let [jobs, hits] = computed(rolling, &ball, &plate);
+    println!("rolls: {jobs} jobs, {hits} of them asked for");
+    assert!((2..60).contains(&jobs) && hits == jobs, "{jobs} {hits}");
+}
+
+/// Of two rings that face each other those contacts are computed, and solved, that can close.
+#[test]
+fn contacts_that_cannot_close_are_left_out() {
+    let mesh = ring(27, MAJOR, MINOR);
+    let contacts = |gap: Real, change: &dyn Fn(&mut PhysicsWorld, RigidBodyHandle)| {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        world.insert_collider(medial(&mesh), None);
+        let at = Vector::Y * (2.0 * MINOR + gap);
+        let body = RigidBodyBuilder::dynamic().translation(at);
+        let body = world.insert(body, medial(&mesh)).0;
+        let mut pipeline = attached(&mut world);
+        change(&mut world, body);
+        pipeline.step(&mut world).contacts
+    };
+    assert_eq!(contacts(0.012, &|_, _| ()), 0);
+    assert!(contacts(0.008, &|_, _| ()) > 0);
+    let fast = |world: &mut PhysicsWorld, body: RigidBodyHandle| {
+        world.bodies[body].set_linvel(Vector::NEG_Y, true);
+    };
+    assert!(contacts(0.018, &fast) > 0);
+    // In a sixtieth of a second a body falls by 3 mm, in a thirtieth by 11.
+    let falls = |world: &mut PhysicsWorld, _| world.gravity = Vector::NEG_Y * 9.81;
+    assert_eq!(contacts(0.014, &falls), 0);
+    assert!(contacts(0.011, &falls) > 0);
+    let falls_longer = |world: &mut PhysicsWorld, _| {
+        world.gravity = Vector::NEG_Y * 9.81;
+        world.integration_parameters.dt = 1.0 / 30.0;
+    };
+    assert!(contacts(0.018, &falls_longer) > 0);
+    let pushed = |world: &mut PhysicsWorld, body: RigidBodyHandle| {
+        let force = Vector::NEG_Y * 50.0 * mesh.mass_properties(1.0).mass();
+        world.bodies[body].add_force(force, true);
+    };
+    assert!(contacts(0.018, &pushed) > 0);
+}
+
+/// A ball near a plate is struck from behind within the step: it comes down on the plate, not into it.
+#[test]
+fn what_a_third_body_pushes_meets_what_is_near() {
+    let ball = MedialMesh::ball(0.1).expect("a ball");
+    let plate = MedialMesh::round_plate(1.0, 1.0, 0.1).expect("a plate");
+    for (gap, speed) in [(0.006, 1.0), (0.006, 3.0), (0.009, 3.0)] {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        world.insert_collider(medial(&plate), None);
+        let mut put = |height: Real, speed: Real| {
+            let body = RigidBodyBuilder::dynamic()
+                .translation(Vector::Y * height)
+                .linvel(Vector::NEG_Y * speed);
+            world.insert(body, medial(&ball)).0
+        };
+        let near = put(0.2 + gap, 0.0);
+        put(0.2 + gap + 0.2 + 0.012, speed);
+        let mut pipeline = attached(&mut world);
+        let depth = (0..30).map(|_| {
+            pipeline.step(&mut world);
+            0.2 - world.bodies[near].translation().y
+        });
+        let deepest = depth.fold(Real::MIN, Real::max);
+        println!("gap {gap} m, {speed} m/s: {deepest} m deep");
+        assert!(deepest < 0.001, "{gap} {speed}: {deepest}");
+    }
+}
+
+/// Answers are found whatever the skins: they are added up as rapier does.
+#[test]
+fn contact_skins_do_not_miss_the_batch() {
+    let ball = MedialMesh::ball(0.1).expect("a ball");
+    let plate = MedialMesh::round_plate(1.0, 1.0, 0.1).expect("a plate");
+    for skin in [0.005, 0.007, 0.01] {
+        let mut world = PhysicsWorld::new();
+        world.insert_collider(medial(&plate).contact_skin(skin), None);
+        let rolling = RigidBodyBuilder::dynamic()
+            .translation(Vector::Y * (0.2 + 2.0 * skin))
+            .linvel(Vector::X * 0.5)
+            .angvel(Vector::NEG_Z * 5.0);
+        world.insert(rolling, medial(&ball).contact_skin(skin));
+        let mut pipeline = attached(&mut world);
+        let steps = (0..60).map(|_| pipeline.step(&mut world));
+        let [hits, misses] = steps.fold([0, 0], |[h, m], r| [h + r.cache_hits, m + r.cache_misses]);
+        assert!(
+            hits > 30 && misses == 0,
+            "{skin}: {hits} hits, {misses} misses"
+        );
+    }
+}
+
+#[test]
+#[ignore = "a minute"]
+fn full_chain() {
+    for (damping, links, settle) in [
+        (0.0, 4, 600),
+        (0.0, 6, 600),
+        (0.5, 6, 600),
+        (0.0, 20, 1200),
+        (0.5, 20, 1200),
+    ] {
+        for (name, collider) in [("medial", medial as fn(&_) -> _), ("compound", compound)] {
+            let (slept, moved, linked) = chain(&collider, damping, links, settle, 60);
+            println!(
+                "{links} links, damping {damping}, {name}: sleeps {slept:?}, moves {moved} m, \
+                 linked {linked}"
+            );
+        }
+    }
+    for links in [5, 8, 10, 12, 14, 16, 18, 22, 25, 28, 30, 35, 40] {
+        let (slept, ..) = chain(&medial, 0.0, links, 1200, 0);
+        println!("{links} links, damping 0, medial: sleeps {slept:?}");
+    }
+}
