@@ -4,6 +4,7 @@
 use super::answers::Answers;
 use super::bearing;
 use super::cast::Cast;
+use super::flat;
 use super::manifolds::{ensure_workspace, write_manifolds, write_one_point};
 use super::near;
 use crate::batch::PairResult;
@@ -19,9 +20,8 @@ use parry3d::query::{
 use parry3d::shape::Shape;
 use std::sync::Arc;
 
-/// Answers all queries of two medial meshes, and of one with any built-in shape all but contact
-/// manifolds. Chain it
-/// before the default: `MedialDispatcher::default().chain(DefaultQueryDispatcher)`.
+/// Answers all queries of two medial meshes, and of one with any built-in shape; contact manifolds of
+/// these only where it lies on a flat face. Chain it before the default: `MedialDispatcher::default().chain(DefaultQueryDispatcher)`.
 #[derive(Clone, Default)]
 pub struct MedialDispatcher {
     answers: Arc<Answers>,
@@ -319,6 +319,26 @@ where
         let center = if side == 0 { center } else { pos12 * center };
         let borne = bearing::borne(manifolds, side);
         let (Some(mesh1), Some(mesh2)) = meshes else {
+            let (other, pose) = if side == 0 {
+                (g2, *pos12)
+            } else {
+                (g1, pos12.inverse())
+            };
+            if let Some(face) = flat::face(mesh, other, &pose, prediction) {
+                let parrys = !flat::wrote(manifolds);
+                if parrys {
+                    // As above.
+                    *workspace = None;
+                }
+                ensure_workspace::<M, C>(g1, g2, workspace);
+                flat::write_manifolds(mesh, &face, &pose, side, prediction, manifolds);
+                if parrys {
+                    bearing::hand_on(manifolds, &borne, prediction, side);
+                }
+                bearing::choose(manifolds, center, prediction, &borne, side);
+                manifolds.retain(|m| !m.points.is_empty());
+                return Ok(());
+            }
             bearing::look_again(manifolds);
             let found = DefaultQueryDispatcher
                 .contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);

@@ -5,6 +5,7 @@ pub mod answers;
 pub mod bearing;
 pub mod cast;
 pub mod dispatcher;
+pub mod flat;
 pub mod follow;
 pub mod foreign;
 pub mod inside;

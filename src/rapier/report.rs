@@ -33,7 +33,8 @@ pub struct StepReport {
     /// Manifold requests computed on the spot: new pairs, bodies changed by the user.
     pub cache_misses: u64,
     /// Manifolds written for pairs of medial colliders, and for all that get one contact only
-    /// ([`crate::Effects::full_manifolds`]). Those with other shapes are parry's.
+    /// ([`crate::Effects::full_manifolds`]). Others with rapier's shapes are not
+    /// counted.
     pub manifolds: u64,
     /// Tests of intersection, of sensors above all.
     pub intersections: u64,

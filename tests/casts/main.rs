@@ -2,6 +2,7 @@
 //! them.
 
 mod bearing;
+mod flat;
 mod inside;
 mod linear;
 mod oracle;

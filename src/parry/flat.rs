@@ -1,0 +1,170 @@
+//! Contacts of a medial mesh with a flat face: a half-space, or a side of a cuboid that the mesh cannot
+//! reach past. Of a hull of spheres the point nearest to a plane is on one of the spheres, so the
+//! contacts are the spheres themselves, all under one normal; parry would run GJK for each primitive.
+
+use crate::math::lane::Vec3;
+use crate::math::{Pose, Real, Vector};
+use crate::medial::MedialMesh;
+use crate::medial::tree::Below;
+use crate::pair::Volumes;
+use parry3d::bounding_volume::Aabb;
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::{Cuboid, PackedFeatureId, Shape, TypedShape};
+
+/// A plane with all of a mesh that can touch it above it or in it, in the mesh's frame.
+#[derive(Clone, Copy)]
+pub struct Face {
+    /// Unit normal, out of the other shape.
+    normal: Vec3<f64>,
+    /// Height of the plane along the normal.
+    height: f64,
+}
+
+/// The face of `other`, at `pose` in the mesh's frame, that holds all contacts of `mesh` within
+/// `prediction`; none where an edge may be nearer, or the way out may be through another side.
+pub fn face(mesh: &MedialMesh, other: &dyn Shape, pose: &Pose, prediction: Real) -> Option<Face> {
+    let (normal, height) = match other.as_typed_shape() {
+        TypedShape::HalfSpace(plane) => (plane.normal, 0.0),
+        TypedShape::Cuboid(cuboid) => {
+            let region = mesh.aabb().transform_by(&pose.inverse());
+            side(cuboid, &region, prediction)?
+        }
+        _ => return None,
+    };
+    let [normal, origin] = [pose.rotation * normal, pose.translation].map(Vec3::from_vector);
+    Some(Face {
+        normal,
+        height: f64::from(height) + normal.dot(origin),
+    })
+}
+
+/// The side of a cuboid above which `region` is, in the cuboid's frame, with its height: further from
+/// all other sides than from the plane of this one.
+fn side(cuboid: &Cuboid, region: &Aabb, prediction: Real) -> Option<(Vector, Real)> {
+    let (h, at, size) = (cuboid.half_extents, region.center(), region.half_extents());
+    let out = at.abs() - h;
+    let axis = (0..3).max_by(|&i, &j| out[i].total_cmp(&out[j]))?;
+    let depth = size[axis] - out[axis];
+    let room = |k: usize| h[k] - at[k].abs() - size[k];
+    let inside = (0..3)
+        .filter(|k| *k != axis)
+        .map(room)
+        .fold(h[axis], Real::min);
+    // Not a number is not inside.
+    (inside >= depth.max(prediction)).then(|| {
+        let mut normal = Vector::ZERO;
+        normal[axis] = Real::copysign(1.0, at[axis]);
+        (normal, h[axis])
+    })
+}
+
+/// Writes the contacts of `mesh` with a face within `prediction`: a manifold for each primitive that
+/// holds some, each sphere once. The mesh is body `side` (0 or 1) at `pose12`; `pose` is the other's in
+/// the mesh's frame. Manifolds that were there keep their data, and contacts of a sphere their impulses.
+pub fn write_manifolds<M, C>(
+    mesh: &MedialMesh,
+    face: &Face,
+    pose: &Pose,
+    side: usize,
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+) where
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    let old = std::mem::take(manifolds);
+    let up = face.normal.to_vector();
+    let into_other = pose.inverse();
+    // From body to body: out of the first, into the second.
+    let (of_mesh, of_other) = (-up, into_other.rotation * up);
+    for [primitive, sphere] in near(mesh, face, prediction) {
+        let ids = if side == 0 {
+            [primitive, 0]
+        } else {
+            [0, primitive]
+        };
+        let same = |m: &&ContactManifold<M, C>| [m.subshape1, m.subshape2] == ids;
+        if manifolds.last().filter(same).is_none() {
+            let before = old.iter().find(same).map(|m| m.data.clone());
+            let mut m = ContactManifold::with_data(ids[0], ids[1], before.unwrap_or_default());
+            [m.local_n1, m.local_n2] = in_order([of_mesh, of_other], side);
+            manifolds.push(m);
+        }
+        let ball = mesh.spheres()[sphere as usize];
+        let lowest = ball.center - up * ball.radius;
+        let gap = face.gap(ball.center, ball.radius) as Real;
+        let points = in_order([lowest, into_other * (lowest - up * gap)], side);
+        let features = [PackedFeatureId::vertex(sphere), FLAT];
+        let [fid1, fid2] = in_order(features, side);
+        let mut point = TrackedContact::new(points[0], points[1], fid1, fid2, gap);
+        let before = old.iter().flat_map(|m| &m.points);
+        if let Some(before) = before
+            .into_iter()
+            .find(|p| [p.fid1, p.fid2] == [fid1, fid2])
+        {
+            point.data = before.data;
+        }
+        if let Some(last) = manifolds.last_mut() {
+            last.points.push(point);
+        }
+    }
+}
+
+/// What the other side of a contact with a face is called; parry's contacts of parts have other names.
+const FLAT: PackedFeatureId = PackedFeatureId::UNKNOWN;
+
+/// Whether a list, not empty, is of this file.
+pub fn wrote<M, C>(manifolds: &[ContactManifold<M, C>]) -> bool {
+    let flat = |m: &ContactManifold<M, C>| {
+        m.points
+            .first()
+            .is_some_and(|p| p.fid1 == FLAT || p.fid2 == FLAT)
+    };
+    manifolds.iter().all(flat)
+}
+
+impl Face {
+    /// Gap between the plane and a ball in the mesh's frame.
+    fn gap(&self, center: Vector, radius: Real) -> f64 {
+        self.normal.dot(Vec3::from_vector(center)) - self.height - f64::from(radius)
+    }
+}
+
+/// Primitive and sphere of every contact, sorted, each sphere with the first of its primitives.
+fn near(mesh: &MedialMesh, face: &Face, prediction: Real) -> Vec<[u32; 2]> {
+    let within = |center: Vector, radius: Real| face.gap(center, radius) <= f64::from(prediction);
+    let mut found = Vec::new();
+    let mut open: Vec<u32> = (0..mesh.roots()).collect();
+    while let Some(node) = open.pop() {
+        let (center, radius) = mesh.bound(node);
+        if !within(center, radius) {
+            continue;
+        }
+        match mesh.below(node) {
+            Below::Nodes(i, j) => open.extend([i, j]),
+            Below::Primitive(i) => {
+                let simplex = &mesh.simplices()[i as usize];
+                let ends = &simplex.vertices[..simplex.len as usize];
+                let near = ends.iter().filter(|&&v| {
+                    let s = mesh.spheres()[v as usize];
+                    within(s.center, s.radius)
+                });
+                found.extend(near.map(|&v| [v, i]));
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup_by_key(|[sphere, _]| *sphere);
+    found.iter_mut().for_each(|pair| pair.reverse());
+    found.sort_unstable();
+    found
+}
+
+/// The mesh's and the other's in the order of the bodies.
+fn in_order<T: Copy>([mesh, other]: [T; 2], side: usize) -> [T; 2] {
+    if side == 0 {
+        [mesh, other]
+    } else {
+        [other, mesh]
+    }
+}
