@@ -24,72 +24,72 @@ fn meet(a: Swept, b: Swept, reach: f32) -> bool {
   return !(length(y + rate * t) > a.radius + b.radius + reach);
 }
 
-struct Simplex { spheres: array<Swept, 3>, count: u32 }
+struct Simplex { s0: Swept, s1: Swept, s2: Swept }
 
+// Unused spheres repeat the last.
 fn simplex(side: Side, primitive: u32) -> Simplex {
-  var s: Simplex;
-  s.count = primitives[primitive].count;
-  for (var k = 0u; k < 3u; k++) { s.spheres[k] = sweep(side, primitives[primitive].spheres[k]); }
-  return s;
+  let s = primitives[primitive].spheres;
+  return Simplex(sweep(side, s[0]), sweep(side, s[1]), sweep(side, s[2]));
 }
 
 fn at(s: Swept, t: f32) -> vec3<f32> { return s.start + s.chord * t; }
 
+// A point of a sphere, and how far it is along a direction.
+struct Support { point: vec3<f32>, along: f32 }
+
+// The farthest point of a sphere along a unit direction.
+fn sphere_support(s: Swept, n: vec3<f32>, t: f32) -> Support {
+  let c = at(s, t);
+  return Support(c + n * s.radius, dot(n, c) + s.radius);
+}
+
+fn support(s: Simplex, n: vec3<f32>, t: f32) -> Support {
+  let s0 = sphere_support(s.s0, n, t);
+  let s1 = sphere_support(s.s1, n, t);
+  let s2 = sphere_support(s.s2, n, t);
+  var far = s0;
+  if (s1.along > far.along) { far = s1; }
+  if (s2.along > far.along) { far = s2; }
+  return far;
+}
+
 // Gap of two primitives along a unit direction: a lower bound of their distance.
-fn gap(a: ptr<function, Simplex>, b: ptr<function, Simplex>, n: vec3<f32>, t: f32) -> f32 {
-  var far = -HUGE;
-  var near = HUGE;
-  for (var k = 0u; k < (*a).count; k++) { far = max(far, dot(n, at((*a).spheres[k], t)) + (*a).spheres[k].radius); }
-  for (var k = 0u; k < (*b).count; k++) { near = min(near, dot(n, at((*b).spheres[k], t)) - (*b).spheres[k].radius); }
-  return near - far;
+fn gap(a: Simplex, b: Simplex, n: vec3<f32>, t: f32) -> f32 {
+  return -support(b, -n, t).along - support(a, n, t).along;
 }
 
 // A direction along which two primitives are apart at time t, as far as Gilbert's iteration finds
 // one: the point of their difference nearest to the origin, from chords of it. Only the quality of
 // a proof depends on it.
-fn direction(a: ptr<function, Simplex>, b: ptr<function, Simplex>, t: f32) -> vec3<f32> {
-  var y = at((*b).spheres[0], t) - at((*a).spheres[0], t);
+fn direction(a: Simplex, b: Simplex, t: f32) -> vec3<f32> {
+  var y = at(b.s0, t) - at(a.s0, t);
   var best = vec3<f32>();
   var widest = -HUGE;
   for (var round = 0u; round < GILBERT_ROUNDS; round++) {
     let n = y / max(length(y), TINY);
-    var far = -HUGE;
-    var near = HUGE;
-    var s = vec3<f32>();
-    var r = vec3<f32>();
-    for (var k = 0u; k < (*a).count; k++) {
-      let c = at((*a).spheres[k], t);
-      let along = dot(n, c) + (*a).spheres[k].radius;
-      if (along > far) { far = along; s = c + n * (*a).spheres[k].radius; }
-    }
-    for (var k = 0u; k < (*b).count; k++) {
-      let c = at((*b).spheres[k], t);
-      let along = dot(n, c) - (*b).spheres[k].radius;
-      if (along < near) { near = along; r = c - n * (*b).spheres[k].radius; }
-    }
-    if (near - far > widest) { widest = near - far; best = n; }
-    let e = r - s - y;
+    let s = support(a, n, t);
+    let r = support(b, -n, t);
+    let width = -r.along - s.along;
+    if (width > widest) { widest = width; best = n; }
+    let e = r.point - s.point - y;
     y = y + e * clamp(-dot(y, e) / max(dot(e, e), TINY), 0.0, 1.0);
   }
   return best;
 }
 
-// Time before which two primitives are proven to stay out of the pair's reach; 1: all the step. A
-// fixed direction's gap is concave in time along chords, so it lies above its own chord.
-fn free_until(pair: u32, i: u32, j: u32) -> f32 {
-  var a = simplex(pairs[pair].sides[0], i);
-  var b = simplex(pairs[pair].sides[1], j);
-  let reach = pairs[pair].reach;
+// Whether two primitives are proven to stay out of the pair's reach. A fixed direction's gap is concave
+// in time along chords, so it lies above its own chord.
+fn stays_free(a: Simplex, b: Simplex, reach: f32) -> bool {
   var lower = 0.0;
   for (var round = 0u; round < PROOF_ROUNDS; round++) {
-    let n = direction(&a, &b, lower);
-    let now = gap(&a, &b, n, lower) - reach;
-    if (!(now > 0.0)) { return lower; }
-    let then = gap(&a, &b, n, 1.0) - reach;
-    if (then > 0.0) { return 1.0; }
+    let n = direction(a, b, lower);
+    let now = gap(a, b, n, lower) - reach;
+    if (!(now > 0.0)) { return false; }
+    let then = gap(a, b, n, 1.0) - reach;
+    if (then > 0.0) { return true; }
     let proven = (lower + (1.0 - lower) * (now / (now - then))) * (1.0 - 2.0 * STEP_ULPS * EPSILON);
-    if (!(proven > lower)) { return lower; }
+    if (!(proven > lower)) { return false; }
     lower = proven;
   }
-  return lower;
+  return false;
 }

@@ -8,7 +8,7 @@ use super::cpu;
 #[cfg(feature = "gpu")]
 use super::early::{Early, Key};
 #[cfg(feature = "gpu")]
-use super::gpu::{Bound, Gpu, GpuCounts, GpuOptions, Proposal, layout};
+use super::gpu::{Gpu, GpuCounts, GpuOptions, Proposal};
 use super::job::Job;
 #[cfg(feature = "gpu")]
 use super::job::Sweep;
@@ -56,14 +56,14 @@ pub struct BatchReport {
     pub settled_by_cpu: u64,
     /// Jobs asked of the GPU that it cannot take, as their poses or sizes are not finite or too large.
     pub unfit: u64,
-    /// Submissions to the GPU: one a batch, more where a list had to grow.
+    /// Submissions to the GPU: one a batch.
     pub submissions: u64,
     /// Times that the CPU waited for answers of the GPU: one a submission.
     pub maps: u64,
     /// Jobs asked that had gone to the GPU before ([`Batch::submit`]).
     pub sent_early: u64,
-    /// Primitive pairs that the GPU could not prove free.
-    pub survivors: u64,
+    /// Jobs, or pieces of their step, of which too much meets to be looked at on the GPU.
+    pub given_up: u64,
     /// Batches that a GPU was to have and could not take.
     pub fallbacks: u64,
     /// Why the last of them, or the device as a whole, was not used.
@@ -82,7 +82,7 @@ pub struct Batch {
     #[cfg(feature = "gpu")]
     early: Early,
     #[cfg(feature = "gpu")]
-    bounds: Vec<Bound>,
+    lowers: Vec<f32>,
     #[cfg(feature = "gpu")]
     calibrated: Option<Least>,
     report: BatchReport,
@@ -239,6 +239,7 @@ impl Batch {
         let now = self.gpu_counts();
         self.report.submissions += now.submissions - before.submissions;
         self.report.maps += now.maps - before.maps;
+        self.report.given_up += now.given_up - before.given_up;
     }
 
     /// The batch goes to the CPU; a device that may still serve is kept.
@@ -342,14 +343,9 @@ impl Batch {
         let mut open = Vec::new();
         for job in jobs {
             let said = job.sweep().map(|sweep| proposal(&sweep));
-            match said {
-                Some(Some(Proposal {
-                    survivors: Some(n), ..
-                })) => self.report.survivors += u64::from(n),
-                None | Some(Some(_)) => self.report.unfit += 1,
-                Some(None) => {}
-            }
-            let free = said.flatten().is_some_and(|p| p.is_free());
+            let unfit = matches!(said, None | Some(Some(Proposal::Unfit)));
+            self.report.unfit += u64::from(unfit);
+            let free = said == Some(Some(Proposal::Free));
             answers.push(free.then(|| job.free()));
             if !free {
                 open.push(job);
@@ -374,11 +370,11 @@ impl Batch {
         if !whole || !self.asks_gpu(paths.len(), |least| least.tests) {
             return self.brackets_on_cpu(paths, domain, limits);
         }
-        let mut bounds = std::mem::take(&mut self.bounds);
+        let mut lowers = std::mem::take(&mut self.lowers);
         let before = self.gpu_counts();
         let outcome = match &mut self.gpu {
             Some(gpu) => {
-                gpu.bounds(paths, domain, limits.tolerance, &mut bounds)
+                gpu.bounds(paths, domain, limits.tolerance, &mut lowers)
                     .await
             }
             None => Ok(()),
@@ -388,22 +384,22 @@ impl Batch {
             self.fall_back(error);
             return self.brackets_on_cpu(paths, domain, limits);
         }
-        let is_free = |b: &Bound| b.status == layout::SEPARATED;
+        let is_free = |lower: &f32| *lower >= 1.0;
         let open: Vec<LinearPath<f32>> = paths
             .iter()
-            .zip(&bounds)
-            .filter_map(|(path, bound)| (!is_free(bound)).then_some(*path))
+            .zip(&lowers)
+            .filter_map(|(path, lower)| (!is_free(lower)).then_some(*path))
             .collect();
         self.report.settled_by_gpu += (paths.len() - open.len()) as u64;
         let mut rest = self.brackets_on_cpu(&open, domain, limits).into_iter();
-        let answers = bounds
+        let answers = lowers
             .iter()
-            .filter_map(|bound| match is_free(bound) {
+            .filter_map(|lower| match is_free(lower) {
                 true => Some(Bracket::free(limits)),
                 false => rest.next(),
             })
             .collect();
-        self.bounds = bounds;
+        self.lowers = lowers;
         answers
     }
 }

@@ -19,28 +19,31 @@ pub struct Complex {
     faces_of: Vec<Vec<u32>>,
     faces: Vec<[u32; 3]>,
     primitives: usize,
+    /// The last [`Self::cones`] that met each ball, and how many there were.
+    seen: Vec<u32>,
+    round: u32,
 }
 
 impl Complex {
     /// Takes a draft.
     pub fn new(draft: Draft) -> Self {
         let n = draft.balls.len();
-        let mut neighbors = vec![Vec::new(); n];
-        let mut faces_of = vec![Vec::new(); n];
         let of_faces = draft
             .faces
             .iter()
             .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-        for [a, b] in draft.edges.iter().copied().chain(of_faces) {
-            if a != b {
-                neighbors[a as usize].push(b);
-                neighbors[b as usize].push(a);
-            }
+        let edges = draft.edges.iter().copied().chain(of_faces);
+        let edges = edges.filter(|[a, b]| a != b);
+        let mut neighbors = with_room(n, edges.clone().flatten());
+        for [a, b] in edges {
+            neighbors[a as usize].push(b);
+            neighbors[b as usize].push(a);
         }
         for list in &mut neighbors {
             list.sort_unstable();
             list.dedup();
         }
+        let mut faces_of = with_room(n, draft.faces.iter().copied().flatten());
         for (i, face) in draft.faces.iter().enumerate() {
             for &v in face {
                 faces_of[v as usize].push(i as u32);
@@ -53,6 +56,8 @@ impl Complex {
             faces_of,
             primitives: draft.faces.len(),
             faces: draft.faces,
+            seen: vec![0; n],
+            round: 0,
         };
         let ends: usize = (0..n as u32).map(|v| complex.cones(v)).sum();
         let lone = (0..n as u32).filter(|&v| complex.is_lone(v)).count();
@@ -64,7 +69,8 @@ impl Complex {
     pub fn bytes(&self) -> usize {
         let lists = |of: &Vec<Vec<u32>>| bytes_of(of) + of.iter().map(bytes_of).sum::<usize>();
         let around = lists(&self.neighbors) + lists(&self.faces_of);
-        bytes_of(&self.balls) + self.alive.len() + bytes_of(&self.faces) + around
+        let of_each = bytes_of(&self.balls) + self.alive.len() + bytes_of(&self.seen);
+        of_each + bytes_of(&self.faces) + around
     }
 
     /// Number of slabs, cones that belong to no slab, and lone balls.
@@ -123,37 +129,34 @@ impl Complex {
     }
 
     /// Cones (edges without a face) at a ball.
-    fn cones(&self, v: u32) -> usize {
-        let cone = |&&u: &&u32| self.opposite(v, u).next().is_none();
+    fn cones(&mut self, v: u32) -> usize {
+        self.round += 1;
+        for &f in &self.faces_of[v as usize] {
+            for u in self.faces[f as usize] {
+                self.seen[u as usize] = self.round;
+            }
+        }
+        let cone = |&&u: &&u32| self.seen[u as usize] != self.round;
         self.neighbors[v as usize].iter().filter(cone).count()
     }
 
-    /// Whether merging the ends of an edge keeps the topology of the complex (link condition): no
-    /// loop of three edges and no shell of four faces is closed by it.
-    pub fn keeps_topology(&self, a: u32, b: u32) -> bool {
-        self.open_loops(a, b).next().is_none() && self.shells(a, b).next().is_none()
-    }
-
-    /// Middles of the loops of three edges through an edge that no face fills: merging the edge's
-    /// ends closes them.
-    pub fn open_loops(&self, a: u32, b: u32) -> impl Iterator<Item = Point> + '_ {
+    /// Middles of what merging the ends of an edge closes (link condition): loops of three edges that
+    /// no face fills, and shells of four faces. Where there is none, the complex keeps its topology.
+    pub fn closed_by(&self, a: u32, b: u32) -> impl Iterator<Item = Point> + '_ {
         let filled: Vec<u32> = self.opposite(a, b).collect();
-        self.neighbors[a as usize]
-            .iter()
-            .copied()
-            .filter(move |&v| v != b && self.is_edge(v, b) && !filled.contains(&v))
-            .map(move |v| self.middle(&[a, b, v]))
-    }
-
-    /// Middles of the shells of four faces through an edge: merging the edge's ends flattens them.
-    pub fn shells(&self, a: u32, b: u32) -> impl Iterator<Item = Point> + '_ {
-        let filled: Vec<u32> = self.opposite(a, b).collect();
-        let pairs = (0..filled.len()).flat_map(move |j| (0..j).map(move |i| (i, j)));
-        pairs.filter_map(move |(i, j)| {
-            let (x, y) = (*filled.get(i)?, *filled.get(j)?);
-            let has = |v: u32| self.opposite(x, y).any(|w| w == v);
-            (has(a) && has(b)).then(|| self.middle(&[a, b, x, y]))
-        })
+        let mut shells = Vec::new();
+        for (j, &y) in filled.iter().enumerate() {
+            for &x in &filled[..j] {
+                let has = |v: u32| self.opposite(x, y).any(|w| w == v);
+                if self.is_edge(x, y) && has(a) && has(b) {
+                    shells.push([a, b, x, y]);
+                }
+            }
+        }
+        let common = common(&self.neighbors[a as usize], &self.neighbors[b as usize]);
+        let open = common.filter(move |v| !filled.contains(v));
+        let shells = shells.into_iter().map(|shell| self.middle(&shell));
+        open.map(move |v| self.middle(&[a, b, v])).chain(shells)
     }
 
     fn middle(&self, vertices: &[u32]) -> Point {
@@ -238,6 +241,22 @@ impl Complex {
         }
         draft
     }
+}
+
+/// Empty lists, each with room for as often as its index is met.
+fn with_room(lists: usize, met: impl Iterator<Item = u32>) -> Vec<Vec<u32>> {
+    let mut counts = vec![0; lists];
+    met.for_each(|v| counts[v as usize] += 1);
+    counts.into_iter().map(Vec::with_capacity).collect()
+}
+
+/// What is in both of two ascending lists.
+fn common<'a>(a: &'a [u32], b: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
+    let mut rest = b.iter().copied().peekable();
+    a.iter().copied().filter(move |&v| {
+        while rest.next_if(|&u| u < v).is_some() {}
+        rest.peek() == Some(&v)
+    })
 }
 
 fn insert(sorted: &mut Vec<u32>, value: u32) {

@@ -4,7 +4,67 @@
 //! by it adds that to the limit, so that results are those of double precision, bit by bit.
 
 use super::bounds::{Bounds, Point, coordinate};
+use std::ops::ControlFlow;
 use wide::f32x4;
+
+/// What one of a node's boxes is of.
+#[derive(Clone, Copy)]
+pub enum Child {
+    /// There is none.
+    Nothing,
+    /// A single thing, by index.
+    Leaf(u32),
+    /// A node, by index.
+    Group(u32),
+}
+
+/// Calls `see` for leaves whose distance may be below `limit`, nearer groups first, from node 0 on;
+/// `see` may return a new limit, or end the search. `look` gives the lower bounds of a node's children,
+/// which may be off by `slack`.
+#[inline]
+pub fn nearest_first(
+    limit: f64,
+    slack: f64,
+    look: impl Fn(u32) -> ([f32; 4], [Child; 4]),
+    mut see: impl FnMut(u32) -> ControlFlow<(), Option<f64>>,
+) {
+    let mut limit = (limit + slack) as f32;
+    // Quartering keeps the depth below 17, and each level leaves three waiting.
+    let mut stack = [(f32::NEG_INFINITY, Child::Group(0)); 64];
+    let mut len = 1;
+    while len > 0 {
+        len -= 1;
+        let (bound, child) = stack[len];
+        if bound >= limit {
+            continue;
+        }
+        match child {
+            Child::Nothing => {}
+            Child::Leaf(leaf) => match see(leaf) {
+                ControlFlow::Continue(Some(new)) => limit = (new + slack) as f32,
+                ControlFlow::Continue(None) => {}
+                ControlFlow::Break(()) => return,
+            },
+            Child::Group(index) => {
+                let (bounds, children) = look(index);
+                let first = len;
+                for (bound, child) in bounds.into_iter().zip(children) {
+                    if bound >= limit {
+                        continue;
+                    }
+                    // The nearest on top.
+                    let mut at = len;
+                    while at > first && stack[at - 1].0 < bound {
+                        stack[at] = stack[at - 1];
+                        at -= 1;
+                    }
+                    stack[at] = (bound, child);
+                    len += 1;
+                }
+            }
+        }
+    }
+}
 
 /// Corners of four boxes, coordinate by coordinate.
 #[derive(Clone, Copy)]

@@ -180,7 +180,8 @@ impl FromSource<'_> {
         if self.is_enclosed(p, normal) {
             Look::Distance(0.0)
         } else {
-            Look::Distance(self.solid.nearest_exit(p, way))
+            // Shorter ways neither raise the result nor leave anything open.
+            Look::Distance(self.solid.nearest_exit(p, way, best.min(allowed)))
         }
     }
 

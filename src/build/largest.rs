@@ -80,6 +80,12 @@ impl Effort {
         enough: f64::INFINITY,
     };
 
+    /// For what a build returns that is to be quick: twice the slack takes half of the pieces.
+    pub const COARSE: Self = Self {
+        slack: 0.5,
+        ..Self::CLOSE
+    };
+
     /// For what it reports besides: four times the slack, and half of the budget.
     pub const ROUGH: Self = Self {
         slack: 1.0,

@@ -20,6 +20,7 @@ mod least_squares;
 mod mass;
 mod measured;
 pub mod mesh_file;
+mod nearest_triangle;
 mod openings;
 mod options;
 mod orient;

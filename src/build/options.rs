@@ -69,8 +69,8 @@ pub struct Hausdorff {
     /// How far the solid sticks out of the source surface, at the points examined.
     pub bloat: Real,
     /// No point of either surface is farther from the other than [`Self::error`] and this: a quarter
-    /// of the error, or more where the error is below two thousandths of the size, or the search runs out
-    /// of its budget.
+    /// of the error ([`Quality::Fast`] without [`BuildOptions::max_error`]: half), or more where the
+    /// error is below two thousandths of the size, or the search runs out of its budget.
     pub sampling: Real,
 }
 

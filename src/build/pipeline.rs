@@ -138,6 +138,14 @@ impl Source {
         self.limits.quality > Quality::Fast && self.surface.simple
     }
 
+    /// How closely to look at errors: a limit on them is held as closely as can be.
+    fn effort(&self) -> Effort {
+        match self.limits.quality {
+            Quality::Fast if self.limits.max_error.is_none() => Effort::COARSE,
+            _ => Effort::CLOSE,
+        }
+    }
+
     /// The best of `best` and what each quality gives for a count.
     fn fitted(
         &self,
@@ -235,7 +243,7 @@ impl Source {
 
     /// Encloses when asked to, and measures before and after.
     fn finish(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let enclosed = self.enclosed(draft, Effort::CLOSE, watch)?;
+        let enclosed = self.enclosed(draft, self.effort(), watch)?;
         self.reported(enclosed, watch)
     }
 
@@ -276,12 +284,12 @@ impl Source {
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
         let Some(best) = best else {
-            return self.enclosed(other, Effort::CLOSE, watch);
+            return self.enclosed(other, self.effort(), watch);
         };
         let error = best.hausdorff.error();
         let effort = Effort {
             enough: error.into(),
-            ..Effort::CLOSE
+            ..self.effort()
         };
         let other = self.enclosed(other, effort, watch)?;
         Ok(if other.hausdorff.error() < error {

@@ -7,8 +7,9 @@
 
 use super::bounds::{Bounds, Point, coordinate};
 use super::draft::{Ball, Corners, Draft, Signed};
-use super::four_boxes::{FourBoxes, FourPoints, slack};
+use super::four_boxes::{Child, FourBoxes, FourPoints, nearest_first, slack};
 use super::prepared::Prepared;
+use std::ops::ControlFlow;
 use wide::f32x4;
 
 /// Four groups of primitives, or single ones.
@@ -17,14 +18,6 @@ struct Node {
     centers: FourBoxes,
     largest_radii: f32x4,
     children: [Child; 4],
-}
-
-/// What one of a node's boxes is of.
-#[derive(Clone, Copy)]
-enum Child {
-    Nothing,
-    Primitive(u32),
-    Group(u32),
 }
 
 impl Node {
@@ -105,7 +98,7 @@ impl<'a> PrimitiveTree<'a> {
         for (k, part) in parts.into_iter().enumerate() {
             let child = match part {
                 [] => Child::Nothing,
-                [only] => Child::Primitive(only.1),
+                [only] => Child::Leaf(only.1),
                 several => Child::Group(self.group(several)),
             };
             self.nodes[index as usize].children[k] = child;
@@ -194,44 +187,17 @@ impl<'a> PrimitiveTree<'a> {
     /// Calls `see` for primitives whose distance may be below `limit`, nearer groups first; `see`
     /// returns the new limit, or `None` to stop.
     fn visit(&self, p: Point, limit: f64, mut see: impl FnMut(Signed, u32) -> Option<f64>) {
-        let (point, slack) = (FourPoints::splat(p), slack(p, self.reach));
-        let mut limit = (limit + slack) as f32;
-        // Quartering keeps the depth below 17, and each level leaves three waiting.
-        let mut stack = [(f32::NEG_INFINITY, Child::Group(0)); 64];
-        let mut len = 1;
-        while len > 0 {
-            len -= 1;
-            let (bound, child) = stack[len];
-            if bound >= limit {
-                continue;
+        let point = FourPoints::splat(p);
+        let look = |group: u32| {
+            let node = &self.nodes[group as usize];
+            (node.lower_bounds(&point), node.children)
+        };
+        nearest_first(limit, slack(p, self.reach), look, |primitive| {
+            match see(self.distance_to(primitive, p), primitive) {
+                Some(new) => ControlFlow::Continue(Some(new)),
+                None => ControlFlow::Break(()),
             }
-            match child {
-                Child::Nothing => {}
-                Child::Primitive(primitive) => {
-                    match see(self.distance_to(primitive, p), primitive) {
-                        Some(new) => limit = (new + slack) as f32,
-                        None => return,
-                    }
-                }
-                Child::Group(index) => {
-                    let node = &self.nodes[index as usize];
-                    let first = len;
-                    for (bound, child) in node.lower_bounds(&point).into_iter().zip(node.children) {
-                        if bound >= limit {
-                            continue;
-                        }
-                        // The nearest on top.
-                        let mut at = len;
-                        while at > first && stack[at - 1].0 < bound {
-                            stack[at] = stack[at - 1];
-                            at -= 1;
-                        }
-                        stack[at] = (bound, child);
-                        len += 1;
-                    }
-                }
-            }
-        }
+        });
     }
 }
 

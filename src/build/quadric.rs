@@ -18,65 +18,122 @@
 
 use super::bounds::{Point, direction, perpendicular};
 use super::draft::Ball;
-use nalgebra::{Matrix4, Vector4};
 
 /// Pull towards the starting point that makes every system solvable, over the trace of `A`: small
 /// against any curvature that planes give, large against rounding.
 const TIKHONOV: f64 = 1e-9;
 
+type Vector4 = [f64; 4];
+
 /// A sum of squared distances to planes.
 #[derive(Clone, Copy, Default)]
 pub struct Quadric {
-    a: Matrix4<f64>,
-    b: Vector4<f64>,
+    /// Lower triangle of the symmetric matrix, row by row: a collapse spends most of its time on sums
+    /// of these.
+    a: [f64; 10],
+    b: Vector4,
     c: f64,
 }
+
+/// Place of the lower triangle's row and column in [`Quadric::a`], and of the same element above it.
+const AT: [[usize; 4]; 4] = [[0, 1, 3, 6], [1, 2, 4, 7], [3, 4, 5, 8], [6, 7, 8, 9]];
 
 impl Quadric {
     /// Adds the plane of unit normal `n` that `ball` touches.
     pub fn add_plane(&mut self, n: Point, ball: &Ball, weight: f64) {
-        let n4 = Vector4::new(n.x, n.y, n.z, 1.0);
-        let d = n4.dot(&coordinates(ball));
-        self.a += n4 * n4.transpose() * weight;
-        self.b += n4 * (weight * d);
+        let n4 = [n.x, n.y, n.z, 1.0];
+        let d = dot(n4, coordinates(ball));
+        for i in 0..4 {
+            for j in 0..=i {
+                self.a[AT[i][j]] += n4[i] * n4[j] * weight;
+            }
+            self.b[i] += n4[i] * (weight * d);
+        }
         self.c += weight * d * d;
     }
 
     /// The sum of both.
     pub fn plus(&self, o: &Self) -> Self {
-        Self {
-            a: self.a + o.a,
-            b: self.b + o.b,
-            c: self.c + o.c,
-        }
+        let mut sum = *self;
+        sum.a.iter_mut().zip(&o.a).for_each(|(x, y)| *x += y);
+        sum.b.iter_mut().zip(&o.b).for_each(|(x, y)| *x += y);
+        sum.c += o.c;
+        sum
     }
 
     /// Sum of the weights of its planes: the radius enters each with coefficient 1.
     pub fn weight(&self) -> f64 {
-        self.a[(3, 3)]
+        self.a[AT[3][3]]
     }
 
     /// The error of a ball; rounding may not make it negative.
     pub fn error(&self, ball: &Ball) -> f64 {
         let m = coordinates(ball);
-        (m.dot(&(self.a * m)) - 2.0 * self.b.dot(&m) + self.c).max(0.0)
+        let row = |i: usize| {
+            let [x, y, z, w] = AT[i].map(|k| self.a[k]);
+            x * m[0] + y * m[1] + z * m[2] + w * m[3]
+        };
+        let am = [row(0), row(1), row(2), row(3)];
+        (dot(m, am) - 2.0 * dot(self.b, m) + self.c).max(0.0)
     }
 
     /// The ball of least error, near `start` where planes leave it free.
     pub fn minimiser(&self, start: &Ball) -> Option<Ball> {
-        let pull = TIKHONOV * self.a.trace();
-        let a = self.a + Matrix4::identity() * pull;
-        let m = a.cholesky()?.solve(&(self.b + coordinates(start) * pull));
+        let diagonal = [0, 1, 2, 3].map(|i| self.a[AT[i][i]]);
+        let pull = TIKHONOV * diagonal.iter().sum::<f64>();
+        let mut a = self.a;
+        let mut b = self.b;
+        for (i, x) in coordinates(start).into_iter().enumerate() {
+            a[AT[i][i]] += pull;
+            b[i] += x * pull;
+        }
+        let [x, y, z, radius] = solve(a, b)?;
         Some(Ball {
-            center: Point::new(m.x, m.y, m.z),
-            radius: m.w,
+            center: Point::new(x, y, z),
+            radius,
         })
     }
 }
 
-fn coordinates(ball: &Ball) -> Vector4<f64> {
+/// Solves `A x = b` by Cholesky's factors, if `A` is positive definite.
+fn solve(mut a: [f64; 10], mut b: Vector4) -> Option<Vector4> {
+    for j in 0..4 {
+        for k in 0..j {
+            let factor = a[AT[j][k]];
+            for i in j..4 {
+                a[AT[i][j]] -= factor * a[AT[i][k]];
+            }
+        }
+        let pivot = a[AT[j][j]];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return None;
+        }
+        let root = pivot.sqrt();
+        a[AT[j][j]] = root;
+        for i in j + 1..4 {
+            a[AT[i][j]] /= root;
+        }
+    }
+    for i in 0..4 {
+        b[i] /= a[AT[i][i]];
+        for k in i + 1..4 {
+            b[k] -= b[i] * a[AT[k][i]];
+        }
+    }
+    for i in (0..4).rev() {
+        let known: f64 = (i + 1..4).map(|k| a[AT[k][i]] * b[k]).sum();
+        b[i] = (b[i] - known) / a[AT[i][i]];
+    }
+    Some(b)
+}
+
+fn dot(x: Vector4, y: Vector4) -> f64 {
+    (x[0] * y[0] + x[2] * y[2]) + (x[1] * y[1] + x[3] * y[3])
+}
+
+fn coordinates(ball: &Ball) -> Vector4 {
     let c = ball.center;
-    Vector4::new(c.x, c.y, c.z, ball.radius)
+    [c.x, c.y, c.z, ball.radius]
 }
 
 /// Outward unit normals of the two planes that touch three balls, if there are any.

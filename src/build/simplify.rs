@@ -70,10 +70,10 @@ impl<'a> Simplifier<'a> {
         let n = complex.balls.len();
         let mut simplifier = Self {
             quadrics: quadrics(&complex, boundary_weight, watch)?,
-            complex,
             versions: vec![0; n],
             queue: Queue::default(),
             clear: vec![0.0; n],
+            complex,
             blocked: Vec::new(),
             progressed: false,
             keep_topology: true,
@@ -151,7 +151,6 @@ impl<'a> Simplifier<'a> {
         // On round bodies all planes agree on many balls, of which some reach far out of the solid.
         if !self.is_clear(a, b, &ball) {
             (_, ball) = self.cheapest(a, b);
-            self.clear[a as usize] = 0.0;
         }
         self.collapse(a, b, ball);
         self.progressed = true;
@@ -160,23 +159,19 @@ impl<'a> Simplifier<'a> {
 
     /// Whether the ball that `a` and `b` are merged into sticks out of the solid by no more than
     /// [`BULGE`]. What the tree says about its centre is kept as that of `a`.
+    ///
+    /// A ball that touches the surface all around is dear to ask for its nearest triangle, and cheap to
+    /// ask for one well within.
     fn is_clear(&mut self, a: u32, b: u32, ball: &Ball) -> bool {
-        let enough = ball.radius * (1.0 - BULGE);
         let left = |v: u32| {
             let way = ball.center - self.complex.balls[v as usize].center;
             self.clear[v as usize] - way.length()
         };
-        let mut clear = left(a).max(left(b));
-        if clear < enough {
-            let further = ball.radius * (1.0 - 0.25 * BULGE);
-            let (center, tree) = (ball.center, self.tree);
-            clear = match tree.closest_within(center, further) {
-                Some(point) => (point - center).length(),
-                None => further,
-            };
-        }
-        self.clear[a as usize] = clear;
-        clear > enough
+        let known = left(a).max(left(b));
+        let distance = ball.radius * (1.0 - BULGE);
+        let clear = known >= distance || !self.tree.any_within(ball.center, distance);
+        self.clear[a as usize] = if clear { known.max(distance) } else { 0.0 };
+        clear
     }
 
     /// Merges ball `b` into `a`, which becomes `ball`.
@@ -215,11 +210,7 @@ impl<'a> Simplifier<'a> {
 
     /// Whether the solid has no hole where collapsing an edge would close one.
     pub(super) fn may_collapse(&self, a: u32, b: u32) -> bool {
-        let c = &self.complex;
-        if c.keeps_topology(a, b) {
-            return true;
-        }
-        let mut closed = c.open_loops(a, b).chain(c.shells(a, b));
+        let mut closed = self.complex.closed_by(a, b);
         closed.all(|middle| self.tree.winding(middle) > 0.5)
     }
 

@@ -163,8 +163,9 @@ impl<'a> Solid<'a> {
     }
 
     /// Distance from `p`, inside, to the boundary, overstated by at most [`WAY_OUT`] of it; at most
-    /// `way`. Cells around `p` that the boundary may cross are searched, nearest first.
-    pub fn nearest_exit(&self, p: Point, way: f64) -> f64 {
+    /// `way`. Cells around `p` that the boundary may cross are searched, nearest first, until an exit is
+    /// found within `enough`.
+    pub fn nearest_exit(&self, p: Point, way: f64, enough: f64) -> f64 {
         let mut best = way.min(2.0);
         let mut waiting = BinaryHeap::from([Waiting {
             bound: 0.0,
@@ -175,7 +176,7 @@ impl<'a> Solid<'a> {
         }]);
         let mut hint = 0;
         while let Some(Waiting { bound, cell }) = waiting.pop() {
-            if bound >= (1.0 - WAY_OUT) * best {
+            if best <= enough || bound >= (1.0 - WAY_OUT) * best {
                 break;
             }
             let near = self.nearest(cell.center, hint);

@@ -1,12 +1,12 @@
 //! A tree of boxes over the source triangles, in double precision: distance and winding number.
 //!
-//! Nearest point on a triangle: Ericson, Real-Time Collision Detection (2005), §5.1.5. Winding
-//! number: Jacobson et al., "Robust Inside-Outside Segmentation using Generalized Winding
+//! Distances: `nearest_triangle.rs`. Winding number: Jacobson et al., "Robust Inside-Outside Segmentation using Generalized Winding
 //! Numbers" (2013), with the far field of Barill et al., "Fast Winding Numbers for Soups and
 //! Clouds" (2018): seen from afar, a group of triangles is one dipole at its centroid, whose
 //! moment is the sum of its area vectors.
 
 use super::bounds::{Bounds, Point, coordinate, direction};
+use super::nearest_triangle::NearestTriangle;
 use super::triangle::{closest_on_triangle, solid_angle_of};
 use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
@@ -38,8 +38,9 @@ struct Dipole {
 
 /// Boxes over triangles; node 0 is the root.
 pub struct TriangleTree {
+    /// Of the winding number.
     nodes: Vec<Node>,
-    corners: Vec<[Point; 3]>,
+    nearest: NearestTriangle,
     /// Place of each triangle among those given.
     given: Vec<u32>,
     /// How much each triangle counts in the winding number: 1, or −1 where it is seen from behind,
@@ -71,9 +72,10 @@ impl TriangleTree {
         }
         let mut nodes = vec![Node::EMPTY];
         build(&mut nodes, 0, (0, &mut items), &corners, watch)?;
+        let sorted = items.iter().map(|i| corners(i.1 as usize)).collect();
         let mut tree = Self {
             nodes,
-            corners: items.iter().map(|i| corners(i.1 as usize)).collect(),
+            nearest: NearestTriangle::new(sorted, watch)?,
             given: items.into_iter().map(|i| i.1).collect(),
             counts: vec![1; count],
         };
@@ -84,7 +86,7 @@ impl TriangleTree {
     /// Bytes of its arrays.
     pub fn bytes(&self) -> usize {
         let of_each = bytes_of(&self.given) + bytes_of(&self.counts);
-        bytes_of(&self.nodes) + bytes_of(&self.corners) + of_each
+        bytes_of(&self.nodes) + self.nearest.bytes() + of_each
     }
 
     /// Lets each triangle, by its place among those given, count as `counts` says: 1, −1 or 0.
@@ -102,9 +104,9 @@ impl TriangleTree {
 
     /// Turns the triangles that are seen from behind round, so that they count as 1.
     pub fn turn(&mut self) {
-        for (count, corners) in self.counts.iter_mut().zip(&mut self.corners) {
+        for (triangle, count) in self.counts.iter_mut().enumerate() {
             if *count < 0 {
-                corners.swap(1, 2);
+                self.nearest.turn(triangle);
                 *count = 1;
             }
         }
@@ -118,7 +120,7 @@ impl TriangleTree {
             let first = node.first as usize;
             self.nodes[index].dipole = if node.count > 0 {
                 let range = first..first + node.count as usize;
-                Dipole::of(&self.corners[range.clone()], &self.counts[range])
+                Dipole::of(&self.nearest.corners()[range.clone()], &self.counts[range])
             } else {
                 let [left, right] = [first, first + 1].map(|n| &self.nodes[n]);
                 Dipole::of_both(&left.dipole, &right.dipole, &node.bounds)
@@ -130,8 +132,8 @@ impl TriangleTree {
     /// Distance to the surface, and the triangle that gives it; `hint` is a triangle that is likely
     /// near.
     pub fn distance_from(&self, p: Point, hint: u32) -> (f64, u32) {
-        let at_hint = self.distance_sq_to(hint, p);
-        let (distance_sq, triangle) = self.search(p, at_hint, false);
+        let at_hint = self.nearest.distance_sq_to(hint, p);
+        let (distance_sq, triangle) = self.nearest.search(p, at_hint, false);
         match distance_sq <= at_hint {
             true => (distance_sq.sqrt(), triangle),
             false => (at_hint.sqrt(), hint),
@@ -141,13 +143,13 @@ impl TriangleTree {
     /// As [`Self::distance_from`], but the point of the surface.
     pub fn closest_from(&self, p: Point, hint: u32) -> (Point, u32) {
         let (_, triangle) = self.distance_from(p, hint);
-        let corners = &self.corners[triangle as usize];
+        let corners = &self.nearest.corners()[triangle as usize];
         (closest_on_triangle(p, corners), triangle)
     }
 
     /// Whether a triangle is within `distance`.
     pub fn is_within(&self, triangle: u32, p: Point, distance: f64) -> bool {
-        distance >= 0.0 && self.distance_sq_to(triangle, p) <= distance * distance
+        distance >= 0.0 && self.nearest.distance_sq_to(triangle, p) <= distance * distance
     }
 
     /// A triangle within `distance`, if there is one.
@@ -155,12 +157,8 @@ impl TriangleTree {
         if distance < 0.0 {
             return None;
         }
-        let (distance_sq, triangle) = self.search(p, distance * distance, true);
+        let (distance_sq, triangle) = self.nearest.search(p, distance * distance, true);
         (distance_sq < f64::INFINITY).then_some(triangle)
-    }
-
-    fn distance_sq_to(&self, triangle: u32, p: Point) -> f64 {
-        (closest_on_triangle(p, &self.corners[triangle as usize]) - p).length_sq()
     }
 
     /// Whether some triangle is within `distance`.
@@ -170,9 +168,9 @@ impl TriangleTree {
 
     /// The point of the surface nearest to `p`, if it is within `limit`.
     pub fn closest_within(&self, p: Point, limit: f64) -> Option<Point> {
-        let (distance_sq, triangle) = self.search(p, limit * limit, false);
+        let (distance_sq, triangle) = self.nearest.search(p, limit * limit, false);
         (distance_sq < f64::INFINITY)
-            .then(|| closest_on_triangle(p, &self.corners[triangle as usize]))
+            .then(|| closest_on_triangle(p, &self.nearest.corners()[triangle as usize]))
     }
 
     /// The point of the surface nearest to `p`; `guess` is its likely distance, and only the time
@@ -196,85 +194,15 @@ impl TriangleTree {
     pub fn signed_within(&self, p: Point, limit: f64) -> Option<f64> {
         let distance = (self.closest_within(p, limit)? - p).length();
         let mut height = 0.0f64;
-        self.each_within(p, distance * (1.0 + 1e-9) + 1e-12, |corners| {
-            let [a, b, c] = *corners;
-            let h = direction((b - a).cross(c - a)).dot(p - closest_on_triangle(p, corners));
-            if h.abs() > height.abs() {
-                height = h;
-            }
-        });
+        self.nearest
+            .each_within(p, distance * (1.0 + 1e-9) + 1e-12, |corners| {
+                let [a, b, c] = *corners;
+                let h = direction((b - a).cross(c - a)).dot(p - closest_on_triangle(p, corners));
+                if h.abs() > height.abs() {
+                    height = h;
+                }
+            });
         Some(if height <= 0.0 { -distance } else { distance })
-    }
-
-    /// Calls `see` for all triangles within `distance` of `p`.
-    fn each_within(&self, p: Point, distance: f64, mut see: impl FnMut(&[Point; 3])) {
-        let limit_sq = distance * distance;
-        let mut stack = [0u32; 64];
-        let mut len = 1;
-        while len > 0 {
-            len -= 1;
-            let node = &self.nodes[stack[len] as usize];
-            if node.bounds.distance_sq(p) > limit_sq {
-                continue;
-            }
-            let first = node.first as usize;
-            if node.count == 0 {
-                stack[len] = first as u32;
-                stack[len + 1] = first as u32 + 1;
-                len += 2;
-                continue;
-            }
-            for corners in &self.corners[first..first + node.count as usize] {
-                if (closest_on_triangle(p, corners) - p).length_sq() <= limit_sq {
-                    see(corners);
-                }
-            }
-        }
-    }
-
-    /// Squared distance to the nearest triangle within the squared distance `limit_sq` and its
-    /// index, infinite if there is none; with `any`, of the first one found.
-    fn search(&self, p: Point, mut limit_sq: f64, any: bool) -> (f64, u32) {
-        let mut found = (f64::INFINITY, 0);
-        // Halving keeps the depth below 32, and each level leaves one node waiting.
-        let mut stack = [(0.0, 0u32); 64];
-        let mut len = 1;
-        stack[0] = (self.nodes[0].bounds.distance_sq(p), 0);
-        while len > 0 {
-            len -= 1;
-            let (bound_sq, index) = stack[len];
-            if bound_sq > limit_sq {
-                continue;
-            }
-            let node = &self.nodes[index as usize];
-            let first = node.first as usize;
-            if node.count > 0 {
-                for triangle in first..first + node.count as usize {
-                    let corners = &self.corners[triangle];
-                    let distance_sq = (closest_on_triangle(p, corners) - p).length_sq();
-                    if distance_sq <= limit_sq {
-                        limit_sq = distance_sq;
-                        found = (distance_sq, triangle as u32);
-                        if any {
-                            return found;
-                        }
-                    }
-                }
-                continue;
-            }
-            let left = (self.nodes[first].bounds.distance_sq(p), first as u32);
-            let second = first as u32 + 1;
-            let right = (self.nodes[first + 1].bounds.distance_sq(p), second);
-            let (near, far) = if left.0 <= right.0 {
-                (left, right)
-            } else {
-                (right, left)
-            };
-            stack[len] = far;
-            stack[len + 1] = near;
-            len += 2;
-        }
-        found
     }
 
     /// How often the surface winds round `p`: 1 inside a closed outward surface, 0 outside, about
@@ -298,7 +226,7 @@ impl TriangleTree {
             if node.count > 0 {
                 for i in first..first + node.count as usize {
                     if self.counts[i] != 0 {
-                        let angle = solid_angle_of(p, &self.corners[i]);
+                        let angle = solid_angle_of(p, &self.nearest.corners()[i]);
                         solid_angle += f64::from(self.counts[i]) * angle;
                     }
                 }

@@ -406,7 +406,7 @@ impl MedialPipeline {
         report.submissions = after.submissions - before.submissions;
         report.maps = after.maps - before.maps;
         report.sent_early = after.sent_early - before.sent_early;
-        report.survivors = after.survivors - before.survivors;
+        report.given_up = after.given_up - before.given_up;
         report.fallbacks = after.fallbacks - before.fallbacks;
         (report, outcome.stopped)
     }

@@ -21,8 +21,9 @@ pub struct StepReport {
     pub maps: u64,
     /// Jobs of the batch that had gone to the GPU at the end of the step before.
     pub sent_early: u64,
-    /// Primitive pairs that the GPU could not prove free.
-    pub survivors: u64,
+    /// Jobs, or pieces of their step, of which too much meets to be looked at on the GPU; the CPU has
+    /// them.
+    pub given_up: u64,
     /// Batches that a GPU was to have and could not take; [`crate::MedialPipeline::batch`] says why.
     pub fallbacks: u64,
     /// Sphere pairs that the batch found within the prediction distance.
@@ -80,7 +81,7 @@ impl StepReport {
         self.submissions += part.submissions;
         self.maps += part.maps;
         self.sent_early += part.sent_early;
-        self.survivors += part.survivors;
+        self.given_up += part.given_up;
         self.fallbacks += part.fallbacks;
         self.contacts += part.contacts;
         self.cache_hits += part.cache_hits;

@@ -7,7 +7,6 @@ use rapier3d_medial::batch::gpu::GpuOptions;
 use rapier3d_medial::batch::{Backend, Batch, cpu};
 use rapier3d_medial::elementary::ToiStatus;
 use rapier3d_medial::error::GpuError;
-use rapier3d_medial::math::Vector;
 
 fn open(options: GpuOptions) -> Option<Batch> {
     scene::gpu(scene::options())?;
@@ -77,7 +76,6 @@ fn a_lost_device_costs_no_answer() {
 #[test]
 fn what_does_not_fit_goes_to_the_cpu() {
     let options = GpuOptions {
-        list_capacity: 16,
         binding_bytes: 1 << 16,
         ..scene::options()
     };
@@ -101,37 +99,6 @@ fn what_does_not_fit_goes_to_the_cpu() {
     }
     assert_eq!(batch.report().fallbacks, 1);
     assert!(batch.report().settled_by_gpu > 0);
-}
-
-/// Lists that may not grow far enough.
-#[test]
-fn a_list_without_room_goes_to_the_cpu() {
-    let options = GpuOptions {
-        list_capacity: 1,
-        // Room for the meshes of the jobs and for 30 pairs of bodies.
-        binding_bytes: 12_000,
-        ..scene::options()
-    };
-    let Some(mut batch) = open(options) else {
-        return;
-    };
-    let mut jobs = pair_jobs(30);
-    // All in the same place: nearly every primitive is near every other.
-    for job in &mut jobs {
-        job.pos12.translation = Vector::ZERO;
-        job.prediction = 2.0;
-    }
-    let expected = cpu::run(&jobs);
-    for (answer, expected) in batch.run(&jobs).iter().zip(&expected) {
-        assert_eq!(answer.contacts, expected.contacts);
-    }
-    let list = |what| what == "primitive pairs" || what == "survivors";
-    let error = &batch.report().error;
-    assert!(
-        matches!(error, Some(GpuError::TooLarge { what, .. }) if list(*what)),
-        "{error:?}"
-    );
-    assert_eq!(batch.report().fallbacks, 1);
 }
 
 /// Poses that are not finite go to the CPU, which has its own answer to them.

@@ -16,10 +16,8 @@ pub struct GpuOptions {
     pub software: bool,
     /// Most bytes of a buffer that shaders see; what the device allows if that is less.
     pub binding_bytes: u64,
-    /// Whether stages are timed, where the device can.
+    /// Whether shaders are timed, where the device can; the marks take time of their own.
     pub timed: bool,
-    /// Entries that each list has room for at first; they grow as needed.
-    pub list_capacity: u32,
 }
 
 impl Default for GpuOptions {
@@ -29,7 +27,6 @@ impl Default for GpuOptions {
             timed: false,
             // The portable limit.
             binding_bytes: 128 << 20,
-            list_capacity: 1 << 14,
         }
     }
 }
@@ -53,7 +50,7 @@ impl Fault {
 pub struct Context {
     pub(super) device: Device,
     pub(super) queue: Queue,
-    /// Where stages are timed.
+    /// Where shaders are timed.
     pub(super) clock: Option<Clock>,
     pub(super) options: GpuOptions,
     fault: Fault,

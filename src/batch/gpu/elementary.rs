@@ -1,12 +1,12 @@
 //! Many elementary tests on straight paths: what the device proves free, and for the rest a time
 //! before which there is no contact.
 
-use super::clock::{Clock, STAGES};
+use super::clock::Clock;
 use super::context::{Context, Growing};
-use super::layout::{Bound, CLUSTER, ElementaryParams, Query};
+use super::layout::{ElementaryParams, Query, THREADS};
 use super::shaders::ELEMENTARY;
 use super::stage::Stage;
-use super::transfer::Transfer;
+use super::transfer::{ALIGNMENT, Transfer};
 use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
@@ -19,6 +19,11 @@ const MAX_ITERATIONS: u32 = 24;
 /// Lengths from here, in the user's unit, stay on the CPU: their products would overflow.
 const LARGEST: f32 = 1.0e8;
 
+/// How far the fourth corner may be from where the others put it, as a fraction of all four: what
+/// rounding of the corners makes of it is below 3 ulps. Larger and the device's slack, 32 ulps of the
+/// largest, would not cover it; smaller and sound paths stay on the CPU.
+const FOLLOWS: f32 = 4.0 * f32::EPSILON;
+
 /// Bytes of a query.
 const QUERY: usize = size_of::<Query>();
 
@@ -27,18 +32,15 @@ pub(super) struct Elementary {
     stages: Vec<Stage>,
     params: Growing,
     queries: Growing,
-    bounds: Growing,
+    lowers: Growing,
     bound: bool,
 }
 
 impl Elementary {
     pub(super) fn new(context: &mut Context) -> Result<Self, GpuError> {
-        let mut stages = Stage::all(context, &ELEMENTARY);
-        // One of them runs in a submission.
-        stages.iter_mut().for_each(|stage| stage.index = 0);
         let storage = BufferUsages::STORAGE;
         Ok(Self {
-            stages,
+            stages: Stage::all(context, &ELEMENTARY),
             params: Growing::new(
                 context,
                 "parameters",
@@ -46,14 +48,14 @@ impl Elementary {
                 BufferUsages::UNIFORM | BufferUsages::COPY_DST,
             )?,
             queries: Growing::new(context, "queries", 1, storage | BufferUsages::COPY_DST)?,
-            bounds: Growing::new(context, "bounds", 1, storage | BufferUsages::COPY_SRC)?,
+            lowers: Growing::new(context, "answers", 1, storage | BufferUsages::COPY_SRC)?,
             bound: false,
         })
     }
 
     /// One submission and one map. The tolerance counts as contact: what is called separated stays
     /// further apart, from the start of the step to its end.
-    /// Returns the seconds of its stage.
+    /// Returns the seconds of its shader.
     pub(super) async fn run(
         &mut self,
         context: &mut Context,
@@ -61,12 +63,12 @@ impl Elementary {
         paths: &[LinearPath<f32>],
         domain: Domain,
         tolerance: f32,
-        bounds: &mut Vec<Bound>,
-    ) -> Result<[f64; STAGES], GpuError> {
-        let mut stages = [0.0; STAGES];
-        bounds.clear();
+        lowers: &mut Vec<f32>,
+    ) -> Result<f64, GpuError> {
+        let mut seconds = 0.0;
+        lowers.clear();
         if paths.is_empty() {
-            return Ok(stages);
+            return Ok(seconds);
         }
         let params = ElementaryParams {
             count: paths.len() as u32,
@@ -76,11 +78,11 @@ impl Elementary {
         };
         let params = bytemuck::bytes_of(&params);
         let queries = paths.len() * QUERY;
-        let answers = paths.len() * size_of::<Bound>();
+        let answers = paths.len() * size_of::<f32>();
         let fresh = self.queries.reserve(context, queries as u64)?
-            | self.bounds.reserve(context, answers as u64)?;
+            | self.lowers.reserve(context, answers as u64)?;
         if fresh || !self.bound {
-            let buffers = [&self.params, &self.queries, &self.bounds];
+            let buffers = [&self.params, &self.queries, &self.lowers];
             let numbered = [0, 1, 2].map(|k| (k as u32, &buffers[k].buffer));
             for stage in &mut self.stages {
                 stage.bind(context, &numbered);
@@ -98,47 +100,64 @@ impl Elementary {
         self.stages[usize::from(domain == Domain::Triangle)].run(
             context,
             &mut encoder,
-            paths.len().div_ceil(CLUSTER) as u32,
+            paths.len().div_ceil(THREADS) as u32,
         );
-        down.receive(&mut encoder, &self.bounds.buffer, answers);
+        down.receive(&mut encoder, &self.lowers.buffer, answers);
         if let Some(clock) = &context.clock {
-            clock.receive(&mut encoder, down, 1);
+            clock.receive(&mut encoder, down);
         }
         up.hand_over();
         context.queue.submit([encoder.finish()]);
         up.take_back();
         down.take_back();
-        bounds.resize(paths.len(), Bound::default());
-        let to: &mut [u8] = bytemuck::cast_slice_mut(bounds);
+        lowers.resize(paths.len(), 0.0);
+        let to: &mut [u8] = bytemuck::cast_slice_mut(lowers);
         down.read(context, |bytes| {
             to.copy_from_slice(&bytes[..answers]);
             if let Some(clock) = &context.clock {
-                stages = clock.seconds(&bytes[answers..], 1);
+                seconds = clock.seconds(&bytes[answers.next_multiple_of(ALIGNMENT)..]);
             }
         })
         .await?;
-        Ok(stages)
+        Ok(seconds)
     }
 }
 
 /// The device proves distances above the tolerance: rounded up, it is part of the radius sums. What
-/// is not finite, or too large to square, goes as a contact, for the CPU to judge.
+/// is not finite, or too large to square, or of which the fourth corner does not follow from the others,
+/// goes as a contact, for the CPU to judge.
 fn pack(path: &LinearPath<f32>, domain: Domain, tolerance: f32) -> Query {
     let with = |v: Vec3<f32>, w: f32| [v.x, v.y, v.z, w];
-    // A triangle's last corner stands for the fourth too.
-    let last = if domain == Domain::Triangle { 2 } else { 3 };
-    let corners = [0, 1, 2, last];
-    let query = Query {
-        start: corners.map(|k| with(path.start[k], (path.radius[k] + tolerance).next_up())),
-        rate: corners.map(|k| with(path.rate[k], 0.0)),
+    let start = [0, 1, 2, 3].map(|k| with(path.start[k], up(path.radius[k] + tolerance)));
+    let rate = [0, 1, 2, 3].map(|k| with(path.rate[k], 0.0));
+    let fourth = match domain {
+        Domain::Box => 1.0,
+        // A slab's family ends with the third.
+        Domain::Triangle => 0.0,
     };
-    let numbers = query.start.iter().chain(&query.rate).flatten();
-    // Of all, whatever the first says: that is done eight at a time.
-    if numbers.fold(true, |sound, x| sound & (x.abs() < LARGEST)) {
-        return query;
+    let mut sound = true;
+    for corners in [&start, &rate] {
+        // All of them, whatever the first says: that is done four at a time.
+        for k in 0..4 {
+            let [a, b, c, d] = corners.map(|corner| corner[k]);
+            let size = a.abs() + b.abs() + c.abs() + fourth * d.abs();
+            let off = fourth * (b + c - a - d).abs();
+            sound &= (size < LARGEST) & (off <= FOLLOWS * size);
+        }
+    }
+    if !sound {
+        return Query {
+            start: [[0.0, 0.0, 0.0, 1.0]; 3],
+            rate: [[0.0; 4]; 3],
+        };
     }
     Query {
-        start: [[0.0, 0.0, 0.0, 1.0]; 4],
-        rate: [[0.0; 4]; 4],
+        start: [start[0], start[1], start[2]],
+        rate: [rate[0], rate[1], rate[2]],
     }
+}
+
+/// The next number above, at least: without the branches of `next_up`.
+fn up(x: f32) -> f32 {
+    x + x.abs() * f32::EPSILON
 }

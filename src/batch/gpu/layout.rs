@@ -37,23 +37,12 @@ macro_rules! twins {
 }
 
 twins! {
-    /// One elementary test on straight paths.
+    /// One elementary test on straight paths: three corners; a cone pair's fourth follows.
     Query {
         /// Corners at the start, and the radius sum with the distance that counts as contact.
-        start: [[f32; 4]; 4] = "array<vec4<f32>, 4>",
+        start: [[f32; 4]; 3] = "array<vec4<f32>, 3>",
         /// Their displacement over the step.
-        rate: [[f32; 4]; 4] = "array<vec4<f32>, 4>",
-    }
-    /// What a device proposes for a [`Query`].
-    Bound {
-        /// No contact before, as a fraction of the step.
-        lower: f32 = "f32",
-        /// [`SEPARATED`] or [`UNSETTLED`].
-        status: u32 = "u32",
-        /// Iterations it took.
-        iterations: u32 = "u32",
-        /// Nothing.
-        pad: u32 = "u32",
+        rate: [[f32; 4]; 3] = "array<vec3<f32>, 3>",
     }
     /// Of a batch of queries.
     ElementaryParams {
@@ -66,29 +55,20 @@ twins! {
         /// Nothing.
         pad: u32 = "u32",
     }
-    /// Up to 64 primitives that follow each other, in the body's frame.
-    Cluster {
-        /// Centre and radius of a ball round them.
+    /// A node of a mesh's sphere tree, in the body's frame.
+    Node {
+        /// Centre and radius of its ball.
         bound: [f32; 4] = "vec4<f32>",
-        /// Index of the first.
-        first: u32 = "u32",
-        /// How many.
-        count: u32 = "u32",
+        /// Inner: index of the first of two neighbouring children. Leaf: index of its primitive, with
+        /// the highest bit set.
+        below: u32 = "u32",
         /// Nothing.
-        pad: [u32; 2] = "vec2<u32>",
+        pad: [u32; 3] = "array<u32, 3>",
     }
     /// A primitive, in the body's frame.
     Primitive {
-        /// Centre and radius of a ball round it.
-        bound: [f32; 4] = "vec4<f32>",
         /// Its spheres; unused entries repeat the last.
         spheres: [[f32; 4]; 3] = "array<vec4<f32>, 3>",
-        /// Its index in the mesh.
-        index: u32 = "u32",
-        /// How many spheres it has.
-        count: u32 = "u32",
-        /// Nothing.
-        pad: [u32; 2] = "vec2<u32>",
     }
     /// One body of a pair.
     Side {
@@ -99,14 +79,10 @@ twins! {
         /// Centre of rotation in the body's frame, and the sagitta per length of lever arm: an eighth
         /// of the squared angle.
         turn: [f32; 4] = "vec4<f32>",
-        /// Centre and radius of a ball round the mesh, in the body's frame.
-        bound: [f32; 4] = "vec4<f32>",
-        /// Index of the mesh's first cluster.
-        first_cluster: u32 = "u32",
-        /// How many it has.
-        clusters: u32 = "u32",
+        /// Index of the root of the mesh's tree.
+        root: u32 = "u32",
         /// Nothing.
-        pad: [u32; 2] = "vec2<u32>",
+        pad: [u32; 3] = "array<u32, 3>",
     }
     /// Two bodies over the step, or a piece of it.
     Pair {
@@ -114,65 +90,39 @@ twins! {
         sides: [Side; 2] = "array<Side, 2>",
         /// Distance that counts as contact, with the slack for rounding.
         reach: f32 = "f32",
-        /// Number of its first group in the batch: there is one for each 64 clusters of the first body.
-        first: u32 = "u32",
         /// Nothing.
-        pad: [u32; 2] = "vec2<u32>",
-    }
-    /// Two clusters, or two primitives, of a pair.
-    Tile {
-        /// Index of the pair.
-        pair: u32 = "u32",
-        /// Of the first mesh.
-        a: u32 = "u32",
-        /// Of the second mesh.
-        b: u32 = "u32",
-    }
-    /// Two primitives that are not proven free.
-    Survivor {
-        /// Index of the pair.
-        pair: u32 = "u32",
-        /// Primitive of the first mesh.
-        a: u32 = "u32",
-        /// Primitive of the second mesh.
-        b: u32 = "u32",
-        /// They are free before, as a fraction of the piece on the device, of the step after it.
-        lower: f32 = "f32",
+        pad: [u32; 3] = "array<u32, 3>",
     }
     /// Of a batch of mesh pairs.
     CullParams {
         /// How many there are.
         pairs: u32 = "u32",
-        /// Groups of all of them.
-        groups: u32 = "u32",
-        /// Room in the list of cluster pairs.
-        tile_capacity: u32 = "u32",
-        /// Room in the list of primitive pairs.
-        near_capacity: u32 = "u32",
-        /// Room in the list of survivors.
-        survivor_capacity: u32 = "u32",
     }
 }
 
-/// Proven free in the whole step.
-pub const SEPARATED: u32 = 0;
-/// Left to the CPU.
-pub const UNSETTLED: u32 = 1;
-/// Counter of cluster pairs.
-pub const TILES: usize = 0;
-/// Counter of primitive pairs.
-pub const NEAR: usize = 1;
-/// Counter of survivors.
-pub const SURVIVORS: usize = 2;
-/// How many counters there are.
-pub const COUNTERS: usize = 4;
-/// Primitives of a cluster, and threads of a group.
-pub const CLUSTER: usize = 64;
+/// A mesh pair that is proven free in the whole step.
+pub const FREE: u32 = 0;
+/// Two of its primitives are not.
+pub const OPEN: u32 = 1;
+/// Too much of it meets to be looked at.
+pub const GIVEN_UP: u32 = 2;
+/// Threads of a group.
+pub const THREADS: usize = 64;
+/// Threads of a group that walks down trees: fewer, so that a few hundred mesh pairs keep more of a
+/// device busy than a few of its parts.
+pub const WALKS: usize = 8;
 /// Groups in one dimension of a dispatch: the portable limit; wgpu drops what exceeds it.
 pub const MAX_GROUPS: u32 = 65_535;
 
 /// Rounds of the search for a direction. Fewer leave more survivors, never a wrong proof.
 const GILBERT_ROUNDS: u32 = 6;
+/// Node pairs and primitive pairs that a walk down two trees holds at once; a walk that finds more is
+/// given up.
+const WALK_ROOM: u32 = 128;
+/// Node pairs that a walk splits before it is given up.
+const WALK_LOOKS: u32 = 1024;
+/// Up to this ratio of their radii two nodes are split together, as on the CPU.
+const WALK_SIMILAR: f64 = 3.0;
 /// Directions tried in turn, each from where the last proof ends.
 const PROOF_ROUNDS: u32 = 6;
 
@@ -187,14 +137,17 @@ pub fn constants() -> String {
         ("TOLERANCE_PER_SLACK", tolerance::TOLERANCE_PER_SLACK),
         ("STEP_ULPS", tolerance::STEP_ULPS),
         ("PARALLEL_ULPS", tolerance::PARALLEL_ULPS),
+        ("WALK_SIMILAR", WALK_SIMILAR),
         ("TURNING_REGULARISATION", tolerance::TURNING_REGULARISATION),
     ];
     let counts = [
-        ("SEPARATED", SEPARATED),
-        ("UNSETTLED", UNSETTLED),
-        ("TILES", TILES as u32),
-        ("NEAR", NEAR as u32),
-        ("SURVIVORS", SURVIVORS as u32),
+        ("FREE", FREE),
+        ("OPEN", OPEN),
+        ("GIVEN_UP", GIVEN_UP),
+        ("THREADS", THREADS as u32),
+        ("WALKS", WALKS as u32),
+        ("WALK_ROOM", WALK_ROOM),
+        ("WALK_LOOKS", WALK_LOOKS),
         ("MAX_GROUPS", MAX_GROUPS),
         ("GILBERT_ROUNDS", GILBERT_ROUNDS),
         ("PROOF_ROUNDS", PROOF_ROUNDS),

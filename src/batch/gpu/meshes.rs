@@ -1,31 +1,28 @@
-//! Meshes that stay on the device: clusters and primitives of each, one after the other. A mesh is
-//! sent once, whatever the number of its bodies; the sphere tree of the body gives the clusters.
+//! Meshes that stay on the device: the sphere tree and the primitives of each, one after the other. A
+//! mesh is sent once, whatever the number of its bodies.
 
-use super::layout::{CLUSTER, Cluster, Primitive};
-use crate::medial::tree::{Below, Node};
-use crate::medial::{MedialMesh, MedialSphere};
+use super::layout::{Node, Primitive};
+use crate::medial::tree::Below;
+use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
 use std::collections::HashMap;
 
-/// Where a mesh lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
-    pub(super) first_cluster: u32,
-    pub(super) clusters: u32,
-}
+/// Marks a leaf in [`Node::below`].
+const LEAF: u32 = 1 << 31;
 
 struct Resident {
     /// Keeps the address, by which it is found, from being given to another.
     mesh: MedialMesh,
-    place: Place,
+    /// Index of the root of its tree.
+    root: u32,
     used: u64,
 }
 
 /// What the device holds, and a copy of it.
 #[derive(Default)]
 pub(super) struct Meshes {
-    pub(super) clusters: Vec<Cluster>,
+    pub(super) nodes: Vec<Node>,
     pub(super) primitives: Vec<Primitive>,
-    /// Clusters and primitives that the device has.
+    /// Nodes and primitives that the device has.
     pub(super) sent: (usize, usize),
     residents: HashMap<usize, Resident>,
     batch: u64,
@@ -56,21 +53,21 @@ impl Meshes {
         }
     }
 
-    /// Where the mesh lies; it is added if it is new.
-    pub(super) fn place(&mut self, mesh: &MedialMesh) -> Place {
+    /// Index of the root of the mesh's tree; the mesh is added if it is new.
+    pub(super) fn root(&mut self, mesh: &MedialMesh) -> u32 {
         let batch = self.batch;
         if let Some(resident) = self.residents.get_mut(&key(mesh)) {
             resident.used = batch;
-            return resident.place;
+            return resident.root;
         }
-        let place = self.append(mesh);
+        let root = self.append(mesh);
         let resident = Resident {
             mesh: mesh.clone(),
-            place,
+            root,
             used: batch,
         };
         self.residents.insert(key(mesh), resident);
-        place
+        root
     }
 
     /// Drops a mesh; the others move together and are sent again.
@@ -95,78 +92,39 @@ impl Meshes {
     }
 
     fn pack(&mut self) {
-        self.clusters.clear();
+        self.nodes.clear();
         self.primitives.clear();
         self.send_again();
         let mut residents = std::mem::take(&mut self.residents);
         for resident in residents.values_mut() {
-            resident.place = self.append(&resident.mesh);
+            resident.root = self.append(&resident.mesh);
         }
         self.residents = residents;
     }
 
-    fn append(&mut self, mesh: &MedialMesh) -> Place {
-        let nodes = mesh.tree().nodes();
-        let first_cluster = self.clusters.len() as u32;
-        let mut stack = vec![0u32];
-        while let Some(node) = stack.pop() {
-            match nodes[node as usize].below() {
-                Below::Nodes(i, j) if !few(nodes, node) => stack.extend([j, i]),
-                _ => self.cluster(mesh, node),
+    fn append(&mut self, mesh: &MedialMesh) -> u32 {
+        let root = self.nodes.len() as u32;
+        let first = self.primitives.len() as u32;
+        let nodes = mesh.tree().nodes().iter().map(|node| {
+            let below = match node.below() {
+                Below::Nodes(child, _) => root + child,
+                Below::Primitive(index) => (first + index) | LEAF,
+            };
+            Node {
+                bound: packed(MedialSphere::new(node.center, node.radius)),
+                below,
+                pad: [0; 3],
             }
-        }
-        Place {
-            first_cluster,
-            clusters: self.clusters.len() as u32 - first_cluster,
-        }
-    }
-
-    fn cluster(&mut self, mesh: &MedialMesh, root: u32) {
-        let nodes = mesh.tree().nodes();
-        let first = self.primitives.len();
-        let mut stack = vec![root];
-        while let Some(node) = stack.pop() {
-            let node = &nodes[node as usize];
-            match node.below() {
-                Below::Nodes(i, j) => stack.extend([j, i]),
-                Below::Primitive(index) => self.primitives.push(Primitive {
-                    bound: bound(node),
-                    spheres: mesh.primitive(index as usize).as_slab().map(packed),
-                    index,
-                    count: mesh.simplices()[index as usize].len.into(),
-                    pad: [0; 2],
-                }),
-            }
-        }
-        self.clusters.push(Cluster {
-            bound: bound(&nodes[root as usize]),
-            first: first as u32,
-            count: (self.primitives.len() - first) as u32,
-            pad: [0; 2],
         });
+        self.nodes.extend(nodes);
+        let spheres = |p: MedialPrimitive| p.as_slab().map(packed);
+        let primitives = mesh.primitives().map(spheres);
+        self.primitives
+            .extend(primitives.map(|spheres| Primitive { spheres }));
+        root
     }
-}
-
-fn bound(node: &Node) -> [f32; 4] {
-    packed(MedialSphere::new(node.center, node.radius))
 }
 
 fn packed(s: MedialSphere) -> [f32; 4] {
     [s.center.x, s.center.y, s.center.z, s.radius]
-}
-
-/// Whether a node's primitives fit into one cluster.
-fn few(nodes: &[Node], root: u32) -> bool {
-    let mut stack = vec![root];
-    let mut leaves = 0;
-    while let Some(node) = stack.pop() {
-        match nodes[node as usize].below() {
-            Below::Nodes(i, j) => stack.extend([j, i]),
-            Below::Primitive(_) => leaves += 1,
-        }
-        if leaves > CLUSTER {
-            return false;
-        }
-    }
-    true
 }

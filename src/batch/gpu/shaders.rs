@@ -37,13 +37,7 @@ pub const CULL: Module = Module {
         include_str!("../../../shaders/swept.wgsl"),
         include_str!("../../../shaders/cull.wgsl"),
     ],
-    stages: &[
-        "cull_clusters",
-        "arrange_primitives",
-        "cull_primitives",
-        "arrange_proofs",
-        "prove",
-    ],
+    stages: &["walk"],
 };
 
 /// All of them.

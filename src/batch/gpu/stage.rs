@@ -11,8 +11,6 @@ use wgpu::{
 /// One entry point of a shader.
 pub(super) struct Stage {
     pipeline: ComputePipeline,
-    /// Its place among those that are timed together.
-    pub(super) index: u32,
     bound: Option<BindGroup>,
 }
 
@@ -23,8 +21,7 @@ impl Stage {
             label: Some(module.name),
             source: ShaderSource::Wgsl(module.source().into()),
         });
-        let stage = |(index, name): (usize, &&'static str)| Self {
-            index: index as u32,
+        let stage = |name: &&'static str| Self {
             pipeline: context
                 .device
                 .create_compute_pipeline(&ComputePipelineDescriptor {
@@ -41,7 +38,7 @@ impl Stage {
                 }),
             bound: None,
         };
-        module.stages.iter().enumerate().map(stage).collect()
+        module.stages.iter().map(stage).collect()
     }
 
     /// Binds buffers; they stay bound until the next call.
@@ -65,36 +62,12 @@ impl Stage {
     /// Runs it over so many groups, folded into two dimensions.
     pub(super) fn run(&self, context: &Context, encoder: &mut CommandEncoder, groups: u32) {
         let x = groups.min(MAX_GROUPS);
-        self.record(context, encoder, |pass| {
-            pass.dispatch_workgroups(x, groups.div_ceil(x.max(1)), 1);
-        });
-    }
-
-    /// Runs it over as many groups as a buffer says, `at` bytes in.
-    pub(super) fn run_indirect(
-        &self,
-        context: &Context,
-        encoder: &mut CommandEncoder,
-        groups: &Buffer,
-        at: u64,
-    ) {
-        self.record(context, encoder, |pass| {
-            pass.dispatch_workgroups_indirect(groups, at)
-        });
-    }
-
-    fn record(
-        &self,
-        context: &Context,
-        encoder: &mut CommandEncoder,
-        run: impl FnOnce(&mut wgpu::ComputePass<'_>),
-    ) {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: None,
-            timestamp_writes: context.clock.as_ref().map(|c| c.writes(self.index)),
+            timestamp_writes: context.clock.as_ref().map(|c| c.writes()),
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, self.bound.as_ref(), &[]);
-        run(&mut pass);
+        pass.dispatch_workgroups(x, groups.div_ceil(x.max(1)), 1);
     }
 }

@@ -2,7 +2,6 @@
 //! frame, so that large coordinates cost no digits, and with a slack for all that is rounded after.
 
 use super::layout::{Pair, Side};
-use super::meshes::Place;
 use crate::batch::job::Sweep;
 use crate::elementary::first_contact::motion_is_finite;
 use crate::math::Vector;
@@ -14,7 +13,7 @@ use crate::math::tolerance::GPU_SLACK_ULPS;
 const LARGEST: f64 = 1.0e15;
 
 /// Angle in radians that a body turns in a piece at most: the sagitta is then below 3 % of the lever
-/// arm. Larger pieces leave more survivors, smaller ones cost a pair each.
+/// arm. Larger pieces prove less, smaller ones cost a pair each.
 const PIECE_ANGLE: f64 = 0.5;
 
 /// Most pieces of a step; a body that turns further is culled less well.
@@ -35,7 +34,7 @@ impl Sweep<'_> {
     }
 
     /// A piece as the device gets it; `None` where a number is not finite or too large.
-    pub(super) fn pair(&self, places: [Place; 2], [start, end]: [f64; 2]) -> Option<Pair> {
+    pub(super) fn pair(&self, roots: [u32; 2], [start, end]: [f64; 2]) -> Option<Pair> {
         let motions = self.paths();
         let mut sides = [Side::default(); 2];
         let mut scale = self.reach.abs();
@@ -48,10 +47,8 @@ impl Sweep<'_> {
             // Rounded up: a sagitta must not shrink.
             let sagitta = angle * angle * (0.125 * (1.0 + 1.0e-6));
             side.turn = [center.x, center.y, center.z, sagitta as f32];
-            side.first_cluster = places[k].first_cluster;
-            side.clusters = places[k].clusters;
+            side.root = roots[k];
             let root = &self.meshes[k].tree().nodes()[0];
-            side.bound = [root.center.x, root.center.y, root.center.z, root.radius];
             let extent = f64::from((root.center - center).length() + root.radius);
             let lever = f64::from(center.length()) + extent;
             let away = |rows: &[[f32; 4]; 3]| {
@@ -72,8 +69,7 @@ impl Sweep<'_> {
         sound.then(|| Pair {
             sides,
             reach: (reach as f32).next_up(),
-            first: 0,
-            pad: [0; 2],
+            pad: [0; 3],
         })
     }
 }

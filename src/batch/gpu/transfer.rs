@@ -9,7 +9,7 @@ use std::task::{Poll, Waker};
 use wgpu::{Buffer, BufferUsages, CommandEncoder, MapMode};
 
 /// Start of the next item in the upload buffer: what copies have to be aligned to.
-const ALIGNMENT: usize = 16;
+pub(super) const ALIGNMENT: usize = 16;
 
 /// Set by the device's callback, awaited by the host.
 #[derive(Clone, Default)]
