@@ -17,11 +17,13 @@ mod muting;
 mod outlines;
 mod pairs;
 pub mod pipeline;
+mod pushes;
 mod recycled;
 pub mod report;
 #[cfg(feature = "serde-serialize")]
 pub mod saved_world;
 mod speculative;
+mod sweep;
 mod tuning;
 mod waiting;
 
