@@ -161,7 +161,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         self.open.clear();
         for i in 0..self.sides.0.body.roots() {
             for j in 0..self.sides.1.body.roots() {
-                self.push([i, j]);
+                self.push([i, j], self.times[0]);
             }
         }
     }
@@ -178,16 +178,17 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             if entry.time > self.earliest.upper.min(end) {
                 break;
             }
+            // Before any pause: a search that goes on has work left, and ends where it would have without.
+            if self.worked() >= self.budget {
+                self.give_up(entry.time, Some(entry.candidate));
+                return Reached::Answer;
+            }
             if looked && entry.time > until && self.earliest.found.is_none() {
                 let time = entry.time;
                 self.first = Some(entry);
                 return Reached::Free(time);
             }
             looked = true;
-            if self.worked() >= self.budget {
-                self.give_up(entry.time, Some(entry.candidate));
-                return Reached::Answer;
-            }
             let open = match entry.candidate {
                 Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
                 Candidate::Test(index) => self.advance(index, entry.time),
@@ -232,8 +233,9 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         }
     }
 
-    /// Queues two swept nodes at the time at which their balls meet, if they do in this piece.
-    fn push(&mut self, nodes: [u32; 2]) {
+    /// Queues two swept nodes, free until `from`, at the time at which their balls meet, if they do in this
+    /// piece. Balls of parts may stick out of those of the whole, and would meet before.
+    fn push(&mut self, nodes: [u32; 2], from: f64) {
         let (a, b) = (self.sides.0.node(nodes[0]), self.sides.1.node(nodes[1]));
         if !(a.wanted && b.wanted) {
             return;
@@ -261,6 +263,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             }
             time += entry * (self.times[1] - self.times[0]);
         }
+        time = time.max(from);
         if time <= self.earliest.upper.min(self.times[1]) {
             self.queue(Entry {
                 time,
@@ -315,7 +318,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         let parts_of_b = self.sides.1.parts(j, !(large && inner[0]));
         for a in parts_of_a.clone() {
             for b in parts_of_b.clone() {
-                self.push([a, b]);
+                self.push([a, b], time);
             }
         }
         true

@@ -110,8 +110,9 @@ pub fn write_manifolds<M, C>(
     }
 }
 
-/// What the other side of a contact with a face is called; parry's contacts of parts have other names.
-const FLAT: PackedFeatureId = PackedFeatureId::UNKNOWN;
+/// What the other side of a contact with a face is called: a face that no cuboid has. parry itself calls
+/// features unknown where its search for the nearest points found the contact.
+const FLAT: PackedFeatureId = PackedFeatureId(u32::MAX);
 
 /// Whether a list, not empty, is of this file.
 pub fn wrote<M, C>(manifolds: &[ContactManifold<M, C>]) -> bool {

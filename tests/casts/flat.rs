@@ -241,3 +241,34 @@ fn a_list_goes_from_hand_to_hand() {
         );
     }
 }
+
+/// parry may not know the features of the only contact at an edge. That list is parry's none the less, with
+/// a workspace that goes with it: a body that jumps off and comes back does not make parry look for its
+/// contact in another list.
+#[test]
+fn a_contact_without_features_is_parrys() {
+    let dispatcher = MedialDispatcher::default().chain(DefaultQueryDispatcher);
+    let table = Cuboid::new(Vector::new(1.0, 0.5, 1.0));
+    let ends = [
+        [0.06378889, -0.013965415, -0.18997534],
+        [0.020026317, -0.004630943, -0.052498754],
+        [0.19712125, 0.0011196756, -0.0035055724],
+    ];
+    let spheres = ends.map(|c| MedialSphere::new(Vector::from(c), 0.05));
+    let mesh = MedialMesh::new(spheres.to_vec(), vec![], vec![[0, 1, 2]]).expect("a slab");
+    let mut edge = Pose::translation(0.97533756, 0.5044995, 0.6097179);
+    edge.rotation = Rotation::from_xyzw(-0.07045055, -0.35603732, 0.32725692, 0.87245464);
+    let above = Pose::translation(0.0, 0.8, 0.0);
+    let (mut manifolds, mut workspace) = (Vec::<Manifold>::new(), None);
+    let mut firsts = Vec::new();
+    for pose in [edge, above, edge] {
+        let lists = (&mut manifolds, &mut workspace);
+        dispatcher
+            .contact_manifolds(&pose.inverse(), &mesh, &table, PREDICTION, lists.0, lists.1)
+            .expect("supported");
+        let first = manifolds.first().and_then(|m| m.points.first());
+        firsts.push(first.map(|p| (p.fid1.is_unknown() || p.fid2.is_unknown(), p.dist)));
+    }
+    assert!(firsts[0].is_some_and(|(unknown, _)| unknown), "{firsts:?}");
+    assert_eq!((firsts[1], firsts[2]), (None, firsts[0]));
+}

@@ -6,12 +6,12 @@ use crate::creature::creature;
 use crate::meshes::{mesh, motion, vector};
 use nalgebra::Vector3;
 use rapier3d::parry::query::NonlinearRigidMotion;
-use rapier3d_medial::MedialMesh;
-use rapier3d_medial::elementary::{InitialContact, ToiOptions};
-use rapier3d_medial::math::{Real, Vector};
+use rapier3d_medial::elementary::{InitialContact, ToiOptions, ToiStatus};
+use rapier3d_medial::math::{Pose, Real, Vector};
 use rapier3d_medial::medial::tree::Below;
 use rapier3d_medial::pair::first_contact::{Query, first_contact_counted};
 use rapier3d_medial::pair::outline::{Left, Outline, Shell, apart_until};
+use rapier3d_medial::{MedialMesh, MedialSphere};
 use std::rc::Rc;
 
 /// Spheres on a body in its frame, with the primitive that each is on.
@@ -211,4 +211,51 @@ fn a_query_that_pauses_gives_the_same_answer() {
         }
     }
     assert!(pauses > 400 && less > 15, "{pauses}, {less}");
+}
+
+/// A sheet of slabs with bumps, so many spheres wide.
+fn sheet(wide: u32) -> MedialMesh {
+    let (mut spheres, mut slabs) = (Vec::new(), Vec::new());
+    for i in 0..wide {
+        for j in 0..wide {
+            let bump = 0.2 * ((i * 7 + j * 13) % 5) as Real;
+            let center = Vector::new(i as Real, j as Real, bump) * 0.02;
+            spheres.push(MedialSphere::new(center, 0.001));
+            if i + 1 < wide && j + 1 < wide {
+                let k = i * wide + j;
+                slabs.push([k, k + 1, k + wide]);
+                slabs.push([k + 1, k + wide, k + wide + 1]);
+            }
+        }
+    }
+    MedialMesh::new(spheres, vec![], slabs).expect("a sheet")
+}
+
+/// Two sheets that slide along each other use up all work: where a pause falls does not matter, and nothing
+/// told free is taken back.
+#[test]
+fn a_query_that_pauses_gives_up_where_it_would_have() {
+    let mesh = sheet(60);
+    let still = NonlinearRigidMotion::constant_position(Pose::IDENTITY);
+    for speed in [0.5, 1.0] {
+        let start = Pose::translation(-0.5 * speed, 0.003, 0.02);
+        let moving = NonlinearRigidMotion {
+            linvel: Vector::new(speed, 0.1 * speed, 0.0),
+            ..NonlinearRigidMotion::constant_position(start)
+        };
+        let options = ToiOptions {
+            initial_contact: InitialContact::Deepen { by: 0.001 },
+            ..Default::default()
+        };
+        let (whole, all) = first_contact_counted(&mesh, &still, &mesh, &moving, 1.0, &options);
+        assert_eq!(whole.status, ToiStatus::Unresolved);
+        let mut query = Query::new([&still, &moving], (&mesh, &mesh), 1.0, &options, None);
+        let mut told = 0.0;
+        while let Some(free) = query.search(told.into()) {
+            assert!(free >= told, "{speed}: {told}, then {free}");
+            told = free;
+        }
+        assert!(told <= whole.lower, "{speed}: {told}, {whole:?}");
+        assert_eq!((query.toi(), query.counts()), (whole, all), "{speed}");
+    }
 }
