@@ -41,7 +41,7 @@ use std::ops::ControlFlow;
 /// Step off the surface that tells an enclosed part from the outside (longest side 1).
 const OFF_SURFACE: f64 = 1e-4;
 
-/// Pieces that either direction may take, and more for each primitive: about 0.2 s, and 0.3 s per
+/// Pieces that either direction may take on average, and more for each primitive: about 0.2 s, and 0.3 s per
 /// thousand. Bug and dolphin at 500 primitives keep to a quarter of the error with that.
 const PIECES: f64 = 3e5;
 const PIECES_PER_PRIMITIVE: f64 = 500.0;
@@ -106,6 +106,8 @@ pub(super) fn measure(
     let triangles = surface.all_corners().zip(0..surface.triangles.len() as u32);
     search.in_depth(triangles, |part| watch.at(0.5 * part))?;
     let (outward, slack) = (search.best, search.slack());
+    // What one direction does not need is the other's.
+    let left = 2.0 * budget - search.examined() as f64 / effort.share;
     let mut boundary = FromBoundary {
         tree,
         solid: &solid,
@@ -117,7 +119,7 @@ pub(super) fn measure(
         effort.enough = 0.0;
     }
     // What stays below the other direction's distance does not raise the error.
-    let mut search = Search::new(&mut boundary, 0.0, outward, effort, budget);
+    let mut search = Search::new(&mut boundary, 0.0, outward, effort, left.max(budget));
     let mut tick = |part| watch.at(0.5 + 0.5 * part);
     let cells = search.in_breadth(vec![solid.whole()], &mut tick)?;
     search.in_depth(cells.iter().copied(), tick)?;
