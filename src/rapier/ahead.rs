@@ -18,7 +18,6 @@ use crate::math::{Pose, Real, Rotation, Vector};
 use crate::parry::answers::Key;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{IntegrationParameters, RigidBody};
-use std::collections::HashMap;
 
 /// How far ahead contacts are computed, in steps. A ring that rolls in another from 0.12 m to the side
 /// reaches, 20 s later, 0.17 m with 0, 0.12 with 0.5, 0.10 with 0.75 and 0.08 with 1. Chains of 5 to 40
@@ -30,9 +29,9 @@ const AHEAD: Real = 1.0;
 /// in the other, or past it.
 const REACH: Real = 0.25;
 
-/// Gap up to which contacts are looked for in any case, in units of rapier's prediction distance: bodies
-/// are pushed by others too.
-const ROOM: Real = 0.25;
+/// How fast a body may be pushed on, in units of the speed of what pushes it: a light one struck by a heavy
+/// one, at full restitution.
+const PUSHED_ON: Real = 2.0;
 
 /// A collider at the start of a step.
 pub struct Start {
@@ -44,6 +43,8 @@ pub struct Start {
     extent: Real,
     /// Its contact skin.
     skin: Real,
+    /// Speed of what may push it ([`super::pushes`]).
+    pub pushed: Real,
 }
 
 impl Start {
@@ -72,29 +73,70 @@ impl Start {
             acceleration: moved.map_or(Vector::ZERO, acceleration),
             extent,
             skin,
+            pushed: 0.0,
         }
+    }
+
+    /// Bound on the speed at which its points turn about the centre of mass.
+    fn swing(&self) -> Real {
+        self.motion.angvel.length() * (self.motion.local_center.length() + self.extent)
+    }
+
+    /// Bound on the speed of its points.
+    pub fn speed(&self) -> Real {
+        self.motion.linvel.length() + self.swing()
     }
 }
 
-/// All medial colliders at the start of a step, by instance id.
+/// All medial colliders at the start of a step.
 pub struct Starts {
+    /// Their instance ids, sorted.
+    pub ids: Vec<u64>,
     /// Each of them.
-    pub all: HashMap<u64, Start>,
+    pub all: Vec<Start>,
     /// Of the step.
     pub parameters: IntegrationParameters,
 }
 
 impl Starts {
+    /// [`reach`] of two of these instance ids.
+    pub fn reach(&self, ids: [u64; 2]) -> Option<Real> {
+        let [a, b] = ids.map(|id| self.of(id));
+        Some(reach([a?, b?], &self.parameters))
+    }
+
+    fn of(&self, id: u64) -> Option<&Start> {
+        Some(&self.all[self.ids.binary_search(&id).ok()?])
+    }
+
     /// The contacts of a pair that rapier asks for unexpectedly, as the batch would have computed them;
     /// `None` if it is not at its start, or rapier looks further than usual.
     pub fn contacts(&self, job: PairJob) -> Option<PairResult> {
-        let [a, b] = [&job.mesh1, &job.mesh2].map(|m| self.all.get(&m.instance_id()));
+        let [a, b] = [&job.mesh1, &job.mesh2].map(|m| self.of(m.instance_id()));
         let starts = [a?, b?];
         let at_start = starts[0].motion.start.inv_mul(&starts[1].motion.start) == job.pos12;
         let skins = starts[0].skin + starts[1].skin;
         let usual = job.prediction == self.parameters.prediction_distance() + skins;
         (at_start && usual).then(|| Ahead::contacts(starts, &self.parameters, job))
     }
+}
+
+/// Bound on the speed at which two colliders close.
+fn closing([a, b]: [&Start; 2]) -> Real {
+    (a.motion.linvel - b.motion.linvel).length() + a.swing() + b.swing()
+}
+
+/// Gap, without contact skins, that two colliders may close in the step by their velocities, gravity, forces
+/// and what is near them, after what they may have moved before rapier asks; at most rapier's prediction
+/// distance.
+fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
+    let (dt, prediction) = (parameters.dt, parameters.prediction_distance());
+    let [a, b] = starts.map(|s| s.acceleration);
+    // Either may be held by something.
+    let pull = a.length().max(b.length()).max(a.distance(b));
+    let kept = parameters.contact_recycle_distance();
+    let pushed = PUSHED_ON * starts[0].pushed.max(starts[1].pushed);
+    prediction.min(kept + pull * dt * dt + (pushed + closing(starts)) * dt)
 }
 
 /// From where contacts computed ahead have to be brought back to.
@@ -113,9 +155,8 @@ impl Ahead {
     /// Of the two colliders of `job`, which is at their poses at the start of a step; with the job that
     /// computes their contacts.
     ///
-    /// Of these only those count which their velocities, gravity and forces can close in the step, after what
-    /// the pair may have moved before rapier asked: the others of the prediction distance cost the solver as
-    /// much as those that bear. What a third body pushes further than [`ROOM`] meets in the next step.
+    /// Of these only those within [`reach`] count: the others of the prediction distance cost the solver as
+    /// much as those that bear.
     pub fn new(
         starts: [&Start; 2],
         parameters: &IntegrationParameters,
@@ -125,14 +166,10 @@ impl Ahead {
         let thickness = job.mesh1.thickness().min(job.mesh2.thickness());
         let motions = starts.map(|s| &s.motion);
         let [a, b] = motions;
-        let swing = |k: usize| {
-            let arm = motions[k].local_center.length() + starts[k].extent;
-            motions[k].angvel.length() * arm
-        };
-        let speed = (a.linvel - b.linvel).length() + swing(0) + swing(1);
-        let reach = prediction.min(REACH * thickness);
-        let far = speed * AHEAD * dt > reach;
-        let time = if far { reach / speed } else { AHEAD * dt };
+        let speed = closing(starts);
+        let longest = prediction.min(REACH * thickness);
+        let far = speed * AHEAD * dt > longest;
+        let time = if far { longest / speed } else { AHEAD * dt };
         // At the start, if nothing moves or velocities are not finite.
         let poses = if speed > 0.0 && time > 0.0 {
             motions.map(|m| m.position_at_time(time))
@@ -146,12 +183,7 @@ impl Ahead {
             centers: motions.map(|m| m.local_center),
             asked: job.prediction,
         };
-        let [a1, a2] = starts.map(|s| s.acceleration);
-        // Either may be held by something.
-        let pull = a1.length().max(a2.length()).max(a1.distance(a2));
-        let kept = parameters.contact_recycle_distance();
-        let room = kept + ROOM * prediction + pull * dt * dt;
-        let near = prediction.min(room + speed * dt);
+        let near = reach(starts, parameters);
         let job = PairJob {
             pos12: poses[0].inv_mul(&poses[1]),
             prediction: job.prediction - prediction + near,

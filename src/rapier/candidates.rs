@@ -1,15 +1,19 @@
-//! Which pairs of medial colliders may need manifolds in this step: sweep and prune over their boxes
-//! at the start of the step.
+//! Which pairs of medial colliders may need manifolds in this step: those whose boxes at its start meet.
 
 use super::ahead::{Ahead, Start, Starts};
-use super::hanging::is_hooked;
-use super::recycled::Recycled;
+use super::hanging::{self, is_hooked};
+use super::pushes;
+use super::recycled::{Place, Recycled};
+use super::sweep::meeting;
 use crate::batch::PairJob;
-use crate::math::{Pose, Real, Rotation, Vector};
+use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle, RigidBodySet};
-use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
+use rapier3d::dynamics::{
+    ImpulseJointSet, IntegrationParameters, MultibodyJointSet, RigidBody, RigidBodyHandle,
+    RigidBodySet,
+};
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase};
 use std::collections::HashSet;
 
 /// Gives every medial collider an instance id of its own; colliders that share a shape would share
@@ -40,6 +44,7 @@ struct Item<'a> {
     parent: Option<(RigidBodyHandle, &'a RigidBody)>,
     mesh: &'a MedialMesh,
     pose: Pose,
+    /// As far as contacts are looked for.
     aabb: Aabb,
 }
 
@@ -62,6 +67,30 @@ impl Item<'_> {
         self.parent
             .is_some_and(|(_, b)| b.is_dynamic() && b.is_enabled() && !b.is_sleeping())
     }
+
+    fn reach(&self) -> Real {
+        let aabb = self.mesh.aabb();
+        aabb.mins.length().max(aabb.maxs.length())
+    }
+}
+
+/// The world at the start of a step.
+#[derive(Clone, Copy)]
+pub struct Sets<'a> {
+    /// Gravity.
+    pub gravity: Vector,
+    /// Of the step.
+    pub parameters: &'a IntegrationParameters,
+    /// Bodies.
+    pub bodies: &'a RigidBodySet,
+    /// Colliders.
+    pub colliders: &'a ColliderSet,
+    /// Joints.
+    pub impulse_joints: &'a ImpulseJointSet,
+    /// Multibodies.
+    pub multibody_joints: &'a MultibodyJointSet,
+    /// Contacts of the step before.
+    pub narrow_phase: &'a NarrowPhase,
 }
 
 /// Near pairs of medial colliders, and of them those that the narrow phase will ask for.
@@ -74,107 +103,133 @@ pub struct Candidates {
     pub ahead: Vec<Ahead>,
     /// What those need that rapier asks for besides.
     pub starts: Starts,
+    /// Colliders that rapier has to be made to ask for.
+    pub fresh: HashSet<ColliderHandle>,
 }
 
 /// Finds all near pairs of medial colliders: at least one of them dynamic and awake, not on the same
 /// body, groups compatible. The order of the two is the narrow phase's (lower collider index
-/// first). Of the colliders of `fresh` rapier will ask for all contacts.
-pub fn find(
-    gravity: Vector,
-    parameters: &IntegrationParameters,
-    bodies: &RigidBodySet,
-    colliders: &ColliderSet,
-    fresh: &HashSet<ColliderHandle>,
-    recycled: &mut Recycled,
-) -> Candidates {
-    let items = items(parameters, bodies, colliders);
-    let starts = starts(&items, gravity, parameters);
-    recycled.begin(parameters);
-    let (mut pairs, mut jobs, mut ahead) = (0, Vec::new(), Vec::new());
-    for_each_near(&items, parameters, |near| {
-        pairs += 1;
-        if recycled.needs_update(&near.job, near.rotations(), near.asked(fresh)) {
-            let (from, job) = near.at_the_end(&starts);
-            jobs.push(job);
-            ahead.push(from);
-        }
-    });
+/// first).
+pub fn find(sets: Sets, recycled: &mut Recycled) -> Candidates {
+    let scene = Scene::new(sets);
+    let fresh = hanging::find(&sets, &scene.starts);
+    recycled.begin(sets.parameters);
+    let asked =
+        |pair: &&[usize; 2]| recycled.needs_update(&scene.place(pair), scene.asked(pair, &fresh));
+    let asked = scene.pairs.iter().filter(asked);
+    let (ahead, jobs) = asked.map(|pair| scene.at_the_end(pair)).unzip();
     Candidates {
-        pairs,
+        pairs: scene.pairs.len(),
         jobs,
         ahead,
-        starts,
-    }
-}
-
-fn starts(items: &[Item], gravity: Vector, parameters: &IntegrationParameters) -> Starts {
-    let start = |item: &Item| (item.mesh.instance_id(), item.start(gravity, parameters.dt));
-    Starts {
-        all: items.iter().map(start).collect(),
-        parameters: *parameters,
+        starts: scene.starts,
+        fresh,
     }
 }
 
 /// What [`find`] will find at the next step, if nothing is changed until then.
-pub fn expect(
-    gravity: Vector,
-    parameters: &IntegrationParameters,
-    bodies: &RigidBodySet,
-    colliders: &ColliderSet,
-    fresh: &HashSet<ColliderHandle>,
-    recycled: &Recycled,
-) -> Vec<PairJob> {
-    let items = items(parameters, bodies, colliders);
-    let starts = starts(&items, gravity, parameters);
-    let mut jobs = Vec::new();
-    for_each_near(&items, parameters, |near| {
-        if near.asked(fresh) || !recycled.recycles(&near.job, near.rotations()) {
-            jobs.push(near.at_the_end(&starts).1);
+pub fn expect(sets: Sets, recycled: &Recycled) -> Vec<PairJob> {
+    let scene = Scene::new(sets);
+    let fresh = hanging::find(&sets, &scene.starts);
+    let asked =
+        |pair: &&[usize; 2]| scene.asked(pair, &fresh) || !recycled.recycles(&scene.place(pair));
+    let asked = scene.pairs.iter().filter(asked);
+    asked.map(|pair| scene.at_the_end(pair).1).collect()
+}
+
+/// The medial colliders at the start of a step, and which of them are near each other.
+struct Scene<'a> {
+    items: Vec<Item<'a>>,
+    starts: Starts,
+    /// In the narrow phase's order.
+    pairs: Vec<[usize; 2]>,
+}
+
+impl<'a> Scene<'a> {
+    fn new(sets: Sets<'a>) -> Self {
+        let items = items(&sets);
+        let start = |item: &Item| item.start(sets.gravity, sets.parameters.dt);
+        let mut all: Vec<Start> = items.iter().map(start).collect();
+        let mut boxes: Vec<Aabb> = items.iter().map(|item| item.aabb).collect();
+        let speed = |(item, start): (&Item, &Start)| match item.parent {
+            Some((body, _)) if pushes::is_tied(&sets, body) => Real::MAX,
+            _ => start.speed(),
+        };
+        let mut speeds: Vec<Real> = items.iter().zip(&all).map(speed).collect();
+        for (aabb, speed) in pushes::others(&sets) {
+            boxes.push(aabb);
+            speeds.push(speed);
         }
-    });
-    jobs
-}
+        let met = meeting(&boxes);
+        let pushed = pushes::pushed(&speeds, &met);
+        for (start, pushed) in all.iter_mut().zip(pushed) {
+            start.pushed = pushed;
+        }
+        let medial = met
+            .into_iter()
+            .filter(|pair| pair.iter().all(|k| *k < items.len()));
+        let wanted = medial.filter(|[i, j]| wanted(&items[*i], &items[*j]));
+        let pairs = wanted.map(|pair| in_order(&items, pair)).collect();
+        let starts = Starts {
+            ids: items.iter().map(|item| item.mesh.instance_id()).collect(),
+            all,
+            parameters: *sets.parameters,
+        };
+        Self {
+            items,
+            starts,
+            pairs,
+        }
+    }
 
-/// Two colliders that are near each other.
-struct Near<'a, 'b> {
-    items: [&'a Item<'b>; 2],
-    /// At the start of the step.
-    job: PairJob,
-}
+    fn of(&self, pair: &[usize; 2]) -> [&Item<'a>; 2] {
+        pair.map(|k| &self.items[k])
+    }
 
-impl Near<'_, '_> {
-    fn rotations(&self) -> [Rotation; 2] {
-        self.items.map(|item| item.pose.rotation)
+    fn place(&self, pair: &[usize; 2]) -> Place {
+        let [a, b] = self.of(pair);
+        Place {
+            ids: pair.map(|k| self.starts.ids[k]),
+            pos12: a.pose.inv_mul(&b.pose),
+            rotations: [a.pose.rotation, b.pose.rotation],
+            reach: a.reach().max(b.reach()),
+        }
     }
 
     /// Whether rapier asks for the contacts of one of them in any case: the user has hooks on it, or it is
     /// `fresh`.
-    fn asked(&self, fresh: &HashSet<ColliderHandle>) -> bool {
+    fn asked(&self, pair: &[usize; 2], fresh: &HashSet<ColliderHandle>) -> bool {
         let asked = |i: &&Item| is_hooked(i.collider) || fresh.contains(&i.handle);
-        self.items.iter().any(asked)
+        self.of(pair).iter().any(asked)
     }
 
     /// The job at the poses that the velocities lead to.
-    fn at_the_end(self, starts: &Starts) -> (Ahead, PairJob) {
-        let of = |item: &Item| &starts.all[&item.mesh.instance_id()];
-        Ahead::new(self.items.map(of), &starts.parameters, self.job)
+    fn at_the_end(&self, pair: &[usize; 2]) -> (Ahead, PairJob) {
+        let [a, b] = self.of(pair);
+        let parameters = &self.starts.parameters;
+        let skins = a.collider.contact_skin() + b.collider.contact_skin();
+        let job = PairJob {
+            mesh1: a.mesh.clone(),
+            mesh2: b.mesh.clone(),
+            pos12: a.pose.inv_mul(&b.pose),
+            // Added up as rapier does.
+            prediction: parameters.prediction_distance() + skins,
+        };
+        Ahead::new(pair.map(|k| &self.starts.all[k]), parameters, job)
     }
 }
 
-/// The medial colliders, from left to right.
-fn items<'a>(
-    parameters: &IntegrationParameters,
-    bodies: &'a RigidBodySet,
-    colliders: &'a ColliderSet,
-) -> Vec<Item<'a>> {
-    let prediction = parameters.prediction_distance();
-    let mut items: Vec<Item> = colliders
+/// The medial colliders, by instance id.
+fn items<'a>(sets: &Sets<'a>) -> Vec<Item<'a>> {
+    let prediction = sets.parameters.prediction_distance();
+    let mut items: Vec<Item> = sets
+        .colliders
         .iter_enabled()
         .filter_map(|(handle, collider)| {
             let mesh = collider.shape().as_shape::<MedialMesh>()?;
             let parent = collider
                 .parent()
-                .and_then(|h| bodies.get(h).map(|body| (h, body)));
+                .and_then(|h| sets.bodies.get(h).map(|body| (h, body)));
             // What the narrow phase will see, to the bit.
             let pose = match (parent, collider.position_wrt_parent()) {
                 (Some((_, body)), Some(offset)) => *body.position() * *offset,
@@ -192,30 +247,8 @@ fn items<'a>(
             })
         })
         .collect();
-    items.sort_by(|a, b| a.aabb.mins.x.total_cmp(&b.aabb.mins.x));
+    items.sort_by_key(|item| item.mesh.instance_id());
     items
-}
-
-/// Visits each near pair of them.
-fn for_each_near<'a, 'b>(
-    items: &'a [Item<'b>],
-    parameters: &IntegrationParameters,
-    mut visit: impl FnMut(Near<'a, 'b>),
-) {
-    let prediction = parameters.prediction_distance();
-    for (i, a) in items.iter().enumerate() {
-        for b in &items[i + 1..] {
-            if b.aabb.mins.x > a.aabb.maxs.x {
-                break;
-            }
-            if !wanted(a, b) {
-                continue;
-            }
-            let (x, y) = in_order(a, b);
-            let job = job(x, y, prediction);
-            visit(Near { items: [x, y], job });
-        }
-    }
 }
 
 fn wanted(a: &Item, b: &Item) -> bool {
@@ -223,8 +256,7 @@ fn wanted(a: &Item, b: &Item) -> bool {
         (Some((x, _)), Some((y, _))) => x == y,
         _ => false,
     };
-    a.aabb.intersects(&b.aabb)
-        && (a.active() || b.active())
+    (a.active() || b.active())
         && !same_body
         && a.collider
             .collision_groups()
@@ -234,20 +266,7 @@ fn wanted(a: &Item, b: &Item) -> bool {
 }
 
 /// In the narrow phase's order.
-fn in_order<'a, 'b>(a: &'a Item<'b>, b: &'a Item<'b>) -> (&'a Item<'b>, &'a Item<'b>) {
-    if a.handle.into_raw_parts().0 < b.handle.into_raw_parts().0 {
-        (a, b)
-    } else {
-        (b, a)
-    }
-}
-
-fn job(x: &Item, y: &Item, prediction: Real) -> PairJob {
-    PairJob {
-        mesh1: x.mesh.clone(),
-        mesh2: y.mesh.clone(),
-        pos12: x.pose.inv_mul(&y.pose),
-        // Added up as rapier does.
-        prediction: prediction + (x.collider.contact_skin() + y.collider.contact_skin()),
-    }
+fn in_order(items: &[Item], [i, j]: [usize; 2]) -> [usize; 2] {
+    let index = |k: usize| items[k].handle.into_raw_parts().0;
+    if index(i) < index(j) { [i, j] } else { [j, i] }
 }

@@ -1,14 +1,19 @@
-//! Bodies that hang: whose contacts pull them away from their centre of mass, as those of convex bodies
-//! never do.
+//! Whose contacts are computed anew although their pair has hardly moved.
 //!
-//! rapier keeps the contacts of a pair until it has moved by its recycle distance. They are contacts of the
+//! Bodies that hang: whose contacts pull them away from their centre of mass, as those of convex bodies
+//! never do. rapier keeps the contacts of a pair until it has moved by its recycle distance. They are contacts of the
 //! past, and what hangs in them swings on (see [`super::ahead`]). So where contacts that a body hangs in
 //! have moved, rapier is made to ask for all of that collider's.
+//!
+//! And bodies that came to rest: contacts that could close while they moved cannot any more, and the solver
+//! would pay for them as long as they lie there.
 
+use super::ahead::Starts;
+use super::candidates::Sets;
 use crate::math::Real;
 use crate::medial::MedialMesh;
-use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodySet};
-use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, ContactPair, NarrowPhase};
+use rapier3d::dynamics::RigidBody;
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, ContactPair};
 use rapier3d::pipeline::ActiveHooks;
 use std::collections::HashSet;
 
@@ -24,28 +29,33 @@ const TOUCHING: Real = 0.001;
 /// on each other's inner sides at all angles, and half of them would count at 90°.
 const PULLS: Real = 0.7;
 
+/// Gap of a contact, in units of what its pair can close now ([`super::ahead`]), from which its pair has
+/// come to rest. At 1 those that move a little are computed at every step.
+const RESTS: Real = 1.25;
+
 /// A bit of a collider's hooks that means nothing to rapier but that there are some: it keeps no contacts
 /// of such a collider, and calls no hook. It stays until the next step: a collider that is changed after
 /// a step counts as changed by the user.
 const ASK_ANEW: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
 
-/// The colliders that hang in contacts with medial meshes that have moved. Known from the world alone, so
+/// The colliders whose contacts with medial meshes are to be computed anew. Known from the world alone, so
 /// that a world that was saved and loaded goes on as it would have.
-pub fn find(
-    parameters: &IntegrationParameters,
-    bodies: &RigidBodySet,
-    colliders: &ColliderSet,
-    narrow_phase: &NarrowPhase,
-) -> HashSet<ColliderHandle> {
-    let unit = parameters.length_unit;
-    let pairs = narrow_phase.contact_pairs();
+pub fn find(sets: &Sets, starts: &Starts) -> HashSet<ColliderHandle> {
+    let pairs = sets.narrow_phase.contact_pairs();
     pairs
         .filter_map(|pair| {
-            let sides = [pair.collider1, pair.collider2].map(|h| Side::new(h, bodies, colliders));
+            let sides = [pair.collider1, pair.collider2].map(|h| Side::new(h, sets));
             let [Some(a), Some(b)] = sides else {
                 return None;
             };
-            hanging(pair, [&a, &b], unit)
+            let sides = [&a, &b];
+            let mass = |s: &Side| s.moving().map_or(Real::MAX, RigidBody::mass);
+            let lighter = usize::from(mass(&b) <= mass(&a));
+            sides[lighter].moving()?;
+            let skins: Real = sides.iter().map(|s| s.collider.contact_skin()).sum();
+            let anew = hanging(pair, sides, skins, sets.parameters.length_unit)
+                || at_rest(pair, sides, skins, starts);
+            anew.then_some(sides[lighter].handle)
         })
         .collect()
 }
@@ -54,17 +64,19 @@ pub fn find(
 struct Side<'a> {
     handle: ColliderHandle,
     collider: &'a Collider,
+    mesh: &'a MedialMesh,
     body: Option<&'a RigidBody>,
 }
 
 impl<'a> Side<'a> {
-    fn new(handle: ColliderHandle, bodies: &'a RigidBodySet, all: &'a ColliderSet) -> Option<Self> {
-        let collider = all.get(handle)?;
-        collider.shape().as_shape::<MedialMesh>()?;
-        let body = collider.parent().and_then(|h| bodies.get(h));
+    fn new(handle: ColliderHandle, sets: &Sets<'a>) -> Option<Self> {
+        let collider = sets.colliders.get(handle)?;
+        let mesh = collider.shape().as_shape::<MedialMesh>()?;
+        let body = collider.parent().and_then(|h| sets.bodies.get(h));
         Some(Self {
             handle,
             collider,
+            mesh,
             body,
         })
     }
@@ -75,18 +87,17 @@ impl<'a> Side<'a> {
     }
 }
 
-/// The lighter one of a pair that hangs in contacts which have moved, in a world of this length unit.
-fn hanging(pair: &ContactPair, sides: [&Side; 2], unit: Real) -> Option<ColliderHandle> {
+/// Whether one of a pair hangs in contacts which have moved, in a world of this length unit.
+fn hanging(pair: &ContactPair, sides: [&Side; 2], skins: Real, unit: Real) -> bool {
     let moving = sides.map(Side::moving);
-    let mass = |k: usize| moving[k].map_or(Real::MAX, RigidBody::mass);
-    let lighter = usize::from(mass(1) <= mass(0));
-    moving[lighter]?;
     let limit = MOVED * unit;
-    let skins: Real = sides.iter().map(|s| s.collider.contact_skin()).sum();
     let poses = sides.map(|s| *s.collider.position());
     let manifolds = pair.manifolds().iter();
     let mut contacts = manifolds.flat_map(|m| m.points.iter().map(move |p| (m, p)));
-    let moved = contacts.any(|(m, p)| {
+    contacts.any(|(m, p)| {
+        if p.dist - skins >= TOUCHING * unit {
+            return false;
+        }
         let points = [poses[0] * p.local_p1, poses[1] * p.local_p2];
         // The force on each, as it turned with it, and as it was.
         let now = [
@@ -101,11 +112,19 @@ fn hanging(pair: &ContactPair, sides: [&Side; 2], unit: Real) -> Option<Collider
             arm(k).is_some_and(|arm| arm.length() * chord > limit)
         };
         let gap = points[1] - points[0] - m.data.normal * p.dist;
-        p.dist - skins < TOUCHING * unit
-            && (pulled(0) || pulled(1))
-            && (swung(0) || swung(1) || gap.length() > limit)
-    });
-    moved.then_some(sides[lighter].handle)
+        (pulled(0) || pulled(1)) && (swung(0) || swung(1) || gap.length() > limit)
+    })
+}
+
+/// Whether the solver has contacts of a pair that cannot close any more.
+fn at_rest(pair: &ContactPair, sides: [&Side; 2], skins: Real, starts: &Starts) -> bool {
+    let points = pair.manifolds().iter().flat_map(|m| &m.points);
+    let widest = points.map(|p| p.dist).fold(Real::MIN, Real::max) - skins;
+    // What can close is more than what a pair may move unasked.
+    widest > RESTS * starts.parameters.contact_recycle_distance()
+        && starts
+            .reach(sides.map(|s| s.mesh.instance_id()))
+            .is_some_and(|reach| widest > RESTS * reach)
 }
 
 /// Makes rapier compute all contacts of these colliders anew in its next step, and of no others.

@@ -15,11 +15,13 @@ mod motion;
 mod muting;
 mod pairs;
 pub mod pipeline;
+mod pushes;
 mod recycled;
 pub mod report;
 #[cfg(feature = "serde-serialize")]
 pub mod saved_world;
 mod speculative;
+mod sweep;
 mod tuning;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};

@@ -1,5 +1,6 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
+use super::candidates::Sets;
 use super::effects::{Effects, Wanted};
 use super::emit::{Once, Told};
 use super::first_contact::{Asker, Work};
@@ -29,7 +30,7 @@ use web_time::Instant;
 /// velocities add, are computed and solved; so a smaller distance takes more contact computations of
 /// fewer contacts. Contacts in which a body hangs are computed anew much sooner, whatever it is: rapier is
 /// made to by bit 31 of the collider's hooks, which stays until the next step and calls no hook.
-pub const RECYCLE_DISTANCE: Real = 0.005;
+pub const RECYCLE_DISTANCE: Real = 0.004;
 
 /// How a pipeline works.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -91,11 +92,16 @@ impl MedialPipeline {
     /// only when it comes. What is changed in the world after that goes to the CPU.
     #[cfg(feature = "gpu")]
     pub async fn prepare(&mut self, world: &PhysicsWorld) {
-        let parameters = &world.integration_parameters;
-        let (bodies, colliders) = (&world.bodies, &world.colliders);
-        let fresh = hanging::find(parameters, bodies, colliders, &world.narrow_phase);
-        let (gravity, recycled) = (world.gravity, &self.recycled);
-        let next = candidates::expect(gravity, parameters, bodies, colliders, &fresh, recycled);
+        let sets = Sets {
+            gravity: world.gravity,
+            parameters: &world.integration_parameters,
+            bodies: &world.bodies,
+            colliders: &world.colliders,
+            impulse_joints: &world.impulse_joints,
+            multibody_joints: &world.multibody_joints,
+            narrow_phase: &world.narrow_phase,
+        };
+        let next = candidates::expect(sets, &self.recycled);
         self.batch.submit_async(&next).await;
         self.batch.ready().await;
     }
@@ -208,14 +214,16 @@ impl MedialPipeline {
             );
             report.add(&done);
             let Some(time) = stopped else {
-                self.send_early(
+                let sets = Sets {
                     gravity,
                     parameters,
                     bodies,
                     colliders,
+                    impulse_joints,
+                    multibody_joints,
                     narrow_phase,
-                    &mut report,
-                );
+                };
+                self.send_early(sets, &mut report);
                 return report;
             };
             report.stops += 1;
@@ -224,22 +232,12 @@ impl MedialPipeline {
     }
 
     /// The poses are final: a device has the time until the next step for its contacts.
-    fn send_early(
-        &mut self,
-        gravity: Vector,
-        parameters: &IntegrationParameters,
-        bodies: &RigidBodySet,
-        colliders: &ColliderSet,
-        narrow_phase: &NarrowPhase,
-        report: &mut StepReport,
-    ) {
+    fn send_early(&mut self, sets: Sets, report: &mut StepReport) {
         if !self.batch.has_device() {
             return;
         }
         let before = self.batch.report().clone();
-        let fresh = hanging::find(parameters, bodies, colliders, narrow_phase);
-        let recycled = &self.recycled;
-        let next = candidates::expect(gravity, parameters, bodies, colliders, &fresh, recycled);
+        let next = candidates::expect(sets, &self.recycled);
         self.batch.submit(&next);
         let after = self.batch.report();
         report.submissions += after.submissions - before.submissions;
@@ -271,10 +269,17 @@ impl MedialPipeline {
         let before = self.batch.report().clone();
         let clock = Instant::now();
         report.medial_colliders = candidates::make_unique(colliders);
-        let fresh = hanging::find(parameters, bodies, colliders, narrow_phase);
-        hanging::ask_anew(&fresh, colliders);
-        let recycled = &mut self.recycled;
-        let found = candidates::find(gravity, parameters, bodies, colliders, &fresh, recycled);
+        let sets = Sets {
+            gravity,
+            parameters,
+            bodies,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            narrow_phase,
+        };
+        let found = candidates::find(sets, &mut self.recycled);
+        hanging::ask_anew(&found.fresh, colliders);
         let mut results = self.batch.run(&found.jobs);
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();

@@ -14,6 +14,18 @@ use std::collections::HashMap;
 /// Cosine of the rotation of either body since its pair's last update above which rapier recycles.
 const ROTATION_COSINE: Real = 0.98;
 
+/// Where two colliders are.
+pub struct Place {
+    /// Their instance ids.
+    pub ids: [u64; 2],
+    /// Pose of the second in the first's frame.
+    pub pos12: Pose,
+    /// Rotations of both.
+    pub rotations: [Rotation; 2],
+    /// Largest distance of a corner of either's box from its origin.
+    pub reach: Real,
+}
+
 struct Frozen {
     pos12: Pose,
     rotations: [Rotation; 2],
@@ -47,35 +59,28 @@ impl Recycled {
 
     /// Whether rapier will update this pair in full, which it does in any case if it is `asked` to; if so
     /// its account starts anew at this pose.
-    pub fn needs_update(&mut self, job: &PairJob, rotations: [Rotation; 2], asked: bool) -> bool {
-        let key = ids(job);
-        let recycled = !asked && self.recycles(job, rotations);
-        if let Some(f) = self.frozen.get_mut(&key) {
-            f.seen = self.step;
-            if recycled {
+    pub fn needs_update(&mut self, pair: &Place, asked: bool) -> bool {
+        let (limits, step) = (self.limits, self.step);
+        if let Some(f) = self.frozen.get_mut(&pair.ids) {
+            f.seen = step;
+            if !asked && f.recycles(pair, limits) {
                 return false;
             }
         }
         let frozen = Frozen {
-            pos12: job.pos12,
-            rotations,
+            pos12: pair.pos12,
+            rotations: pair.rotations,
             touching: false,
-            seen: self.step,
+            seen: step,
         };
-        self.frozen.insert(key, frozen);
+        self.frozen.insert(pair.ids, frozen);
         true
     }
 
     /// Whether rapier keeps the contacts of this pair, as far as is known now.
-    pub fn recycles(&self, job: &PairJob, rotations: [Rotation; 2]) -> bool {
-        self.frozen.get(&ids(job)).is_some_and(|f| {
-            let limit = self.limits[usize::from(!f.touching)];
-            let turned = |k: usize| {
-                let c = f.rotations[k].dot(rotations[k]);
-                2.0 * c * c - 1.0 <= ROTATION_COSINE
-            };
-            drift(&f.pos12, job) <= limit && limit > 0.0 && !turned(0) && !turned(1)
-        })
+    pub fn recycles(&self, pair: &Place) -> bool {
+        let frozen = self.frozen.get(&pair.ids);
+        frozen.is_some_and(|f| f.recycles(pair, self.limits))
     }
 
     /// Notes whether a pair just updated is in contact.
@@ -95,13 +100,22 @@ fn ids(job: &PairJob) -> [u64; 2] {
     [job.mesh1.instance_id(), job.mesh2.instance_id()]
 }
 
-/// Bound on how far a point of either mesh moved relative to the other since the pose `then`.
-fn drift(then: &Pose, job: &PairJob) -> Real {
-    let now = &job.pos12;
-    let extent = |aabb: parry3d::bounding_volume::Aabb| aabb.mins.length().max(aabb.maxs.length());
-    let reach = extent(job.mesh1.aabb()).max(extent(job.mesh2.aabb()));
-    let turn = then.rotation.inverse() * now.rotation;
-    // The chord of a rotation by θ at distance 1 is 2 sin(θ/2) = 2 |vector part|.
-    let chord = 2.0 * (turn.x * turn.x + turn.y * turn.y + turn.z * turn.z).sqrt();
-    (now.translation - then.translation).length() + chord * reach
+impl Frozen {
+    fn recycles(&self, pair: &Place, limits: [Real; 2]) -> bool {
+        let limit = limits[usize::from(!self.touching)];
+        let turned = |k: usize| {
+            let c = self.rotations[k].dot(pair.rotations[k]);
+            2.0 * c * c - 1.0 <= ROTATION_COSINE
+        };
+        self.drift(pair) <= limit && limit > 0.0 && !turned(0) && !turned(1)
+    }
+
+    /// Bound on how far a point of either mesh moved relative to the other since.
+    fn drift(&self, pair: &Place) -> Real {
+        let (then, now) = (&self.pos12, &pair.pos12);
+        let turn = then.rotation.inverse() * now.rotation;
+        // The chord of a rotation by θ at distance 1 is 2 sin(θ/2) = 2 |vector part|.
+        let chord = 2.0 * (turn.x * turn.x + turn.y * turn.y + turn.z * turn.z).sqrt();
+        (now.translation - then.translation).length() + chord * pair.reach
+    }
 }
