@@ -218,21 +218,24 @@ pub(crate) fn motion_is_finite(m: &NonlinearRigidMotion) -> bool {
         && m.angvel.is_finite()
 }
 
+/// A lower bound that keeps its promise.
+pub(crate) fn rounded_down(exact: f64) -> Real {
+    let bound = exact as Real;
+    if f64::from(bound) > exact {
+        return bound.next_down();
+    }
+    bound
+}
+
 /// Reports a result in world space; `pose` gives sphere `i` of a side at a time.
 pub(crate) fn to_toi<S: Scalar>(
     earliest: &Earliest<S>,
     options: &ToiOptions,
     pose: impl Fn(usize, u8, Real) -> MedialSphere,
 ) -> Toi {
-    // Down for the lower bound, so that rounding to f32 keeps the promise.
-    let exact = earliest.lower.to_f64();
-    let mut lower = exact as Real;
-    if lower as f64 > exact {
-        lower = lower.next_down();
-    }
     let mut toi = Toi {
         status: earliest.status,
-        lower,
+        lower: rounded_down(earliest.lower.to_f64()),
         upper: earliest.upper.to_f64() as Real,
         tolerance: earliest.tolerance.to_f64() as Real,
         iterations: earliest.iterations,

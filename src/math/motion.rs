@@ -59,6 +59,11 @@ impl<S: Scalar> Frame<S> {
     pub fn arm(&self, local: Vec3<S>) -> Vec3<S> {
         rotate(&self.columns, local - self.local_center)
     }
+
+    /// A point given in the body's frame.
+    pub fn point(&self, local: Vec3<S>) -> Vec3<S> {
+        self.center + self.arm(local)
+    }
 }
 
 /// Position, velocity and acceleration of a point, per step.
@@ -88,6 +93,13 @@ impl<S: Scalar> RigidMotion<S> {
             Self::new(motion1, Vec3::zero(), drift, seconds),
             Self::new(motion2, offset, Vec3::zero(), seconds),
         ]
+    }
+
+    /// One motion in world space.
+    pub fn alone(motion: &NonlinearRigidMotion, seconds: S) -> Self {
+        let v = Vec3::<S>::from_vector;
+        let origin = v(motion.start.translation);
+        Self::new(motion, origin, v(motion.linvel) * seconds, seconds)
     }
 
     fn new(

@@ -73,22 +73,29 @@ impl Balls {
 /// most are never asked about again. At 0.1 fast queries take 3 % longer, at 1 approaches a tenth.
 const ENOUGH: f64 = 0.02;
 
-/// Fraction of the piece, from `from` to `until`, up to which directions prove two primitives free.
+/// Fraction of the piece, from `from` on, up to which directions prove two primitives free; `None`: up to
+/// `until`, or at that moment where there is no other.
 /// Along chords a direction's bound is concave and piecewise linear in time
 /// ([`crate::elementary::certificate`]): its first root follows from those of all sphere pairs.
 /// The middles now and later give directions first, then edges and normals.
 ///
 /// What comes within `tolerance` of the target and no nearer may be called free, but not for a while:
 /// where primitives come within the tolerance, their tests begin, and say that they touch.
-pub(super) fn free_until(balls: [&Balls; 2], span: [f64; 2], target: f64, tolerance: f64) -> f64 {
+pub(super) fn free_until(
+    balls: [&Balls; 2],
+    span: [f64; 2],
+    target: f64,
+    tolerance: f64,
+) -> Option<f64> {
     let ([a, b], [from, until]) = (balls, span);
     // Rounding: a few ulps of the numbers in play.
     let least = target + 64.0 * f64::EPSILON * (a.size + b.size);
-    let mut free = from;
+    let mut free = Some(from);
     let enough = from + ENOUGH * (until - from);
     let mut attempt = |n: Vec3<f64>| {
-        free = free.max(holds(balls, n, span, least, least + tolerance));
-        free >= enough
+        let held = holds(balls, n, span, least, least + tolerance);
+        free = free.zip(held).map(|(a, b)| a.max(b));
+        free.is_none_or(|free| free >= enough && free > from)
     };
     let toward = |t: f64| b.middle(t) - a.middle(t);
     let y = toward(from);
@@ -99,7 +106,7 @@ pub(super) fn free_until(balls: [&Balls; 2], span: [f64; 2], target: f64, tolera
             .into_iter()
             .flatten()
             .any(attempt);
-    free.min(until)
+    free
 }
 
 /// Directions near `y` that the shapes themselves suggest: across the edges of either, across one
@@ -123,10 +130,16 @@ fn across(a: [Vec3<f64>; 2], b: [Vec3<f64>; 2], y: Vec3<f64>) -> [Option<Vec3<f6
 }
 
 /// Until when all of the second primitive stays beyond all of the first along `n`, of any length:
-/// `until` where it
-/// is further than `least` for so long, else as long as it is further than `contact`; `from` if it
-/// is not.
-fn holds([a, b]: [&Balls; 2], n: Vec3<f64>, span: [f64; 2], least: f64, contact: f64) -> f64 {
+/// `None`, for good, where it is further than `least` until the end of the span, else as long as it is
+/// further than `contact`; `from` if it is not. In a span without length, where a contact is known already,
+/// what is within `contact` may be the nearer one.
+fn holds(
+    [a, b]: [&Balls; 2],
+    n: Vec3<f64>,
+    span: [f64; 2],
+    least: f64,
+    contact: f64,
+) -> Option<f64> {
     let [from, until] = span;
     let length = n.length();
     let (least, contact) = (least * length, contact * length);
@@ -139,11 +152,12 @@ fn holds([a, b]: [&Balls; 2], n: Vec3<f64>, span: [f64; 2], least: f64, contact:
         lowest - highest
     };
     let now = gap(from);
-    if now > least && gap(until) > least {
-        return until;
+    let enough = if from < until { least } else { contact };
+    if now > enough && gap(until) > enough {
+        return None;
     }
     if now <= contact {
-        return from;
+        return Some(from);
     }
     let mut step = until - from;
     for (far, far_rate) in far {
@@ -156,5 +170,6 @@ fn holds([a, b]: [&Balls; 2], n: Vec3<f64>, span: [f64; 2], least: f64, contact:
         }
     }
     // Rounding of the division and the sum.
-    from + step * (1.0 - 8.0 * f64::EPSILON)
+    let free = from + step * (1.0 - 8.0 * f64::EPSILON);
+    (free < until).then_some(free)
 }

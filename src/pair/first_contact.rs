@@ -1,9 +1,10 @@
 //! First contact of two bodies made of primitives, in exact rigid motion: best-first over their
 //! trees. The paper (§4.1) tests all pairs; this visits the few that can come first.
 
+use super::outline::Left;
 use super::search::Search;
 use super::volumes::Volumes;
-use crate::elementary::first_contact::{motion_is_finite, to_toi};
+use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
 use crate::elementary::{Paths, Toi, ToiOptions};
 use crate::math::Real;
 use crate::math::motion::RigidMotion;
@@ -44,31 +45,99 @@ pub fn first_contact_counted(
     seconds: Real,
     options: &ToiOptions,
 ) -> (Toi, Counts) {
-    let finite = motion_is_finite(motion1) && motion_is_finite(motion2) && seconds.is_finite();
-    let bounds_finite = options.tolerance.is_finite()
-        && options.time_tolerance.is_finite()
-        && options.target_distance.is_finite();
-    if !finite || !bounds_finite {
-        return (Toi::bad_input(options), Counts::default());
-    }
-    let mut motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
-    if options.paths == Paths::Straight {
-        motions = motions.map(|m| m.straightened());
-    }
-    let mut search = Search::new((body1, body2), motions, options);
-    search.run();
-    let found = search.earliest.found;
-    let pose = |side: usize, i: u8, t: Real| {
-        let Some((_, _, primitives)) = found else {
-            return MedialSphere::default();
+    let mut query = Query::new([motion1, motion2], (body1, body2), seconds, options, None);
+    query.search(1.0);
+    (query.toi(), query.counts())
+}
+
+/// A query of [`first_contact`] that is taken only as far as its answer matters. Its answer is the same,
+/// bit by bit, however often it pauses.
+pub struct Query<'a, A, B> {
+    motions: [NonlinearRigidMotion; 2],
+    seconds: Real,
+    options: ToiOptions,
+    /// `None` for bad input.
+    search: Option<Search<'a, A, B>>,
+    settled: bool,
+}
+
+impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
+    /// Nothing is searched yet. Where it is known what is `left` of two meshes, nothing else is looked at.
+    pub fn new(
+        motions: [&NonlinearRigidMotion; 2],
+        bodies: (&'a A, &'a B),
+        seconds: Real,
+        options: &ToiOptions,
+        left: Option<[Left; 2]>,
+    ) -> Self {
+        let finite = motions.iter().all(|m| motion_is_finite(m)) && seconds.is_finite();
+        let bounds_finite = options.tolerance.is_finite()
+            && options.time_tolerance.is_finite()
+            && options.target_distance.is_finite();
+        let search = || {
+            let [motion1, motion2] = motions;
+            let mut pair = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
+            if options.paths == Paths::Straight {
+                pair = pair.map(|m| m.straightened());
+            }
+            Search::new(bodies, pair, options, left)
         };
-        let spheres = match side {
-            0 => body1.primitive(primitives[0]).0,
-            _ => body2.primitive(primitives[1]).0,
+        Self {
+            motions: motions.map(|m| *m),
+            seconds,
+            options: *options,
+            search: (finite && bounds_finite).then(search),
+            settled: false,
+        }
+    }
+
+    /// Searches on, until nothing meets before some time after `until`, a fraction of the step. Returns that
+    /// time, rounded down, or `None` once the query is settled: with `until` at 1 it always is.
+    pub fn search(&mut self, until: f64) -> Option<Real> {
+        if self.settled {
+            return None;
+        }
+        let free = self.search.as_mut().and_then(|s| s.run(until));
+        self.settled = free.is_none();
+        free.map(rounded_down)
+    }
+
+    /// Least signed distance at the start, a length, of primitives that touched then and were let sink in
+    /// ([`crate::elementary::InitialContact::Deepen`]); infinite where there was none. All of them are known once
+    /// nothing meets before a time after 0.
+    pub fn deepest(&self) -> f64 {
+        self.search.as_ref().map_or(f64::INFINITY, |s| s.deepest)
+    }
+
+    /// The answer, once it is settled.
+    pub fn toi(&self) -> Toi {
+        let Some(Search {
+            sides, earliest, ..
+        }) = &self.search
+        else {
+            return Toi::bad_input(&self.options);
         };
-        let s = spheres[i as usize];
-        let at = [motion1, motion2][side].position_at_time(t * seconds);
-        MedialSphere::new(at * s.center, s.radius)
-    };
-    (to_toi(&search.earliest, options, pose), search.counts)
+        let pose = |side: usize, i: u8, t: Real| {
+            let Some((_, _, primitives)) = earliest.found else {
+                return MedialSphere::default();
+            };
+            let spheres = match side {
+                0 => sides.0.body.primitive(primitives[0]).0,
+                _ => sides.1.body.primitive(primitives[1]).0,
+            };
+            let s = spheres[i as usize];
+            let at = self.motions[side].position_at_time(t * self.seconds);
+            MedialSphere::new(at * s.center, s.radius)
+        };
+        to_toi(earliest, &self.options, pose)
+    }
+
+    /// Work done so far.
+    pub fn counts(&self) -> Counts {
+        let of = |s: &Search<A, B>| Counts {
+            nodes: s.nodes,
+            tests: s.earliest.tests,
+        };
+        self.search.as_ref().map(of).unwrap_or_default()
+    }
 }

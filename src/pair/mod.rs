@@ -8,6 +8,8 @@ pub mod contacts;
 pub mod distance;
 mod ending;
 pub mod first_contact;
+mod leaves;
+pub mod outline;
 mod queue;
 mod search;
 mod swept;

@@ -14,18 +14,14 @@
 //! from below at any moment: a search that has used up [`WORK`] ends there, unresolved, and says so.
 
 use super::apart::{Balls, free_until};
-use super::ending::{ROOT_PIECES, WORK, spheres};
-use super::first_contact::Counts;
+use super::ending::{ROOT_PIECES, WORK};
+use super::outline::Left;
 use super::queue::{Candidate, Entry, Open};
 use super::swept::Side;
 use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
-use crate::elementary::distance::{crossing, signed_distance, thinnest};
 use crate::elementary::first_contact::{Earliest, options_limits};
-use crate::elementary::resumed::bracket_until;
-use crate::elementary::test_list::{Share, for_each_test};
 use crate::elementary::{InitialContact, ToiOptions, ToiStatus};
-use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::medial::tree::Below;
 use std::collections::BinaryHeap;
@@ -58,14 +54,28 @@ pub(super) struct Search<'a, A, B> {
     pub(super) first: Option<Entry>,
     /// Elementary tests that are not settled.
     pub(super) open: Vec<Open>,
-    /// Pieces begun.
+    /// Pieces begun, and how many there are.
     pub(super) pieces: u64,
+    all_pieces: f64,
     /// Times that directions were tried on two primitives.
     pub(super) proofs: u64,
     /// What [`Self::worked`] may reach.
     pub(super) budget: u64,
-    pub(super) counts: Counts,
+    /// Node pairs looked at.
+    pub(super) nodes: u32,
     pub(super) earliest: Earliest<f64>,
+    /// Least signed distance at the start of primitives that touch then and may deepen.
+    pub(super) deepest: f64,
+}
+
+/// How far a search came.
+enum Reached {
+    /// Nothing meets before this time; not looked further.
+    Free(f64),
+    /// The end of the piece, without an answer.
+    End,
+    /// The answer.
+    Answer,
 }
 
 impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
@@ -73,12 +83,14 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         bodies: (&'a A, &'a B),
         motions: [RigidMotion<f64>; 2],
         options: &ToiOptions,
+        left: Option<[Left; 2]>,
     ) -> Self {
+        let (left1, left2) = left.map_or((None, None), |[a, b]| (Some(a), Some(b)));
         let target = f64::from(options.target_distance);
         Self {
             sides: (
-                Side::new(bodies.0, motions[0]),
-                Side::new(bodies.1, motions[1]),
+                Side::new(bodies.0, motions[0], left1),
+                Side::new(bodies.1, motions[1], left2),
             ),
             motions,
             times: [0.0, 1.0],
@@ -88,41 +100,54 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
                 InitialContact::Deepen { .. } => target,
             },
             initial_contact: options.initial_contact,
-            heap: BinaryHeap::with_capacity(512),
+            heap: BinaryHeap::with_capacity(64),
             first: None,
-            open: Vec::with_capacity(128),
+            open: Vec::with_capacity(16),
             pieces: 0,
+            all_pieces: 1.0,
             proofs: 0,
             budget: WORK,
-            counts: Counts::default(),
+            nodes: 0,
             earliest: Earliest::new(options_limits(options)),
+            deepest: f64::INFINITY,
         }
     }
 
-    /// Searches the whole step.
-    pub(super) fn run(&mut self) {
-        let fastest = self.motions[0].angle().max(self.motions[1].angle());
-        let pieces = (fastest / PIECE_ANGLE).ceil().max(1.0);
-        let roots = [self.sides.0.body.roots(), self.sides.1.body.roots()].map(u64::from);
-        if roots.contains(&0) {
-            return;
+    /// Searches on until it has the answer (`None`), or nothing meets before a time after `until`, which
+    /// it returns; then it can go on. Each call looks at one candidate at least.
+    pub(super) fn run(&mut self, until: f64) -> Option<f64> {
+        if self.pieces == 0 && !self.begin() {
+            return None;
         }
-        // Bodies of many roots, such as terrain, pay for them in each piece.
-        self.budget = WORK + ROOT_PIECES * roots[0] * roots[1];
         loop {
-            let start = self.pieces as f64 / pieces;
-            self.pieces += 1;
-            let end = self.pieces as f64 / pieces;
-            if !self.piece(start, end) || end >= 1.0 {
-                break;
+            match self.piece(until) {
+                Reached::Free(time) => return Some(time),
+                Reached::End if self.times[1] < 1.0 => self.next_piece(),
+                Reached::End | Reached::Answer => break,
             }
         }
         self.settle();
-        self.counts.tests = self.earliest.tests;
+        None
     }
 
-    /// Searches one piece of the step; returns whether the next one may still hold the answer.
-    fn piece(&mut self, start: f64, end: f64) -> bool {
+    /// Begins with the first piece; false where there is nothing to search.
+    fn begin(&mut self) -> bool {
+        let fastest = self.motions[0].angle().max(self.motions[1].angle());
+        self.all_pieces = (fastest / PIECE_ANGLE).ceil().max(1.0);
+        let roots = [self.sides.0.body.roots(), self.sides.1.body.roots()].map(u64::from);
+        // Bodies of many roots, such as terrain, pay for them in each piece.
+        self.budget = WORK + ROOT_PIECES * roots[0] * roots[1];
+        let any = !roots.contains(&0);
+        if any {
+            self.next_piece();
+        }
+        any
+    }
+
+    fn next_piece(&mut self) {
+        let start = self.pieces as f64 / self.all_pieces;
+        self.pieces += 1;
+        let end = self.pieces as f64 / self.all_pieces;
         self.earliest.limits = Limits {
             start,
             horizon: end,
@@ -139,33 +164,49 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
                 self.push([i, j]);
             }
         }
+    }
+
+    /// Searches the piece begun.
+    fn piece(&mut self, until: f64) -> Reached {
+        let [start, end] = self.times;
         if self.worked() >= self.budget {
             self.give_up(start, None);
-            return false;
+            return Reached::Answer;
         }
+        let mut looked = false;
         while let Some(entry) = self.next() {
             if entry.time > self.earliest.upper.min(end) {
                 break;
             }
+            if looked && entry.time > until && self.earliest.found.is_none() {
+                let time = entry.time;
+                self.first = Some(entry);
+                return Reached::Free(time);
+            }
+            looked = true;
             if self.worked() >= self.budget {
                 self.give_up(entry.time, Some(entry.candidate));
-                return false;
+                return Reached::Answer;
             }
             let open = match entry.candidate {
                 Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
                 Candidate::Test(index) => self.advance(index, entry.time),
             };
             if !open {
-                return false;
+                return Reached::Answer;
             }
         }
-        self.earliest.status == ToiStatus::Separated
+        if self.earliest.status == ToiStatus::Separated {
+            Reached::End
+        } else {
+            Reached::Answer
+        }
     }
 
     fn worked(&self) -> u64 {
         // Each takes about 0.3 µs, an iteration twice that.
         let iterations = 2 * u64::from(self.earliest.iterations);
-        u64::from(self.counts.nodes) + iterations + self.pieces + self.proofs
+        u64::from(self.nodes) + iterations + self.pieces + self.proofs
     }
 
     /// The first candidate. Of two nodes just split one is often the first again: it waits in
@@ -180,7 +221,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         }
     }
 
-    fn queue(&mut self, entry: Entry) {
+    pub(super) fn queue(&mut self, entry: Entry) {
         match &mut self.first {
             None => self.first = Some(entry),
             Some(first) if *first < entry => {
@@ -193,8 +234,11 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
 
     /// Queues two swept nodes at the time at which their balls meet, if they do in this piece.
     fn push(&mut self, nodes: [u32; 2]) {
-        self.counts.nodes += 1;
         let (a, b) = (self.sides.0.node(nodes[0]), self.sides.1.node(nodes[1]));
+        if !(a.wanted && b.wanted) {
+            return;
+        }
+        self.nodes += 1;
         let y = b.start - a.start;
         let rate = b.chord - a.chord;
         // Within the tolerance they touch.
@@ -294,7 +338,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
 
     /// Until when directions prove two primitives free from `time` on; `None` if as long as the
     /// search asks.
-    fn free_until(&self, balls: [&Balls; 2], time: f64) -> Option<f64> {
+    pub(super) fn free_until(&self, balls: [&Balls; 2], time: f64) -> Option<f64> {
         let [start, end] = self.times;
         let length = end - start;
         let until = (self.earliest.upper.min(end) - start) / length;
@@ -304,115 +348,11 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             [from, until],
             self.reach,
             self.earliest.limits.tolerance,
-        );
+        )?;
         if free <= from {
             return Some(time);
         }
         // Rounding of the way to the piece's fractions and back.
-        (free < until).then(|| (start + free * length).next_down().next_down().max(time))
-    }
-
-    /// Lists the elementary tests of two primitives that are free until `time`; returns whether an
-    /// earlier contact is still possible.
-    fn list_tests(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
-        let (Below::Primitive(p), Below::Primitive(q)) =
-            (self.sides.0.node(i).below, self.sides.1.node(j).below)
-        else {
-            return true;
-        };
-        let pair = [p, q];
-        let [(sa, share_a), (sb, share_b)] = spheres(&self.sides, pair);
-        let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
-        let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
-            let turned = self.motions[side].sin_cos(0.0);
-            let place = |c| self.motions[side].point(c).at(0.0, turned).position;
-            s.iter().map(|s| (place(s.0), s.1)).collect::<Vec<_>>()
-        };
-        let mut target = self.target;
-        if self.initial_contact == InitialContact::Stop {
-            target = target.max(-thinnest(sa, sb));
-        }
-        match self.initial_contact {
-            InitialContact::Deepen { by } => {
-                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
-                let distance = signed_distance(&pa, &pb);
-                let tolerance = self.earliest.limits.tolerance;
-                if distance <= target + tolerance {
-                    target = distance - f64::from(by) - tolerance;
-                }
-            }
-            // Proven free until later, they cannot cross at the start.
-            InitialContact::Stop if time == 0.0 => {
-                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
-                let crossings = [
-                    crossing(&pa, share_a.edges, &pb),
-                    crossing(&pb, share_b.edges, &pa),
-                ];
-                if crossings.iter().flatten().any(|c| -c.radius <= target) {
-                    self.earliest.overlap_at_start();
-                    self.earliest.found = None;
-                    return false;
-                }
-            }
-            InitialContact::Stop => {}
-        }
-        // A target of the pair's own leaves no test to a neighbour, whose target is another.
-        let shares = if target == self.target {
-            [share_a, share_b]
-        } else {
-            [share_a, share_b].map(|s| Share::whole(s.spheres))
-        };
-        let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
-        let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])].map(|b| *b);
-        for_each_test(shares[0], shares[1], |test| {
-            self.proofs += 1;
-            let some = [
-                balls[0].only(test.corners.map(|c| c.0)),
-                balls[1].only(test.corners.map(|c| c.1)),
-            ];
-            if let Some(free) = self.free_until([&some[0], &some[1]], time) {
-                let open = Open {
-                    primitives: pair,
-                    test,
-                    target,
-                    spent: 0,
-                };
-                let place = Candidate::Test(self.open.len() as u32);
-                self.queue(Entry::at(free, place));
-                self.open.push(open);
-            }
-            true
-        });
-        true
-    }
-
-    /// Takes one test further, until it is settled or another candidate may come first; returns
-    /// whether an earlier contact is still possible.
-    fn advance(&mut self, place: u32, time: f64) -> bool {
-        let mut open = self.open[place as usize];
-        let limits = self.earliest.limits;
-        let limits = Limits {
-            start: time,
-            horizon: self.earliest.upper.min(limits.horizon),
-            max_iterations: limits.max_iterations - open.spent,
-            ..limits
-        };
-        let until = (self.heap.peek()).map_or(limits.horizon, |next| next.time.max(time));
-        let path = self.path(&open.test, open.primitives, open.target);
-        let bracket = bracket_until(&path, open.test.domain, &limits, until);
-        self.earliest.tests += u32::from(open.spent == 0);
-        open.spent += bracket.iterations;
-        let settled = bracket.contact || bracket.separated || !bracket.slack.is_finite();
-        if settled || bracket.iterations >= limits.max_iterations {
-            let Open {
-                test, primitives, ..
-            } = open;
-            return self.earliest.take(test, bracket, time, primitives);
-        }
-        self.earliest.iterations += bracket.iterations;
-        self.earliest.tolerance = self.earliest.tolerance.max(bracket.tolerance);
-        self.open[place as usize] = open;
-        self.queue(Entry::at(bracket.lower, Candidate::Test(place)));
-        true
+        Some((start + free * length).next_down().next_down().max(time))
     }
 }

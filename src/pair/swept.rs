@@ -2,6 +2,7 @@
 //! radii that cover the sagitta.
 
 use super::apart::Balls;
+use super::outline::Left;
 use super::volumes::Volumes;
 use crate::math::lane::Vec3;
 use crate::math::motion::{Frame, RigidMotion};
@@ -16,6 +17,8 @@ pub(super) struct Swept {
     pub(super) chord: Vec3<f64>,
     pub(super) radius: f64,
     pub(super) below: Below,
+    /// Whether anything of it may meet the other side.
+    pub(super) wanted: bool,
     /// Where the first of its swept children is, or the balls of its primitive; [`NOT_YET`] before
     /// they are wanted.
     next: u32,
@@ -36,17 +39,20 @@ pub(super) struct Side<'a, V> {
     frames: [Frame<f64>; 2],
     nodes: Vec<Swept>,
     balls: Vec<Balls>,
+    /// What may meet the other side; `None`: all.
+    left: Option<Left>,
 }
 
 impl<'a, V: Volumes> Side<'a, V> {
-    pub(super) fn new(body: &'a V, motion: RigidMotion<f64>) -> Self {
+    pub(super) fn new(body: &'a V, motion: RigidMotion<f64>, left: Option<Left>) -> Self {
         Self {
             body,
             motion,
             times: [0.0; 2],
             frames: [motion.frame(0.0); 2],
-            nodes: Vec::with_capacity(256),
-            balls: Vec::with_capacity(64),
+            nodes: Vec::with_capacity(48),
+            balls: Vec::with_capacity(16),
+            left,
         }
     }
 
@@ -137,6 +143,7 @@ impl<'a, V: Volumes> Side<'a, V> {
             chord,
             radius: radius + 64.0 * f64::EPSILON * size,
             below: self.body.below(node),
+            wanted: self.left.as_ref().is_none_or(|left| left.meets(node)),
             next: NOT_YET,
         }
     }

@@ -1,20 +1,26 @@
 //! After rapier's step: the impacts that it missed, in the order of their times.
 //!
-//! The first contacts of all pairs of medial meshes are one batch. Each impact moves both bodies to its time and gives two impulses: one to the velocities that the
-//! solver left, so that the next step begins right, and one to the motion of this step, so that it
-//! goes on right. Then all pairs of both bodies are asked for again. A body with more than
-//! [`Tuning::max_events`](super::tuning::Tuning) impacts stays where it is for the rest of the step, or is carried along by what pushes
-//! it. No hit is ever dropped, at the current time neither; so no medial axis crosses another on the
-//! motion executed.
+//! Pairs wait at the time before which they are known not to meet; the first of them is looked at
+//! further until it has an answer or another comes first. Each impact moves both bodies to its time and
+//! gives two impulses: one to the velocities that the solver left, so that the next step begins right, and
+//! one to the motion of this step, so that it goes on right. Then all pairs of both bodies are asked
+//! again. A body with more than [`Tuning::max_events`](super::tuning::Tuning) impacts stays where it is
+//! for the rest of the step, or is carried along by what pushes it. No hit is ever dropped, at the
+//! current time neither; so no medial axis crosses another on the motion executed.
 
 use super::first_contact::{Asker, Hit, Work};
 use super::impulse::{Impact, Inertia, Material};
+use super::inquiry::{Inquiry, Known, Meshes};
 use super::motion::{Kind, Snapshot};
+use super::outlines::Outlines;
 use super::pairs::{Rules, concerned, in_order, sweep};
+use super::waiting::Waiting;
 use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::{Real, Vector};
+use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
+use parry3d::shape::SharedShape;
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -38,7 +44,7 @@ pub struct Impulse {
 /// What the event loop did.
 #[derive(Default)]
 pub struct Outcome {
-    /// First contacts asked for in the batch.
+    /// Pairs of medial meshes asked about at the start.
     pub jobs: usize,
     /// Impacts.
     pub events: usize,
@@ -61,6 +67,12 @@ struct Course {
     struck: bool,
 }
 
+/// What a pair waits for.
+enum Awaited<'a> {
+    Answer(Inquiry<'a>),
+    Hit(Hit),
+}
+
 struct Loop<'a> {
     snapshot: &'a mut Snapshot,
     asker: Asker<'a>,
@@ -72,7 +84,10 @@ struct Loop<'a> {
     courses: Vec<Course>,
     /// Box of each collider from its body's last impact to the end of the step.
     boxes: Vec<Aabb>,
-    hits: BTreeMap<[usize; 2], Hit>,
+    /// The shapes of the colliders.
+    shapes: &'a [SharedShape],
+    waiting: Waiting<Awaited<'a>>,
+    outlines: Outlines,
     impulses: BTreeMap<[usize; 2], Real>,
     jobs: usize,
     events: usize,
@@ -94,6 +109,7 @@ pub fn resolve(
     }
     let pairs = sweep(snapshot, asker.dt, MARGIN * asker.unit);
     let courses = vec![Course::default(); snapshot.bodies.len()];
+    let shapes: Vec<_> = snapshot.parts.iter().map(|p| p.shape.clone()).collect();
     let mut events = Loop {
         snapshot,
         asker,
@@ -103,19 +119,22 @@ pub fn resolve(
         met: HashMap::new(),
         courses,
         boxes: Vec::new(),
-        hits: BTreeMap::new(),
+        shapes: &shapes,
+        waiting: Waiting::default(),
+        outlines: Outlines::new(shapes.len(), asker.dt),
         impulses: BTreeMap::new(),
         jobs: 0,
         events: 0,
     };
-    let asked = events.first_queries(&pairs);
-    let (asked, jobs): (Vec<_>, Vec<_>) = asked.into_iter().unzip();
-    events.jobs = jobs.len();
-    let mut known: HashMap<_, _> = asked.into_iter().zip(batch.run(&jobs)).collect();
+    let mut known = HashMap::new();
+    if batch.has_device() {
+        let (asked, jobs): (Vec<_>, Vec<_>) = events.first_queries(&pairs).into_iter().unzip();
+        known.extend(asked.into_iter().zip(batch.run(&jobs)));
+    }
     for pair in pairs {
         events.ask(pair, 0.0, known.remove(&pair), work);
     }
-    while let Some((pair, hit)) = events.earliest() {
+    while let Some((pair, hit)) = events.earliest(work) {
         if events.stops_at(pair, hit.time) {
             return events.stop(hit.time, narrow_phase);
         }
@@ -152,12 +171,34 @@ fn deep(
 }
 
 impl Loop<'_> {
-    fn earliest(&self) -> Option<([usize; 2], Hit)> {
-        let first = self
-            .hits
-            .iter()
-            .min_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(b.0)))?;
-        Some((*first.0, *first.1))
+    /// Looks for the earliest impact: always where the next may be, and no further than to where another
+    /// may come first.
+    fn earliest(&mut self, work: &mut Work) -> Option<([usize; 2], Hit)> {
+        loop {
+            let (pair, first, next) = self.waiting.first()?;
+            let inquiry = match first {
+                Awaited::Hit(hit) => return Some((pair, *hit)),
+                Awaited::Answer(inquiry) => inquiry,
+            };
+            let until = next.unwrap_or(self.asker.dt);
+            let shapes = self.shapes;
+            let meshes: Meshes = pair.map(|k| shapes[k].as_shape::<MedialMesh>());
+            match inquiry.pursue(&self.asker, self.snapshot, pair, meshes, until, work) {
+                Known::FreeUntil(time) => self.waiting.put_off(time),
+                Known::Hit(hit) => self.expect(pair, hit),
+                Known::Never => self.waiting.remove(pair),
+            }
+        }
+    }
+
+    /// Has a hit wait for its time, where the user's rules allow it.
+    fn expect(&mut self, pair: [usize; 2], hit: Hit) {
+        self.waiting.remove(pair);
+        let (snapshot, rules) = (&*self.snapshot, self.rules);
+        let allowed = self.allowed.entry(pair);
+        if *allowed.or_insert_with(|| rules.respond(snapshot, pair)) {
+            self.waiting.insert(pair, hit.time, Awaited::Hit(hit));
+        }
     }
 
     fn bodies(&self, pair: [usize; 2]) -> [usize; 2] {
@@ -192,21 +233,30 @@ impl Loop<'_> {
     }
 
     fn ask(&mut self, pair: [usize; 2], time: Real, known: Option<ToiResult>, work: &mut Work) {
-        self.hits.remove(&pair);
-        let deep = self.is_deep(pair);
-        let met = self.met.get(&pair).copied().unwrap_or(0);
+        self.waiting.remove(pair);
         // The user's filters are asked once per pair and step, and only where it matters.
         if self.allowed.get(&pair) == Some(&false) || !self.can_give(pair) {
             return;
         }
-        let hit = self
-            .asker
-            .first_contact(self.snapshot, pair, time, met, deep, known, work);
-        let Some(hit) = hit else { return };
-        let (snapshot, rules) = (&*self.snapshot, self.rules);
-        let allowed = self.allowed.entry(pair);
-        if *allowed.or_insert_with(|| rules.respond(snapshot, pair)) {
-            self.hits.insert(pair, hit);
+        let met = self.met.get(&pair).copied().unwrap_or(0);
+        let (asker, deep) = (self.asker, self.is_deep(pair));
+        let Some(question) = asker.question(self.snapshot, pair, time, met, deep) else {
+            return;
+        };
+        let medial = |k: &usize| self.snapshot.parts[*k].medial().is_some();
+        self.jobs += usize::from(self.events == 0 && pair.iter().all(medial));
+        if known.is_some() {
+            let hit = asker.first_contact(self.snapshot, pair, time, &question, known, work);
+            if let Some(hit) = hit {
+                self.expect(pair, hit);
+            }
+            return;
+        }
+        let reach = question.first.target_distance + question.first.tolerance;
+        let outlines = &mut self.outlines;
+        if let Some((until, left)) = outlines.apart_until(self.snapshot, pair, time, reach) {
+            let inquiry = Awaited::Answer(Inquiry::new(time, question, left));
+            self.waiting.insert(pair, until, inquiry);
         }
     }
 
@@ -221,6 +271,7 @@ impl Loop<'_> {
             .collect();
         for &k in &changed {
             self.boxes[k] = self.swept_box(k, time);
+            self.outlines.forget(k);
         }
         for (n, &i) in changed.iter().enumerate() {
             for j in 0..self.snapshot.parts.len() {
@@ -231,7 +282,7 @@ impl Loop<'_> {
                 if self.boxes[i].intersects(&self.boxes[j]) {
                     self.ask(both, time, None, work);
                 } else {
-                    self.hits.remove(&both);
+                    self.waiting.remove(both);
                 }
             }
         }

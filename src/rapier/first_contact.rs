@@ -34,6 +34,21 @@ impl Work {
         self.nodes += u64::from(counts.nodes);
         self.tests += u64::from(counts.tests);
     }
+
+    /// Adds what a query did since it had counted so much.
+    pub fn add_since(&mut self, now: Counts, before: Counts) {
+        self.add(Counts {
+            nodes: now.nodes - before.nodes,
+            tests: now.tests - before.tests,
+        });
+    }
+
+    /// Counts a query.
+    pub fn begin(&mut self, motions: &[NonlinearRigidMotion; 2], options: &ToiOptions) {
+        self.queries += 1;
+        let turning = motions.iter().any(|m| m.angvel != Vector::ZERO);
+        self.rotating += u64::from(turning && options.paths == Paths::Exact);
+    }
 }
 
 /// First contact of two colliders.
@@ -49,11 +64,24 @@ pub struct Hit {
     pub depth: Real,
 }
 
+impl Hit {
+    /// The hit of a query over `seconds` from `time` on; `None` if it found none.
+    pub fn of(toi: &Toi, time: Real, seconds: Real) -> Option<Self> {
+        (toi.status != ToiStatus::Separated).then(|| Self {
+            time: time + toi.lower * seconds,
+            normal: toi.normal,
+            point: (toi.points[0] + toi.points[1]) * 0.5,
+            depth: (toi.points[0] - toi.points[1]).dot(toi.normal).max(0.0),
+        })
+    }
+}
+
 /// What a pair is asked for.
-struct Question {
-    first: ToiOptions,
+pub struct Question {
+    /// The first contact.
+    pub first: ToiOptions,
     /// Asked for too where the pair is deep: what it must not sink below.
-    floor: Option<ToiOptions>,
+    pub floor: Option<ToiOptions>,
 }
 
 /// Asks for first contacts in a step of `dt` seconds.
@@ -113,7 +141,7 @@ impl Asker<'_> {
 
     /// What a pair that has met so often in this step is asked from `time` on; `None`: nothing. `deep`:
     /// rapier's contacts are, so that even a slow pair is kept above the floor.
-    fn question(
+    pub fn question(
         &self,
         snapshot: &Snapshot,
         pair: [usize; 2],
@@ -185,37 +213,41 @@ impl Asker<'_> {
         })
     }
 
-    /// First contact from `time` on. `met`: how often the pair has met in this step; `deep` as in
-    /// [`Self::job`], whose answer is `known` where it was asked.
-    #[expect(clippy::too_many_arguments, reason = "what is known of a pair")]
+    /// First contact from `time` on; `known` is the answer to the first query where it was asked before.
     pub fn first_contact(
         &self,
         snapshot: &Snapshot,
         pair: [usize; 2],
         time: Real,
-        met: u32,
-        deep: bool,
+        question: &Question,
         known: Option<ToiResult>,
         work: &mut Work,
     ) -> Option<Hit> {
-        let Question { first, floor } = self.question(snapshot, pair, time, met, deep)?;
-        let mut hit: Option<Hit> = None;
-        let mut earlier = |new: Option<Hit>| {
-            if let Some(n) = new
-                && hit.is_none_or(|h| n.time < h.time)
-            {
-                hit = Some(n);
-            }
-        };
         let known = known.map(|known| (known.toi, known.counts));
-        earlier(self.query(snapshot, pair, time, &first, known, work));
-        if let Some(floor) = floor {
-            let near_floor = (self.tuning.sink - self.tuning.floor) * snapshot.thickness(pair);
-            if self.within(snapshot, pair, time, near_floor, work) {
-                earlier(self.query(snapshot, pair, time, &floor, None, work));
-            }
+        let mut hit = self.query(snapshot, pair, time, &question.first, known, work);
+        if let Some(floor) = &question.floor
+            && hit.is_none_or(|h| h.time > time)
+            && self.within(snapshot, pair, time, self.near_floor(snapshot, pair), work)
+        {
+            let other = self.query(snapshot, pair, time, floor, None, work);
+            hit = match (hit, other) {
+                (Some(a), Some(b)) if a.time <= b.time => Some(a),
+                (a, b) => b.or(a),
+            };
         }
         hit
+    }
+
+    /// Signed distance from which the floor is asked for: what touches less deep meets its own deeper target
+    /// first.
+    fn near_floor(&self, snapshot: &Snapshot, pair: [usize; 2]) -> Real {
+        (self.tuning.sink - self.tuning.floor) * snapshot.thickness(pair)
+    }
+
+    /// Whether what touches is deep enough for the floor, given its signed distance.
+    pub fn is_deep(&self, snapshot: &Snapshot, pair: [usize; 2], distance: f64) -> bool {
+        let asked = within(snapshot, pair, self.near_floor(snapshot, pair));
+        distance <= f64::from(asked.target_distance + asked.tolerance)
     }
 
     /// Whether the pair touches at the start of the step, so that the solver has it.
@@ -235,11 +267,7 @@ impl Asker<'_> {
     ) -> bool {
         let still = |m: NonlinearRigidMotion| NonlinearRigidMotion::constant_position(m.start);
         let motions = pair.map(|k| still(snapshot.motion(k, time)));
-        let skin = snapshot.parts[pair[0]].skin + snapshot.parts[pair[1]].skin;
-        let options = ToiOptions {
-            target_distance: distance + skin,
-            ..ToiOptions::default()
-        };
+        let options = within(snapshot, pair, distance);
         let answer = ask(snapshot, pair, &motions, 1.0, &options);
         answer.is_some_and(|(toi, counts)| {
             work.add(counts);
@@ -247,7 +275,8 @@ impl Asker<'_> {
         })
     }
 
-    fn query(
+    /// One query from `time` on, or the answer that is known to it.
+    pub fn query(
         &self,
         snapshot: &Snapshot,
         pair: [usize; 2],
@@ -260,16 +289,17 @@ impl Asker<'_> {
         let seconds = self.dt - time;
         let answer = known.or_else(|| ask(snapshot, pair, &motions, seconds, options));
         let (toi, counts) = answer?;
-        work.queries += 1;
-        let turning = motions.iter().any(|m| m.angvel != Vector::ZERO);
-        work.rotating += u64::from(turning && options.paths == Paths::Exact);
+        work.begin(&motions, options);
         work.add(counts);
-        (toi.status != ToiStatus::Separated).then(|| Hit {
-            time: time + toi.lower * seconds,
-            normal: toi.normal,
-            point: (toi.points[0] + toi.points[1]) * 0.5,
-            depth: (toi.points[0] - toi.points[1]).dot(toi.normal).max(0.0),
-        })
+        Hit::of(&toi, time, seconds)
+    }
+}
+
+/// Asks whether the surfaces are within `distance`.
+fn within(snapshot: &Snapshot, [i, j]: [usize; 2], distance: Real) -> ToiOptions {
+    ToiOptions {
+        target_distance: distance + snapshot.parts[i].skin + snapshot.parts[j].skin,
+        ..ToiOptions::default()
     }
 }
 

@@ -11,8 +11,10 @@ mod events;
 mod first_contact;
 mod hanging;
 mod impulse;
+mod inquiry;
 mod motion;
 mod muting;
+mod outlines;
 mod pairs;
 pub mod pipeline;
 mod pushes;
@@ -23,6 +25,7 @@ pub mod saved_world;
 mod speculative;
 mod sweep;
 mod tuning;
+mod waiting;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]

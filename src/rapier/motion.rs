@@ -4,7 +4,7 @@
 
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::medial::MedialMesh;
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::mass_properties::MassProperties;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
@@ -205,6 +205,8 @@ pub struct Part {
     pub offset: Pose,
     /// Its box at the start, world frame.
     pub aabb: Aabb,
+    /// Sphere round it, in its own frame.
+    pub bound: BoundingSphere,
     /// How thin it is, a length: the radius that nearly all of a medial mesh has, or what rapier's
     /// own test of fast bodies goes by. 0 for surfaces.
     pub thickness: Real,
@@ -284,6 +286,7 @@ impl Snapshot {
             body: index,
             offset,
             aabb: shape.compute_aabb(&pose),
+            bound,
             shape,
             thickness,
             skin: collider.contact_skin(),
@@ -352,7 +355,7 @@ impl Snapshot {
         let motion = self.motion(part, time);
         let last = motion.position_at_time(end - time);
         let turn = motion.angvel.length() * (end - time);
-        let bound = p.shape.compute_local_bounding_sphere();
+        let bound = &p.bound;
         // A body carried along by another turns about that one's centre.
         let reach = (bound.center() - motion.local_center).length() + bound.radius();
         if turn <= SMALL_TURN {

@@ -42,8 +42,9 @@ pub struct StepReport {
     pub continuous_queries: u64,
     /// Those of them, on the motions of the step, in which a body turned.
     pub rotating_queries: u64,
-    /// First contacts of medial pairs that were one batch after rapier's step; other continuous queries
-    /// are with other shapes, in rapier's own sweeps, or repeated after an impact.
+    /// Medial pairs asked for their first contacts after rapier's step; a GPU has them in one batch. On the
+    /// CPU those that spheres and directions keep apart, or that never come first, take no query. Other
+    /// continuous queries are with other shapes, in rapier's own sweeps, or after an impact.
     pub continuous_jobs: usize,
     /// Pairs that the solver had no contacts for because the event loop took them over.
     pub muted: usize,

@@ -2,8 +2,13 @@
 //! come first. Counts, not times.
 
 use crate::creature::{SCENES, SECONDS, combs, creature, motions};
+use rapier3d::parry::query::NonlinearRigidMotion;
+use rapier3d::parry::shape::Cuboid;
 use rapier3d_medial::elementary::{ToiOptions, ToiStatus};
+use rapier3d_medial::math::{Pose, Real, Vector};
+use rapier3d_medial::pair::Soup;
 use rapier3d_medial::pair::first_contact::first_contact_counted;
+use rapier3d_medial::{MedialMesh, MedialSphere};
 
 /// Most elementary tests of a query, in every scene.
 const MOST: u32 = 200;
@@ -42,4 +47,51 @@ fn interleaved_combs_are_told_apart_by_directions() {
     assert_eq!(toi.status, ToiStatus::Separated);
     assert!(counts.nodes > 10_000, "the teeth are between each other");
     assert!(counts.tests <= MOST, "{counts:?}");
+}
+
+/// A ring that touches a cuboid's faces: of 12 cones and 12 triangles those are tested that touch too, not
+/// the far side of the ring.
+#[test]
+fn what_is_apart_when_a_contact_is_found_is_not_tested() {
+    let around = |k: u32| {
+        let angle = k as Real / 12.0 * std::f32::consts::TAU;
+        MedialSphere::new(Vector::new(0.4 * angle.cos(), 0.4 * angle.sin(), 0.0), 0.08)
+    };
+    let edges = (0..12).map(|k| [k, (k + 1) % 12]).collect();
+    let ring = MedialMesh::new((0..12).map(around).collect(), edges, vec![]).expect("a ring");
+    let (points, triangles) = Cuboid::new(Vector::new(20.0, 0.5, 20.0)).to_trimesh();
+    let mut cuboid = Soup::default();
+    for triangle in triangles {
+        cuboid.push(&triangle.map(|k| MedialSphere::new(points[k as usize], 0.0)));
+    }
+    let still = NonlinearRigidMotion::constant_position;
+    let options = ToiOptions::default();
+    for tilt in [0.0, 0.3, 1.0] {
+        let lowest = |height: Real| {
+            let turn = Vector::new(0.0, 0.0, 0.1) + Vector::new(tilt, 0.0, 0.0);
+            let pose = Pose::new(Vector::new(0.3, height, 0.7), turn);
+            let low = ring
+                .spheres()
+                .iter()
+                .map(|s| (pose * s.center).y - s.radius);
+            (pose, low.fold(Real::MAX, Real::min))
+        };
+        let (_, low) = lowest(0.0);
+        // Half the tolerance above the upper face.
+        let (pose, _) = lowest(0.5 - low + 0.5 * options.tolerance);
+        let falling = NonlinearRigidMotion {
+            linvel: Vector::new(0.0, -10.0, 3.0),
+            ..still(pose)
+        };
+        let (toi, counts) = first_contact_counted(
+            &ring,
+            &falling,
+            &cuboid,
+            &still(Pose::IDENTITY),
+            SECONDS,
+            &options,
+        );
+        assert_eq!((toi.status, toi.upper), (ToiStatus::Contact, 0.0), "{tilt}");
+        assert!(counts.tests <= 8, "{tilt}: {counts:?}");
+    }
 }

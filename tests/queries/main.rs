@@ -25,6 +25,7 @@ mod judge;
 mod lanes;
 mod meshes;
 mod oracle;
+mod outlines;
 mod penetration;
 mod regressions;
 mod truth;

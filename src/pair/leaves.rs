@@ -1,0 +1,121 @@
+//! What the search of [`super::search`] does with two primitives: lists their elementary tests, and takes
+//! one of them further.
+
+use super::ending::spheres;
+use super::queue::{Candidate, Entry, Open};
+use super::search::Search;
+use super::volumes::Volumes;
+use crate::elementary::InitialContact;
+use crate::elementary::bracket::Limits;
+use crate::elementary::distance::{crossing, signed_distance, thinnest};
+use crate::elementary::resumed::bracket_until;
+use crate::elementary::test_list::{Share, for_each_test};
+use crate::math::lane::Vec3;
+use crate::medial::tree::Below;
+
+impl<A: Volumes, B: Volumes> Search<'_, A, B> {
+    /// Lists the elementary tests of two primitives that are free until `time`; returns whether an
+    /// earlier contact is still possible.
+    pub(super) fn list_tests(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
+        let (Below::Primitive(p), Below::Primitive(q)) =
+            (self.sides.0.node(i).below, self.sides.1.node(j).below)
+        else {
+            return true;
+        };
+        let pair = [p, q];
+        let [(sa, share_a), (sb, share_b)] = spheres(&self.sides, pair);
+        let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
+        let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
+            let turned = self.motions[side].sin_cos(0.0);
+            let place = |c| self.motions[side].point(c).at(0.0, turned).position;
+            s.iter().map(|s| (place(s.0), s.1)).collect::<Vec<_>>()
+        };
+        let mut target = self.target;
+        if self.initial_contact == InitialContact::Stop {
+            target = target.max(-thinnest(sa, sb));
+        }
+        match self.initial_contact {
+            InitialContact::Deepen { by } => {
+                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
+                let distance = signed_distance(&pa, &pb);
+                let tolerance = self.earliest.limits.tolerance;
+                self.deepest = self.deepest.min(distance);
+                if distance <= target + tolerance {
+                    target = distance - f64::from(by) - tolerance;
+                }
+            }
+            // Proven free until later, they cannot cross at the start.
+            InitialContact::Stop if time == 0.0 => {
+                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
+                let crossings = [
+                    crossing(&pa, share_a.edges, &pb),
+                    crossing(&pb, share_b.edges, &pa),
+                ];
+                if crossings.iter().flatten().any(|c| -c.radius <= target) {
+                    self.earliest.overlap_at_start();
+                    self.earliest.found = None;
+                    return false;
+                }
+            }
+            InitialContact::Stop => {}
+        }
+        // A target of the pair's own leaves no test to a neighbour, whose target is another.
+        let shares = if target == self.target {
+            [share_a, share_b]
+        } else {
+            [share_a, share_b].map(|s| Share::whole(s.spheres))
+        };
+        let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
+        let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])].map(|b| *b);
+        for_each_test(shares[0], shares[1], |test| {
+            self.proofs += 1;
+            let some = [
+                balls[0].only(test.corners.map(|c| c.0)),
+                balls[1].only(test.corners.map(|c| c.1)),
+            ];
+            if let Some(free) = self.free_until([&some[0], &some[1]], time) {
+                let open = Open {
+                    primitives: pair,
+                    test,
+                    target,
+                    spent: 0,
+                };
+                let place = Candidate::Test(self.open.len() as u32);
+                self.queue(Entry::at(free, place));
+                self.open.push(open);
+            }
+            true
+        });
+        true
+    }
+
+    /// Takes one test further, until it is settled or another candidate may come first; returns
+    /// whether an earlier contact is still possible.
+    pub(super) fn advance(&mut self, place: u32, time: f64) -> bool {
+        let mut open = self.open[place as usize];
+        let limits = self.earliest.limits;
+        let limits = Limits {
+            start: time,
+            horizon: self.earliest.upper.min(limits.horizon),
+            max_iterations: limits.max_iterations - open.spent,
+            ..limits
+        };
+        let until = (self.heap.peek()).map_or(limits.horizon, |next| next.time.max(time));
+        let path = self.path(&open.test, open.primitives, open.target);
+        let bracket = bracket_until(&path, open.test.domain, &limits, until);
+        self.earliest.tests += u32::from(open.spent == 0);
+        open.spent += bracket.iterations;
+        let settled = bracket.contact || bracket.separated || !bracket.slack.is_finite();
+        if settled || bracket.iterations >= limits.max_iterations {
+            let Open {
+                test, primitives, ..
+            } = open;
+            return self.earliest.take(test, bracket, time, primitives);
+        }
+        self.earliest.iterations += bracket.iterations;
+        self.earliest.tolerance = self.earliest.tolerance.max(bracket.tolerance);
+        self.open[place as usize] = open;
+        self.queue(Entry::at(bracket.lower, Candidate::Test(place)));
+        true
+    }
+}

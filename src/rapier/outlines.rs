@@ -1,0 +1,117 @@
+//! Which pairs need not be searched yet, or not at all: spheres round both, and then directions
+//! ([`crate::pair::outline`]), keep them apart.
+
+use super::motion::Snapshot;
+use crate::math::Real;
+use crate::pair::outline::{Left, Outline, Shell, apart_until};
+use parry3d::query::NonlinearRigidMotion;
+use std::rc::Rc;
+
+/// Extent of a box from which a shape counts as unbounded, a length: a half-space has the largest there
+/// is. Smaller, and wide grounds cost queries; larger, and nothing is gained, since rounding hides gaps.
+const UNBOUNDED: Real = 1.0e12;
+
+/// Outlines of the colliders on their bodies' motions, each made when first wanted.
+pub struct Outlines {
+    made: Vec<Option<Made>>,
+    shells: Vec<Option<Rc<Shell>>>,
+    /// End of the step in seconds.
+    end: Real,
+}
+
+/// `None` for what is not bounded.
+type Made = Option<Outline>;
+
+impl Outlines {
+    /// None is made yet.
+    pub fn new(parts: usize, end: Real) -> Self {
+        Self {
+            made: (0..parts).map(|_| None).collect(),
+            shells: vec![None; parts],
+            end,
+        }
+    }
+
+    /// The collider's body has another motion.
+    pub fn forget(&mut self, part: usize) {
+        self.made[part] = None;
+    }
+
+    /// Seconds into the step before which two colliders do not come within `reach` of each other, from
+    /// `time` on, and what of two meshes may do so after; `None` if they never do.
+    pub fn apart_until(
+        &mut self,
+        snapshot: &Snapshot,
+        pair: [usize; 2],
+        time: Real,
+        reach: Real,
+    ) -> Option<(Real, Option<[Left; 2]>)> {
+        let until = spheres_apart_until(snapshot, pair, [time, self.end], reach)?;
+        for k in pair {
+            if self.made[k].is_none() {
+                self.made[k] = Some(self.outline(snapshot, k));
+            }
+        }
+        match pair.map(|k| self.made[k].as_ref().and_then(Option::as_ref)) {
+            [Some(a), Some(b)] => {
+                let apart = apart_until(a, b, until, reach)?;
+                Some((apart.until, Some(apart.left)))
+            }
+            _ => Some((until, None)),
+        }
+    }
+
+    /// The outline of a collider from its body's last impact on: of a mesh its own, of other shapes that of
+    /// their box.
+    fn outline(&mut self, snapshot: &Snapshot, part: usize) -> Made {
+        let p = &snapshot.parts[part];
+        if self.shells[part].is_none() {
+            let shell = match p.medial() {
+                Some(mesh) => Shell::of_mesh(mesh),
+                None => {
+                    let aabb = p.shape.compute_local_aabb();
+                    let bounded = aabb.extents().max_element() < UNBOUNDED;
+                    bounded.then(|| Shell::of_points(&aabb.vertices()))?
+                }
+            };
+            self.shells[part] = Some(Rc::new(shell));
+        }
+        let from = snapshot.bodies[p.body].time;
+        let motion = snapshot.motion(part, from);
+        let shell = self.shells[part].as_ref()?;
+        Some(Outline::new(shell, &motion, [from, self.end]))
+    }
+}
+
+/// By spheres round the centres about which they turn, whose paths are straight.
+fn spheres_apart_until(
+    snapshot: &Snapshot,
+    pair: [usize; 2],
+    [time, end]: [Real; 2],
+    reach: Real,
+) -> Option<Real> {
+    let motions = pair.map(|k| snapshot.motion(k, time));
+    let center = |m: &NonlinearRigidMotion| m.start * m.local_center;
+    let centers = motions.each_ref().map(center);
+    let mut radius = reach;
+    for (k, motion) in pair.into_iter().zip(&motions) {
+        let bound = &snapshot.parts[k].bound;
+        radius += (bound.center() - motion.local_center).length() + bound.radius();
+    }
+    // Rounding of the positions.
+    let size = centers.iter().map(|c| c.abs().max_element()).sum::<Real>();
+    radius += 16.0 * Real::EPSILON * size;
+    let y = (centers[1] - centers[0]).as_dvec3();
+    let rate = (motions[1].linvel - motions[0].linvel).as_dvec3();
+    let c = y.length_squared() - f64::from(radius).powi(2);
+    if c > 0.0 {
+        let (yr, rr) = (y.dot(rate), rate.length_squared());
+        let discriminant = yr * yr - rr * c;
+        if yr >= 0.0 || discriminant < 0.0 {
+            return None;
+        }
+        let until = (time + (c / (discriminant.sqrt() - yr)) as Real).next_down();
+        return (until <= end).then_some(until.max(time));
+    }
+    Some(time)
+}

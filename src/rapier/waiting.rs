@@ -1,0 +1,71 @@
+//! Pairs in the order of the time before which they do not meet; of several at the same time, in the
+//! order of their colliders.
+
+use crate::math::Real;
+use std::collections::{BTreeSet, HashMap};
+
+type Pair = [usize; 2];
+
+/// What waits for each pair, once a pair.
+pub struct Waiting<T> {
+    /// Bits of the time, pair, and place in `all`.
+    order: BTreeSet<(u32, Pair, u32)>,
+    entries: HashMap<Pair, (u32, u32)>,
+    all: Vec<Option<T>>,
+    unused: Vec<u32>,
+}
+
+impl<T> Default for Waiting<T> {
+    fn default() -> Self {
+        Self {
+            order: BTreeSet::new(),
+            entries: HashMap::new(),
+            all: Vec::new(),
+            unused: Vec::new(),
+        }
+    }
+}
+
+/// The bits of times ≥ 0 are in the order of the times.
+fn bits(time: Real) -> u32 {
+    time.max(0.0).to_bits()
+}
+
+impl<T> Waiting<T> {
+    /// Has a pair that does not wait yet wait until `time`, in seconds.
+    pub fn insert(&mut self, pair: Pair, time: Real, what: T) {
+        let place = self.unused.pop().unwrap_or_else(|| {
+            self.all.push(None);
+            self.all.len() as u32 - 1
+        });
+        self.all[place as usize] = Some(what);
+        self.entries.insert(pair, (bits(time), place));
+        self.order.insert((bits(time), pair, place));
+    }
+
+    /// Forgets a pair.
+    pub fn remove(&mut self, pair: Pair) {
+        if let Some((time, place)) = self.entries.remove(&pair) {
+            self.order.remove(&(time, pair, place));
+            self.all[place as usize] = None;
+            self.unused.push(place);
+        }
+    }
+
+    /// The first pair, what waits for it, and the time of the second one in seconds.
+    pub fn first(&mut self) -> Option<(Pair, &mut T, Option<Real>)> {
+        let mut order = self.order.iter();
+        let (_, pair, place) = order.next()?;
+        let next = order.next().map(|(time, ..)| Real::from_bits(*time));
+        let what = self.all[*place as usize].as_mut()?;
+        Some((*pair, what, next))
+    }
+
+    /// Has the first pair wait longer.
+    pub fn put_off(&mut self, time: Real) {
+        if let Some((_, pair, place)) = self.order.pop_first() {
+            self.entries.insert(pair, (bits(time), place));
+            self.order.insert((bits(time), pair, place));
+        }
+    }
+}
