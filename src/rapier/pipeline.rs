@@ -323,7 +323,6 @@ impl MedialPipeline {
         };
         let prediction = parameters.prediction_distance();
         let muted = muting::muted(&snapshot, &asker, &rules, prediction, &mut work);
-        let mutenodes = work.nodes;
         report.muted = muted.len();
         self.answers.mute(muted);
         self.answers
@@ -393,23 +392,6 @@ impl MedialPipeline {
             self.recycled.forget(ids);
         }
         let counted = self.answers.take_counts();
-        if std::env::var("STEPS").is_ok() {
-            println!(
-                "TMP casts {} castnodes {} casttests {} hits {} misses {} manifolds {} | work q {} nodes {} tests {} | jobs {} muted {} mutenodes {}",
-                counted.casts,
-                counted.nodes,
-                counted.tests,
-                counted.hits,
-                counted.misses,
-                counted.manifolds,
-                work.queries,
-                work.nodes,
-                work.tests,
-                report.jobs,
-                report.muted,
-                mutenodes
-            );
-        }
         report.cache_hits = counted.hits;
         report.cache_misses = counted.misses;
         report.manifolds = counted.manifolds;
