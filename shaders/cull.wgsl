@@ -25,20 +25,21 @@ fn part(side: Side, index: u32) -> Part {
   return Part(sweep(side, bound), bound.w, index, nodes[index].below);
 }
 
-// Two nodes that meet are to be looked at again: both split where they are about as large, else the larger one.
-fn consider(p: Part, q: Part, reach: f32) {
-  if (!meet(p.swept, q.swept, reach)) { return; }
+// Two nodes that meet are to be looked at again: both split where they are about as large, else the
+// larger one. One place writes for both outcomes: to write costs as much as to compare.
+fn consider(wanted: bool, p: Part, q: Part, reach: f32) {
+  let met = wanted && meet(p.swept, q.swept, reach);
   let p_leaf = p.below >= MARK;
   let q_leaf = q.below >= MARK;
-  if (p_leaf && q_leaf) {
-    kept++;
-    work[WALK_ROOM - kept] = vec2<u32>(p.below, q.below) ^ vec2<u32>(MARK);
-    return;
-  }
-  let split_p = !p_leaf && (q_leaf || p.radius * WALK_SIMILAR >= q.radius);
-  let split_q = !q_leaf && (p_leaf || q.radius * WALK_SIMILAR >= p.radius);
-  work[open] = vec2<u32>(select(p.index, p.below | MARK, split_p), select(q.index, q.below | MARK, split_q));
-  open++;
+  let leaves = p_leaf && q_leaf;
+  let split = vec2<bool>(
+    leaves || (!p_leaf && (q_leaf || p.radius * WALK_SIMILAR >= q.radius)),
+    leaves || (!q_leaf && (p_leaf || q.radius * WALK_SIMILAR >= p.radius)),
+  );
+  let next = select(vec2<u32>(p.index, q.index), vec2<u32>(p.below, q.below) ^ vec2<u32>(MARK), split);
+  if (met) { work[select(open, WALK_ROOM - 1u - kept, leaves)] = next; }
+  open += u32(met && !leaves);
+  kept += u32(met && leaves);
 }
 
 fn answer(pair: u32) -> u32 {
@@ -51,17 +52,18 @@ fn answer(pair: u32) -> u32 {
   for (var looks = 0u; open > 0u; looks++) {
     if (open + kept + 4u > WALK_ROOM || looks == WALK_LOOKS) { return GIVEN_UP; }
     open--;
-    let both = work[open] >= vec2<u32>(MARK);
-    let first = work[open] & vec2<u32>(MARK - 1u);
+    let top = work[open];
+    let both = top >= vec2<u32>(MARK);
+    let first = top & vec2<u32>(MARK - 1u);
     let second = first + select(vec2<u32>(0u), vec2<u32>(1u), both);
     let p0 = part(a, first.x);
     let q0 = part(b, first.y);
     let p1 = part(a, second.x);
     let q1 = part(b, second.y);
-    consider(p0, q0, reach);
-    if (both.x) { consider(p1, q0, reach); }
-    if (both.y) { consider(p0, q1, reach); }
-    if (both.x && both.y) { consider(p1, q1, reach); }
+    consider(true, p0, q0, reach);
+    consider(both.x, p1, q0, reach);
+    consider(both.y, p0, q1, reach);
+    consider(both.x && both.y, p1, q1, reach);
   }
   for (var k = WALK_ROOM - kept; k < WALK_ROOM; k++) {
     if (!stays_free(simplex(a, work[k].x), simplex(b, work[k].y), reach)) { return OPEN; }

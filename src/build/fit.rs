@@ -17,7 +17,7 @@ use crate::error::BuildError;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Up to this many primitives several starts are tried, and larger shares swapped.
-const SMALL: usize = 200;
+pub const SMALL: usize = 200;
 
 /// Above this many measured cost no longer beats the quadrics' and takes too long.
 pub const LARGE: usize = 1000;
@@ -125,6 +125,43 @@ pub fn collapse(
     let first = collapsed(most);
     watch.keep(smaller.iter().chain([&first]).map(Collapsed::bytes).sum());
     Ok((first, smaller, kept))
+}
+
+/// A body is round when this factor more primitives, and all counts beyond, better the plain collapse
+/// to a small count by less than [`FLAT`]: all errors are then those of the samples and of the source's
+/// own facets. Plain collapses of a ring of 1,536 triangles: .0032 at 50, .0023 to .0029 from 200 to
+/// 5,000; those of the bug .027 at 50, .0044 at 5,000.
+const ROUND_FROM: usize = 10;
+const FLAT: f64 = 1.5;
+
+/// Place among the `smaller` counts of the least that a round body needs; `None` where it is not round.
+pub fn round_from(
+    first: &Collapsed,
+    smaller: &[Collapsed],
+    rough: &Target,
+    watch: &mut Watch,
+) -> Result<Option<usize>, BuildError> {
+    let few = |c: &Collapsed| c.most <= SMALL && c.most * ROUND_FROM <= first.most;
+    if !smaller.iter().any(few) {
+        return Ok(None);
+    }
+    let Some(most) = rough.largest_below(&first.plain, f64::INFINITY, watch)? else {
+        return Ok(None);
+    };
+    for k in (0..smaller.len()).rev().filter(|&k| few(&smaller[k])) {
+        let Some(own) = rough.largest_below(&smaller[k].plain, FLAT * most, watch)? else {
+            continue;
+        };
+        let mut flat = true;
+        for larger in &smaller[..k] {
+            let far_better = rough.largest_below(&larger.plain, own / FLAT, watch)?;
+            flat &= far_better.is_none();
+        }
+        if flat {
+            return Ok(Some(k));
+        }
+    }
+    Ok(None)
 }
 
 /// Swaps of small counts, and of larger ones. With fewer iterations most rounds of the latter fail.

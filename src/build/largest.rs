@@ -137,6 +137,11 @@ impl<'a, S: Side> Search<'a, S> {
         self.widest.max(self.given_up)
     }
 
+    /// Pieces looked at so far.
+    pub fn examined(&self) -> usize {
+        self.examined
+    }
+
     /// What a distance must exceed to matter.
     fn high(&self) -> f64 {
         self.best.max(self.floor)

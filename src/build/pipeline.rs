@@ -47,6 +47,9 @@ const CLEARLY_BETTER: f64 = 0.75;
 /// 1.3 on a ring, 2 on the bug, where all counts of primitives differ by more.
 const LARGEST_GAIN: f64 = 2.0;
 
+/// A round body's counts ([`fit::round_from`]) are tried upwards until this many in turn fit no better.
+const FAILURES: usize = 2;
+
 /// The checked surface, its tree, and what to build from it.
 pub struct Source {
     pub surface: Surface,
@@ -102,9 +105,40 @@ impl Source {
         let (first, smaller, kept_topology) = fit::collapse(simplifier, most, watch)?;
         let rough = fit::rough_target(&self.surface, &self.tree);
         let gain = if self.fits() { LARGEST_GAIN } else { 1.0 };
-        let mut best = self.fitted(&first, None, watch)?;
-        let mut wins = most;
-        for other in &smaller {
+        let round = match self.fits() {
+            true => fit::round_from(&first, &smaller, &rough, watch)?,
+            false => None,
+        };
+        let (start, larger, smaller) = match round {
+            Some(k) => {
+                let larger = smaller[..k].iter().rev().chain([&first]).collect();
+                (&smaller[k], larger, &smaller[k + 1..])
+            }
+            None => (&first, Vec::new(), &smaller[..]),
+        };
+        let mut best = self.fitted(start, None, watch)?;
+        let mut wins = start.most;
+        let (mut failures, mut left) = (0, 0);
+        for other in larger {
+            let (before, balanced) = (best.hausdorff.error(), best.lower_quality);
+            if failures < FAILURES {
+                best = self.fitted(other, Some(best), watch)?;
+                let better = best.lower_quality < balanced;
+                failures = if better { 0 } else { failures + 1 };
+            } else {
+                left += 1;
+                let may_win = rough.largest_below(&other.plain, balanced, watch)?;
+                if may_win.is_some() {
+                    let plain = other.plain.clone();
+                    let with_plain = self.or_better(Some(best), plain, watch)?;
+                    best = with_plain.counted_for_lower_quality();
+                }
+            }
+            if best.hausdorff.error() < before {
+                wins = other.most;
+            }
+        }
+        for other in smaller {
             // Where parts overlap, what is inside others is far from any solid and says nothing.
             let sure = self.fits() || !self.surface.simple;
             let least = match sure && other.most >= fit::LARGE {
@@ -122,9 +156,13 @@ impl Source {
         }
         let mut candidate = self.reported(best, watch)?;
         if wins < most {
-            candidate
-                .notes
-                .push(format!("{wins} primitives fit better than {most}"));
+            candidate.notes.push(match left {
+                0 => format!("{wins} primitives fit better than {most}"),
+                _ => format!(
+                    "a round body: {wins} primitives fit best, and larger counts than were tried, up to \
+                     {most}, gain nothing"
+                ),
+            });
         }
         if !kept_topology {
             candidate.notes.push(GAVE_UP.into());

@@ -184,6 +184,28 @@ impl<'a> PrimitiveTree<'a> {
         found
     }
 
+    /// Whether all primitives of a signed distance below `limit` keep a condition; `hint` is one that may
+    /// break it.
+    pub fn all_below(
+        &self,
+        p: Point,
+        limit: f64,
+        hint: u32,
+        keeps: impl Fn(&Nearest) -> bool,
+    ) -> bool {
+        let keep = |signed: Signed, primitive: u32| {
+            signed.distance >= limit || keeps(&Nearest { signed, primitive })
+        };
+        let mut all = keep(self.distance_to(hint, p), hint);
+        if all {
+            self.visit(p, limit, |signed, primitive| {
+                all = keep(signed, primitive);
+                all.then_some(limit)
+            });
+        }
+        all
+    }
+
     /// Calls `see` for primitives whose distance may be below `limit`, nearer groups first; `see`
     /// returns the new limit, or `None` to stop.
     fn visit(&self, p: Point, limit: f64, mut see: impl FnMut(Signed, u32) -> Option<f64>) {

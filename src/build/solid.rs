@@ -128,6 +128,22 @@ impl<'a> Solid<'a> {
         !self.tree.any_below(p, -ON_BOUNDARY, hint)
     }
 
+    /// Whether a triangle of middle `middle` is proven to be outside or on the boundary.
+    ///
+    /// The signed distance to a primitive is convex, so at each point it is at least its tangent plane at
+    /// the middle, which is least at a corner. That is second order in the triangle's size, where the
+    /// distance at the middle alone is first order.
+    pub fn is_all_out(&self, corners: &[Point; 3], middle: Point, hint: u32) -> bool {
+        let from_middle = corners.map(|c| c - middle);
+        let far = from_middle.iter().map(|c| c.length_sq());
+        let radius = far.fold(0.0, f64::max).sqrt();
+        self.tree.all_below(middle, radius, hint, |near| {
+            let outward = direction(middle - self.tree.ball(near).center);
+            let heights = from_middle.iter().map(|c| c.dot(outward));
+            near.signed.distance + heights.fold(f64::INFINITY, f64::min) >= -ON_BOUNDARY
+        })
+    }
+
     /// The point of the nearest ball's surface that is nearest to `p`.
     pub fn towards_boundary(&self, p: Point, near: &Nearest) -> Point {
         p - direction(p - self.ball(near).center) * near.signed.distance

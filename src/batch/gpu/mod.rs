@@ -302,8 +302,8 @@ impl Gpu {
         for (index, sweep) in sweeps.iter().enumerate() {
             let roots = sweep.meshes.map(|mesh| self.meshes.root(mesh));
             let kept = self.pairs.len();
-            for times in sweep.pieces() {
-                let Some(pair) = sweep.pair(roots, times) else {
+            for pair in sweep.pairs(roots) {
+                let Some(pair) = pair else {
                     self.pairs.truncate(kept);
                     self.asked.truncate(kept);
                     break;

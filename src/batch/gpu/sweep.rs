@@ -20,22 +20,25 @@ const PIECE_ANGLE: f64 = 0.5;
 const MAX_PIECES: f64 = 32.0;
 
 impl Sweep<'_> {
-    /// The times of its pieces, as the device gets them.
-    pub(super) fn pieces(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
-        let angle = |m: &RigidMotion<f64>| m.angle() / PIECE_ANGLE;
-        let most = self.paths().iter().map(angle).fold(1.0, f64::max);
-        let count = most.ceil().min(MAX_PIECES);
-        (0..count as u32).map(move |k| [k, k + 1].map(|k| f64::from(k) / count))
-    }
-
-    fn paths(&self) -> [RigidMotion<f64>; 2] {
+    /// Its pieces as the device gets them; `None` where a number is not finite or too large.
+    pub(super) fn pairs(&self, roots: [u32; 2]) -> impl Iterator<Item = Option<Pair>> {
         let [m1, m2] = &self.motions;
-        RigidMotion::pair(m1, m2, self.seconds.into())
+        let paths = RigidMotion::pair(m1, m2, self.seconds.into());
+        let angle = |m: &RigidMotion<f64>| m.angle() / PIECE_ANGLE;
+        let most = paths.iter().map(angle).fold(1.0, f64::max);
+        let count = most.ceil().min(MAX_PIECES);
+        (0..count as u32).map(move |k| {
+            let times = [k, k + 1].map(|k| f64::from(k) / count);
+            self.pair(roots, &paths, times)
+        })
     }
 
-    /// A piece as the device gets it; `None` where a number is not finite or too large.
-    pub(super) fn pair(&self, roots: [u32; 2], [start, end]: [f64; 2]) -> Option<Pair> {
-        let motions = self.paths();
+    fn pair(
+        &self,
+        roots: [u32; 2],
+        motions: &[RigidMotion<f64>; 2],
+        [start, end]: [f64; 2],
+    ) -> Option<Pair> {
         let mut sides = [Side::default(); 2];
         let mut scale = self.reach.abs();
         for (k, side) in sides.iter_mut().enumerate() {
@@ -74,12 +77,13 @@ impl Sweep<'_> {
     }
 }
 
-/// Rows of a body's placement at a time: where the origin and the axes go.
+/// Rows of a body's placement at a time: where the axes and the origin go.
 fn rows(motion: &RigidMotion<f64>, time: f64) -> [[f32; 4]; 3] {
-    let turned = motion.sin_cos(time);
-    let to = |v: Vector| motion.point(Vec3::from_vector(v)).at(time, turned).position;
-    let origin = to(Vector::ZERO);
-    let [x, y, z] = [Vector::X, Vector::Y, Vector::Z].map(|axis| to(axis) - origin);
+    let frame = motion.frame(time);
+    let arm = |v: Vector| frame.arm(Vec3::from_vector(v));
+    let back = arm(Vector::ZERO);
+    let [x, y, z] = [Vector::X, Vector::Y, Vector::Z].map(|axis| arm(axis) - back);
+    let origin = frame.center + back;
     let row = |of: fn(&Vec3<f64>) -> f64| [&x, &y, &z, &origin].map(|v| of(v) as f32);
     [row(|v| v.x), row(|v| v.y), row(|v| v.z)]
 }
