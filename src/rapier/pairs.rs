@@ -1,6 +1,7 @@
-//! Which colliders may meet: rapier's own rules, and sweep and prune over swept boxes.
+//! Which colliders may meet: rapier's own rules, and swept boxes.
 
 use super::motion::{Body, Kind, Snapshot};
+use super::sweep::meeting;
 use crate::math::Real;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::{ImpulseJointSet, MultibodyJointSet, RigidBodySet, RigidBodyType};
@@ -91,25 +92,17 @@ pub fn concerned(snapshot: &Snapshot, [i, j]: [usize; 2]) -> bool {
 /// order (lower collider index first).
 pub fn sweep(snapshot: &Snapshot, dt: Real, margin: Real) -> Vec<[usize; 2]> {
     let moving = |k: &usize| snapshot.bodies[snapshot.parts[*k].body].kind != Kind::Fixed;
-    let mut boxes: Vec<(Aabb, usize)> = (0..snapshot.parts.len())
-        .filter(moving)
-        .map(|k| {
-            let aabb = snapshot.swept_aabb(k, 0.0, dt);
-            (aabb.loosened(margin + snapshot.parts[k].skin), k)
-        })
-        .collect();
-    boxes.sort_by(|a, b| a.0.mins.x.total_cmp(&b.0.mins.x));
-    let mut pairs = Vec::new();
-    for (n, (a, i)) in boxes.iter().enumerate() {
-        for (b, j) in &boxes[n + 1..] {
-            if b.mins.x > a.maxs.x {
-                break;
-            }
-            if a.intersects(b) && concerned(snapshot, [*i, *j]) {
-                pairs.push(in_order(snapshot, [*i, *j]));
-            }
-        }
-    }
+    let parts: Vec<usize> = (0..snapshot.parts.len()).filter(moving).collect();
+    let swept = |&k: &usize| {
+        let aabb = snapshot.swept_aabb(k, 0.0, dt);
+        aabb.loosened(margin + snapshot.parts[k].skin)
+    };
+    let boxes: Vec<Aabb> = parts.iter().map(swept).collect();
+    let met = meeting(&boxes)
+        .into_iter()
+        .map(|pair| pair.map(|n| parts[n]));
+    let concerned = met.filter(|pair| concerned(snapshot, *pair));
+    let mut pairs: Vec<_> = concerned.map(|pair| in_order(snapshot, pair)).collect();
     pairs.sort_unstable();
     pairs
 }

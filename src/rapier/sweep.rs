@@ -26,7 +26,10 @@ pub fn meeting(boxes: &[Aabb]) -> Vec<[usize; 2]> {
 fn widest(boxes: &[Aabb]) -> usize {
     let count = boxes.len().max(1) as Real;
     let mean = boxes.iter().map(Aabb::center).sum::<Vector>() / count;
-    let square = |b: &Aabb| (b.center() - mean).powf(2.0);
+    let square = |b: &Aabb| {
+        let apart = b.center() - mean;
+        apart * apart
+    };
     let spread: Vector = boxes.iter().map(square).sum();
     (0..3)
         .max_by(|&i, &j| spread[i].total_cmp(&spread[j]))
