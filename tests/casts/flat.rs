@@ -207,27 +207,21 @@ fn a_list_goes_from_hand_to_hand() {
     for step in 0..400 {
         let x = 1.2 * (step as Real * 0.05).sin();
         let pose = Pose::translation(x, 0.5 + 0.1 - 0.001, 0.0);
-        dispatcher
-            .contact_manifolds(
-                &pose.inverse(),
-                &mesh,
-                &table,
-                PREDICTION,
-                &mut manifolds,
-                &mut workspace,
-            )
-            .expect("supported");
-        let (mut fresh, mut none) = (Vec::<Manifold>::new(), None);
-        dispatcher
-            .contact_manifolds(
-                &pose.inverse(),
-                &mesh,
-                &table,
-                PREDICTION,
-                &mut fresh,
-                &mut none,
-            )
-            .expect("supported");
+        let look = |manifolds: &mut Vec<Manifold>, workspace: &mut Option<_>| {
+            dispatcher
+                .contact_manifolds(
+                    &pose.inverse(),
+                    &mesh,
+                    &table,
+                    PREDICTION,
+                    manifolds,
+                    workspace,
+                )
+                .expect("supported");
+        };
+        look(&mut manifolds, &mut workspace);
+        let mut fresh = Vec::new();
+        look(&mut fresh, &mut None);
         let points = |all: &[Manifold]| all.iter().map(|m| m.points.len()).sum::<usize>();
         let deepest = |all: &[Manifold]| {
             let all = all.iter().flat_map(|m| &m.points);
