@@ -59,8 +59,8 @@ fn side(cuboid: &Cuboid, region: &Aabb, prediction: Real) -> Option<(Vector, Rea
 }
 
 /// Writes the contacts of `mesh` with a face within `prediction`: a manifold for each primitive that
-/// holds some, each sphere once. The mesh is body `side` (0 or 1) at `pose12`; `pose` is the other's in
-/// the mesh's frame. Manifolds that were there keep their data, and contacts of a sphere their impulses.
+/// holds some, each sphere once. The mesh is body `side` (0 or 1); `pose` is the other's in the
+/// mesh's frame. Manifolds that were there keep their data, and contacts of a sphere their impulses.
 pub fn write_manifolds<M, C>(
     mesh: &MedialMesh,
     face: &Face,
@@ -97,11 +97,8 @@ pub fn write_manifolds<M, C>(
         let features = [PackedFeatureId::vertex(sphere), FLAT];
         let [fid1, fid2] = in_order(features, side);
         let mut point = TrackedContact::new(points[0], points[1], fid1, fid2, gap);
-        let before = old.iter().flat_map(|m| &m.points);
-        if let Some(before) = before
-            .into_iter()
-            .find(|p| [p.fid1, p.fid2] == [fid1, fid2])
-        {
+        let mut before = old.iter().flat_map(|m| &m.points);
+        if let Some(before) = before.find(|p| [p.fid1, p.fid2] == [fid1, fid2]) {
             point.data = before.data;
         }
         if let Some(last) = manifolds.last_mut() {

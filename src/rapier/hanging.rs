@@ -1,9 +1,9 @@
 //! Whose contacts are computed anew although their pair has hardly moved.
 //!
 //! Bodies that hang: whose contacts pull them away from their centre of mass, as those of convex bodies
-//! never do. rapier keeps the contacts of a pair until it has moved by its recycle distance. They are contacts of the
-//! past, and what hangs in them swings on (see [`super::ahead`]). So where contacts that a body hangs in
-//! have moved, rapier is made to ask for all of that collider's.
+//! never do. rapier keeps the contacts of a pair until it has moved by its recycle distance. They are
+//! contacts of the past, and what hangs in them swings on (see [`super::ahead`]). So where contacts that a
+//! body hangs in have moved, rapier is made to ask for all of that collider's.
 //!
 //! And bodies that came to rest: contacts that could close while they moved cannot any more, and the solver
 //! would pay for them as long as they lie there.

@@ -18,7 +18,7 @@ struct Drawn {
     reach: f64,
 }
 
-/// Still and moving, slow and fast turns, near and far, from 1 to several clusters.
+/// Still and moving, slow and fast turns, near and far, small trees and deep ones.
 fn draw(count: usize) -> Vec<Drawn> {
     let mut rng = Rng::new(41);
     (0..count)

@@ -114,7 +114,7 @@ pub const WALKS: usize = 8;
 /// Groups in one dimension of a dispatch: the portable limit; wgpu drops what exceeds it.
 pub const MAX_GROUPS: u32 = 65_535;
 
-/// Rounds of the search for a direction. Fewer leave more survivors, never a wrong proof.
+/// Rounds of the search for a direction. Fewer prove less, and nothing wrong.
 const GILBERT_ROUNDS: u32 = 6;
 /// Node pairs and primitive pairs that a walk down two trees holds at once; a walk that finds more is
 /// given up.
