@@ -2,12 +2,12 @@
 //! beyond indices in range.
 
 use super::bounds::Point;
+use super::fast_hash::FastSet;
 use super::surface::Frame;
 use super::watch::bytes_of;
 use crate::error::MeshError;
 use crate::math::{Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
-use std::collections::HashSet;
 
 /// A medial sphere in the builder's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ impl Draft {
     /// The volumes: slabs, then cones that belong to no slab, then lone balls.
     pub fn primitives(&self) -> Vec<Corners> {
         let sorted = |a: u32, b: u32| (a.min(b), a.max(b));
-        let mut joined = HashSet::new();
+        let mut joined = FastSet::default();
         let mut used = vec![false; self.balls.len()];
         let mut primitives = self.faces.clone();
         for &[a, b, c] in &self.faces {

@@ -106,7 +106,7 @@ fn dilate(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(),
                 let done = (pass as f64 + i as f64 / uncovered.len() as f64).min(2.0);
                 watch.at(0.2 * done)?;
             }
-            let nearest = tree.nearest(p, hint);
+            let nearest = tree.nearest_between(p, 0.0, f64::INFINITY, hint);
             hint = nearest.primitive;
             if nearest.signed.distance > 0.0 {
                 growth.ask(tree.primitives()[hint as usize], &nearest.signed);

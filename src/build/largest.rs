@@ -149,8 +149,11 @@ impl<'a, S: Side> Search<'a, S> {
 
     fn slack_now(&self) -> f64 {
         let ahead = self.examined as f64 / self.budget - self.done - AHEAD;
-        let doubled = (ahead / STEP).ceil().clamp(0.0, 32.0);
-        self.effort.slack * self.high().max(SMALL) * doubled.exp2()
+        let slack = self.effort.slack * self.high().max(SMALL);
+        match (ahead / STEP).ceil() {
+            doubled if doubled > 0.0 => slack * doubled.min(32.0).exp2(),
+            _ => slack,
+        }
     }
 
     /// Cuts pieces level by level, until none is left or there are many, which are returned.

@@ -30,7 +30,8 @@ impl<'a> Parts<'a> {
         watch: &mut Watch,
     ) -> Result<Self, BuildError> {
         Ok(Self {
-            solid: Simplifier::new(start.solid, BOUNDARY_WEIGHT_SOLID, tree, watch)?,
+            solid: Simplifier::new(start.solid, BOUNDARY_WEIGHT_SOLID, tree, watch)?
+                .touching(start.spacing),
             sheets: Simplifier::new(start.sheets, BOUNDARY_WEIGHT_SHEET, tree, watch)?,
             share: start.share,
             least: start.sheet_patches,

@@ -151,25 +151,21 @@ impl<'a> PrimitiveTree<'a> {
         best
     }
 
-    /// As [`Self::nearest`], but `None` where the smallest signed distance is not between `least` and
-    /// `most`.
-    pub fn nearest_between(&self, p: Point, least: f64, most: f64, hint: u32) -> Option<Nearest> {
-        let signed = self.distance_to(hint, p);
+    /// As [`Self::nearest`] where the smallest signed distance is between `least` and `most`; elsewhere
+    /// some primitive, of a signed distance that is not either.
+    pub fn nearest_between(&self, p: Point, least: f64, most: f64, hint: u32) -> Nearest {
         let mut best = Nearest {
-            signed,
+            signed: self.distance_to(hint, p),
             primitive: hint,
         };
-        if signed.distance < least {
-            return None;
+        if best.signed.distance >= least {
+            self.visit(p, best.signed.distance.min(most), |signed, primitive| {
+                best.take_nearer(Nearest { signed, primitive });
+                let lowest = best.signed.distance;
+                (lowest >= least).then_some(lowest.min(most))
+            });
         }
-        self.visit(p, signed.distance.min(most), |signed, primitive| {
-            best.take_nearer(Nearest { signed, primitive });
-            let lowest = best.signed.distance;
-            (lowest >= least).then_some(lowest.min(most))
-        });
-        (least..=most)
-            .contains(&best.signed.distance)
-            .then_some(best)
+        best
     }
 
     /// Whether some signed distance is below `limit`; `hint` is a primitive that may have it.

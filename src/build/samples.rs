@@ -3,11 +3,11 @@
 //! spread evenly by area.
 
 use super::bounds::{Point, coordinate, direction};
+use super::fast_hash::FastMap;
 use super::random::Random;
 use super::surface::Surface;
 use super::watch::Watch;
 use crate::error::BuildError;
-use std::collections::HashMap;
 
 /// Candidates per sample wanted. Fewer leave gaps, more cost time for a few samples.
 const CANDIDATES: usize = 6;
@@ -109,7 +109,7 @@ pub fn vertex_samples(surface: &Surface) -> Vec<Sample> {
 struct Grid {
     distance: f64,
     cell: f64,
-    last: HashMap<[i32; 3], u32>,
+    last: FastMap<[i32; 3], u32>,
     /// Each point, and the one before it in its cell.
     points: Vec<(Point, u32)>,
 }
@@ -121,7 +121,7 @@ impl Grid {
             // Three distances: a point's reach then meets 4.6 cells on average, and a cell holds
             // about ten points of a surface. One distance means 27 cells.
             cell: 3.0 * distance,
-            last: HashMap::new(),
+            last: FastMap::default(),
             points: Vec::new(),
         }
     }

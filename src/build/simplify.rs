@@ -48,7 +48,8 @@ pub struct Simplifier<'a> {
     quadrics: Vec<Quadric>,
     versions: Vec<u32>,
     queue: Queue,
-    /// No triangle is nearer to each ball's centre than this, as far as is known.
+    /// Each ball's centre lies inside the solid, and no triangle is nearer to it than this; 0 where
+    /// nothing is known.
     clear: Vec<f64>,
     /// Edges that the topology rule held back.
     blocked: Vec<Candidate>,
@@ -87,6 +88,16 @@ impl<'a> Simplifier<'a> {
         }
         watch.hold(simplifier.bytes());
         Ok(simplifier)
+    }
+
+    /// Says that the balls lie inside the solid and touch samples of its surface, `spacing` apart, as
+    /// yet: seen from a ball of radius r, a flat surface bulges in by r − √(r² − spacing²) between them.
+    pub fn touching(mut self, spacing: f64) -> Self {
+        for (clear, ball) in self.clear.iter_mut().zip(&self.complex.balls) {
+            let clear_sq = ball.radius * ball.radius - spacing * spacing;
+            *clear = clear_sq.max(0.0).sqrt();
+        }
+        self
     }
 
     /// Bytes of its arrays.
@@ -170,7 +181,9 @@ impl<'a> Simplifier<'a> {
         let known = left(a).max(left(b));
         let distance = ball.radius * (1.0 - BULGE);
         let clear = known >= distance || !self.tree.any_within(ball.center, distance);
-        self.clear[a as usize] = if clear { known.max(distance) } else { 0.0 };
+        // A ball that left what was clear may have come out.
+        let inside = clear && known > 0.0;
+        self.clear[a as usize] = if inside { known.max(distance) } else { 0.0 };
         clear
     }
 
@@ -211,7 +224,13 @@ impl<'a> Simplifier<'a> {
     /// Whether the solid has no hole where collapsing an edge would close one.
     pub(super) fn may_collapse(&self, a: u32, b: u32) -> bool {
         let mut closed = self.complex.closed_by(a, b);
-        closed.all(|middle| self.tree.winding(middle) > 0.5)
+        closed.all(|middle| {
+            let inside = |v: u32| {
+                let way = middle - self.complex.balls[v as usize].center;
+                way.length() < self.clear[v as usize]
+            };
+            inside(a) || inside(b) || self.tree.winding(middle) > 0.5
+        })
     }
 
     fn push_around(&mut self, v: u32, wanted: impl Fn(u32) -> bool) {
@@ -249,34 +268,34 @@ impl<'a> Simplifier<'a> {
         let length = (ball_b.center - ball_a.center).length();
         let near = |m: &Ball| (m.center - middle.center).length() <= REACH * length;
         let minimiser = quadric.minimiser(&middle);
-        let minimiser = minimiser.filter(|m| m.radius > 0.0 && near(m));
-        self.cheapest_by(&quadric, [ball_a, ball_b, middle], minimiser)
+        let Some(minimiser) = minimiser.filter(|m| m.radius > 0.0 && near(m)) else {
+            return cheapest_of(&quadric, [ball_a, ball_b, middle]);
+        };
+        let cost = cost(quadric.error(&minimiser), &ball_a, &ball_b);
+        (cost, minimiser)
     }
 
     /// The cheapest of two balls and their middle to merge the two into.
     fn cheapest(&self, a: u32, b: u32) -> (f64, Ball) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
         let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        self.cheapest_by(&quadric, [ball_a, ball_b, middle(&ball_a, &ball_b)], None)
+        cheapest_of(&quadric, [ball_a, ball_b, middle(&ball_a, &ball_b)])
     }
+}
 
-    /// The cheapest of two balls, their middle and a fourth, and its cost.
-    fn cheapest_by(
-        &self,
-        quadric: &Quadric,
-        balls: [Ball; 3],
-        minimiser: Option<Ball>,
-    ) -> (f64, Ball) {
-        let [ball_a, ball_b, _] = balls;
-        let (error, ball) = balls
-            .into_iter()
-            .chain(minimiser)
-            .map(|ball| (quadric.error(&ball), ball))
-            .min_by(|x, y| x.0.total_cmp(&y.0))
-            .unwrap_or((0.0, ball_a));
-        let stability = stability(&ball_a, &ball_b).max(STABILITY_FLOOR);
-        ((error + FLAT_COST) * stability * stability, ball)
-    }
+/// The cheapest of two balls and their middle to merge the two into, and its cost.
+fn cheapest_of(quadric: &Quadric, balls: [Ball; 3]) -> (f64, Ball) {
+    let [a, b, _] = balls;
+    let tried = balls.into_iter().map(|ball| (quadric.error(&ball), ball));
+    let best = tried.min_by(|x, y| x.0.total_cmp(&y.0));
+    let (error, ball) = best.unwrap_or((0.0, a));
+    (cost(error, &a, &b), ball)
+}
+
+/// Cost of merging two balls into one that is off by `error`.
+fn cost(error: f64, a: &Ball, b: &Ball) -> f64 {
+    let stability = stability(a, b).max(STABILITY_FLOOR);
+    (error + FLAT_COST) * stability * stability
 }
 
 /// The ball halfway between two.

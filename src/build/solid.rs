@@ -115,7 +115,8 @@ impl<'a> Solid<'a> {
 
     /// As [`Self::nearest`], if its signed distance is at most `limit` on either side.
     pub fn nearest_if_near(&self, p: Point, limit: f64, hint: u32) -> Option<Nearest> {
-        self.tree.nearest_between(p, -limit, limit, hint)
+        let near = self.tree.nearest_between(p, -limit, limit, hint);
+        (near.signed.distance.abs() <= limit).then_some(near)
     }
 
     /// Signed distance of `p` to one primitive.

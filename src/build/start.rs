@@ -29,6 +29,8 @@ const INSIDE: f64 = 0.5;
 pub struct Start {
     /// All balls inside solid matter.
     pub solid: Draft,
+    /// Distance between the samples that they touch.
+    pub spacing: f64,
     /// Slabs of sheets, and of matter too thin for balls.
     pub sheets: Draft,
     /// Share of the surface's area that became slabs.
@@ -85,6 +87,7 @@ pub fn start(
     let share = surface.part(slabs).area / surface.area;
     Ok(Start {
         solid,
+        spacing,
         sheets: open.and(thin_sheets(surface, &thin, spacing, watch)?),
         share,
         sheet_patches: findings.patches_sheet,

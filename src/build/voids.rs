@@ -9,7 +9,7 @@
 
 use super::bounds::Point;
 use super::draft::Draft;
-use std::collections::HashMap;
+use super::fast_hash::FastMap;
 
 /// A set modulo 2, in ascending order.
 type Chain = Vec<u32>;
@@ -40,9 +40,9 @@ fn superfluous(
         (b - a).cross(c - a).length_sq()
     };
     closed.sort_by(|&f, &g| area(g).total_cmp(&area(f)).then(f.cmp(&g)));
-    let mut edges = HashMap::new();
+    let mut edges = FastMap::default();
     // By its last edge: a boundary, and the faces (places in `closed`) that it is of.
-    let mut reduced: HashMap<u32, (Chain, Chain)> = HashMap::new();
+    let mut reduced: FastMap<u32, (Chain, Chain)> = FastMap::default();
     let mut cavities: Vec<Chain> = Vec::new();
     let mut dropped = Vec::new();
     for (place, &f) in closed.iter().enumerate() {
@@ -81,7 +81,7 @@ fn superfluous(
 
 /// Faces all of whose edges have another of these faces.
 fn core(faces: &[[u32; 3]]) -> Vec<usize> {
-    let mut at_edge: HashMap<[u32; 2], Vec<u32>> = HashMap::new();
+    let mut at_edge: FastMap<[u32; 2], Vec<u32>> = FastMap::default();
     for (f, &face) in faces.iter().enumerate() {
         for edge in edges_of(face) {
             at_edge.entry(edge).or_default().push(f as u32);

@@ -48,12 +48,8 @@ twins! {
     ElementaryParams {
         /// How many there are.
         count: u32 = "u32",
-        /// Distance under which a query is left to the CPU.
-        tolerance: f32 = "f32",
         /// Cap of the iterations.
         max_iterations: u32 = "u32",
-        /// Nothing.
-        pad: u32 = "u32",
     }
     /// A node of a mesh's sphere tree, in the body's frame.
     Node {
@@ -93,16 +89,27 @@ twins! {
         /// Nothing.
         pad: [u32; 3] = "array<u32, 3>",
     }
+    /// Two primitives whose balls meet in the step.
+    Meeting {
+        /// Indices of the primitives.
+        primitives: [u32; 2] = "vec2<u32>",
+        /// Index of the mesh pair.
+        pair: u32 = "u32",
+        /// Nothing.
+        pad: u32 = "u32",
+    }
     /// Of a batch of mesh pairs.
     CullParams {
         /// How many there are.
         pairs: u32 = "u32",
+        /// How many meetings there is room for.
+        room: u32 = "u32",
     }
 }
 
-/// A mesh pair that is proven free in the whole step.
+/// A test or a mesh pair that is proven free in the whole step.
 pub const FREE: u32 = 0;
-/// Two of its primitives are not.
+/// It is not.
 pub const OPEN: u32 = 1;
 /// Too much of it meets to be looked at.
 pub const GIVEN_UP: u32 = 2;
@@ -118,9 +125,12 @@ pub const MAX_GROUPS: u32 = 65_535;
 const GILBERT_ROUNDS: u32 = 6;
 /// Node pairs and primitive pairs that a walk down two trees holds at once; a walk that finds more is
 /// given up.
-const WALK_ROOM: u32 = 128;
+pub const WALK_ROOM: u32 = 128;
 /// Node pairs that a walk splits before it is given up.
 const WALK_LOOKS: u32 = 1024;
+/// Node pairs that a walk splits before it looks whether it is done: less, and the next mesh pair is
+/// fetched for one thread at a time; more, and threads that are done wait longer.
+const WALK_STRETCH: u32 = 4;
 /// Up to this ratio of their radii two nodes are split together, as on the CPU.
 const WALK_SIMILAR: f64 = 3.0;
 /// Directions tried in turn, each from where the last proof ends.
@@ -132,13 +142,9 @@ pub fn constants() -> String {
         ("EPSILON", f64::from(f32::EPSILON)),
         ("TINY", <f32 as Lane>::TINY),
         ("HUGE", f64::from(f32::MAX)),
-        ("NEVER", tolerance::NEVER),
         ("GPU_SLACK_ULPS", tolerance::GPU_SLACK_ULPS),
-        ("TOLERANCE_PER_SLACK", tolerance::TOLERANCE_PER_SLACK),
         ("STEP_ULPS", tolerance::STEP_ULPS),
-        ("PARALLEL_ULPS", tolerance::PARALLEL_ULPS),
         ("WALK_SIMILAR", WALK_SIMILAR),
-        ("TURNING_REGULARISATION", tolerance::TURNING_REGULARISATION),
     ];
     let counts = [
         ("FREE", FREE),
@@ -148,6 +154,7 @@ pub fn constants() -> String {
         ("WALKS", WALKS as u32),
         ("WALK_ROOM", WALK_ROOM),
         ("WALK_LOOKS", WALK_LOOKS),
+        ("WALK_STRETCH", WALK_STRETCH),
         ("MAX_GROUPS", MAX_GROUPS),
         ("GILBERT_ROUNDS", GILBERT_ROUNDS),
         ("PROOF_ROUNDS", PROOF_ROUNDS),

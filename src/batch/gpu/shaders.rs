@@ -8,8 +8,8 @@ pub struct Module {
     /// Name of the stage's file.
     pub name: &'static str,
     files: &'static [&'static str],
-    /// Entry points.
-    pub stages: &'static [&'static str],
+    /// Entry points, and the bindings that each uses.
+    pub stages: &'static [(&'static str, &'static [usize])],
 }
 
 impl Module {
@@ -24,20 +24,19 @@ pub const ELEMENTARY: Module = Module {
     name: "elementary",
     files: &[
         include_str!("../../../shaders/nearest.wgsl"),
-        include_str!("../../../shaders/certificate.wgsl"),
         include_str!("../../../shaders/elementary.wgsl"),
     ],
-    stages: &["cones", "slabs"],
+    stages: &[("cones", &[0, 1, 2]), ("slabs", &[0, 1, 2])],
 };
 
-/// Mesh pairs to primitive pairs that are not proven free.
+/// A batch of mesh pairs.
 pub const CULL: Module = Module {
     name: "cull",
     files: &[
         include_str!("../../../shaders/swept.wgsl"),
         include_str!("../../../shaders/cull.wgsl"),
     ],
-    stages: &["walk"],
+    stages: &[("walk", &[0, 1, 2, 4, 5]), ("prove", &[0, 1, 3, 4, 5])],
 };
 
 /// All of them.
