@@ -130,11 +130,11 @@ impl Devices {
 /// One test there and back.
 fn round_trip(gpu: &mut Gpu) -> Value {
     let paths = [path(&mut Random(4))];
-    let mut bounds = Vec::new();
+    let mut free = Vec::new();
     let mut times: Vec<f64> = (0..200)
         .map(|_| {
-            let asked = gpu.bounds(&paths, Domain::Box, LIMITS.tolerance, &mut bounds);
-            milliseconds(|| block_on(asked).expect("bounds")) * 1.0e3
+            let asked = gpu.prove(&paths, Domain::Box, LIMITS.tolerance, &mut free);
+            milliseconds(|| block_on(asked).expect("proposals")) * 1.0e3
         })
         .collect();
     let middle = median(&mut times);
@@ -152,7 +152,7 @@ fn elementary(devices: &mut Devices) -> Vec<Value> {
     let row = |count: usize| {
         let mut random = Random(5);
         let paths: Vec<_> = (0..count).map(|_| path(&mut random)).collect();
-        let mut bounds = Vec::new();
+        let mut free = Vec::new();
         let mut times = [const { Vec::new() }; 5];
         let rounds = if count <= 10_000 {
             SHORT_ROUNDS
@@ -160,9 +160,8 @@ fn elementary(devices: &mut Devices) -> Vec<Value> {
             ROUNDS
         };
         for _ in 0..rounds {
-            let ask = async |gpu: &mut Gpu, bounds: &mut Vec<f32>| {
-                gpu.bounds(&paths, Domain::Box, LIMITS.tolerance, bounds)
-                    .await
+            let ask = async |gpu: &mut Gpu, free: &mut Vec<bool>| {
+                gpu.prove(&paths, Domain::Box, LIMITS.tolerance, free).await
             };
             times[0].push(milliseconds(|| {
                 for path in &paths {
@@ -174,15 +173,15 @@ fn elementary(devices: &mut Devices) -> Vec<Value> {
             }));
             times[2].push(milliseconds(|| on_two_threads(&paths)));
             times[3].push(milliseconds(|| {
-                block_on(ask(&mut devices.gpu, &mut bounds)).expect("bounds");
+                block_on(ask(&mut devices.gpu, &mut free)).expect("proposals");
             }));
-            block_on(ask(&mut devices.clocked, &mut bounds)).expect("bounds");
+            block_on(ask(&mut devices.clocked, &mut free)).expect("proposals");
             times[4].push(devices.shader());
         }
-        let proven = bounds.iter().filter(|b| **b >= 1.0).count();
+        let proven = free.iter().filter(|f| **f).count();
         let exact = brackets(&paths, Domain::Box, &LIMITS, Lanes::Fastest);
-        let wrong = bounds.iter().zip(&exact);
-        let wrong = wrong.filter(|(b, e)| **b >= 1.0 && !e.separated);
+        let wrong = free.iter().zip(&exact);
+        let wrong = wrong.filter(|(f, e)| **f && !e.separated);
         assert_eq!(wrong.count(), 0, "free on the device, not on the CPU");
         let [a, b, c, d, e] = times.map(least);
         let free = exact.iter().filter(|e| e.separated).count();
@@ -212,21 +211,21 @@ fn every_test(devices: &mut Devices) -> Value {
     };
     let mut lists = [(Domain::Box, Vec::new()), (Domain::Triangle, Vec::new())];
     let (mut all, mut proven, mut on_cpu, mut on_device, mut stage) = (0, 0, 0.0, 0.0, 0.0);
-    let mut bounds: Vec<f32> = Vec::new();
+    let mut free: Vec<bool> = Vec::new();
     let mut ask = |domain, paths: &mut Vec<LinearPath<f32>>| {
         on_cpu +=
             milliseconds(|| drop(black_box(brackets(paths, domain, &LIMITS, Lanes::Fastest))));
         let asked = devices
             .gpu
-            .bounds(paths, domain, LIMITS.tolerance, &mut bounds);
-        on_device += milliseconds(|| block_on(asked).expect("bounds"));
+            .prove(paths, domain, LIMITS.tolerance, &mut free);
+        on_device += milliseconds(|| block_on(asked).expect("proposals"));
         let asked = devices
             .clocked
-            .bounds(paths, domain, LIMITS.tolerance, &mut bounds);
-        block_on(asked).expect("bounds");
+            .prove(paths, domain, LIMITS.tolerance, &mut free);
+        block_on(asked).expect("proposals");
         stage += devices.shader();
         all += paths.len();
-        proven += bounds.iter().filter(|b| **b >= 1.0).count();
+        proven += free.iter().filter(|f| **f).count();
         paths.clear();
     };
     let count = mesh.primitive_count() as u32;

@@ -82,7 +82,7 @@ pub struct Batch {
     #[cfg(feature = "gpu")]
     early: Early,
     #[cfg(feature = "gpu")]
-    lowers: Vec<f32>,
+    free: Vec<bool>,
     #[cfg(feature = "gpu")]
     calibrated: Option<Least>,
     report: BatchReport,
@@ -370,13 +370,10 @@ impl Batch {
         if !whole || !self.asks_gpu(paths.len(), |least| least.tests) {
             return self.brackets_on_cpu(paths, domain, limits);
         }
-        let mut lowers = std::mem::take(&mut self.lowers);
+        let mut free = std::mem::take(&mut self.free);
         let before = self.gpu_counts();
         let outcome = match &mut self.gpu {
-            Some(gpu) => {
-                gpu.bounds(paths, domain, limits.tolerance, &mut lowers)
-                    .await
-            }
+            Some(gpu) => gpu.prove(paths, domain, limits.tolerance, &mut free).await,
             None => Ok(()),
         };
         self.count(before);
@@ -384,22 +381,21 @@ impl Batch {
             self.fall_back(error);
             return self.brackets_on_cpu(paths, domain, limits);
         }
-        let is_free = |lower: &f32| *lower >= 1.0;
         let open: Vec<LinearPath<f32>> = paths
             .iter()
-            .zip(&lowers)
-            .filter_map(|(path, lower)| (!is_free(lower)).then_some(*path))
+            .zip(&free)
+            .filter_map(|(path, free)| (!free).then_some(*path))
             .collect();
         self.report.settled_by_gpu += (paths.len() - open.len()) as u64;
         let mut rest = self.brackets_on_cpu(&open, domain, limits).into_iter();
-        let answers = lowers
+        let answers = free
             .iter()
-            .filter_map(|lower| match is_free(lower) {
+            .filter_map(|free| match free {
                 true => Some(Bracket::free(limits)),
                 false => rest.next(),
             })
             .collect();
-        self.lowers = lowers;
+        self.free = free;
         answers
     }
 }

@@ -140,17 +140,17 @@ mod measure {
                     Lanes::Fastest,
                 )));
             };
-            let mut lowers = Vec::new();
+            let mut free = Vec::new();
             let tests = smallest(SIZES[1], |count| {
                 let mut random = Random(2);
                 let paths: Vec<_> = (0..count).map(|_| path(&mut random)).collect();
                 race(
                     || on_cpu(&paths),
                     || {
-                        let asked = gpu.bounds(&paths, Domain::Box, limits.tolerance, &mut lowers);
+                        let asked = gpu.prove(&paths, Domain::Box, limits.tolerance, &mut free);
                         block_on(asked)?;
-                        let open = paths.iter().zip(&lowers);
-                        let open = open.filter(|(_, lower)| **lower < 1.0);
+                        let open = paths.iter().zip(&free);
+                        let open = open.filter(|(_, free)| !**free);
                         on_cpu(&open.map(|(path, _)| *path).collect::<Vec<_>>());
                         Ok(())
                     },

@@ -82,7 +82,7 @@ fn constants_are_numbers_of_single_precision() {
             assert_eq!(value, f64::from(value as f32), "{name}");
             found += 1;
         }
-        assert!(found >= 8, "{}: {found}", module.name);
+        assert!(found >= 6, "{}: {found}", module.name);
     }
 }
 
@@ -113,7 +113,9 @@ fn structs_lie_as_on_the_host() {
             }
         }
     }
-    assert!(compared >= 35, "only {compared} fields compared");
+    // Each module has all structs.
+    let fields: usize = LAYOUTS.iter().map(|l| l.2.len()).sum();
+    assert_eq!(compared, fields * MODULES.len());
 }
 
 fn must<T, E: std::fmt::Display>(name: &str, language: &str, result: Result<T, E>) -> T {

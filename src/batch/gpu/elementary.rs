@@ -1,9 +1,8 @@
-//! Many elementary tests on straight paths: what the device proves free, and for the rest a time
-//! before which there is no contact.
+//! Many elementary tests on straight paths: which of them the device proves free.
 
 use super::clock::Clock;
 use super::context::{Context, Growing};
-use super::layout::{ElementaryParams, Query, THREADS};
+use super::layout::{ElementaryParams, FREE, Query, THREADS};
 use super::shaders::ELEMENTARY;
 use super::stage::Stage;
 use super::transfer::{ALIGNMENT, Transfer};
@@ -32,7 +31,7 @@ pub(super) struct Elementary {
     stages: Vec<Stage>,
     params: Growing,
     queries: Growing,
-    lowers: Growing,
+    answers: Growing,
     bound: bool,
 }
 
@@ -48,13 +47,13 @@ impl Elementary {
                 BufferUsages::UNIFORM | BufferUsages::COPY_DST,
             )?,
             queries: Growing::new(context, "queries", 1, storage | BufferUsages::COPY_DST)?,
-            lowers: Growing::new(context, "answers", 1, storage | BufferUsages::COPY_SRC)?,
+            answers: Growing::new(context, "answers", 1, storage | BufferUsages::COPY_SRC)?,
             bound: false,
         })
     }
 
-    /// One submission and one map. The tolerance counts as contact: what is called separated stays
-    /// further apart, from the start of the step to its end.
+    /// One submission and one map. The tolerance counts as contact: what is called free stays further
+    /// apart, from the start of the step to its end.
     /// Returns the seconds of its shader.
     pub(super) async fn run(
         &mut self,
@@ -63,26 +62,24 @@ impl Elementary {
         paths: &[LinearPath<f32>],
         domain: Domain,
         tolerance: f32,
-        lowers: &mut Vec<f32>,
+        free: &mut Vec<bool>,
     ) -> Result<f64, GpuError> {
         let mut seconds = 0.0;
-        lowers.clear();
+        free.clear();
         if paths.is_empty() {
             return Ok(seconds);
         }
         let params = ElementaryParams {
             count: paths.len() as u32,
-            tolerance,
             max_iterations: MAX_ITERATIONS,
-            pad: 0,
         };
         let params = bytemuck::bytes_of(&params);
         let queries = paths.len() * QUERY;
-        let answers = paths.len() * size_of::<f32>();
+        let answers = paths.len() * size_of::<u32>();
         let fresh = self.queries.reserve(context, queries as u64)?
-            | self.lowers.reserve(context, answers as u64)?;
+            | self.answers.reserve(context, answers as u64)?;
         if fresh || !self.bound {
-            let buffers = [&self.params, &self.queries, &self.lowers];
+            let buffers = [&self.params, &self.queries, &self.answers];
             let numbered = [0, 1, 2].map(|k| (k as u32, &buffers[k].buffer));
             for stage in &mut self.stages {
                 stage.bind(context, &numbered);
@@ -102,7 +99,7 @@ impl Elementary {
             &mut encoder,
             paths.len().div_ceil(THREADS) as u32,
         );
-        down.receive(&mut encoder, &self.lowers.buffer, answers);
+        down.receive(&mut encoder, &self.answers.buffer, answers);
         if let Some(clock) = &context.clock {
             clock.receive(&mut encoder, down);
         }
@@ -110,10 +107,9 @@ impl Elementary {
         context.queue.submit([encoder.finish()]);
         up.take_back();
         down.take_back();
-        lowers.resize(paths.len(), 0.0);
-        let to: &mut [u8] = bytemuck::cast_slice_mut(lowers);
         down.read(context, |bytes| {
-            to.copy_from_slice(&bytes[..answers]);
+            let words: &[[u8; 4]] = bytemuck::cast_slice(&bytes[..answers]);
+            free.extend(words.iter().map(|&w| u32::from_le_bytes(w) == FREE));
             if let Some(clock) = &context.clock {
                 seconds = clock.seconds(&bytes[answers.next_multiple_of(ALIGNMENT)..]);
             }

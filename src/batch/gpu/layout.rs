@@ -48,12 +48,8 @@ twins! {
     ElementaryParams {
         /// How many there are.
         count: u32 = "u32",
-        /// Distance under which a query is left to the CPU.
-        tolerance: f32 = "f32",
         /// Cap of the iterations.
         max_iterations: u32 = "u32",
-        /// Nothing.
-        pad: u32 = "u32",
     }
     /// A node of a mesh's sphere tree, in the body's frame.
     Node {
@@ -100,9 +96,9 @@ twins! {
     }
 }
 
-/// A mesh pair that is proven free in the whole step.
+/// A test or a mesh pair that is proven free in the whole step.
 pub const FREE: u32 = 0;
-/// Two of its primitives are not.
+/// It is not.
 pub const OPEN: u32 = 1;
 /// Too much of it meets to be looked at.
 pub const GIVEN_UP: u32 = 2;
@@ -132,13 +128,9 @@ pub fn constants() -> String {
         ("EPSILON", f64::from(f32::EPSILON)),
         ("TINY", <f32 as Lane>::TINY),
         ("HUGE", f64::from(f32::MAX)),
-        ("NEVER", tolerance::NEVER),
         ("GPU_SLACK_ULPS", tolerance::GPU_SLACK_ULPS),
-        ("TOLERANCE_PER_SLACK", tolerance::TOLERANCE_PER_SLACK),
         ("STEP_ULPS", tolerance::STEP_ULPS),
-        ("PARALLEL_ULPS", tolerance::PARALLEL_ULPS),
         ("WALK_SIMILAR", WALK_SIMILAR),
-        ("TURNING_REGULARISATION", tolerance::TURNING_REGULARISATION),
     ];
     let counts = [
         ("FREE", FREE),

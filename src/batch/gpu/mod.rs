@@ -117,9 +117,9 @@ impl Gpu {
             rate: [Vec3::zero(); 4],
             radius: [0.0; 4],
         };
-        let mut lowers = Vec::new();
+        let mut free = Vec::new();
         for domain in [Domain::Box, Domain::Triangle] {
-            self.bounds(&[apart], domain, 0.0, &mut lowers).await?;
+            self.prove(&[apart], domain, 0.0, &mut free).await?;
         }
         let ball = crate::medial::MedialSphere::new(crate::math::Vector::ZERO, 1.0);
         let Ok(mesh) = MedialMesh::new(vec![ball], vec![], vec![]) else {
@@ -193,29 +193,22 @@ impl Gpu {
         self.meshes.remove(mesh)
     }
 
-    /// Proposes for many elementary tests, in their order: `lowers` gets the fraction of the step before
-    /// which each is free; 1: throughout. Paths are over the step `[0, 1]`, and what comes within the
-    /// tolerance counts as contact. More than a binding holds is refused.
-    pub async fn bounds(
+    /// Proposes for many elementary tests, in their order: `free` gets whether each is proven free in the
+    /// whole step. Paths are over the step `[0, 1]`, and what comes within the tolerance counts as
+    /// contact. More than a binding holds is refused.
+    pub async fn prove(
         &mut self,
         paths: &[LinearPath<f32>],
         domain: Domain,
         tolerance: f32,
-        lowers: &mut Vec<f32>,
+        free: &mut Vec<bool>,
     ) -> Result<(), GpuError> {
         self.drop_pending().await?;
         let transfers = [&mut self.up, &mut self.down];
         self.counts.submissions += 1;
         self.seconds = self
             .elementary
-            .run(
-                &mut self.context,
-                transfers,
-                paths,
-                domain,
-                tolerance,
-                lowers,
-            )
+            .run(&mut self.context, transfers, paths, domain, tolerance, free)
             .await?;
         Ok(())
     }

@@ -15,6 +15,11 @@ pub struct Module {
 impl Module {
     /// The whole WGSL text: constants, structs, shared maths, stage.
     pub fn source(&self) -> String {
+        if let Ok(dir) = std::env::var("MEDIAL_SHADERS") {
+            if let Ok(t) = std::fs::read_to_string(format!("{dir}/{}.wgsl", self.name)) {
+                return t;
+            }
+        }
         constants() + STRUCTS + &self.files.concat()
     }
 }
@@ -24,7 +29,6 @@ pub const ELEMENTARY: Module = Module {
     name: "elementary",
     files: &[
         include_str!("../../../shaders/nearest.wgsl"),
-        include_str!("../../../shaders/certificate.wgsl"),
         include_str!("../../../shaders/elementary.wgsl"),
     ],
     stages: &["cones", "slabs"],
