@@ -1,13 +1,16 @@
-// Mesh pairs that stay free: one thread each walks down both sphere trees with a stack of its own, then
-// proves the primitive pairs whose balls meet. Source: the walk of src/pair/search.rs, in no order,
-// because all that meets has to be looked at. What finds no room, or takes too long, is given up, and
-// the CPU has the pair: nothing is cut.
+// Mesh pairs that stay free, in two stages. Source: the walk of src/pair/search.rs, in no order,
+// because all that meets has to be looked at. A thread walks down both sphere trees with a stack of its
+// own, and takes its next mesh pair when it is done with one: neighbours that run in step do not
+// wait for the longest walk. Then a thread each proves the primitive pairs whose balls meet. What finds no
+// room, or takes too long, is given up, and the CPU has the pair: nothing is cut.
 
 @group(0) @binding(0) var<uniform> params: CullParams;
 @group(0) @binding(1) var<storage, read> pairs: array<Pair>;
 @group(0) @binding(2) var<storage, read> nodes: array<Node>;
 @group(0) @binding(3) var<storage, read> primitives: array<Primitive>;
-@group(0) @binding(4) var<storage, read_write> answers: array<u32>;
+@group(0) @binding(4) var<storage, read_write> meetings: array<Meeting>;
+// What is known of each pair; last how many primitive pairs meet, and how many mesh pairs are taken.
+@group(0) @binding(5) var<storage, read_write> answers: array<atomic<u32>>;
 
 // From below, what is still to be looked at: on either side a node, or two neighbours where its index is
 // marked so. From above, primitive pairs whose balls meet.
@@ -42,37 +45,75 @@ fn consider(wanted: bool, p: Part, q: Part, reach: f32) {
   kept += u32(met && leaves);
 }
 
-fn answer(pair: u32) -> u32 {
-  let a = pairs[pair].sides[0];
-  let b = pairs[pair].sides[1];
-  let reach = pairs[pair].reach;
-  work[0] = vec2<u32>(a.root, b.root);
-  open = 1u;
-  kept = 0u;
-  for (var looks = 0u; open > 0u; looks++) {
-    if (open + kept + 4u > WALK_ROOM || looks == WALK_LOOKS) { return GIVEN_UP; }
-    open--;
-    let top = work[open];
-    let both = top >= vec2<u32>(MARK);
-    let first = top & vec2<u32>(MARK - 1u);
-    let second = first + select(vec2<u32>(0u), vec2<u32>(1u), both);
-    let p0 = part(a, first.x);
-    let q0 = part(b, first.y);
-    let p1 = part(a, second.x);
-    let q1 = part(b, second.y);
-    consider(true, p0, q0, reach);
-    consider(both.x, p1, q0, reach);
-    consider(both.y, p0, q1, reach);
-    consider(both.x && both.y, p1, q1, reach);
+
+// Splits the node pair on top.
+fn look(a: Side, b: Side, reach: f32) {
+  open--;
+  let top = work[open];
+  let both = top >= vec2<u32>(MARK);
+  let first = top & vec2<u32>(MARK - 1u);
+  let second = first + select(vec2<u32>(0u), vec2<u32>(1u), both);
+  let p0 = part(a, first.x);
+  let q0 = part(b, first.y);
+  let p1 = part(a, second.x);
+  let q1 = part(b, second.y);
+  consider(true, p0, q0, reach);
+  consider(both.x, p1, q0, reach);
+  consider(both.y, p0, q1, reach);
+  consider(both.x && both.y, p1, q1, reach);
+}
+
+// Hands the primitive pairs of a mesh pair on. What fits is written in any case: room that is counted and
+// not written would hold pairs of the batch before.
+fn hand_on(pair: u32, whole: bool) {
+  kept = select(0u, kept, whole);
+  let at = atomicAdd(&answers[params.pairs], kept);
+  for (var k = 0u; k < kept && at + k < params.room; k++) {
+    meetings[at + k] = Meeting(work[WALK_ROOM - 1u - k], pair, 0u);
   }
-  for (var k = WALK_ROOM - kept; k < WALK_ROOM; k++) {
-    if (!stays_free(simplex(a, work[k].x), simplex(b, work[k].y), reach)) { return OPEN; }
-  }
-  return FREE;
+  atomicStore(&answers[pair], select(GIVEN_UP, FREE, whole && at + kept <= params.room));
 }
 
 @compute @workgroup_size(WALKS)
-fn walk(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-  let pair = id.x + id.y * groups.x * WALKS;
-  if (pair < params.pairs) { answers[pair] = answer(pair); }
+fn walk() {
+  var pair = params.pairs;
+  var a: Side;
+  var b: Side;
+  var reach = 0.0;
+  var looks = 0u;
+  var whole = true;
+  loop {
+    if (open == 0u) {
+      if (pair < params.pairs) { hand_on(pair, whole); }
+      pair = atomicAdd(&answers[params.pairs + 1u], 1u);
+      if (pair >= params.pairs) { break; }
+      a = pairs[pair].sides[0];
+      b = pairs[pair].sides[1];
+      reach = pairs[pair].reach;
+      work[0] = vec2<u32>(a.root, b.root);
+      open = 1u;
+      kept = 0u;
+      looks = 0u;
+      whole = true;
+    }
+    // A few before the next look whether it is done: that is checked for all neighbours at once.
+    for (var k = 0u; k < WALK_STRETCH && open > 0u; k++) {
+      looks++;
+      whole = open + kept + 4u <= WALK_ROOM && looks <= WALK_LOOKS;
+      if (whole) { look(a, b, reach); } else { open = 0u; }
+    }
+  }
+}
+
+// Of a mesh pair that is given up, or of which one primitive pair is not proven, the others are skipped.
+@compute @workgroup_size(WALKS)
+fn prove(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+  let count = min(atomicLoad(&answers[params.pairs]), params.room);
+  for (var k = id.x + id.y * groups.x * WALKS; k < count; k += groups.x * groups.y * WALKS) {
+    let met = meetings[k];
+    if (atomicLoad(&answers[met.pair]) != FREE) { continue; }
+    let a = simplex(pairs[met.pair].sides[0], met.primitives.x);
+    let b = simplex(pairs[met.pair].sides[1], met.primitives.y);
+    if (!stays_free(a, b, pairs[met.pair].reach)) { atomicMax(&answers[met.pair], OPEN); }
+  }
 }

@@ -34,17 +34,21 @@ fn shaders_keep_to_what_every_device_offers() {
             .map(|e| e.name.as_str())
             .collect();
         let listed = MODULES.iter().find(|m| m.name == name).expect("listed");
-        assert_eq!(stages, listed.stages, "{name}");
+        assert!(
+            stages.iter().eq(listed.stages.iter().map(|s| &s.0)),
+            "{name}"
+        );
         for (index, entry) in module.entry_points.iter().enumerate() {
             assert_eq!(entry.stage, ShaderStage::Compute);
             let threads: u32 = entry.workgroup_size.iter().product();
             assert!((1..=256).contains(&threads), "{name}: {threads} threads");
             let uses = info.get_entry_point(index);
-            let (mut storage, mut shared) = (0, 0);
+            let (mut storage, mut shared, mut used) = (0, 0, Vec::new());
             for (handle, variable) in module.global_variables.iter() {
                 if uses[handle].is_empty() {
                     continue;
                 }
+                used.extend(variable.binding.map(|b| b.binding as usize));
                 match variable.space {
                     AddressSpace::Storage { .. } => storage += 1,
                     AddressSpace::WorkGroup => shared += layouter[variable.ty].size,
@@ -53,6 +57,8 @@ fn shaders_keep_to_what_every_device_offers() {
                 }
             }
             let stage = &entry.name;
+            used.sort_unstable();
+            assert_eq!(used, listed.stages[index].1, "{name}.{stage}");
             assert!((1..=8).contains(&storage), "{name}.{stage}: {storage}");
             assert!(shared <= 16 << 10, "{name}.{stage}: {shared} bytes");
         }

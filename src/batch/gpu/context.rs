@@ -4,6 +4,7 @@
 use super::clock::Clock;
 use crate::error::GpuError;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::available_parallelism;
 use wgpu::{
     Backends, Buffer, BufferUsages, Device, DeviceDescriptor, DeviceType, Error, Features,
     Instance, InstanceDescriptor, Limits, PollType, PowerPreference, Queue, RequestAdapterOptions,
@@ -30,6 +31,13 @@ impl Default for GpuOptions {
         }
     }
 }
+
+/// Threads that a GPU runs at once, at the most; more wait for their turn.
+const GPU_THREADS: usize = 1 << 16;
+
+/// Threads for each core of an adapter that computes on the CPU: two of its vectors of eight, so that
+/// cores that are interrupted leave some to others.
+const CORE_THREADS: usize = 16;
 
 /// The first thing that went wrong.
 #[derive(Clone, Debug, Default)]
@@ -61,6 +69,8 @@ pub struct Context {
     name: String,
     driver: String,
     hardware: bool,
+    /// Threads that it runs at once, about.
+    pub(super) threads: usize,
 }
 
 impl Context {
@@ -123,6 +133,10 @@ impl Context {
             name: format!("{} ({:?})", info.name, info.backend),
             driver: format!("{} {}", info.driver, info.driver_info),
             hardware,
+            threads: match hardware {
+                true => GPU_THREADS,
+                false => CORE_THREADS * available_parallelism().map_or(1, usize::from),
+            },
         };
         if timed {
             context.clock = Some(Clock::new(&mut context)?);

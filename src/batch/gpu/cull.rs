@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::context::{Context, Growing};
-use super::layout::{CullParams, Node, Pair, Primitive, WALKS};
+use super::layout::{CullParams, Meeting, Node, Pair, Primitive, WALK_ROOM, WALKS};
 use super::meshes::Meshes;
 use super::shaders::CULL;
 use super::stage::Stage;
@@ -15,10 +15,17 @@ const PARAMS: usize = 0;
 const PAIRS: usize = 1;
 const NODES: usize = 2;
 const PRIMITIVES: usize = 3;
-const ANSWERS: usize = 4;
+const MEETINGS: usize = 4;
+const ANSWERS: usize = 5;
+
+/// Words after the answers: meetings found, and pairs taken.
+const COUNTERS: usize = 2;
+
+/// Most meetings that a batch has room for, 16 bytes each; pairs beyond are given up.
+const MOST_MEETINGS: usize = 1 << 20;
 
 pub(super) struct Cull {
-    /// There is one.
+    /// Walk and proof.
     stages: Vec<Stage>,
     buffers: Vec<Growing>,
     bound: bool,
@@ -33,10 +40,11 @@ impl Cull {
             ("mesh pairs", size_of::<Pair>(), storage),
             ("nodes", size_of::<Node>(), storage),
             ("primitives", size_of::<Primitive>(), storage),
+            ("meetings", size_of::<Meeting>(), storage),
             (
                 "answers",
                 size_of::<u32>(),
-                BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+                storage | BufferUsages::COPY_SRC,
             ),
         ];
         let buffers = all
@@ -63,14 +71,13 @@ impl Cull {
         if moved {
             meshes.send_again();
         }
-        let fresh = reserve(PAIRS, size_of_val(pairs))? | reserve(ANSWERS, answered(pairs))?;
+        let fresh = reserve(PAIRS, size_of_val(pairs))?
+            | reserve(MEETINGS, room(pairs) * size_of::<Meeting>())?
+            | reserve(ANSWERS, answered(pairs) + COUNTERS * size_of::<u32>())?;
         if moved || fresh || !self.bound {
-            let numbered: Vec<_> = (0..)
-                .zip(&self.buffers)
-                .map(|(k, growing)| (k, &growing.buffer))
-                .collect();
+            let buffers: Vec<_> = self.buffers.iter().map(|b| &b.buffer).collect();
             for stage in &mut self.stages {
-                stage.bind(context, &numbered);
+                stage.bind(context, &buffers);
             }
             self.bound = true;
         }
@@ -88,9 +95,11 @@ impl Cull {
         self.reserve(context, pairs, meshes)?;
         let params = CullParams {
             pairs: pairs.len() as u32,
+            room: room(pairs) as u32,
         };
+        let none = [0_u32; COUNTERS];
         let (nodes, primitives) = meshes.sent;
-        let items: [(&[u8], usize, usize); 4] = [
+        let items: [(&[u8], usize, usize); 5] = [
             (bytemuck::bytes_of(&params), PARAMS, 0),
             (bytemuck::cast_slice(pairs), PAIRS, 0),
             (
@@ -103,6 +112,7 @@ impl Cull {
                 PRIMITIVES,
                 primitives * size_of::<Primitive>(),
             ),
+            (bytemuck::bytes_of(&none), ANSWERS, answered(pairs)),
         ];
         up.begin(context, &items.map(|i| i.0.len())).await?;
         let timed = Clock::bytes(context.clock.as_ref());
@@ -111,9 +121,11 @@ impl Cull {
         for (bytes, k, at) in items {
             up.send(&mut encoder, bytes, &self.buffers[k].buffer, at as u64)?;
         }
-        for stage in &self.stages {
-            stage.run(context, &mut encoder, pairs.len().div_ceil(WALKS) as u32);
-        }
+        // No more threads than it has: the next mesh pair goes to whichever is done with one.
+        let groups = |threads: usize| threads.min(context.threads).div_ceil(WALKS);
+        let [walk, prove] = [0, 1].map(|k| &self.stages[k]);
+        let stages = [(walk, groups(pairs.len())), (prove, groups(room(pairs)))];
+        Stage::run(context, &mut encoder, &stages);
         down.receive(&mut encoder, &self.buffers[ANSWERS].buffer, answered(pairs));
         if let Some(clock) = &context.clock {
             clock.receive(&mut encoder, down);
@@ -152,4 +164,9 @@ impl Cull {
 /// Bytes of the answers that come back.
 fn answered(pairs: &[Pair]) -> usize {
     size_of::<u32>() * pairs.len()
+}
+
+/// How many meetings there is room for: a walk holds so many at most.
+fn room(pairs: &[Pair]) -> usize {
+    (WALK_ROOM as usize * pairs.len()).min(MOST_MEETINGS)
 }

@@ -79,10 +79,9 @@ impl Elementary {
         let fresh = self.queries.reserve(context, queries as u64)?
             | self.answers.reserve(context, answers as u64)?;
         if fresh || !self.bound {
-            let buffers = [&self.params, &self.queries, &self.answers];
-            let numbered = [0, 1, 2].map(|k| (k as u32, &buffers[k].buffer));
+            let buffers = [&self.params, &self.queries, &self.answers].map(|b| &b.buffer);
             for stage in &mut self.stages {
-                stage.bind(context, &numbered);
+                stage.bind(context, &buffers);
             }
             self.bound = true;
         }
@@ -94,11 +93,9 @@ impl Elementary {
         let packed = paths.iter().map(|path| pack(path, domain, tolerance));
         let packed = packed.map(bytemuck::cast::<Query, [u8; QUERY]>);
         up.send_each(&mut encoder, packed, &self.queries.buffer)?;
-        self.stages[usize::from(domain == Domain::Triangle)].run(
-            context,
-            &mut encoder,
-            paths.len().div_ceil(THREADS) as u32,
-        );
+        let stage = &self.stages[usize::from(domain == Domain::Triangle)];
+        let groups = paths.len().div_ceil(THREADS);
+        Stage::run(context, &mut encoder, &[(stage, groups)]);
         down.receive(&mut encoder, &self.answers.buffer, answers);
         if let Some(clock) = &context.clock {
             clock.receive(&mut encoder, down);

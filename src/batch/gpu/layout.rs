@@ -89,10 +89,21 @@ twins! {
         /// Nothing.
         pad: [u32; 3] = "array<u32, 3>",
     }
+    /// Two primitives whose balls meet in the step.
+    Meeting {
+        /// Indices of the primitives.
+        primitives: [u32; 2] = "vec2<u32>",
+        /// Index of the mesh pair.
+        pair: u32 = "u32",
+        /// Nothing.
+        pad: u32 = "u32",
+    }
     /// Of a batch of mesh pairs.
     CullParams {
         /// How many there are.
         pairs: u32 = "u32",
+        /// How many meetings there is room for.
+        room: u32 = "u32",
     }
 }
 
@@ -114,9 +125,12 @@ pub const MAX_GROUPS: u32 = 65_535;
 const GILBERT_ROUNDS: u32 = 6;
 /// Node pairs and primitive pairs that a walk down two trees holds at once; a walk that finds more is
 /// given up.
-const WALK_ROOM: u32 = 128;
+pub const WALK_ROOM: u32 = 128;
 /// Node pairs that a walk splits before it is given up.
 const WALK_LOOKS: u32 = 1024;
+/// Node pairs that a walk splits before it looks whether it is done: less, and the next mesh pair is
+/// fetched for one thread at a time; more, and threads that are done wait longer.
+const WALK_STRETCH: u32 = 4;
 /// Up to this ratio of their radii two nodes are split together, as on the CPU.
 const WALK_SIMILAR: f64 = 3.0;
 /// Directions tried in turn, each from where the last proof ends.
@@ -140,6 +154,7 @@ pub fn constants() -> String {
         ("WALKS", WALKS as u32),
         ("WALK_ROOM", WALK_ROOM),
         ("WALK_LOOKS", WALK_LOOKS),
+        ("WALK_STRETCH", WALK_STRETCH),
         ("MAX_GROUPS", MAX_GROUPS),
         ("GILBERT_ROUNDS", GILBERT_ROUNDS),
         ("PROOF_ROUNDS", PROOF_ROUNDS),

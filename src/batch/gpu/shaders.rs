@@ -8,18 +8,13 @@ pub struct Module {
     /// Name of the stage's file.
     pub name: &'static str,
     files: &'static [&'static str],
-    /// Entry points.
-    pub stages: &'static [&'static str],
+    /// Entry points, and the bindings that each uses.
+    pub stages: &'static [(&'static str, &'static [usize])],
 }
 
 impl Module {
     /// The whole WGSL text: constants, structs, shared maths, stage.
     pub fn source(&self) -> String {
-        if let Ok(dir) = std::env::var("MEDIAL_SHADERS") {
-            if let Ok(t) = std::fs::read_to_string(format!("{dir}/{}.wgsl", self.name)) {
-                return t;
-            }
-        }
         constants() + STRUCTS + &self.files.concat()
     }
 }
@@ -31,17 +26,17 @@ pub const ELEMENTARY: Module = Module {
         include_str!("../../../shaders/nearest.wgsl"),
         include_str!("../../../shaders/elementary.wgsl"),
     ],
-    stages: &["cones", "slabs"],
+    stages: &[("cones", &[0, 1, 2]), ("slabs", &[0, 1, 2])],
 };
 
-/// Mesh pairs to primitive pairs that are not proven free.
+/// A batch of mesh pairs.
 pub const CULL: Module = Module {
     name: "cull",
     files: &[
         include_str!("../../../shaders/swept.wgsl"),
         include_str!("../../../shaders/cull.wgsl"),
     ],
-    stages: &["walk"],
+    stages: &[("walk", &[0, 1, 2, 4, 5]), ("prove", &[0, 1, 3, 4, 5])],
 };
 
 /// All of them.

@@ -11,6 +11,8 @@ use wgpu::{
 /// One entry point of a shader.
 pub(super) struct Stage {
     pipeline: ComputePipeline,
+    /// Which of its module's bindings it uses.
+    uses: &'static [usize],
     bound: Option<BindGroup>,
 }
 
@@ -21,7 +23,7 @@ impl Stage {
             label: Some(module.name),
             source: ShaderSource::Wgsl(module.source().into()),
         });
-        let stage = |name: &&'static str| Self {
+        let stage = |&(name, uses): &(&'static str, _)| Self {
             pipeline: context
                 .device
                 .create_compute_pipeline(&ComputePipelineDescriptor {
@@ -36,20 +38,19 @@ impl Stage {
                     },
                     cache: None,
                 }),
+            uses,
             bound: None,
         };
         module.stages.iter().map(stage).collect()
     }
 
-    /// Binds buffers; they stay bound until the next call.
-    pub(super) fn bind(&mut self, context: &mut Context, buffers: &[(u32, &Buffer)]) {
-        let entries: Vec<_> = buffers
-            .iter()
-            .map(|&(binding, buffer)| BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
+    /// Binds what it uses of its module's buffers; they stay bound until the next call.
+    pub(super) fn bind(&mut self, context: &mut Context, buffers: &[&Buffer]) {
+        let entry = |&binding: &usize| BindGroupEntry {
+            binding: binding as u32,
+            resource: buffers[binding].as_entire_binding(),
+        };
+        let entries: Vec<_> = self.uses.iter().map(entry).collect();
         let group = context.device.create_bind_group(&BindGroupDescriptor {
             label: None,
             layout: &self.pipeline.get_bind_group_layout(0),
@@ -59,15 +60,18 @@ impl Stage {
         self.bound = Some(group);
     }
 
-    /// Runs it over so many groups, folded into two dimensions.
-    pub(super) fn run(&self, context: &Context, encoder: &mut CommandEncoder, groups: u32) {
-        let x = groups.min(MAX_GROUPS);
+    /// Runs stages one after the other, each over so many groups, folded into two dimensions.
+    pub(super) fn run(context: &Context, encoder: &mut CommandEncoder, stages: &[(&Self, usize)]) {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: None,
             timestamp_writes: context.clock.as_ref().map(|c| c.writes()),
         });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, self.bound.as_ref(), &[]);
-        pass.dispatch_workgroups(x, groups.div_ceil(x.max(1)), 1);
+        for (stage, groups) in stages {
+            let groups = *groups as u32;
+            let x = groups.min(MAX_GROUPS);
+            pass.set_pipeline(&stage.pipeline);
+            pass.set_bind_group(0, stage.bound.as_ref(), &[]);
+            pass.dispatch_workgroups(x, groups.div_ceil(x.max(1)), 1);
+        }
     }
 }
