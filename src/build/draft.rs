@@ -2,10 +2,10 @@
 //! beyond indices in range.
 
 use super::bounds::Point;
-use super::fast_hash::FastSet;
 use super::surface::Frame;
 use super::watch::bytes_of;
 use crate::error::MeshError;
+use crate::math::fast_hash::FastSet;
 use crate::math::{Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 

@@ -7,7 +7,6 @@ pub mod delaunay;
 mod draft;
 mod edges;
 mod enclose;
-mod fast_hash;
 mod findings;
 mod fit;
 mod four_boxes;

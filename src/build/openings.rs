@@ -6,11 +6,11 @@
 //! winding number tells: there it is about ½.
 
 use super::bounds::Point;
-use super::fast_hash::FastMap;
 use super::orient::Patches;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
 use crate::error::BuildError;
+use crate::math::fast_hash::FastMap;
 
 /// Openings whose lid lies farther from the surface than this (longest side 1) are meant to be
 /// open; narrower ones are taken for damage and closed, which costs up to this much error. A

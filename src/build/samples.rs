@@ -3,11 +3,11 @@
 //! spread evenly by area.
 
 use super::bounds::{Point, coordinate, direction};
-use super::fast_hash::FastMap;
 use super::random::Random;
 use super::surface::Surface;
 use super::watch::Watch;
 use crate::error::BuildError;
+use crate::math::fast_hash::FastMap;
 
 /// Candidates per sample wanted. Fewer leave gaps, more cost time for a few samples.
 const CANDIDATES: usize = 6;

@@ -6,11 +6,11 @@
 
 use super::bounds::{Point, coordinate};
 use super::draft::{Ball, Draft};
-use super::fast_hash::{FastMap, FastSet};
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
 use crate::error::BuildError;
+use crate::math::fast_hash::{FastMap, FastSet};
 
 /// Half-thickness of a sheet before enclosure (longest side 1).
 pub const SHEET: f64 = 1e-3;

@@ -9,7 +9,7 @@
 
 use super::bounds::Point;
 use super::draft::Draft;
-use super::fast_hash::FastMap;
+use crate::math::fast_hash::FastMap;
 
 /// A set modulo 2, in ascending order.
 type Chain = Vec<u32>;

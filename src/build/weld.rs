@@ -2,10 +2,10 @@
 //! the same as another, go.
 
 use super::bounds::{Point, coordinate};
-use super::fast_hash::{FastMap, FastSet};
 use super::findings::Findings;
 use super::watch::Watch;
 use crate::error::BuildError;
+use crate::math::fast_hash::{FastMap, FastSet};
 
 /// Vertices nearer than this are one (longest side 1). Well above the rounding of `f32` input,
 /// well below any error a build can reach; wider would close slits, narrower leaves seams open.

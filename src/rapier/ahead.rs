@@ -45,6 +45,8 @@ pub struct Start {
     extent: Real,
     /// Its contact skin.
     skin: Real,
+    /// Whether the user has a hook on its solver contacts.
+    pub modified: bool,
     /// Speed of what may push it ([`super::pushes`]).
     pub pushed: Real,
 }
@@ -75,6 +77,7 @@ impl Start {
             acceleration: moved.map_or(Vector::ZERO, acceleration),
             extent,
             skin,
+            modified: false,
             pushed: 0.0,
         }
     }
@@ -122,17 +125,24 @@ fn closing([a, b]: [&Start; 2]) -> Real {
     (a.motion.linvel - b.motion.linvel).length() + a.swing() + b.swing()
 }
 
-/// Gap, without contact skins, that two colliders may close in the step by their velocities, gravity, forces
-/// and what is near them, after what they may have moved before rapier asks; at most rapier's prediction
-/// distance.
+/// Gap, without contact skins, that two colliders may close in the step: their [`way`], at most rapier's
+/// prediction distance.
 pub fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
-    let (dt, prediction) = (parameters.dt, parameters.prediction_distance());
+    parameters
+        .prediction_distance()
+        .min(way(starts, parameters))
+}
+
+/// How far two colliders may move against each other in the step, by their velocities, gravity, forces and
+/// what is near them, after what they may have moved before rapier asks. Beside joints it has no bound.
+fn way(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
+    let dt = parameters.dt;
     let [a, b] = starts.map(|s| s.acceleration);
     // Either may be held by something.
     let pull = a.length().max(b.length()).max(a.distance(b));
     let kept = parameters.contact_recycle_distance();
     let pushed = PUSHED_ON * starts[0].pushed.max(starts[1].pushed);
-    prediction.min(kept + pull * dt * dt + (pushed + closing(starts)) * dt)
+    kept + pull * dt * dt + (pushed + closing(starts)) * dt
 }
 
 /// From where contacts computed ahead have to be brought back to.
@@ -175,6 +185,13 @@ impl Ahead {
             [a.start, b.start]
         };
         let reach = reach(starts, parameters);
+        // What holds another back may be taken from the solver by the user.
+        let held = starts.iter().all(|s| !s.modified);
+        let way = if held {
+            way(starts, parameters)
+        } else {
+            Real::MAX
+        };
         let skins = job.prediction - prediction;
         let turn = |k: usize| motions[k].start.rotation.inverse() * poses[k].rotation;
         let ahead = Self {
@@ -183,8 +200,8 @@ impl Ahead {
             centers: motions.map(|m| m.local_center),
             asked: job.prediction,
             play: Play {
-                way: reach,
-                turn: reach / arm(&job.mesh1).min(arm(&job.mesh2)),
+                way,
+                turn: way / arm(&job.mesh1).min(arm(&job.mesh2)),
                 skins,
             },
         };
@@ -229,7 +246,7 @@ impl Ahead {
 }
 
 /// Second half extent of a mesh: whatever axis it turns about, some point of it is about this far from it, so
-/// that it turns by no more than that point's way over this.
+/// that it turns by no more than that point's way over this. (A rod that lies across its frame is thinner.)
 fn arm(mesh: &MedialMesh) -> Real {
     let h = mesh.aabb().half_extents();
     (h.x + h.y + h.z) - h.max_element() - h.min_element()

@@ -77,8 +77,8 @@ fn hanging(pair: &ContactPair, sides: [&Item; 2], skins: Real, unit: Real) -> bo
         // The force on each, as it was, and as it turned with it.
         let then = [-m.data.normal, m.data.normal];
         let now = [-m.local_n1, -m.local_n2];
-        let touching = m.points.iter().filter(|p| p.dist - skins < TOUCHING * unit);
-        let mut touching = touching;
+        let points = m.points.iter();
+        let mut touching = points.filter(|p| p.dist - skins < TOUCHING * unit);
         touching.any(|p| {
             let points = [sides[0].pose * p.local_p1, sides[1].pose * p.local_p2];
             let arm = |k: usize| moving[k].map(|b| points[k] - b.center_of_mass());

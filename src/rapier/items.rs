@@ -9,6 +9,7 @@ use rapier3d::dynamics::{
     RigidBodySet,
 };
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase, SharedShape};
+use rapier3d::pipeline::ActiveHooks;
 
 /// The world at the start of a step.
 #[derive(Clone, Copy)]
@@ -72,13 +73,16 @@ impl<'a> Item<'a> {
         let aabb = self.mesh.aabb();
         let offset = self.collider.position_wrt_parent();
         let extent = aabb.mins.abs().max(aabb.maxs.abs()).length();
-        Start::new(
+        let mut start = Start::new(
             self.parent.map(|(_, body)| body),
             [self.pose, offset.copied().unwrap_or(Pose::IDENTITY)],
             [extent, self.collider.contact_skin()],
             gravity,
             dt,
-        )
+        );
+        let hooks = self.collider.active_hooks();
+        start.modified = hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+        start
     }
 
     /// The body, if the solver moves it and it is awake.

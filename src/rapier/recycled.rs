@@ -7,10 +7,9 @@
 //! on bit by bit.
 
 use crate::batch::PairJob;
+use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Rotation};
-use foldhash::fast::FixedState;
 use rapier3d::dynamics::IntegrationParameters;
-use std::collections::HashMap;
 
 /// Cosine of the rotation of either body since its pair's last update above which rapier recycles.
 const ROTATION_COSINE: Real = 0.98;
@@ -38,7 +37,7 @@ struct Frozen {
 /// Relative poses at which each pair was last updated in full.
 #[derive(Default)]
 pub struct Recycled {
-    frozen: HashMap<[u64; 2], Frozen, FixedState>,
+    frozen: FastMap<[u64; 2], Frozen>,
     step: u64,
     /// Drift below which a pair in contact, and one without contacts, is recycled.
     limits: [Real; 2],

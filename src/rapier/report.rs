@@ -26,7 +26,7 @@ pub struct StepReport {
     pub given_up: u64,
     /// Batches that a GPU was to have and could not take; [`crate::MedialPipeline::batch`] says why.
     pub fallbacks: u64,
-    /// Sphere pairs that the batch found within the prediction distance.
+    /// Sphere pairs that the batch found near enough to close in the step, and held back by no nearer one.
     pub contacts: usize,
     /// Manifold requests of the narrow phase that the batch had answered.
     pub cache_hits: u64,

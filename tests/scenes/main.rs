@@ -18,6 +18,7 @@ mod fast_pairs;
 mod golden;
 mod hanging;
 mod heaps;
+mod held;
 mod impacts;
 mod knots;
 mod oracle;

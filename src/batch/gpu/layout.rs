@@ -107,12 +107,12 @@ twins! {
     }
 }
 
-/// A test or a mesh pair that is proven free in the whole step.
-pub const FREE: u32 = 0;
+/// A test or a mesh pair that is proven free in the whole step; not 0, which a shader never wrote.
+pub const FREE: u32 = 1;
 /// It is not.
-pub const OPEN: u32 = 1;
+pub const OPEN: u32 = 2;
 /// Too much of it meets to be looked at.
-pub const GIVEN_UP: u32 = 2;
+pub const GIVEN_UP: u32 = 3;
 /// Threads of a group.
 pub const THREADS: usize = 64;
 /// Threads of a group that walks down trees: fewer, so that a few hundred mesh pairs keep more of a
