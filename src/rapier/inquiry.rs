@@ -15,18 +15,18 @@ pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
 /// A question about a pair from some time on, while neither of the two has another motion.
 pub struct Inquiry<'m> {
     /// Seconds into the step.
-    from: Real,
+    pub from: Real,
     question: Question,
     left: Option<[Left; 2]>,
-    begun: Option<Begun<'m>>,
+    pub begun: Option<Begun<'m>>,
 }
 
-type MeshQuery<'m> = Query<'m, MedialMesh, MedialMesh>;
+pub type MeshQuery<'m> = Query<'m, MedialMesh, MedialMesh>;
 
-struct Begun<'m> {
-    first: Box<MeshQuery<'m>>,
+pub struct Begun<'m> {
+    pub first: Box<MeshQuery<'m>>,
     /// The query for the floor; `None` outside before it is known whether there is one.
-    floor: Option<Option<Box<MeshQuery<'m>>>>,
+    pub floor: Option<Option<Box<MeshQuery<'m>>>>,
 }
 
 /// What is known of it.

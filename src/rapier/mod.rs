@@ -12,6 +12,7 @@ mod first_contact;
 mod hanging;
 mod impulse;
 mod inquiry;
+mod meetings;
 mod motion;
 mod muting;
 mod outlines;
@@ -20,6 +21,7 @@ pub mod pipeline;
 mod pushes;
 mod recycled;
 pub mod report;
+mod response;
 #[cfg(feature = "serde-serialize")]
 pub mod saved_world;
 mod speculative;
