@@ -83,6 +83,12 @@ pub struct Batch {
     early: Early,
     #[cfg(feature = "gpu")]
     free: Vec<bool>,
+    /// Empty between batches; its room is kept.
+    #[cfg(feature = "gpu")]
+    sweeps: Vec<Sweep<'static>>,
+    /// Elementary tests that the device leaves to the CPU.
+    #[cfg(feature = "gpu")]
+    open: Vec<LinearPath<f32>>,
     #[cfg(feature = "gpu")]
     calibrated: Option<Least>,
     report: BatchReport,
@@ -116,9 +122,12 @@ impl Batch {
         #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
         return pollster::block_on(self.run_async(jobs));
         #[cfg(all(feature = "gpu", target_arch = "wasm32"))]
-        return match self.take_early(jobs) {
-            Some(early) if !early.pending => self.settle(jobs, |sweep| early.proposal(sweep)),
-            _ => self.run_on_cpu(jobs),
+        return match self.sent_early(jobs) && !self.early.pending {
+            true => self.settle_early(jobs),
+            false => {
+                self.early.forget();
+                self.run_on_cpu(jobs)
+            }
         };
         #[cfg(not(feature = "gpu"))]
         self.run_on_cpu(jobs)
@@ -253,23 +262,27 @@ impl Batch {
 
     /// As [`Self::submit`], without blocking.
     pub async fn submit_async<J: Job>(&mut self, jobs: &[J]) {
-        self.early = Early::default();
+        self.early.forget();
         if !self.asks_gpu(jobs.len(), |least| least.jobs) {
             return;
         }
-        let sweeps: Vec<_> = jobs.iter().filter_map(Job::sweep).collect();
+        let mut sweeps = emptied(std::mem::take(&mut self.sweeps));
+        sweeps.extend(jobs.iter().filter_map(Job::sweep));
         let before = self.gpu_counts();
         let outcome = match &mut self.gpu {
             Some(gpu) => gpu.submit(&sweeps).await,
             None => return,
         };
         self.count(before);
-        if let Err(error) = outcome {
-            return self.fall_back(error);
+        match outcome {
+            Ok(()) => {
+                let keys = sweeps.iter().map(Key::of);
+                self.early.sent.extend(keys.zip(0..));
+                self.early.pending = true;
+            }
+            Err(error) => self.fall_back(error),
         }
-        let keys = sweeps.iter().map(Key::of);
-        self.early.sent = keys.zip(0..).collect();
-        self.early.pending = true;
+        self.sweeps = emptied(sweeps);
     }
 
     /// Waits without blocking for what was sent by [`Self::submit_async`]; [`Self::run`] does so too, but
@@ -291,30 +304,39 @@ impl Batch {
         }
     }
 
-    /// What was sent before, if it is of any use for these jobs.
-    fn take_early<J: Job>(&mut self, jobs: &[J]) -> Option<Early> {
-        let early = std::mem::take(&mut self.early);
-        let known = |job: &J| {
-            job.sweep()
-                .is_some_and(|s| early.sent.contains_key(&Key::of(&s)))
-        };
-        let known = jobs.iter().filter(|job| known(job)).count();
+    /// Whether what was sent before is of any use for these jobs; where not, it is forgotten.
+    fn sent_early<J: Job>(&mut self, jobs: &[J]) -> bool {
+        let sent = &self.early.sent;
+        let known = |s: Sweep<'_>| sent.contains_key(&Key::of(&s));
+        let known = jobs.iter().filter(|job| job.sweep().is_some_and(known));
+        let known = known.count();
         self.report.sent_early += known as u64;
-        (known > 0).then_some(early)
+        if known == 0 {
+            self.early.forget();
+        }
+        known > 0
+    }
+
+    /// Answers jobs of which some were sent before and are back.
+    fn settle_early<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
+        let mut early = std::mem::take(&mut self.early);
+        let answers = self.settle(jobs, |sweep| early.proposal(sweep));
+        early.forget();
+        self.early = early;
+        answers
     }
 
     /// As [`Self::run`], without blocking while the device works.
     pub async fn run_async<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
-        if let Some(early) = self.take_early(jobs) {
-            self.early = early;
+        if self.sent_early(jobs) {
             self.ready().await;
-            let early = std::mem::take(&mut self.early);
-            return self.settle(jobs, |sweep| early.proposal(sweep));
+            return self.settle_early(jobs);
         }
         if !self.asks_gpu(jobs.len(), |least| least.jobs) {
             return self.run_on_cpu(jobs);
         }
-        let sweeps: Vec<_> = jobs.iter().filter_map(Job::sweep).collect();
+        let mut sweeps = emptied(std::mem::take(&mut self.sweeps));
+        sweeps.extend(jobs.iter().filter_map(Job::sweep));
         let mut proposals = std::mem::take(&mut self.proposals);
         let before = self.gpu_counts();
         let outcome = match &mut self.gpu {
@@ -322,6 +344,7 @@ impl Batch {
             None => Ok(()),
         };
         self.count(before);
+        self.sweeps = emptied(sweeps);
         if let Err(error) = outcome {
             proposals.clear();
             self.fall_back(error);
@@ -339,24 +362,17 @@ impl Batch {
         jobs: &[J],
         mut proposal: impl FnMut(&Sweep<'_>) -> Option<Proposal>,
     ) -> Vec<J::Answer> {
-        let mut answers = Vec::with_capacity(jobs.len());
-        let mut open = Vec::new();
+        self.free.clear();
         for job in jobs {
             let said = job.sweep().map(|sweep| proposal(&sweep));
             let unfit = matches!(said, None | Some(Some(Proposal::Unfit)));
             self.report.unfit += u64::from(unfit);
-            let free = said == Some(Some(Proposal::Free));
-            answers.push(free.then(|| job.free()));
-            if !free {
-                open.push(job);
-            }
+            self.free.push(said == Some(Some(Proposal::Free)));
         }
-        self.report.settled_by_gpu += (jobs.len() - open.len()) as u64;
-        let mut rest = self.run_on_cpu(&open).into_iter();
-        answers
-            .into_iter()
-            .filter_map(|answer| answer.or_else(|| rest.next()))
-            .collect()
+        let settled = self.free.iter().filter(|free| **free).count();
+        self.report.settled_by_gpu += settled as u64;
+        self.report.settled_by_cpu += (jobs.len() - settled) as u64;
+        cpu::run_but_free(jobs, &self.free)
     }
 
     /// As [`Self::brackets`], without blocking while the device works.
@@ -381,13 +397,13 @@ impl Batch {
             self.fall_back(error);
             return self.brackets_on_cpu(paths, domain, limits);
         }
-        let open: Vec<LinearPath<f32>> = paths
-            .iter()
-            .zip(&free)
-            .filter_map(|(path, free)| (!free).then_some(*path))
-            .collect();
+        let mut open = std::mem::take(&mut self.open);
+        open.clear();
+        let left = paths.iter().zip(&free).filter(|(_, free)| !**free);
+        open.extend(left.map(|(path, _)| *path));
         self.report.settled_by_gpu += (paths.len() - open.len()) as u64;
         let mut rest = self.brackets_on_cpu(&open, domain, limits).into_iter();
+        self.open = open;
         let answers = free
             .iter()
             .filter_map(|free| match free {
@@ -398,4 +414,10 @@ impl Batch {
         self.free = free;
         answers
     }
+}
+
+/// The same room for sweeps that borrow from elsewhere: collected in place, nothing is allocated.
+#[cfg(feature = "gpu")]
+fn emptied<'a>(sweeps: Vec<Sweep<'_>>) -> Vec<Sweep<'a>> {
+    sweeps.into_iter().map_while(|_| None).collect()
 }

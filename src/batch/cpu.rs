@@ -17,3 +17,21 @@ pub fn run<J: Job>(jobs: &[J]) -> Vec<J::Answer> {
     #[cfg(not(feature = "parallel"))]
     jobs.iter().map(Job::answer).collect()
 }
+
+/// As [`run`], but for the jobs that are known to be free.
+#[cfg(feature = "gpu")]
+pub(super) fn run_but_free<J: Job>(jobs: &[J], free: &[bool]) -> Vec<J::Answer> {
+    let answer = |(job, free): (&J, &bool)| match free {
+        true => job.free(),
+        false => job.answer(),
+    };
+    #[cfg(feature = "parallel")]
+    return jobs
+        .par_iter()
+        .zip(free)
+        .with_min_len(J::PER_THREAD)
+        .map(answer)
+        .collect();
+    #[cfg(not(feature = "parallel"))]
+    jobs.iter().zip(free).map(answer).collect()
+}

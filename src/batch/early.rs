@@ -47,6 +47,13 @@ pub(super) struct Early {
 }
 
 impl Early {
+    /// Nothing is on the device; room is kept.
+    pub(super) fn forget(&mut self) {
+        self.sent.clear();
+        self.proposals.clear();
+        self.pending = false;
+    }
+
     /// What the device said of this one, if it was sent.
     pub(super) fn proposal(&self, sweep: &Sweep<'_>) -> Option<Proposal> {
         let index = self.sent.get(&Key::of(sweep))?;

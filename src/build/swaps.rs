@@ -1,10 +1,12 @@
 //! Swaps: primitives move from where they matter least to where the error is largest.
 //!
-//! A round removes the cheapest by measured cost (`measured.rs`), inserts as many where the draft is
-//! worst (`insert.rs`), refits (`refit.rs`), and keeps the result if its score is better. Rounds
-//! remove fewer and fewer. It is local search: no bound on the result, but never a worse score.
+//! A round removes the cheapest, inserts as many where the draft is worst (`insert.rs`), refits
+//! (`refit.rs`), and keeps the result if its score is better. Rounds remove fewer and fewer. It is local
+//! search: no bound on the result, but never a worse score. The cheapest are so by measured cost
+//! (`measured.rs`); among many primitives by the quadrics', which is as good there and far quicker.
 
 use super::draft::Draft;
+use super::fit::LARGE;
 use super::insert::insert;
 use super::measured::reduce_measured;
 use super::refit::{Target, refit};
@@ -15,9 +17,6 @@ use crate::error::BuildError;
 /// A fitted draft and its score.
 pub type Scored = (Draft, f64);
 
-/// Insertions within a round: with fewer most rounds fail.
-const INSERTIONS: usize = 3;
-
 /// How much is swapped.
 #[derive(Clone, Copy)]
 pub struct Swaps {
@@ -25,6 +24,8 @@ pub struct Swaps {
     pub share: f64,
     /// Rounds.
     pub rounds: usize,
+    /// Insertions within a round: with fewer than three most rounds of small counts fail.
+    pub insertions: usize,
     /// Iterations of the refit that ends each.
     pub iterations: usize,
 }
@@ -50,7 +51,7 @@ pub fn swap(
         let (weight, tree) = (BOUNDARY_WEIGHT_SOLID, target.tree);
         let simplifier = Simplifier::new(best.0.clone(), weight, tree, watch)?;
         let mut draft = remove(simplifier, most - removed, target, watch)?;
-        grow(&mut draft, target, most, INSERTIONS, watch)?;
+        grow(&mut draft, target, most, swaps.insertions, watch)?;
         watch.begin("refit")?;
         let score = refit(&mut draft, target, swaps.iterations, watch)?;
         if score < best.1 {
@@ -61,16 +62,20 @@ pub fn swap(
     Ok(drafts)
 }
 
-/// Collapses by measured cost, over half of the samples where there are few primitives.
+/// Collapses by measured cost, over half of the samples, up to [`LARGE`] primitives; above by the
+/// quadrics'.
 pub fn remove(
     mut simplifier: Simplifier,
     most: usize,
     target: &Target,
     watch: &mut Watch,
 ) -> Result<Draft, BuildError> {
-    let every = if most < 1000 { 2 } else { 1 };
-    let samples = target.samples.iter().step_by(every).map(|s| s.point);
-    reduce_measured(&mut simplifier, most, samples.collect(), target.tree, watch)?;
+    if most > LARGE {
+        simplifier.reduce_to(most, watch)?;
+    } else {
+        let samples = target.samples.iter().step_by(2).map(|s| s.point);
+        reduce_measured(&mut simplifier, most, samples.collect(), target.tree, watch)?;
+    }
     Ok(simplifier.draft())
 }
 

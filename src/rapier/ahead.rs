@@ -15,6 +15,8 @@
 use super::motion::velocities;
 use crate::batch::{Job, PairJob, PairResult};
 use crate::math::{Pose, Real, Rotation, Vector};
+use crate::medial::MedialMesh;
+use crate::pair::Play;
 use crate::parry::answers::Key;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{IntegrationParameters, RigidBody};
@@ -99,12 +101,6 @@ pub struct Starts {
 }
 
 impl Starts {
-    /// [`reach`] of two of these instance ids.
-    pub fn reach(&self, ids: [u64; 2]) -> Option<Real> {
-        let [a, b] = ids.map(|id| self.of(id));
-        Some(reach([a?, b?], &self.parameters))
-    }
-
     fn of(&self, id: u64) -> Option<&Start> {
         Some(&self.all[self.ids.binary_search(&id).ok()?])
     }
@@ -129,7 +125,7 @@ fn closing([a, b]: [&Start; 2]) -> Real {
 /// Gap, without contact skins, that two colliders may close in the step by their velocities, gravity, forces
 /// and what is near them, after what they may have moved before rapier asks; at most rapier's prediction
 /// distance.
-fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
+pub fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
     let (dt, prediction) = (parameters.dt, parameters.prediction_distance());
     let [a, b] = starts.map(|s| s.acceleration);
     // Either may be held by something.
@@ -149,14 +145,16 @@ pub struct Ahead {
     centers: [Vector; 2],
     /// The prediction distance that rapier will ask for.
     asked: Real,
+    /// How far they may move.
+    play: Play,
 }
 
 impl Ahead {
     /// Of the two colliders of `job`, which is at their poses at the start of a step; with the job that
     /// computes their contacts.
     ///
-    /// Of these only those within [`reach`] count: the others of the prediction distance cost the solver as
-    /// much as those that bear.
+    /// Of these only those within [`reach`] count, and of them those that no nearer one holds back: the others
+    /// of the prediction distance cost the solver as much as those that bear.
     pub fn new(
         starts: [&Start; 2],
         parameters: &IntegrationParameters,
@@ -176,17 +174,23 @@ impl Ahead {
         } else {
             [a.start, b.start]
         };
+        let reach = reach(starts, parameters);
+        let skins = job.prediction - prediction;
         let turn = |k: usize| motions[k].start.rotation.inverse() * poses[k].rotation;
         let ahead = Self {
             pos12: a.start.inv_mul(&b.start),
             turns: [turn(0), turn(1)],
             centers: motions.map(|m| m.local_center),
             asked: job.prediction,
+            play: Play {
+                way: reach,
+                turn: reach / arm(&job.mesh1).min(arm(&job.mesh2)),
+                skins,
+            },
         };
-        let near = reach(starts, parameters);
         let job = PairJob {
             pos12: poses[0].inv_mul(&poses[1]),
-            prediction: job.prediction - prediction + near,
+            prediction: skins + reach,
             ..job
         };
         (ahead, job)
@@ -210,7 +214,8 @@ impl Ahead {
         (Key::new(&job.mesh1, &job.mesh2, &self.pos12), self.asked)
     }
 
-    /// Brings contacts back: normals and lever arms point as they will, gaps are those at the start.
+    /// Brings contacts back: normals and lever arms point as they will, gaps are those at the start. Of those
+    /// that others hold back none is left.
     pub fn bring_back(&self, result: &mut PairResult) {
         for contact in &mut result.contacts {
             let [p1, p2] = contact.points;
@@ -219,5 +224,13 @@ impl Ahead {
             let turned = |k: usize, p| self.centers[k] + self.turns[k] * (p - self.centers[k]);
             contact.points = [turned(0, p1), turned(1, p2)];
         }
+        self.play.drop_held_back(&mut result.contacts);
     }
+}
+
+/// Second half extent of a mesh: whatever axis it turns about, some point of it is about this far from it, so
+/// that it turns by no more than that point's way over this.
+fn arm(mesh: &MedialMesh) -> Real {
+    let h = mesh.aabb().half_extents();
+    (h.x + h.y + h.z) - h.max_element() - h.min_element()
 }

@@ -8,11 +8,10 @@
 //! And bodies that came to rest: contacts that could close while they moved cannot any more, and the solver
 //! would pay for them as long as they lie there.
 
-use super::ahead::Starts;
-use super::candidates::Sets;
+use super::ahead::{Start, Starts, reach};
+use super::items::{Item, Items, Sets};
 use crate::math::Real;
-use crate::medial::MedialMesh;
-use rapier3d::dynamics::RigidBody;
+use rapier3d::dynamics::{IntegrationParameters, RigidBody};
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, ContactPair};
 use rapier3d::pipeline::ActiveHooks;
 use std::collections::HashSet;
@@ -38,93 +37,75 @@ const RESTS: Real = 1.25;
 /// a step counts as changed by the user.
 const ASK_ANEW: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
 
-/// The colliders whose contacts with medial meshes are to be computed anew. Known from the world alone, so
-/// that a world that was saved and loaded goes on as it would have.
-pub fn find(sets: &Sets, starts: &Starts) -> HashSet<ColliderHandle> {
-    let pairs = sets.narrow_phase.contact_pairs();
-    pairs
-        .filter_map(|pair| {
-            let sides = [pair.collider1, pair.collider2].map(|h| Side::new(h, sets));
-            let [Some(a), Some(b)] = sides else {
-                return None;
-            };
-            let sides = [&a, &b];
-            let mass = |s: &Side| s.moving().map_or(Real::MAX, RigidBody::mass);
-            let lighter = usize::from(mass(&b) <= mass(&a));
-            sides[lighter].moving()?;
-            let skins: Real = sides.iter().map(|s| s.collider.contact_skin()).sum();
-            let anew = hanging(pair, sides, skins, sets.parameters.length_unit)
-                || at_rest(pair, sides, skins, starts);
-            anew.then_some(sides[lighter].handle)
-        })
-        .collect()
-}
-
-/// A medial collider.
-struct Side<'a> {
-    handle: ColliderHandle,
-    collider: &'a Collider,
-    mesh: &'a MedialMesh,
-    body: Option<&'a RigidBody>,
-}
-
-impl<'a> Side<'a> {
-    fn new(handle: ColliderHandle, sets: &Sets<'a>) -> Option<Self> {
-        let collider = sets.colliders.get(handle)?;
-        let mesh = collider.shape().as_shape::<MedialMesh>()?;
-        let body = collider.parent().and_then(|h| sets.bodies.get(h));
-        Some(Self {
-            handle,
-            collider,
-            mesh,
-            body,
-        })
+/// Of which medial colliders the contacts with each other are to be computed anew. Known from the world
+/// alone, so that a world that was saved and loaded goes on as it would have.
+pub fn find(sets: &Sets, items: &Items, starts: &Starts) -> Vec<bool> {
+    let mut anew = vec![false; items.all.len()];
+    let touching = sets.narrow_phase.contact_pairs();
+    for pair in touching.filter(|pair| !pair.manifolds().is_empty()) {
+        let places = [pair.collider1, pair.collider2].map(|h| items.place(h));
+        let [Some(i), Some(j)] = places else {
+            continue;
+        };
+        let sides = [&items.all[i], &items.all[j]];
+        let mass = |s: &Item| s.moving().map_or(Real::MAX, RigidBody::mass);
+        let (lighter, side) = if mass(sides[1]) <= mass(sides[0]) {
+            (j, sides[1])
+        } else {
+            (i, sides[0])
+        };
+        if anew[lighter] || side.moving().is_none() {
+            continue;
+        }
+        let skins: Real = sides.iter().map(|s| s.collider.contact_skin()).sum();
+        anew[lighter] = hanging(pair, sides, skins, sets.parameters.length_unit)
+            || at_rest(
+                pair,
+                [&starts.all[i], &starts.all[j]],
+                skins,
+                &starts.parameters,
+            );
     }
-
-    /// The body, if the solver moves it.
-    fn moving(&self) -> Option<&'a RigidBody> {
-        self.body.filter(|b| b.is_dynamic() && !b.is_sleeping())
-    }
+    anew
 }
 
 /// Whether one of a pair hangs in contacts which have moved, in a world of this length unit.
-fn hanging(pair: &ContactPair, sides: [&Side; 2], skins: Real, unit: Real) -> bool {
-    let moving = sides.map(Side::moving);
+fn hanging(pair: &ContactPair, sides: [&Item; 2], skins: Real, unit: Real) -> bool {
+    let moving = sides.map(Item::moving);
     let limit = MOVED * unit;
-    let poses = sides.map(|s| *s.collider.position());
-    let manifolds = pair.manifolds().iter();
-    let mut contacts = manifolds.flat_map(|m| m.points.iter().map(move |p| (m, p)));
-    contacts.any(|(m, p)| {
-        if p.dist - skins >= TOUCHING * unit {
-            return false;
-        }
-        let points = [poses[0] * p.local_p1, poses[1] * p.local_p2];
-        // The force on each, as it turned with it, and as it was.
-        let now = [
-            poses[0].rotation * -m.local_n1,
-            poses[1].rotation * -m.local_n2,
-        ];
+    pair.manifolds().iter().any(|m| {
+        // The force on each, as it was, and as it turned with it.
         let then = [-m.data.normal, m.data.normal];
-        let arm = |k: usize| moving[k].map(|b| points[k] - b.center_of_mass());
-        let pulled = |k: usize| arm(k).is_some_and(|arm| arm.dot(then[k]) > PULLS * arm.length());
-        let swung = |k: usize| {
-            let chord = now[k].distance(then[k]);
-            arm(k).is_some_and(|arm| arm.length() * chord > limit)
-        };
-        let gap = points[1] - points[0] - m.data.normal * p.dist;
-        (pulled(0) || pulled(1)) && (swung(0) || swung(1) || gap.length() > limit)
+        let now = [-m.local_n1, -m.local_n2];
+        let touching = m.points.iter().filter(|p| p.dist - skins < TOUCHING * unit);
+        let mut touching = touching;
+        touching.any(|p| {
+            let points = [sides[0].pose * p.local_p1, sides[1].pose * p.local_p2];
+            let arm = |k: usize| moving[k].map(|b| points[k] - b.center_of_mass());
+            let pulled =
+                |k: usize| arm(k).is_some_and(|arm| arm.dot(then[k]) > PULLS * arm.length());
+            let swung = |k: usize| {
+                let chord = (sides[k].pose.rotation * now[k]).distance(then[k]);
+                arm(k).is_some_and(|arm| arm.length() * chord > limit)
+            };
+            let gap = points[1] - points[0] - m.data.normal * p.dist;
+            (pulled(0) || pulled(1)) && (swung(0) || swung(1) || gap.length() > limit)
+        })
     })
 }
 
 /// Whether the solver has contacts of a pair that cannot close any more.
-fn at_rest(pair: &ContactPair, sides: [&Side; 2], skins: Real, starts: &Starts) -> bool {
+fn at_rest(
+    pair: &ContactPair,
+    starts: [&Start; 2],
+    skins: Real,
+    parameters: &IntegrationParameters,
+) -> bool {
     let points = pair.manifolds().iter().flat_map(|m| &m.points);
     let widest = points.map(|p| p.dist).fold(Real::MIN, Real::max) - skins;
     // What can close is more than what a pair may move unasked.
-    widest > RESTS * starts.parameters.contact_recycle_distance()
-        && starts
-            .reach(sides.map(|s| s.mesh.instance_id()))
-            .is_some_and(|reach| widest > RESTS * reach)
+    widest > RESTS * parameters.contact_recycle_distance()
+        && widest > RESTS * reach(starts, parameters)
 }
 
 /// Makes rapier compute all contacts of these colliders anew in its next step, and of no others.

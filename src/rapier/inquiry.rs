@@ -15,18 +15,18 @@ pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
 /// A question about a pair from some time on, while neither of the two has another motion.
 pub struct Inquiry<'m> {
     /// Seconds into the step.
-    pub from: Real,
+    from: Real,
     question: Question,
     left: Option<[Left; 2]>,
-    pub begun: Option<Begun<'m>>,
+    begun: Option<Begun<'m>>,
 }
 
-pub type MeshQuery<'m> = Query<'m, MedialMesh, MedialMesh>;
+type MeshQuery<'m> = Query<'m, MedialMesh, MedialMesh>;
 
-pub struct Begun<'m> {
-    pub first: Box<MeshQuery<'m>>,
+struct Begun<'m> {
+    first: Box<MeshQuery<'m>>,
     /// The query for the floor; `None` outside before it is known whether there is one.
-    pub floor: Option<Option<Box<MeshQuery<'m>>>>,
+    floor: Option<Option<Box<MeshQuery<'m>>>>,
 }
 
 /// What is known of it.

@@ -12,6 +12,7 @@ mod first_contact;
 mod hanging;
 mod impulse;
 mod inquiry;
+mod items;
 mod meetings;
 mod motion;
 mod muting;

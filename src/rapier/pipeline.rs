@@ -1,9 +1,9 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
-use super::candidates::Sets;
 use super::effects::{Effects, Wanted};
 use super::emit::{Once, Told};
 use super::first_contact::{Asker, Work};
+use super::items::{self, Sets};
 use super::motion::{Body, Snapshot};
 use super::pairs::Rules;
 use super::recycled::Recycled;
@@ -268,7 +268,7 @@ impl MedialPipeline {
         let mut report = StepReport::default();
         let before = self.batch.report().clone();
         let clock = Instant::now();
-        report.medial_colliders = candidates::make_unique(colliders);
+        report.medial_colliders = items::make_unique(colliders);
         let sets = Sets {
             gravity,
             parameters,

@@ -2,7 +2,7 @@
 //! third body does to it, and the solver hands a push on from contact to contact. Of what joints hand on
 //! no bound is known.
 
-use super::candidates::Sets;
+use super::items::Sets;
 use super::motion::velocities;
 use crate::math::Real;
 use crate::medial::MedialMesh;

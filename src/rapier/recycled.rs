@@ -8,6 +8,7 @@
 
 use crate::batch::PairJob;
 use crate::math::{Pose, Real, Rotation};
+use foldhash::fast::FixedState;
 use rapier3d::dynamics::IntegrationParameters;
 use std::collections::HashMap;
 
@@ -37,7 +38,7 @@ struct Frozen {
 /// Relative poses at which each pair was last updated in full.
 #[derive(Default)]
 pub struct Recycled {
-    frozen: HashMap<[u64; 2], Frozen>,
+    frozen: HashMap<[u64; 2], Frozen, FixedState>,
     step: u64,
     /// Drift below which a pair in contact, and one without contacts, is recycled.
     limits: [Real; 2],

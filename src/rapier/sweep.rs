@@ -10,11 +10,13 @@ pub fn meeting(boxes: &[Aabb]) -> Vec<[usize; 2]> {
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     let least = |k: usize| boxes[k].mins[axis];
     order.sort_by(|&i, &j| least(i).total_cmp(&least(j)).then(i.cmp(&j)));
+    let sorted: Vec<Aabb> = order.iter().map(|k| boxes[*k]).collect();
     let mut pairs = Vec::new();
-    for (n, &i) in order.iter().enumerate() {
-        let behind = order[n + 1..].iter();
-        for &j in behind.take_while(|&&j| least(j) <= boxes[i].maxs[axis]) {
-            if boxes[i].intersects(&boxes[j]) {
+    for (n, a) in sorted.iter().enumerate() {
+        let behind = sorted.iter().zip(&order).skip(n + 1);
+        for (b, &j) in behind.take_while(|(b, _)| b.mins[axis] <= a.maxs[axis]) {
+            if a.intersects(b) {
+                let i = order[n];
                 pairs.push([i.min(j), i.max(j)]);
             }
         }

@@ -12,6 +12,8 @@ mod ccd;
 #[path = "../common/creature.rs"]
 mod creature;
 
+mod allocations;
+mod bare;
 mod batch;
 mod calibration;
 mod culling;

@@ -21,6 +21,7 @@ mod effort;
 mod families;
 mod first_contact;
 mod fuzz;
+mod held;
 mod judge;
 mod lanes;
 mod meshes;

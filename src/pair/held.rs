@@ -1,0 +1,52 @@
+//! Contacts of two bodies that cannot close while a nearer one holds: a solver pays as much for them as
+//! for those that bear.
+//!
+//! While the bodies move, each place moves against the other by some `δ(p) = δ(q) + ω × (p − q)`. Where
+//! contact `k` has the normal `n_k` and the gap `g_k`, and holds, `δ(k) · n_k ≤ g_k`; with `|δ(k)| ≤ R` and
+//! `θ` between the normals, contact `c` closes by at most
+//!
+//! `g_k cos θ + √(R² − g_k²) sin θ + |ω| |c − k|`,
+//!
+//! or by `R + |ω| |c − k|` where `g_k ≥ R cos θ`. In the narrowing gap between two tubes all but the
+//! nearest few contacts are held back so.
+
+use super::SpherePair;
+use crate::math::Real;
+
+/// How far two bodies may move against each other before their contacts are computed again.
+#[derive(Clone, Copy, Debug)]
+pub struct Play {
+    /// Bound on the way of each place.
+    pub way: Real,
+    /// Bound on the angle (radians).
+    pub turn: Real,
+    /// Gap at which a contact holds: the sum of both contact skins.
+    pub skins: Real,
+}
+
+impl Play {
+    /// Takes out the contacts that are held back by nearer ones, which stay; the nearest come first.
+    pub fn drop_held_back(&self, contacts: &mut Vec<SpherePair>) {
+        contacts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut kept: Vec<SpherePair> = Vec::with_capacity(contacts.len());
+        for c in contacts.drain(..) {
+            if !kept.iter().any(|k| self.holds_back(k, &c)) {
+                kept.push(c);
+            }
+        }
+        *contacts = kept;
+    }
+
+    /// Whether `c` cannot close while `k` holds.
+    fn holds_back(&self, k: &SpherePair, c: &SpherePair) -> bool {
+        let [gap_k, gap_c] = [k, c].map(|c| (c.distance - self.skins).max(0.0));
+        let cosine = k.normal.dot(c.normal).clamp(-1.0, 1.0);
+        let closed = if gap_k < self.way * cosine {
+            let across = (self.way - gap_k) * (self.way + gap_k);
+            gap_k * cosine + (across * (1.0 - cosine * cosine)).sqrt()
+        } else {
+            self.way
+        };
+        closed + self.turn * k.points[0].distance(c.points[0]) < gap_c
+    }
+}

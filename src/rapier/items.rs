@@ -1,0 +1,176 @@
+//! The medial colliders at the start of a step.
+
+use super::ahead::Start;
+use crate::math::{Pose, Real, Vector};
+use crate::medial::MedialMesh;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use rapier3d::dynamics::{
+    ImpulseJointSet, IntegrationParameters, MultibodyJointSet, RigidBody, RigidBodyHandle,
+    RigidBodySet,
+};
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase, SharedShape};
+
+/// The world at the start of a step.
+#[derive(Clone, Copy)]
+pub struct Sets<'a> {
+    /// Gravity.
+    pub gravity: Vector,
+    /// Of the step.
+    pub parameters: &'a IntegrationParameters,
+    /// Bodies.
+    pub bodies: &'a RigidBodySet,
+    /// Colliders.
+    pub colliders: &'a ColliderSet,
+    /// Joints.
+    pub impulse_joints: &'a ImpulseJointSet,
+    /// Multibodies.
+    pub multibody_joints: &'a MultibodyJointSet,
+    /// Contacts of the step before.
+    pub narrow_phase: &'a NarrowPhase,
+}
+
+/// Gives every medial collider an instance id of its own; colliders that share a shape would share
+/// answers. Returns how many medial colliders there are.
+pub fn make_unique(colliders: &mut ColliderSet) -> usize {
+    let medial = colliders.iter_enabled().filter_map(|(handle, collider)| {
+        let mesh = collider.shape().as_shape::<MedialMesh>()?;
+        Some((mesh.instance_id(), handle))
+    });
+    let mut ids: Vec<(u64, ColliderHandle)> = medial.collect();
+    // The first of several keeps its id.
+    ids.sort_by_key(|(id, _)| *id);
+    for two in ids.windows(2).filter(|two| two[0].0 == two[1].0) {
+        if let Some(collider) = colliders.get_mut(two[1].1)
+            && let Some(mesh) = collider.shape().as_shape::<MedialMesh>()
+        {
+            let own = SharedShape::new(mesh.instance());
+            collider.set_shape(own);
+        }
+    }
+    ids.len()
+}
+
+/// A medial collider.
+pub struct Item<'a> {
+    /// Its handle.
+    pub handle: ColliderHandle,
+    /// The collider.
+    pub collider: &'a Collider,
+    /// Its body, if it has one.
+    pub parent: Option<(RigidBodyHandle, &'a RigidBody)>,
+    /// Its shape.
+    pub mesh: &'a MedialMesh,
+    /// Where the narrow phase will see it, to the bit.
+    pub pose: Pose,
+    /// Its box, as far as contacts are looked for.
+    pub aabb: Aabb,
+}
+
+impl<'a> Item<'a> {
+    /// Its motion, in a step of this gravity and length.
+    pub fn start(&self, gravity: Vector, dt: Real) -> Start {
+        let aabb = self.mesh.aabb();
+        let offset = self.collider.position_wrt_parent();
+        let extent = aabb.mins.abs().max(aabb.maxs.abs()).length();
+        Start::new(
+            self.parent.map(|(_, body)| body),
+            [self.pose, offset.copied().unwrap_or(Pose::IDENTITY)],
+            [extent, self.collider.contact_skin()],
+            gravity,
+            dt,
+        )
+    }
+
+    /// The body, if the solver moves it and it is awake.
+    pub fn moving(&self) -> Option<&'a RigidBody> {
+        let body = self.parent?.1;
+        (body.is_dynamic() && body.is_enabled() && !body.is_sleeping()).then_some(body)
+    }
+
+    /// Largest distance of a corner of its box from its origin.
+    pub fn reach(&self) -> Real {
+        let aabb = self.mesh.aabb();
+        aabb.mins.length().max(aabb.maxs.length())
+    }
+}
+
+/// All of them, by instance id.
+pub struct Items<'a> {
+    /// In this order.
+    pub all: Vec<Item<'a>>,
+    /// By the index in their handle, the place among all of them.
+    places: Vec<u32>,
+}
+
+impl<'a> Items<'a> {
+    /// Those of a world, as far as their poses are finite.
+    pub fn new(sets: &Sets<'a>) -> Self {
+        let prediction = sets.parameters.prediction_distance();
+        let medial = sets.colliders.iter_enabled();
+        let medial =
+            medial.filter_map(|(handle, collider)| item(sets, prediction, handle, collider));
+        let mut all: Vec<Item> = medial.collect();
+        all.sort_by_key(|item| item.mesh.instance_id());
+        let index = |item: &Item| item.handle.into_raw_parts().0 as usize;
+        let mut places = vec![u32::MAX; all.iter().map(index).max().map_or(0, |last| last + 1)];
+        for (place, item) in all.iter().enumerate() {
+            places[index(item)] = place as u32;
+        }
+        Self { all, places }
+    }
+
+    /// The place of a collider, if it is one of them.
+    pub fn place(&self, collider: ColliderHandle) -> Option<usize> {
+        let place = *self.places.get(collider.into_raw_parts().0 as usize)? as usize;
+        (self.all.get(place)?.handle == collider).then_some(place)
+    }
+
+    /// Whether contacts of two of them are wanted: one at least is dynamic and awake, they are not on the
+    /// same body, their groups are compatible, and neither is a sensor.
+    pub fn meet(&self, pair: [usize; 2]) -> bool {
+        let [a, b] = pair.map(|k| &self.all[k]);
+        let same_body = match (a.parent, b.parent) {
+            (Some((x, _)), Some((y, _))) => x == y,
+            _ => false,
+        };
+        (a.moving().is_some() || b.moving().is_some())
+            && !same_body
+            && a.collider
+                .collision_groups()
+                .test(b.collider.collision_groups())
+            && !a.collider.is_sensor()
+            && !b.collider.is_sensor()
+    }
+
+    /// In the narrow phase's order: lower collider index first.
+    pub fn in_order(&self, [i, j]: [usize; 2]) -> [usize; 2] {
+        let index = |k: usize| self.all[k].handle.into_raw_parts().0;
+        if index(i) < index(j) { [i, j] } else { [j, i] }
+    }
+}
+
+fn item<'a>(
+    sets: &Sets<'a>,
+    prediction: Real,
+    handle: ColliderHandle,
+    collider: &'a Collider,
+) -> Option<Item<'a>> {
+    let mesh = collider.shape().as_shape::<MedialMesh>()?;
+    let parent = collider
+        .parent()
+        .and_then(|h| sets.bodies.get(h).map(|body| (h, body)));
+    let pose = match (parent, collider.position_wrt_parent()) {
+        (Some((_, body)), Some(offset)) => *body.position() * *offset,
+        _ => *collider.position(),
+    };
+    let margin = prediction + collider.contact_skin();
+    let aabb = parry3d::shape::Shape::compute_aabb(mesh, &pose).loosened(margin);
+    pose.is_finite().then_some(Item {
+        handle,
+        collider,
+        parent,
+        mesh,
+        pose,
+        aabb,
+    })
+}
