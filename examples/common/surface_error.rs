@@ -35,17 +35,28 @@ pub fn surface_error(
     let envelope = TriMesh::new(vertices, indices).ok()?;
     let source = source.to_parry();
     Some(SurfaceError {
-        surface_to_envelope: farthest(&source, &envelope, points),
-        envelope_to_surface: farthest(&envelope, &source, points),
+        // Drawing loses strips between thousands of primitives that overlap. There the shape's own
+        // projection, a point of the boundary as well, is nearer.
+        surface_to_envelope: farthest(&source, &[&envelope, mesh], points),
+        envelope_to_surface: farthest(&envelope, &[&source], points),
     })
 }
 
-/// The largest distance from points of one surface to the other.
-fn farthest(from: &TriMesh, to: &TriMesh, points: usize) -> Real {
-    let distance = |p: Vector| to.project_local_point(p, false).point.distance(p);
-    let spread = spread_points(from, points).map(distance);
-    let vertices = from.vertices().iter().map(|&p| distance(p));
-    vertices.chain(spread).fold(0.0, Real::max)
+/// The largest distance from points of a surface to the nearest of the points that `to` give, which lie
+/// on the other.
+fn farthest(from: &TriMesh, to: &[&dyn PointQuery], points: usize) -> Real {
+    let vertices = from.vertices().iter().copied();
+    let all = vertices.chain(spread_points(from, points));
+    all.fold(0.0, |largest, p| {
+        let mut distance = Real::INFINITY;
+        for other in to {
+            distance = distance.min(other.project_local_point(p, false).point.distance(p));
+            if distance <= largest {
+                break;
+            }
+        }
+        largest.max(distance)
+    })
 }
 
 /// About `count` points, as many on each triangle as its share of the area calls for. Within a
