@@ -1,9 +1,9 @@
 //! The device proposes, the CPU disposes. The device gets what moves and gives back which pairs are
-//! proven free; nothing else that it computes reaches the physics. Bounds carry a slack for the rounding of any conforming
-//! device ([`crate::math::tolerance::GPU_SLACK_ULPS`]).
+//! proven free; nothing else that it computes reaches the physics. Bounds carry a slack for the rounding
+//! of any conforming device ([`crate::math::tolerance::GPU_SLACK_ULPS`]).
 //!
-//! One submission and one map per batch; nothing is allocated on the device in a step like those
-//! before. Whatever goes wrong is a [`GpuError`], and the CPU has the work.
+//! One submission and one map per batch; nothing is allocated in a step like those before, on the
+//! device or of ours on the host. Whatever goes wrong is a [`GpuError`], and the CPU has the work.
 
 mod clock;
 mod context;
