@@ -3,26 +3,25 @@
 //! Pairs wait at the time before which they are known not to meet; the first of them is looked at
 //! further until it has an answer or another comes first. Each impact moves both bodies to its time and
 //! gives two impulses: one to the velocities that the solver left, so that the next step begins right, and
-//! one to the motion of this step, so that it goes on right. Then all pairs of both bodies are asked
-//! again. A body with more than [`Tuning::max_events`](super::tuning::Tuning) impacts stays where it is
+//! one to the motion of this step, so that it goes on right ([`super::response`]). Then all pairs of the
+//! bodies that changed are asked again. A body with more than [`Tuning::max_events`](super::tuning::Tuning) impacts stays where it is
 //! for the rest of the step, or is carried along by what pushes it. No hit is ever dropped, at the
 //! current time neither; so no medial axis crosses another on the motion executed.
 
 use super::first_contact::{Asker, Hit, Work};
-use super::impulse::{Impact, Inertia, Material};
 use super::inquiry::{Inquiry, Known, Meshes};
 use super::motion::{Kind, Snapshot};
 use super::outlines::Outlines;
 use super::pairs::{Rules, concerned, in_order, sweep};
+use super::response::Response;
 use super::waiting::Waiting;
 use crate::batch::{Batch, ToiJob, ToiResult};
-use crate::math::{Real, Vector};
+use crate::math::Real;
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::query::NonlinearRigidMotion;
 use parry3d::shape::SharedShape;
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 
 /// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
 /// which grows a little with each meeting of a pair.
@@ -58,15 +57,6 @@ pub struct Outcome {
     pub stopped: Option<Real>,
 }
 
-/// State of one body in the loop.
-#[derive(Clone, Copy, Default)]
-struct Course {
-    events: u32,
-    frozen: bool,
-    moved: bool,
-    struck: bool,
-}
-
 /// What a pair waits for.
 enum Awaited<'a> {
     Answer(Inquiry<'a>),
@@ -80,15 +70,13 @@ struct Loop<'a> {
     /// Slow pairs near enough to their medial axes to be watched.
     deep: HashSet<[ColliderHandle; 2]>,
     allowed: HashMap<[usize; 2], bool>,
-    met: HashMap<[usize; 2], u32>,
-    courses: Vec<Course>,
+    response: Response,
     /// Box of each collider from its body's last impact to the end of the step.
     boxes: Vec<Aabb>,
     /// The shapes of the colliders.
     shapes: &'a [SharedShape],
     waiting: Waiting<Awaited<'a>>,
     outlines: Outlines,
-    impulses: BTreeMap<[usize; 2], Real>,
     jobs: usize,
     events: usize,
 }
@@ -108,7 +96,7 @@ pub fn resolve(
         return Outcome::default();
     }
     let pairs = sweep(snapshot, asker.dt, MARGIN * asker.unit);
-    let courses = vec![Course::default(); snapshot.bodies.len()];
+    let response = Response::new(snapshot.bodies.len());
     let shapes: Vec<_> = snapshot.parts.iter().map(|p| p.shape.clone()).collect();
     let mut events = Loop {
         snapshot,
@@ -116,13 +104,11 @@ pub fn resolve(
         rules,
         deep,
         allowed: HashMap::new(),
-        met: HashMap::new(),
-        courses,
+        response,
         boxes: Vec::new(),
         shapes: &shapes,
         waiting: Waiting::default(),
         outlines: Outlines::new(shapes.len(), asker.dt),
-        impulses: BTreeMap::new(),
         jobs: 0,
         events: 0,
     };
@@ -142,8 +128,7 @@ pub fn resolve(
             let parts = 0..events.snapshot.parts.len();
             events.boxes = parts.map(|k| events.swept_box(k, 0.0)).collect();
         }
-        events.impact(pair, hit);
-        events.ask_again(pair, hit.time, work);
+        events.impact(pair, hit, work);
     }
     events.finish()
 }
@@ -201,21 +186,9 @@ impl Loop<'_> {
         }
     }
 
-    fn bodies(&self, pair: [usize; 2]) -> [usize; 2] {
-        pair.map(|k| self.snapshot.parts[k].body)
-    }
-
     fn stops_at(&self, pair: [usize; 2], time: Real) -> bool {
         let [first, last] = STOPS_WITHIN.map(|share| share * self.asker.dt);
         (first..=last).contains(&time) && self.asker.stops(self.snapshot, pair)
-    }
-
-    /// Whether an impact could still change the motion of either.
-    fn can_give(&self, pair: [usize; 2]) -> bool {
-        self.bodies(pair).iter().any(|&b| {
-            self.snapshot.bodies[b].kind == Kind::Free
-                && self.courses[b].events <= self.asker.tuning.max_carried()
-        })
     }
 
     fn is_deep(&self, pair: [usize; 2]) -> bool {
@@ -235,10 +208,12 @@ impl Loop<'_> {
     fn ask(&mut self, pair: [usize; 2], time: Real, known: Option<ToiResult>, work: &mut Work) {
         self.waiting.remove(pair);
         // The user's filters are asked once per pair and step, and only where it matters.
-        if self.allowed.get(&pair) == Some(&false) || !self.can_give(pair) {
+        if self.allowed.get(&pair) == Some(&false)
+            || !self.response.can_give(self.snapshot, &self.asker, pair)
+        {
             return;
         }
-        let met = self.met.get(&pair).copied().unwrap_or(0);
+        let met = self.response.met(pair);
         let (asker, deep) = (self.asker, self.is_deep(pair));
         let Some(question) = asker.question(self.snapshot, pair, time, met, deep) else {
             return;
@@ -260,9 +235,14 @@ impl Loop<'_> {
         }
     }
 
-    /// Asks for all pairs of the bodies that an impact gave another motion.
-    fn ask_again(&mut self, pair: [usize; 2], time: Real, work: &mut Work) {
-        let bodies = self.bodies(pair);
+    /// Lets two colliders meet, and asks for all pairs of the bodies whose motion that changed.
+    fn impact(&mut self, pair: [usize; 2], hit: Hit, work: &mut Work) {
+        self.events += 1;
+        let (asker, rules) = (self.asker, self.rules);
+        let bodies = self
+            .response
+            .impact(self.snapshot, &asker, &rules, pair, hit);
+        let time = hit.time;
         let changed: Vec<usize> = (0..self.snapshot.parts.len())
             .filter(|&k| {
                 let body = self.snapshot.parts[k].body;
@@ -293,128 +273,22 @@ impl Loop<'_> {
         swept.loosened(self.snapshot.parts[part].skin + MARGIN * self.asker.unit)
     }
 
-    fn impact(&mut self, pair: [usize; 2], hit: Hit) {
-        self.events += 1;
-        *self.met.entry(pair).or_insert(0) += 1;
-        let bodies = self.bodies(pair);
-        for b in bodies {
-            let course = &mut self.courses[b];
-            if self.snapshot.bodies[b].kind == Kind::Free {
-                self.snapshot.bodies[b].advance(hit.time);
-                self.snapshot.bodies[b].awake = true;
-                course.moved = true;
-                course.events += 1;
-            }
-        }
-        if hit.normal == Vector::ZERO {
-            for b in bodies {
-                self.courses[b].events =
-                    self.courses[b].events.max(self.asker.tuning.max_events + 1);
-            }
-        } else {
-            self.push(pair, hit);
-        }
-        for k in 0..2 {
-            self.freeze(bodies[k], bodies[1 - k], hit.time);
-        }
-    }
-
-    fn push(&mut self, pair: [usize; 2], hit: Hit) {
-        let bodies = self.bodies(pair);
-        let [c1, c2] = pair.map(|k| &self.rules.colliders[self.snapshot.parts[k].handle]);
-        let [a, b] = bodies.map(|b| &self.snapshot.bodies[b]);
-        let inertia = |k: usize| {
-            let (own, other) = [(a, b), (b, a)][k];
-            if own.kind == Kind::Free && own.dominance <= other.dominance {
-                Inertia::of(own)
-            } else {
-                Inertia::INFINITE
-            }
-        };
-        let now = [a, b].map(|x| x.motion_from(hit.time));
-        let centers = [0, 1].map(|k| now[k].start * [a, b][k].mass.local_com);
-        let mut impact = Impact {
-            normal: hit.normal,
-            arms: centers.map(|c| hit.point - c),
-            inertias: [inertia(0), inertia(1)],
-            material: Material::of(c1, c2),
-        };
-        let velocities = [a, b].map(|x| x.velocity);
-        // A carried body turns about its carrier's centre, not its own.
-        let motions = [0, 1].map(|k| {
-            let m = &now[k];
-            let arm = centers[k] - m.start * m.local_center;
-            [m.linvel + m.angvel.cross(arm), m.angvel]
-        });
-        let tuning = &self.asker.tuning;
-        let sunk = hit.depth - tuning.push_from * self.snapshot.thickness(pair);
-        let out = tuning.push * sunk.max(0.0) / self.asker.dt;
-        if let Some(j) = impact.impulse(velocities, 0.0) {
-            *self.impulses.entry(pair).or_insert(0.0) += j.length();
-            for k in 0..2 {
-                let sign = [-1.0, 1.0][k];
-                let [dv, dw] = impact.inertias[k].change(impact.arms[k], j * sign);
-                let body = &mut self.snapshot.bodies[bodies[k]];
-                body.velocity[0] += dv;
-                body.velocity[1] += dw;
-                self.courses[bodies[k]].struck |= body.kind == Kind::Free;
-            }
-        }
-        for (k, body) in bodies.iter().enumerate() {
-            if self.courses[*body].frozen {
-                impact.inertias[k] = Inertia::INFINITE;
-            }
-        }
-        if let Some(j) = impact.impulse(motions, out) {
-            for k in 0..2 {
-                let sign = [-1.0, 1.0][k];
-                let [dv, dw] = impact.inertias[k].change(impact.arms[k], j * sign);
-                let motion = &mut self.snapshot.bodies[bodies[k]].motion;
-                motion.linvel += dv;
-                motion.angvel += dw;
-            }
-        }
-    }
-
-    /// Stops a body that had too many impacts, or lets what pushes it carry it along.
-    fn freeze(&mut self, body: usize, other: usize, time: Real) {
-        let events = self.courses[body].events;
-        if self.snapshot.bodies[body].kind != Kind::Free || events <= self.asker.tuning.max_events {
-            return;
-        }
-        let carrier = &self.snapshot.bodies[other];
-        let carries = carrier.kind == Kind::Driven || self.courses[other].frozen;
-        let carrying = carrier.motion_from(time);
-        self.courses[body].frozen = true;
-        let motion = &mut self.snapshot.bodies[body].motion;
-        *motion = if carries && events <= self.asker.tuning.max_carried() {
-            let center = carrying.start * carrying.local_center;
-            NonlinearRigidMotion {
-                local_center: motion.start.inverse_transform_point(center),
-                linvel: carrying.linvel,
-                angvel: carrying.angvel,
-                ..*motion
-            }
-        } else {
-            NonlinearRigidMotion::constant_position(motion.start)
-        };
-    }
-
     /// Ends here for all bodies. What forces did in the rest of the step they will do again; a velocity
     /// that contacts of the solver made is taken for theirs from the start of the step on.
     fn stop(mut self, time: Real, narrow_phase: &NarrowPhase) -> Outcome {
         let left = 1.0 - time / self.asker.dt;
-        let mut pushed: Vec<bool> = self.courses.iter().map(|c| c.struck).collect();
+        let courses = &mut self.response.courses;
+        let mut pushed: Vec<bool> = courses.iter().map(|c| c.struck).collect();
         for part in &self.snapshot.parts {
             let mut contacts = narrow_phase.contact_pairs_with(part.handle);
             pushed[part.body] |= contacts.any(|c| c.total_impulse_magnitude() > 0.0);
         }
         for (b, body) in self.snapshot.bodies.iter_mut().enumerate() {
             if body.kind != Kind::Fixed && body.awake {
-                self.courses[b].moved = true;
+                courses[b].moved = true;
                 if body.kind == Kind::Free && !pushed[b] {
                     body.undo_forces(left);
-                    self.courses[b].struck = true;
+                    courses[b].struck = true;
                 }
             }
         }
@@ -430,12 +304,16 @@ impl Loop<'_> {
             events: self.events,
             ..Outcome::default()
         };
-        for (b, course) in self.courses.iter().enumerate().filter(|(_, c)| c.moved) {
+        for (b, course) in self.response.courses.iter().enumerate() {
+            if !course.moved {
+                continue;
+            }
             outcome.frozen += usize::from(course.frozen);
             outcome.changed.push((b, course.struck));
             self.snapshot.bodies[b].advance(self.asker.dt);
         }
         outcome.impulses = self
+            .response
             .impulses
             .iter()
             .map(|(pair, impulse)| Impulse {

@@ -100,7 +100,8 @@ pub struct Asker<'a> {
 }
 
 impl Asker<'_> {
-    fn gap(&self, thickness: Real) -> Real {
+    /// Gap at which a fast pair counts as in contact, a length.
+    pub fn gap(&self, thickness: Real) -> Real {
         let [gap, share] = self.tuning.gap;
         (gap * self.unit)
             .min(share * thickness)

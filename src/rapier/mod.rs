@@ -13,6 +13,7 @@ mod hanging;
 mod impulse;
 mod inquiry;
 mod items;
+mod meetings;
 mod motion;
 mod muting;
 mod outlines;
@@ -21,6 +22,7 @@ pub mod pipeline;
 mod pushes;
 mod recycled;
 pub mod report;
+mod response;
 #[cfg(feature = "serde-serialize")]
 pub mod saved_world;
 mod speculative;

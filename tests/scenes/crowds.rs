@@ -70,9 +70,9 @@ fn heaps_with_hooks_and_slabs_do_not_cross() {
     );
 }
 
-/// Of the many neighbours of two bodies that collide few are searched, and those not far. Counts, not
-/// times. In a heap of 48 links an impact took 45 queries when all pairs of both bodies were searched to
-/// the end of the step.
+/// An impact closes no contact that touches already, or this heap would have 1,499 of them; and of the many
+/// neighbours of the bodies that it moves few are searched, and those not far. Counts, not times. In a heap of
+/// 48 links an impact took 45 queries when all pairs of its two bodies were searched to the end of the step.
 #[test]
 fn an_impact_asks_few_of_its_neighbours() {
     let [_, (_, links, _), ..] = kinds();
@@ -87,7 +87,8 @@ fn an_impact_asks_few_of_its_neighbours() {
     }
     println!("{events} impacts, {pairs} pairs, {queries} queries");
     assert!(events > 300 && pairs > 500, "{events}, {pairs}");
-    assert!(queries < 11 * events, "{queries} queries, {events} impacts");
+    assert!(events < 1_200, "{events}");
+    assert!(queries < 16 * events, "{queries} queries, {events} impacts");
 }
 
 #[test]

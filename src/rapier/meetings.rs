@@ -1,0 +1,92 @@
+//! Where colliders met in this step. Two that met mostly still touch there when one of them is pushed
+//! again; how far they have opened since follows from the poses.
+
+use super::first_contact::Hit;
+use super::motion::Snapshot;
+use crate::math::{Pose, Real, Vector};
+use std::collections::HashMap;
+
+type Pair = [usize; 2];
+
+/// The last meeting of a pair.
+#[derive(Clone, Copy)]
+struct Meeting {
+    /// How often they met.
+    count: u32,
+    /// The hit's point in the frames of both bodies.
+    points: [Vector; 2],
+    /// In the frame of the first body.
+    normal: Vector,
+    /// Depth then, a length.
+    depth: Real,
+}
+
+/// All meetings of a step.
+#[derive(Default)]
+pub struct Meetings {
+    last: HashMap<Pair, Meeting>,
+    /// Pairs of each body, in the order in which they met first.
+    of_body: HashMap<usize, Vec<Pair>>,
+}
+
+impl Meetings {
+    /// How often a pair met.
+    pub fn count(&self, pair: Pair) -> u32 {
+        self.last.get(&pair).map_or(0, |m| m.count)
+    }
+
+    /// A pair meets.
+    pub fn add(&mut self, snapshot: &Snapshot, pair: Pair, hit: &Hit) {
+        let poses = poses(snapshot, pair, hit.time);
+        let count = self.count(pair);
+        if count == 0 {
+            for k in pair {
+                let body = snapshot.parts[k].body;
+                self.of_body.entry(body).or_default().push(pair);
+            }
+        }
+        let meeting = Meeting {
+            count: count + 1,
+            points: poses.map(|pose| pose.inverse_transform_point(hit.point)),
+            normal: poses[0].rotation.inverse() * hit.normal,
+            depth: hit.depth,
+        };
+        self.last.insert(pair, meeting);
+    }
+
+    /// Pairs that any of some bodies met, each once.
+    pub fn of(&self, bodies: &[usize]) -> Vec<Pair> {
+        let mut pairs = Vec::new();
+        for pair in bodies.iter().filter_map(|b| self.of_body.get(b)).flatten() {
+            if !pairs.contains(pair) {
+                pairs.push(*pair);
+            }
+        }
+        pairs
+    }
+
+    /// The contact of a pair that met, at `time` seconds into the step, and how far it has opened since, a
+    /// length, < 0 where it closed; `None` where no normal is known.
+    pub fn contact(&self, snapshot: &Snapshot, pair: Pair, time: Real) -> Option<(Hit, Real)> {
+        let meeting = self.last.get(&pair)?;
+        let poses = poses(snapshot, pair, time);
+        let [p, q] = [0, 1].map(|k| poses[k] * meeting.points[k]);
+        let normal = poses[0].rotation * meeting.normal;
+        let opened = (q - p).dot(normal);
+        let hit = Hit {
+            time,
+            normal,
+            point: (p + q) * 0.5,
+            depth: (meeting.depth - opened).max(0.0),
+        };
+        (normal != Vector::ZERO).then_some((hit, opened))
+    }
+}
+
+/// Of the bodies of both.
+fn poses(snapshot: &Snapshot, pair: Pair, time: Real) -> [Pose; 2] {
+    pair.map(|k| {
+        let body = &snapshot.bodies[snapshot.parts[k].body];
+        body.motion_from(time).start
+    })
+}
