@@ -17,11 +17,11 @@ use super::response::Response;
 use super::waiting::Waiting;
 use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::Real;
+use crate::math::fast_hash::{FastMap, FastSet};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::SharedShape;
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
-use std::collections::{HashMap, HashSet};
 
 /// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
 /// which grows a little with each meeting of a pair.
@@ -68,8 +68,8 @@ struct Loop<'a> {
     asker: Asker<'a>,
     rules: Rules<'a>,
     /// Slow pairs near enough to their medial axes to be watched.
-    deep: HashSet<[ColliderHandle; 2]>,
-    allowed: HashMap<[usize; 2], bool>,
+    deep: FastSet<[ColliderHandle; 2]>,
+    allowed: FastMap<[usize; 2], bool>,
     response: Response,
     /// Box of each collider from its body's last impact to the end of the step.
     boxes: Vec<Aabb>,
@@ -103,7 +103,7 @@ pub fn resolve(
         asker,
         rules,
         deep,
-        allowed: HashMap::new(),
+        allowed: FastMap::default(),
         response,
         boxes: Vec::new(),
         shapes: &shapes,
@@ -112,7 +112,7 @@ pub fn resolve(
         jobs: 0,
         events: 0,
     };
-    let mut known = HashMap::new();
+    let mut known = FastMap::default();
     if batch.has_device() {
         let (asked, jobs): (Vec<_>, Vec<_>) = events.first_queries(&pairs).into_iter().unzip();
         known.extend(asked.into_iter().zip(batch.run(&jobs)));
@@ -138,10 +138,10 @@ fn deep(
     snapshot: &Snapshot,
     narrow_phase: &NarrowPhase,
     guarded: Real,
-) -> HashSet<[ColliderHandle; 2]> {
+) -> FastSet<[ColliderHandle; 2]> {
     let least = guarded * snapshot.least_thickness();
     let part = |h: ColliderHandle| snapshot.parts.iter().position(|p| p.handle == h);
-    let mut deep = HashSet::new();
+    let mut deep = FastSet::default();
     for found in narrow_phase.contact_pairs() {
         let points = found.manifolds().iter().flat_map(|m| &m.points);
         let depth = points.map(|p| -p.dist).fold(0.0, Real::max);

@@ -3,8 +3,8 @@
 
 use super::first_contact::Hit;
 use super::motion::Snapshot;
+use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
-use std::collections::HashMap;
 
 type Pair = [usize; 2];
 
@@ -24,9 +24,9 @@ struct Meeting {
 /// All meetings of a step.
 #[derive(Default)]
 pub struct Meetings {
-    last: HashMap<Pair, Meeting>,
+    last: FastMap<Pair, Meeting>,
     /// Pairs of each body, in the order in which they met first.
-    of_body: HashMap<usize, Vec<Pair>>,
+    of_body: FastMap<usize, Vec<Pair>>,
 }
 
 impl Meetings {

@@ -2,6 +2,7 @@
 //! gave them. rapier turns a body in `n` linearised pieces, so a fast turn ends short of `|ω| dt`;
 //! what counts is where the body is, and the turns it made on the way.
 
+use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
@@ -12,7 +13,6 @@ use rapier3d::dynamics::{
     RigidBodyType,
 };
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, SharedShape};
-use std::collections::HashMap;
 use std::f32::consts::TAU;
 
 /// Turn in a step, in radians, from which the end rotation alone may hide whole turns.
@@ -243,7 +243,7 @@ impl Snapshot {
             bodies: vec![Body::ground()],
             parts: Vec::new(),
         };
-        let mut indices = HashMap::new();
+        let mut indices = FastMap::default();
         for (handle, collider) in colliders.iter_enabled() {
             if collider.is_sensor() {
                 continue;

@@ -2,7 +2,8 @@
 //! order of their colliders.
 
 use crate::math::Real;
-use std::collections::{BTreeSet, HashMap};
+use crate::math::fast_hash::FastMap;
+use std::collections::BTreeSet;
 
 type Pair = [usize; 2];
 
@@ -10,7 +11,7 @@ type Pair = [usize; 2];
 pub struct Waiting<T> {
     /// Bits of the time, pair, and place in `all`.
     order: BTreeSet<(u32, Pair, u32)>,
-    entries: HashMap<Pair, (u32, u32)>,
+    entries: FastMap<Pair, (u32, u32)>,
     all: Vec<Option<T>>,
     unused: Vec<u32>,
 }
@@ -19,7 +20,7 @@ impl<T> Default for Waiting<T> {
     fn default() -> Self {
         Self {
             order: BTreeSet::new(),
-            entries: HashMap::new(),
+            entries: FastMap::default(),
             all: Vec::new(),
             unused: Vec::new(),
         }
