@@ -4,6 +4,7 @@
 //! ```text
 //! cargo bench --bench piles                    # 30, 200 and 1,000 rings: minutes
 //! cargo bench --bench piles -- --rings 30 --recycle 0.01
+//! cargo bench --bench piles -- --settle 900    # steps before the first turn
 //! ```
 //!
 //! Every kind gets the same rings at the same places, rapier's defaults, and time to settle. Then
@@ -25,8 +26,8 @@ use torus::{MINOR, ring, surface};
 const TURNS: usize = 9;
 /// Half a second of simulated time a turn.
 const STEPS: usize = 30;
-/// Four seconds to settle.
-const SETTLE: usize = 240;
+/// Four seconds to settle, unless `--settle` says otherwise.
+const SETTLE: Real = 240.0;
 /// Above this many rings only the medial mesh, the hull and the decomposition run.
 const ALL_KINDS: usize = 30;
 
@@ -179,7 +180,8 @@ impl Pile {
 }
 
 fn piles(rings: usize) {
-    println!("\n{rings} rings, {TURNS} turns of {STEPS} steps, after {SETTLE}");
+    let settle = argument("--settle").unwrap_or(SETTLE) as usize;
+    println!("\n{rings} rings, {TURNS} turns of {STEPS} steps, after {settle}");
     println!(
         "{:<24}{:>9}{:>9}{:>16}{:>11}{:>10}{:>13}  hash",
         "", "ms/step", "ratio", "spread", "manifolds", "contacts", "mean height"
@@ -188,7 +190,7 @@ fn piles(rings: usize) {
         .into_iter()
         .filter(|kind| rings <= ALL_KINDS || !matches!(kind, Kind::Triangles | Kind::Voxels));
     let mut piles: Vec<Pile> = kinds.map(|kind| Pile::new(kind, rings)).collect();
-    piles.iter_mut().for_each(|pile| pile.step(SETTLE));
+    piles.iter_mut().for_each(|pile| pile.step(settle));
     for _ in 0..TURNS {
         piles.iter_mut().for_each(Pile::turn);
     }
