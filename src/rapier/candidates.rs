@@ -88,13 +88,11 @@ impl<'a> Scene<'a> {
         for (start, pushed) in all.iter_mut().zip(pushed) {
             start.pushed = pushed;
         }
-
         let medial = met
             .into_iter()
             .filter(|pair| pair.iter().all(|k| *k < items.all.len()));
         let wanted = medial.filter(|pair| items.meet(*pair));
         let pairs = wanted.map(|pair| items.in_order(pair)).collect();
-
         let starts = Starts {
             ids: items
                 .all
@@ -105,7 +103,6 @@ impl<'a> Scene<'a> {
             parameters: *sets.parameters,
         };
         let fresh = hanging::find(&sets, &items, &starts);
-
         let hooked = items.all.iter().map(|item| is_hooked(item.collider));
         let asked = hooked
             .zip(&fresh)

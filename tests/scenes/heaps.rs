@@ -167,10 +167,6 @@ fn deepest(world: &PhysicsWorld, bodies: &Thrown) -> Real {
     deepest
 }
 
-/// Speed in m/s from which bodies come to spin so fast that rapier's integration of gyroscopic forces gains
-/// energy in free flight (`known_issues`). Such heaps are judged without these forces.
-const NO_GYROSCOPES: Real = 100.0;
-
 /// Throws bodies together; `hooked`: with the pipeline, else rapier alone.
 pub fn heap(
     shapes: &[MedialMesh],
@@ -181,10 +177,12 @@ pub fn heap(
     hooked: bool,
 ) -> Findings {
     let medial = |mesh: &MedialMesh| ColliderBuilder::medial_mesh(mesh.clone());
-    let (mut world, bodies) = throw(shapes, grid, speed, seed, medial);
-    for (_, body) in world.bodies.iter_mut() {
-        body.enable_gyroscopic_forces(speed < NO_GYROSCOPES);
-    }
+    let (world, bodies) = throw(shapes, grid, speed, seed, medial);
+    watch(world, &bodies, steps, hooked)
+}
+
+/// Steps a heap; `hooked`: with the pipeline, else rapier alone.
+pub fn watch(mut world: PhysicsWorld, bodies: &Thrown, steps: usize, hooked: bool) -> Findings {
     let mut pipeline = attached(&mut world);
     let mut findings = Findings::default();
     for _ in 0..steps {
@@ -193,7 +191,7 @@ pub fn heap(
         } else {
             world.step();
         }
-        findings.look(&world, &bodies);
+        findings.look(&world, bodies);
     }
     findings
 }
