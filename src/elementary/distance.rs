@@ -4,7 +4,7 @@
 
 use super::penetration::Ball;
 use super::test_list::{Domain, ElementaryTest, Share, edges, for_each_test};
-use super::{cone_cone, slab_crossing, sphere_slab};
+use super::{certificate, cone_cone, slab_crossing, sphere_slab};
 use crate::math::lane::Scalar;
 use crate::math::nearest::{Family, Nearest};
 
@@ -14,14 +14,40 @@ pub fn nearest_in_test<S: Scalar>(
     a: &[Ball<S>],
     b: &[Ball<S>],
 ) -> (Family<S>, Nearest<S>) {
+    let f = family(test, a, b);
+    (f, nearest_in_family(test.domain, &f))
+}
+
+/// The difference of both sides of an elementary test of two primitives.
+pub fn family<S: Scalar>(test: &ElementaryTest, a: &[Ball<S>], b: &[Ball<S>]) -> Family<S> {
     let y = test.corners.map(|(i, j)| b[j as usize].0 - a[i as usize].0);
     let radius = test.corners.map(|(i, j)| a[i as usize].1 + b[j as usize].1);
-    let f = cone_cone::family(&y, &radius);
-    let s = match test.domain {
-        Domain::Box => cone_cone::nearest_spheres(&f),
-        Domain::Triangle => sphere_slab::nearest_spheres(&f),
-    };
-    (f, s)
+    cone_cone::family(&y, &radius)
+}
+
+/// The nearest spheres of a family.
+pub fn nearest_in_family<S: Scalar>(domain: Domain, f: &Family<S>) -> Nearest<S> {
+    match domain {
+        Domain::Box => cone_cone::nearest_spheres(f),
+        Domain::Triangle => sphere_slab::nearest_spheres(f),
+    }
+}
+
+/// Whether the spheres of a cone–cone test are certainly further than `margin` from each other, in a fifth
+/// of the time of [`nearest_in_family`]: proven by the direction between the nearest points of the axes
+/// ([`certificate::lower_bound`]), found by solving for one parameter after the other.
+pub fn is_beyond<S: Scalar>(f: &Family<S>, margin: S) -> bool {
+    let (uu, vv, uv) = (f.u.length_sq(), f.v.length_sq(), f.u.dot(f.v));
+    let (uw, vw) = (f.u.dot(f.w), f.v.dot(f.w));
+    let tiny = S::splat(S::TINY);
+    let alpha = ((uv * vw - vv * uw) / (uu * vv - uv * uv).max(tiny)).clamp01();
+    let beta = (-(vw + uv * alpha) / vv.max(tiny)).clamp01();
+    let alpha = (-(uw + uv * beta) / uu.max(tiny)).clamp01();
+    let y = f.w + f.u * alpha + f.v * beta;
+    let n = y * (S::one() / y.length().max(tiny));
+    // The rounding of a few sums of such lengths.
+    let slack = S::splat(64.0 * S::EPSILON) * (f.w.taxicab() + f.u.taxicab() + f.v.taxicab() + f.r0);
+    certificate::lower_bound(Domain::Box, f, n) > margin + slack
 }
 
 /// The deepest crossing of an edge of one primitive (of those in `mask`, as in [`Share::edges`]) with

@@ -4,6 +4,7 @@
 use super::check::check;
 use super::mass;
 use super::primitive::{MedialPrimitive, MedialSphere};
+use super::shell::Shell;
 use super::simplex::{primitive_of, primitives_of, sorted};
 use super::tree::SphereTree;
 use crate::error::MeshError;
@@ -34,6 +35,7 @@ struct MedialData {
     aabb: Aabb,
     solid_mass: OnceLock<MassProperties>,
     boxes: OnceLock<Bvh>,
+    shell: OnceLock<Arc<Shell>>,
 }
 
 /// What a mesh is made of and what was computed from it ahead of all queries.
@@ -110,6 +112,7 @@ impl MedialMesh {
             aabb,
             solid_mass,
             boxes: OnceLock::new(),
+            shell: OnceLock::new(),
         };
         Self {
             data: Arc::new(data),
@@ -185,6 +188,12 @@ impl MedialMesh {
         })
     }
 
+    /// A few balls that hold it. Made at the first call.
+    pub(crate) fn shell(&self) -> &Arc<Shell> {
+        let shell = &self.data.shell;
+        shell.get_or_init(|| Arc::new(Shell::of_mesh(self)))
+    }
+
     /// Box of the solid, in the body's frame.
     pub fn aabb(&self) -> Aabb {
         self.data.aabb
@@ -200,13 +209,15 @@ impl MedialMesh {
     /// Mass properties in the body's frame: of the source mesh when built from one, else of the
     /// solid with overlaps counted once.
     pub fn mass_properties(&self, density: Real) -> MassProperties {
-        let unit = match &self.data.parts.source_mass {
-            Some(source) => *source,
-            None => self.solid_mass_properties(),
-        };
-        let mut scaled = unit;
-        scaled.set_mass(unit.mass() * density, true);
+        let mut scaled = *self.unit_mass_properties();
+        scaled.set_mass(scaled.mass() * density, true);
         scaled
+    }
+
+    /// The same at unit density, as they were measured.
+    pub(crate) fn unit_mass_properties(&self) -> &MassProperties {
+        let source = self.data.parts.source_mass.as_ref();
+        source.unwrap_or_else(|| self.solid_mass_properties())
     }
 
     /// Volume of the solid with overlaps counted once, in cubed units of length, whatever the mass
@@ -215,9 +226,9 @@ impl MedialMesh {
         self.solid_mass_properties().mass()
     }
 
-    pub(super) fn solid_mass_properties(&self) -> MassProperties {
+    pub(super) fn solid_mass_properties(&self) -> &MassProperties {
         let solid = &self.data.solid_mass;
-        *solid.get_or_init(|| mass::solid_mass_properties(self))
+        solid.get_or_init(|| mass::solid_mass_properties(self))
     }
 
     /// What tells colliders apart in caches. Clones share it.

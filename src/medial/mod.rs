@@ -16,6 +16,7 @@ pub mod primitive;
 #[cfg(feature = "serde")]
 mod saved;
 mod sheet;
+pub mod shell;
 pub mod simplex;
 pub mod solids;
 pub(crate) mod text;

@@ -7,9 +7,12 @@
 //! on a line.
 
 use super::first_contact::Counts;
+use super::outline::{Outline, apart_until};
 use super::volumes::Volumes;
 use crate::elementary::certificate::ActiveFace;
-use crate::elementary::distance::{crossing, deeper, nearest_in_test};
+use crate::elementary::distance::{
+    crossing, deeper, family, is_beyond, nearest_in_family,
+};
 use crate::elementary::test_list::{Domain, ElementaryTest, Share, for_each_test};
 use crate::elementary::{penetration, slab_crossing};
 use crate::math::lane::Vec3;
@@ -64,12 +67,30 @@ pub fn contacts(
         return (found, counts);
     }
     let place = Placement::new(pos12);
+    let left = match (body1.shell(), body2.shell()) {
+        (Some(shell1), Some(shell2)) => {
+            let a = Outline::resting(shell1, Vec3::from_vector);
+            let b = Outline::resting(shell2, |p| place.point(p));
+            let Some(apart) = apart_until(&a, &b, 0.0, prediction) else {
+                return (found, counts);
+            };
+            Some(apart.left)
+        }
+        _ => None,
+    };
+    let meet = |i: u32, j: u32| match &left {
+        Some([a, b]) => a.meets(i) && b.meets(j),
+        None => true,
+    };
     let mut stack: Vec<[u32; 2]> = Vec::new();
     for i in 0..body1.roots() {
         stack.extend((0..body2.roots()).map(|j| [i, j]));
     }
     let margin = f64::from(prediction);
     while let Some([i, j]) = stack.pop() {
+        if !meet(i, j) {
+            continue;
+        }
         counts.nodes += 1;
         let (a, b) = (body1.bound(i), body2.bound(j));
         let (ra, rb) = (f64::from(a.1), f64::from(b.1));
@@ -183,7 +204,11 @@ impl<'a> PrimitivePair<'a> {
     }
 
     fn test(&self, test: &ElementaryTest, feature: u32, margin: f64, found: &mut Vec<SpherePair>) {
-        let (f, s) = nearest_in_test(test, &self.balls[0], &self.balls[1]);
+        let f = family(test, &self.balls[0], &self.balls[1]);
+        if test.domain == Domain::Box && is_beyond(&f, margin) {
+            return;
+        }
+        let s = nearest_in_family(test.domain, &f);
         if s.distance > margin || s.distance.is_nan() {
             return;
         }

@@ -8,100 +8,15 @@
 //! a direction gets no further, the next one is its mirror image at the line between the two balls that
 //! overlap most (Chung and Wang, "Quick collision detection of polytopes in virtual environments", 1996).
 
-use super::volumes::Volumes;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::{Real, Vector};
-use crate::medial::MedialMesh;
-use crate::medial::tree::Below;
+use crate::medial::shell::{MOST, Shell};
 use parry3d::query::NonlinearRigidMotion;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Directions tried. With 6 a ninth more queries are begun in a heap of links, with 24 a twentieth fewer.
 const TRIES: usize = 12;
-
-/// Most balls and primitives of an outline: the bits of a mask. A larger mesh is taken for nodes of its
-/// tree.
-const MOST: usize = 64;
-
-/// A body in its own frame, for [`Outline`].
-#[derive(Clone, Debug, Default)]
-pub struct Shell {
-    balls: Vec<(Vector, Real)>,
-    /// The balls of each primitive, whose hull holds it.
-    primitives: Vec<u64>,
-    /// Primitives that meet each node of the mesh's tree.
-    nodes: Vec<u64>,
-}
-
-impl Shell {
-    /// Of a mesh: its spheres and primitives, or nodes of its tree.
-    pub fn of_mesh(mesh: &MedialMesh) -> Self {
-        let (spheres, simplices) = (mesh.spheres(), mesh.simplices());
-        let count = mesh.tree().nodes().len();
-        let mut shell = Self {
-            nodes: vec![0; count],
-            ..Self::default()
-        };
-        if spheres.len() <= MOST && simplices.len() <= MOST {
-            let bits = |vertices: &[u32]| vertices.iter().fold(0, |m, &v| m | 1 << v);
-            shell.balls = spheres.iter().map(|s| (s.center, s.radius)).collect();
-            shell.primitives = simplices.iter().map(|s| bits(&s.vertices)).collect();
-            for (at, node) in shell.nodes.iter_mut().enumerate() {
-                if let Below::Primitive(primitive) = mesh.below(at as u32) {
-                    *node = 1 << primitive;
-                }
-            }
-        } else {
-            for (k, at) in front(mesh).into_iter().enumerate() {
-                shell.balls.push(mesh.bound(at));
-                shell.primitives.push(1 << k);
-                shell.nodes[at as usize] = 1 << k;
-            }
-        }
-        let nodes = &mut shell.nodes;
-        // Children come after their parents.
-        for at in 0..count {
-            if let Below::Nodes(first, second) = mesh.below(at as u32) {
-                nodes[first as usize] |= nodes[at];
-                nodes[second as usize] |= nodes[at];
-            }
-        }
-        for at in (0..count).rev() {
-            if let Below::Nodes(first, second) = mesh.below(at as u32) {
-                nodes[at] |= nodes[first as usize] | nodes[second as usize];
-            }
-        }
-        shell
-    }
-
-    /// Of a shape that the hull of these points holds, of which there are 64 at most.
-    pub fn of_points(points: &[Vector]) -> Self {
-        let count = points.len().min(MOST);
-        Self {
-            balls: points.iter().map(|p| (*p, 0.0)).take(MOST).collect(),
-            primitives: vec![(0..count).fold(0, |m, k| m | 1 << k)],
-            nodes: Vec::new(),
-        }
-    }
-}
-
-/// Nodes of a mesh's tree, more than half of [`MOST`], that together hold all of it.
-fn front(mesh: &MedialMesh) -> Vec<u32> {
-    let mut front = vec![0];
-    while front.len() <= MOST / 2 {
-        let split = |at: u32| match mesh.below(at) {
-            Below::Nodes(first, second) => [Some(first), Some(second)],
-            Below::Primitive(_) => [Some(at), None],
-        };
-        let next: Vec<u32> = front.iter().flat_map(|&at| split(at)).flatten().collect();
-        if next.len() == front.len() {
-            break;
-        }
-        front = next;
-    }
-    front
-}
 
 /// Balls and primitives of a body on its motion, on straight paths, world frame.
 pub struct Outline {
@@ -109,14 +24,30 @@ pub struct Outline {
     times: [f64; 2],
     /// Position at the start, displacement, and radius grown by the sagitta.
     balls: Vec<(Vec3<f64>, Vec3<f64>, f64)>,
-    shell: Rc<Shell>,
+    shell: Arc<Shell>,
     /// Bound of the coordinates in play.
     size: f64,
 }
 
 impl Outline {
+    /// At rest where `place` puts its points.
+    pub fn resting(shell: &Arc<Shell>, place: impl Fn(Vector) -> Vec3<f64>) -> Self {
+        let mut size = 0.0;
+        let placed = shell.balls.iter().map(|(center, radius)| {
+            let (center, radius) = (place(*center), f64::from(*radius));
+            size = f64::max(size, center.taxicab() + radius);
+            (center, Vec3::zero(), radius)
+        });
+        Self {
+            times: [0.0, 1.0],
+            balls: placed.collect(),
+            shell: Arc::clone(shell),
+            size,
+        }
+    }
+
     /// On a motion that starts at `from` and ends at `end`, in seconds.
-    pub fn new(shell: &Rc<Shell>, motion: &NonlinearRigidMotion, [from, end]: [Real; 2]) -> Self {
+    pub fn new(shell: &Arc<Shell>, motion: &NonlinearRigidMotion, [from, end]: [Real; 2]) -> Self {
         let times = [f64::from(from), f64::from(end) - f64::from(from)];
         let rigid = RigidMotion::<f64>::alone(motion, times[1]);
         let ends = [0.0, 1.0].map(|t| rigid.frame(t));
@@ -132,7 +63,7 @@ impl Outline {
         Self {
             times,
             balls: moved.collect(),
-            shell: Rc::clone(shell),
+            shell: Arc::clone(shell),
             size,
         }
     }
@@ -230,7 +161,7 @@ impl<'a> Rest<'a> {
 #[derive(Clone)]
 pub struct Left {
     /// The body.
-    shell: Rc<Shell>,
+    shell: Arc<Shell>,
     /// Its primitives that are not done with.
     primitives: u64,
 }
@@ -302,7 +233,7 @@ pub fn apart_until(a: &Outline, b: &Outline, from: Real, target: Real) -> Option
     Some(Apart {
         until: until.next_down().max(from),
         left: [&a, &b].map(|rest| Left {
-            shell: Rc::clone(&rest.outline.shell),
+            shell: Arc::clone(&rest.outline.shell),
             primitives: rest.primitives,
         }),
     })

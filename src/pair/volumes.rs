@@ -5,8 +5,10 @@
 use crate::elementary::test_list::Share;
 use crate::math::{Real, Vector};
 use crate::medial::mesh::Simplex;
+use crate::medial::shell::Shell;
 use crate::medial::tree::Below;
 use crate::medial::{MedialMesh, MedialSphere};
+use std::sync::Arc;
 
 /// A body made of primitives, in its own frame.
 pub trait Volumes {
@@ -18,6 +20,10 @@ pub trait Volumes {
     fn below(&self, node: u32) -> Below;
     /// Spheres of a primitive (unused entries repeat the last), and what it tests.
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share);
+    /// A few balls that hold the body, if it has such.
+    fn shell(&self) -> Option<&Arc<Shell>> {
+        None
+    }
 }
 
 impl Volumes for MedialMesh {
@@ -40,6 +46,9 @@ impl Volumes for MedialMesh {
             vertices: s.owns_vertex,
         };
         (spheres, share)
+    }
+    fn shell(&self) -> Option<&Arc<Shell>> {
+        Some(MedialMesh::shell(self))
     }
 }
 

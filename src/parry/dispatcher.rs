@@ -308,14 +308,14 @@ where
         }
         // What a load on one body is above: of two medial meshes the lighter lies on the other.
         // (Their masses are known, where the volume of a solid would have to be measured first.)
-        let weight = |mesh: &MedialMesh| mesh.mass_properties(1.0).mass();
+        let weight = |mesh: &MedialMesh| mesh.unit_mass_properties().mass();
         let (side, mesh) = match meshes {
             (Some(mesh1), Some(mesh2)) if weight(mesh1) > weight(mesh2) => (1, mesh2),
             (Some(mesh1), _) => (0, mesh1),
             (None, Some(mesh2)) => (1, mesh2),
             (None, None) => return Err(Unsupported),
         };
-        let center = mesh.mass_properties(1.0).local_com;
+        let center = mesh.unit_mass_properties().local_com;
         let center = if side == 0 { center } else { pos12 * center };
         let borne = bearing::borne(manifolds, side);
         let (Some(mesh1), Some(mesh2)) = meshes else {

@@ -135,7 +135,7 @@ impl Shape for MedialMesh {
     /// Bounds the body on its way, not only at both ends: whatever it turns about its centre of
     /// mass, it stays in the ball around that centre.
     fn compute_swept_aabb(&self, start_pos: &Pose, end_pos: &Pose) -> Aabb {
-        let com = self.mass_properties(1.0).local_com;
+        let com = self.unit_mass_properties().local_com;
         let root = &self.tree().nodes()[0];
         let reach = Vector::splat((root.center - com).length() + root.radius);
         let (from, to) = (start_pos * com, end_pos * com);

@@ -60,7 +60,7 @@ pub fn expect(sets: Sets, recycled: &Recycled) -> Vec<PairJob> {
 struct Scene<'a> {
     items: Items<'a>,
     starts: Starts,
-    /// In the narrow phase's order.
+    /// Each in the narrow phase's order, all in the order of their ids.
     pairs: Vec<[usize; 2]>,
     /// Whether rapier has to be made to ask for the contacts of each of them.
     fresh: Vec<bool>,
@@ -92,7 +92,8 @@ impl<'a> Scene<'a> {
             .into_iter()
             .filter(|pair| pair.iter().all(|k| *k < items.all.len()));
         let wanted = medial.filter(|pair| items.meet(*pair));
-        let pairs = wanted.map(|pair| items.in_order(pair)).collect();
+        let mut pairs: Vec<_> = wanted.map(|pair| items.in_order(pair)).collect();
+        pairs.sort_unstable();
         let starts = Starts {
             ids: items
                 .all

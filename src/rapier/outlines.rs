@@ -3,9 +3,10 @@
 
 use super::motion::Snapshot;
 use crate::math::Real;
-use crate::pair::outline::{Left, Outline, Shell, apart_until};
+use crate::medial::shell::Shell;
+use crate::pair::outline::{Left, Outline, apart_until};
 use parry3d::query::NonlinearRigidMotion;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Extent of a box from which a shape counts as unbounded, a length: a half-space has the largest there
 /// is. Smaller, and wide grounds cost queries; larger, and nothing is gained, since rounding hides gaps.
@@ -14,7 +15,7 @@ const UNBOUNDED: Real = 1.0e12;
 /// Outlines of the colliders on their bodies' motions, each made when first wanted.
 pub struct Outlines {
     made: Vec<Option<Made>>,
-    shells: Vec<Option<Rc<Shell>>>,
+    shells: Vec<Option<Arc<Shell>>>,
     /// End of the step in seconds.
     end: Real,
 }
@@ -67,14 +68,14 @@ impl Outlines {
         let p = &snapshot.parts[part];
         if self.shells[part].is_none() {
             let shell = match p.medial() {
-                Some(mesh) => Shell::of_mesh(mesh),
+                Some(mesh) => Arc::clone(mesh.shell()),
                 None => {
                     let aabb = p.shape.compute_local_aabb();
                     let bounded = aabb.extents().max_element() < UNBOUNDED;
-                    bounded.then(|| Shell::of_points(&aabb.vertices()))?
+                    bounded.then(|| Arc::new(Shell::of_points(&aabb.vertices())))?
                 }
             };
-            self.shells[part] = Some(Rc::new(shell));
+            self.shells[part] = Some(shell);
         }
         let from = snapshot.bodies[p.body].time;
         let motion = snapshot.motion(part, from);

@@ -1,23 +1,54 @@
 //! Which boxes meet: sweep and prune (Baraff 1992).
 
 use crate::math::{Real, Vector};
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::bounding_volume::Aabb;
+use wide::f32x8;
 
 /// All pairs of boxes that meet, the lower index first. The sweep goes along the axis on which their
-/// centres spread most: heaps may be towers.
+/// centres spread most: heaps may be towers. Of what it finds, eight at a time are looked at along the
+/// other two.
 pub fn meeting(boxes: &[Aabb]) -> Vec<[usize; 2]> {
     let axis = widest(boxes);
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     let least = |k: usize| boxes[k].mins[axis];
     order.sort_by(|&i, &j| least(i).total_cmp(&least(j)).then(i.cmp(&j)));
-    let sorted: Vec<Aabb> = order.iter().map(|k| boxes[*k]).collect();
+    let eights = |of: fn(&Aabb) -> Vector, axis: usize| -> Vec<f32x8> {
+        let eight = |some: &[usize]| {
+            let mut all = [Real::NAN; 8];
+            for (place, k) in all.iter_mut().zip(some) {
+                *place = of(&boxes[*k])[axis];
+            }
+            f32x8::from(all)
+        };
+        order.chunks(8).map(eight).collect()
+    };
+    // NaN meets nothing.
+    let others = [1, 2].map(|k| {
+        let axis = (axis + k) % 3;
+        (axis, eights(|b| b.mins, axis), eights(|b| b.maxs, axis))
+    });
+    let mins = eights(|b| b.mins, axis);
     let mut pairs = Vec::new();
-    for (n, a) in sorted.iter().enumerate() {
-        let behind = sorted.iter().zip(&order).skip(n + 1);
-        for (b, &j) in behind.take_while(|(b, _)| b.mins[axis] <= a.maxs[axis]) {
-            if a.intersects(b) {
-                let i = order[n];
-                pairs.push([i.min(j), i.max(j)]);
+    for (n, &i) in order.iter().enumerate() {
+        let a = &boxes[i];
+        let end = f32x8::splat(a.maxs[axis]);
+        for e in (n + 1) / 8..mins.len() {
+            let mut meet = mins[e].simd_le(end);
+            if n + 1 <= 8 * e && meet.to_bitmask() == 0 {
+                break;
+            }
+            for (axis, mins, maxs) in &others {
+                meet = meet
+                    & mins[e].simd_le(f32x8::splat(a.maxs[*axis]))
+                    & maxs[e].simd_ge(f32x8::splat(a.mins[*axis]));
+            }
+            let mut meet = meet.to_bitmask();
+            while meet != 0 {
+                let m = 8 * e + meet.trailing_zeros() as usize;
+                meet &= meet - 1;
+                if m > n {
+                    pairs.push([i.min(order[m]), i.max(order[m])]);
+                }
             }
         }
     }

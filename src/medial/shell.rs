@@ -1,0 +1,91 @@
+//! A body as a few balls, however many spheres it has: what directions are tried on before a search
+//! ([`crate::pair::outline`]).
+
+use super::mesh::MedialMesh;
+use super::tree::Below;
+use crate::math::{Real, Vector};
+
+/// Most balls and primitives of an outline: the bits of a mask. A larger mesh is taken for nodes of its
+/// tree.
+pub const MOST: usize = 64;
+
+/// A body as a few balls and primitives, in its own frame.
+#[derive(Clone, Debug, Default)]
+pub struct Shell {
+    /// Balls whose hull holds it: centre and radius.
+    pub balls: Vec<(Vector, Real)>,
+    /// The balls of each primitive, whose hull holds it.
+    pub primitives: Vec<u64>,
+    /// Primitives that meet each node of the mesh's tree.
+    pub nodes: Vec<u64>,
+}
+
+impl Shell {
+    /// Of a mesh: its spheres and primitives, or nodes of its tree.
+    pub fn of_mesh(mesh: &MedialMesh) -> Self {
+        let (spheres, simplices) = (mesh.spheres(), mesh.simplices());
+        let count = mesh.tree().nodes().len();
+        let mut shell = Self {
+            nodes: vec![0; count],
+            ..Self::default()
+        };
+        if spheres.len() <= MOST && simplices.len() <= MOST {
+            let bits = |vertices: &[u32]| vertices.iter().fold(0, |m, &v| m | 1 << v);
+            shell.balls = spheres.iter().map(|s| (s.center, s.radius)).collect();
+            shell.primitives = simplices.iter().map(|s| bits(&s.vertices)).collect();
+            for (at, node) in shell.nodes.iter_mut().enumerate() {
+                if let Below::Primitive(primitive) = mesh.tree().nodes()[at].below() {
+                    *node = 1 << primitive;
+                }
+            }
+        } else {
+            for (k, at) in front(mesh).into_iter().enumerate() {
+                let node = &mesh.tree().nodes()[at as usize];
+                shell.balls.push((node.center, node.radius));
+                shell.primitives.push(1 << k);
+                shell.nodes[at as usize] = 1 << k;
+            }
+        }
+        let nodes = &mut shell.nodes;
+        // Children come after their parents.
+        for at in 0..count {
+            if let Below::Nodes(first, second) = mesh.tree().nodes()[at].below() {
+                nodes[first as usize] |= nodes[at];
+                nodes[second as usize] |= nodes[at];
+            }
+        }
+        for at in (0..count).rev() {
+            if let Below::Nodes(first, second) = mesh.tree().nodes()[at].below() {
+                nodes[at] |= nodes[first as usize] | nodes[second as usize];
+            }
+        }
+        shell
+    }
+
+    /// Of a shape that the hull of these points holds, of which there are 64 at most.
+    pub fn of_points(points: &[Vector]) -> Self {
+        let count = points.len().min(MOST);
+        Self {
+            balls: points.iter().map(|p| (*p, 0.0)).take(MOST).collect(),
+            primitives: vec![(0..count).fold(0, |m, k| m | 1 << k)],
+            nodes: Vec::new(),
+        }
+    }
+}
+
+/// Nodes of a mesh's tree, more than half of [`MOST`], that together hold all of it.
+fn front(mesh: &MedialMesh) -> Vec<u32> {
+    let mut front = vec![0];
+    while front.len() <= MOST / 2 {
+        let split = |at: u32| match mesh.tree().nodes()[at as usize].below() {
+            Below::Nodes(first, second) => [Some(first), Some(second)],
+            Below::Primitive(_) => [Some(at), None],
+        };
+        let next: Vec<u32> = front.iter().flat_map(|&at| split(at)).flatten().collect();
+        if next.len() == front.len() {
+            break;
+        }
+        front = next;
+    }
+    front
+}
