@@ -60,7 +60,7 @@ pub fn expect(sets: Sets, recycled: &Recycled) -> Vec<PairJob> {
 struct Scene<'a> {
     items: Items<'a>,
     starts: Starts,
-    /// Each in the narrow phase's order, all in the order of their ids.
+    /// In the narrow phase's order.
     pairs: Vec<[usize; 2]>,
     /// Whether rapier has to be made to ask for the contacts of each of them.
     fresh: Vec<bool>,
@@ -92,14 +92,9 @@ impl<'a> Scene<'a> {
             .into_iter()
             .filter(|pair| pair.iter().all(|k| *k < items.all.len()));
         let wanted = medial.filter(|pair| items.meet(*pair));
-        let mut pairs: Vec<_> = wanted.map(|pair| items.in_order(pair)).collect();
-        pairs.sort_unstable();
+        let pairs = wanted.map(|pair| items.in_order(pair)).collect();
         let starts = Starts {
-            ids: items
-                .all
-                .iter()
-                .map(|item| item.mesh.instance_id())
-                .collect(),
+            ids: items.all.iter().map(|item| item.id).collect(),
             all,
             parameters: *sets.parameters,
         };
@@ -125,10 +120,10 @@ impl<'a> Scene<'a> {
     fn place(&self, pair: &[usize; 2]) -> Place {
         let [a, b] = self.of(pair);
         Place {
-            ids: pair.map(|k| self.starts.ids[k]),
+            ids: [a.id, b.id],
             pos12: a.pose.inv_mul(&b.pose),
             rotations: [a.pose.rotation, b.pose.rotation],
-            reach: a.reach().max(b.reach()),
+            reach: a.reach.max(b.reach),
         }
     }
 
@@ -140,7 +135,7 @@ impl<'a> Scene<'a> {
     fn at_the_end(&self, pair: &[usize; 2]) -> (Ahead, PairJob) {
         let [a, b] = self.of(pair);
         let parameters = &self.starts.parameters;
-        let skins = a.collider.contact_skin() + b.collider.contact_skin();
+        let skins = a.skin + b.skin;
         let job = PairJob {
             mesh1: a.mesh.clone(),
             mesh2: b.mesh.clone(),

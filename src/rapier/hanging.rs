@@ -11,7 +11,7 @@
 use super::ahead::{Start, Starts, reach};
 use super::items::{Item, Items, Sets};
 use crate::math::Real;
-use rapier3d::dynamics::{IntegrationParameters, RigidBody};
+use rapier3d::dynamics::IntegrationParameters;
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, ContactPair};
 use rapier3d::pipeline::ActiveHooks;
 use std::collections::HashSet;
@@ -48,16 +48,16 @@ pub fn find(sets: &Sets, items: &Items, starts: &Starts) -> Vec<bool> {
             continue;
         };
         let sides = [&items.all[i], &items.all[j]];
-        let mass = |s: &Item| s.moving().map_or(Real::MAX, RigidBody::mass);
+        let mass = |s: &Item| s.moving.map_or(Real::MAX, |(mass, _)| mass);
         let (lighter, side) = if mass(sides[1]) <= mass(sides[0]) {
             (j, sides[1])
         } else {
             (i, sides[0])
         };
-        if anew[lighter] || side.moving().is_none() {
+        if anew[lighter] || side.moving.is_none() {
             continue;
         }
-        let skins: Real = sides.iter().map(|s| s.collider.contact_skin()).sum();
+        let skins: Real = sides.iter().map(|s| s.skin).sum();
         anew[lighter] = hanging(pair, sides, skins, sets.parameters.length_unit)
             || at_rest(
                 pair,
@@ -71,7 +71,7 @@ pub fn find(sets: &Sets, items: &Items, starts: &Starts) -> Vec<bool> {
 
 /// Whether one of a pair hangs in contacts which have moved, in a world of this length unit.
 fn hanging(pair: &ContactPair, sides: [&Item; 2], skins: Real, unit: Real) -> bool {
-    let moving = sides.map(Item::moving);
+    let centers = sides.map(|s| s.moving.map(|(_, center)| center));
     let limit = MOVED * unit;
     pair.manifolds().iter().any(|m| {
         // The force on each, as it was, and as it turned with it.
@@ -81,7 +81,7 @@ fn hanging(pair: &ContactPair, sides: [&Item; 2], skins: Real, unit: Real) -> bo
         let mut touching = points.filter(|p| p.dist - skins < TOUCHING * unit);
         touching.any(|p| {
             let points = [sides[0].pose * p.local_p1, sides[1].pose * p.local_p2];
-            let arm = |k: usize| moving[k].map(|b| points[k] - b.center_of_mass());
+            let arm = |k: usize| centers[k].map(|center| points[k] - center);
             let pulled =
                 |k: usize| arm(k).is_some_and(|arm| arm.dot(then[k]) > PULLS * arm.length());
             let swung = |k: usize| {

@@ -61,6 +61,14 @@ pub struct Item<'a> {
     pub parent: Option<(RigidBodyHandle, &'a RigidBody)>,
     /// Its shape.
     pub mesh: &'a MedialMesh,
+    /// What tells it apart in caches.
+    pub id: u64,
+    /// Its body, if the solver moves it and it is awake: mass and centre of mass.
+    pub moving: Option<(Real, Vector)>,
+    /// Its contact skin.
+    pub skin: Real,
+    /// Largest distance of a corner of its box from its origin.
+    pub reach: Real,
     /// Where the narrow phase will see it, to the bit.
     pub pose: Pose,
     /// Its box, as far as contacts are looked for.
@@ -76,25 +84,13 @@ impl<'a> Item<'a> {
         let mut start = Start::new(
             self.parent.map(|(_, body)| body),
             [self.pose, offset.copied().unwrap_or(Pose::IDENTITY)],
-            [extent, self.collider.contact_skin()],
+            [extent, self.skin],
             gravity,
             dt,
         );
         let hooks = self.collider.active_hooks();
         start.modified = hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS);
         start
-    }
-
-    /// The body, if the solver moves it and it is awake.
-    pub fn moving(&self) -> Option<&'a RigidBody> {
-        let body = self.parent?.1;
-        (body.is_dynamic() && body.is_enabled() && !body.is_sleeping()).then_some(body)
-    }
-
-    /// Largest distance of a corner of its box from its origin.
-    pub fn reach(&self) -> Real {
-        let aabb = self.mesh.aabb();
-        aabb.mins.length().max(aabb.maxs.length())
     }
 }
 
@@ -114,7 +110,7 @@ impl<'a> Items<'a> {
         let medial =
             medial.filter_map(|(handle, collider)| item(sets, prediction, handle, collider));
         let mut all: Vec<Item> = medial.collect();
-        all.sort_by_key(|item| item.mesh.instance_id());
+        all.sort_by_key(|item| item.id);
         let index = |item: &Item| item.handle.into_raw_parts().0 as usize;
         let mut places = vec![u32::MAX; all.iter().map(index).max().map_or(0, |last| last + 1)];
         for (place, item) in all.iter().enumerate() {
@@ -137,7 +133,7 @@ impl<'a> Items<'a> {
             (Some((x, _)), Some((y, _))) => x == y,
             _ => false,
         };
-        (a.moving().is_some() || b.moving().is_some())
+        (a.moving.is_some() || b.moving.is_some())
             && !same_body
             && a.collider
                 .collision_groups()
@@ -167,13 +163,20 @@ fn item<'a>(
         (Some((_, body)), Some(offset)) => *body.position() * *offset,
         _ => *collider.position(),
     };
-    let margin = prediction + collider.contact_skin();
-    let aabb = parry3d::shape::Shape::compute_aabb(mesh, &pose).loosened(margin);
+    let skin = collider.contact_skin();
+    let aabb = parry3d::shape::Shape::compute_aabb(mesh, &pose).loosened(prediction + skin);
+    let local = mesh.aabb();
+    let moving = |body: &RigidBody| body.is_dynamic() && body.is_enabled() && !body.is_sleeping();
+    let body = parent.map(|(_, body)| body).filter(|body| moving(body));
     pose.is_finite().then_some(Item {
         handle,
         collider,
         parent,
         mesh,
+        id: mesh.instance_id(),
+        moving: body.map(|body| (body.mass(), body.center_of_mass())),
+        skin,
+        reach: local.mins.length().max(local.maxs.length()),
         pose,
         aabb,
     })

@@ -7,6 +7,7 @@
 //! on bit by bit.
 
 use crate::batch::PairJob;
+use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Rotation};
 use rapier3d::dynamics::IntegrationParameters;
 
@@ -25,23 +26,19 @@ pub struct Place {
     pub reach: Real,
 }
 
-#[derive(Clone, Copy)]
 struct Frozen {
-    ids: [u64; 2],
     pos12: Pose,
     rotations: [Rotation; 2],
     touching: bool,
+    /// Step in which the pair was last near.
+    seen: u64,
 }
 
 /// Relative poses at which each pair was last updated in full.
 #[derive(Default)]
 pub struct Recycled {
-    /// Of the step before, in the order of their ids.
-    last: Vec<Frozen>,
-    /// Of this one.
-    now: Vec<Frozen>,
-    /// How many of the step before come before all that are still to be told.
-    passed: usize,
+    frozen: FastMap<[u64; 2], Frozen>,
+    step: u64,
     /// Drift below which a pair in contact, and one without contacts, is recycled.
     limits: [Real; 2],
 }
@@ -49,9 +46,9 @@ pub struct Recycled {
 impl Recycled {
     /// Starts a step.
     pub fn begin(&mut self, parameters: &IntegrationParameters) {
-        std::mem::swap(&mut self.last, &mut self.now);
-        self.now.clear();
-        self.passed = 0;
+        let last = self.step;
+        self.frozen.retain(|_, f| f.seen == last);
+        self.step += 1;
         let distance = if parameters.contact_recycling {
             parameters.contact_recycle_distance()
         } else {
@@ -61,46 +58,42 @@ impl Recycled {
     }
 
     /// Whether rapier will update this pair in full, which it does in any case if it is `asked` to; if so
-    /// its account starts anew at this pose. Pairs that are near are told in the order of their ids; of the
-    /// others the account is lost.
+    /// its account starts anew at this pose.
     pub fn needs_update(&mut self, pair: &Place, asked: bool) -> bool {
-        let rest = &self.last[self.passed..];
-        self.passed += rest.iter().take_while(|f| f.ids < pair.ids).count();
-        let known = self.last.get(self.passed).filter(|f| f.ids == pair.ids);
-        let kept = known.filter(|f| !asked && f.recycles(pair, self.limits));
-        self.now.push(kept.copied().unwrap_or(Frozen {
-            ids: pair.ids,
+        let (limits, step) = (self.limits, self.step);
+        if let Some(f) = self.frozen.get_mut(&pair.ids) {
+            f.seen = step;
+            if !asked && f.recycles(pair, limits) {
+                return false;
+            }
+        }
+        let frozen = Frozen {
             pos12: pair.pos12,
             rotations: pair.rotations,
             touching: false,
-        }));
-        kept.is_none()
+            seen: step,
+        };
+        self.frozen.insert(pair.ids, frozen);
+        true
     }
 
     /// Whether rapier keeps the contacts of this pair, as far as is known now.
     pub fn recycles(&self, pair: &Place) -> bool {
-        let known = place(&self.now, pair.ids).map(|at| &self.now[at]);
-        known.is_some_and(|f| f.recycles(pair, self.limits))
+        let frozen = self.frozen.get(&pair.ids);
+        frozen.is_some_and(|f| f.recycles(pair, self.limits))
     }
 
     /// Notes whether a pair just updated is in contact.
     pub fn set_touching(&mut self, job: &PairJob, touching: bool) {
-        if let Some(at) = place(&self.now, ids(job)) {
-            self.now[at].touching = touching;
+        if let Some(f) = self.frozen.get_mut(&ids(job)) {
+            f.touching = touching;
         }
     }
 
     /// Forgets a pair that rapier asked for although it was not expected to.
     pub fn forget(&mut self, ids: [u64; 2]) {
-        if let Some(at) = place(&self.now, ids) {
-            self.now.remove(at);
-        }
+        self.frozen.remove(&ids);
     }
-}
-
-/// The place of a pair in a list in the order of the ids.
-fn place(all: &[Frozen], ids: [u64; 2]) -> Option<usize> {
-    all.binary_search_by_key(&ids, |f| f.ids).ok()
 }
 
 fn ids(job: &PairJob) -> [u64; 2] {
