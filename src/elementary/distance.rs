@@ -46,7 +46,8 @@ pub fn is_beyond<S: Scalar>(f: &Family<S>, margin: S) -> bool {
     let y = f.w + f.u * alpha + f.v * beta;
     let n = y * (S::one() / y.length().max(tiny));
     // The rounding of a few sums of such lengths.
-    let slack = S::splat(64.0 * S::EPSILON) * (f.w.taxicab() + f.u.taxicab() + f.v.taxicab() + f.r0);
+    let slack =
+        S::splat(64.0 * S::EPSILON) * (f.w.taxicab() + f.u.taxicab() + f.v.taxicab() + f.r0);
     certificate::lower_bound(Domain::Box, f, n) > margin + slack
 }
 

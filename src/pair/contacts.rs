@@ -10,9 +10,7 @@ use super::first_contact::Counts;
 use super::outline::{Outline, apart_until};
 use super::volumes::Volumes;
 use crate::elementary::certificate::ActiveFace;
-use crate::elementary::distance::{
-    crossing, deeper, family, is_beyond, nearest_in_family,
-};
+use crate::elementary::distance::{crossing, deeper, family, is_beyond, nearest_in_family};
 use crate::elementary::test_list::{Domain, ElementaryTest, Share, for_each_test};
 use crate::elementary::{penetration, slab_crossing};
 use crate::math::lane::Vec3;

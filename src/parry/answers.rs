@@ -9,7 +9,7 @@ use crate::medial::MedialMesh;
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
 use std::collections::{HashMap, HashSet};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
 /// Two shapes at one relative pose, to the bit.
@@ -92,6 +92,8 @@ pub struct Answers {
     one_point: RwLock<OnePoint>,
     manifolds: AtomicU64,
     intersections: AtomicU64,
+    /// Bits of a length that is not negative: those are in the order of their numbers.
+    depth: AtomicU32,
 }
 
 impl Answers {
@@ -176,6 +178,17 @@ impl Answers {
             .read()
             .unwrap_or_else(PoisonError::into_inner);
         pairs.holds([id(shape1), id(shape2)])
+    }
+
+    /// Notes how deep the contacts of a pair are that were written just now, a length.
+    pub fn note_depth(&self, depth: Real) {
+        self.depth
+            .fetch_max(depth.max(0.0).to_bits(), Ordering::Relaxed);
+    }
+
+    /// The deepest noted since the last call.
+    pub fn take_depth(&self) -> Real {
+        Real::from_bits(self.depth.swap(0, Ordering::Relaxed))
     }
 
     /// Counts manifolds written.

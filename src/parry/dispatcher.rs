@@ -5,7 +5,7 @@ use super::answers::Answers;
 use super::bearing;
 use super::cast::Cast;
 use super::flat;
-use super::manifolds::{ensure_workspace, write_manifolds, write_one_point};
+use super::manifolds::{self, ensure_workspace, write_one_point};
 use super::near;
 use crate::batch::PairResult;
 use crate::math::{Pose, Real, Vector};
@@ -268,13 +268,9 @@ impl QueryDispatcher for MedialDispatcher {
     }
 }
 
-impl<M, C> PersistentQueryDispatcher<M, C> for MedialDispatcher
-where
-    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
-    M: Default + Clone,
-    C: Default + Copy,
-{
-    fn contact_manifolds(
+impl MedialDispatcher {
+    /// The manifolds of two shapes, of which one at least is medial.
+    fn write_manifolds<M, C>(
         &self,
         pos12: &Pose,
         g1: &dyn Shape,
@@ -282,8 +278,13 @@ where
         prediction: Real,
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
-    ) -> Result<(), Unsupported> {
-        if (medial(g1).is_some() || medial(g2).is_some()) && self.answers.is_muted(g1, g2, pos12) {
+    ) -> Result<(), Unsupported>
+    where
+        DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+        M: Default + Clone,
+        C: Default + Copy,
+    {
+        if self.answers.is_muted(g1, g2, pos12) {
             // parry's workspace holds indices into the list that is emptied here.
             *workspace = None;
             ensure_workspace::<M, C>(g1, g2, workspace);
@@ -291,8 +292,7 @@ where
             return Ok(());
         }
         let meshes = (medial(g1), medial(g2));
-        let some = meshes.0.is_some() || meshes.1.is_some();
-        if some && self.answers.has_one_point(g1, g2) {
+        if self.answers.has_one_point(g1, g2) {
             let deepest = self.deepest(pos12, g1, g2, prediction)?;
             // As above.
             *workspace = None;
@@ -349,7 +349,7 @@ where
         ensure_workspace::<M, C>(mesh1, mesh2, workspace);
         self.answers
             .contacts(mesh1, mesh2, pos12, prediction, |found| {
-                write_manifolds(
+                manifolds::write_manifolds(
                     [mesh1, mesh2],
                     &found.contacts,
                     pos12,
@@ -360,6 +360,34 @@ where
         bearing::choose(manifolds, center, prediction, &borne, side);
         self.answers.count_manifolds(manifolds.len());
         Ok(())
+    }
+}
+
+impl<M, C> PersistentQueryDispatcher<M, C> for MedialDispatcher
+where
+    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        if medial(g1).is_none() && medial(g2).is_none() {
+            return Err(Unsupported);
+        }
+        let written = self.write_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+        let points = manifolds.iter().flat_map(|m| &m.points);
+        let depth = points.map(|p| -p.dist).fold(0.0, Real::max);
+        // What somebody else will write is unknown.
+        self.answers
+            .note_depth(written.map_or(Real::MAX, |()| depth));
+        written
     }
 
     fn contact_manifold_convex_convex(

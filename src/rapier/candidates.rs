@@ -24,6 +24,8 @@ pub struct Candidates {
     pub starts: Starts,
     /// Colliders that rapier has to be made to ask for.
     pub fresh: HashSet<ColliderHandle>,
+    /// How deep the deepest contact of all is, a length.
+    pub depth: Real,
 }
 
 /// Finds all near pairs of medial colliders: at least one of them dynamic and awake, not on the same
@@ -45,6 +47,7 @@ pub fn find(sets: Sets, recycled: &mut Recycled) -> Candidates {
             .map(|(item, _)| item.handle)
             .collect(),
         starts: scene.starts,
+        depth: scene.depth,
     }
 }
 
@@ -66,6 +69,8 @@ struct Scene<'a> {
     fresh: Vec<bool>,
     /// Whether it asks for them in any case: the user has hooks on it, or it is `fresh`.
     asked: Vec<bool>,
+    /// As in [`Candidates`].
+    depth: Real,
 }
 
 impl<'a> Scene<'a> {
@@ -98,7 +103,7 @@ impl<'a> Scene<'a> {
             all,
             parameters: *sets.parameters,
         };
-        let fresh = hanging::find(&sets, &items, &starts);
+        let (fresh, depth) = hanging::find(&sets, &items, &starts);
         let hooked = items.all.iter().map(|item| is_hooked(item.collider));
         let asked = hooked
             .zip(&fresh)
@@ -110,6 +115,7 @@ impl<'a> Scene<'a> {
             pairs,
             fresh,
             asked,
+            depth,
         }
     }
 

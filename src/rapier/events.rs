@@ -9,6 +9,7 @@
 //! current time neither; so no medial axis crosses another on the motion executed.
 
 use super::first_contact::{Asker, Hit, Work};
+use super::hanging;
 use super::inquiry::{Inquiry, Known, Meshes};
 use super::motion::{Kind, Snapshot};
 use super::outlines::Outlines;
@@ -82,16 +83,21 @@ struct Loop<'a> {
 }
 
 /// Finds and resolves the impacts on the motions of `snapshot`, which is at the bodies' last poses
-/// afterwards.
+/// afterwards. No contact in the narrow phase is deeper than `depth`.
 pub fn resolve(
     snapshot: &mut Snapshot,
     asker: Asker,
     rules: Rules,
-    narrow_phase: &NarrowPhase,
+    (narrow_phase, depth): (&NarrowPhase, Real),
     batch: &mut Batch,
     work: &mut Work,
 ) -> Outcome {
-    let deep = deep(snapshot, narrow_phase, asker.tuning.guarded());
+    let guarded = asker.tuning.guarded();
+    let deep = if depth > guarded * snapshot.least_thickness() {
+        deep(snapshot, narrow_phase, guarded)
+    } else {
+        FastSet::default()
+    };
     if deep.is_empty() && !asker.may_be_fast(snapshot, asker.tuning.fast) {
         return Outcome::default();
     }
@@ -143,8 +149,7 @@ fn deep(
     let part = |h: ColliderHandle| snapshot.parts.iter().position(|p| p.handle == h);
     let mut deep = FastSet::default();
     for found in narrow_phase.contact_pairs() {
-        let points = found.manifolds().iter().flat_map(|m| &m.points);
-        let depth = points.map(|p| -p.dist).fold(0.0, Real::max);
+        let depth = hanging::depth(found);
         if depth > least
             && let [Some(i), Some(j)] = [found.collider1, found.collider2].map(part)
             && depth > guarded * snapshot.thickness([i, j])

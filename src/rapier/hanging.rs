@@ -37,12 +37,15 @@ const RESTS: Real = 1.25;
 /// a step counts as changed by the user.
 const ASK_ANEW: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
 
-/// Of which medial colliders the contacts with each other are to be computed anew. Known from the world
-/// alone, so that a world that was saved and loaded goes on as it would have.
-pub fn find(sets: &Sets, items: &Items, starts: &Starts) -> Vec<bool> {
+/// Of which medial colliders the contacts with each other are to be computed anew, and how deep the deepest
+/// contact of all is. Known from the world alone, so that a world that was saved and loaded goes on as it
+/// would have.
+pub fn find(sets: &Sets, items: &Items, starts: &Starts) -> (Vec<bool>, Real) {
     let mut anew = vec![false; items.all.len()];
+    let mut deepest: Real = 0.0;
     let touching = sets.narrow_phase.contact_pairs();
     for pair in touching.filter(|pair| !pair.manifolds().is_empty()) {
+        deepest = deepest.max(depth(pair));
         let places = [pair.collider1, pair.collider2].map(|h| items.place(h));
         let [Some(i), Some(j)] = places else {
             continue;
@@ -66,7 +69,13 @@ pub fn find(sets: &Sets, items: &Items, starts: &Starts) -> Vec<bool> {
                 &starts.parameters,
             );
     }
-    anew
+    (anew, deepest)
+}
+
+/// How deep the deepest contact of a pair is, a length; 0 if none is.
+pub fn depth(pair: &ContactPair) -> Real {
+    let points = pair.manifolds().iter().flat_map(|m| &m.points);
+    points.map(|p| -p.dist).fold(0.0, Real::max)
 }
 
 /// Whether one of a pair hangs in contacts which have moved, in a world of this length unit.

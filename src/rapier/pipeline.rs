@@ -297,6 +297,7 @@ impl MedialPipeline {
         let compute = Box::new(move |job| starts.contacts(job));
         self.answers.replace(answers, compute);
         self.answers.take_counts();
+        self.answers.take_depth();
         report.batch_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
@@ -365,7 +366,7 @@ impl MedialPipeline {
             &mut snapshot,
             asker,
             rules,
-            narrow_phase,
+            (narrow_phase, found.depth.max(self.answers.take_depth())),
             &mut self.batch,
             &mut work,
         );
