@@ -5,6 +5,7 @@
 //! cargo bench --bench piles                    # 30, 200 and 1,000 rings: minutes
 //! cargo bench --bench piles -- --rings 30 --recycle 0.01
 //! cargo bench --bench piles -- --settle 900    # steps before the first turn
+//! cargo bench --bench piles -- --heap 1        # other rings tilted
 //! ```
 //!
 //! Every kind gets the same rings at the same places, rapier's defaults, and time to settle. Then
@@ -86,7 +87,7 @@ struct Pile {
 
 impl Pile {
     /// Rings in layers of a square, tilted one by one, in a pen as wide as the square.
-    fn new(kind: Kind, rings: usize) -> Self {
+    fn new(kind: Kind, rings: usize, heap: usize) -> Self {
         let mut world = PhysicsWorld::default();
         let side = if rings > 100 { 6 } else { 3 };
         let half = 0.75 * side as Real;
@@ -112,7 +113,7 @@ impl Pile {
                 0.6 + 0.5 * layer as Real,
                 at(place / side),
             );
-            let tilt = Vector::new(0.3, 0.0, 0.2) * ((k % 7) as Real - 3.0);
+            let tilt = Vector::new(0.3, 0.0, 0.2) * (((k + heap) % 7) as Real - 3.0);
             let body = RigidBodyBuilder::dynamic()
                 .pose(Pose::new(center, tilt))
                 .additional_mass_properties(mass)
@@ -181,7 +182,8 @@ impl Pile {
 
 fn piles(rings: usize) {
     let settle = argument("--settle").unwrap_or(SETTLE) as usize;
-    println!("\n{rings} rings, {TURNS} turns of {STEPS} steps, after {settle}");
+    let heap = argument("--heap").unwrap_or(0.0) as usize;
+    println!("\n{rings} rings, heap {heap}, {TURNS} turns of {STEPS} steps, after {settle}");
     println!(
         "{:<24}{:>9}{:>9}{:>16}{:>11}{:>10}{:>13}  hash",
         "", "ms/step", "ratio", "spread", "manifolds", "contacts", "mean height"
@@ -189,7 +191,7 @@ fn piles(rings: usize) {
     let kinds = Kind::ALL
         .into_iter()
         .filter(|kind| rings <= ALL_KINDS || !matches!(kind, Kind::Triangles | Kind::Voxels));
-    let mut piles: Vec<Pile> = kinds.map(|kind| Pile::new(kind, rings)).collect();
+    let mut piles: Vec<Pile> = kinds.map(|kind| Pile::new(kind, rings, heap)).collect();
     piles.iter_mut().for_each(|pile| pile.step(settle));
     for _ in 0..TURNS {
         piles.iter_mut().for_each(Pile::turn);

@@ -4,8 +4,9 @@ use crate::ccd::contact::distance_at;
 use crate::ccd::families::Family;
 use crate::ccd::motion::{Ball, Paths};
 use crate::ccd::rng::Rng;
-use rapier3d_medial::elementary::distance::signed_distance;
+use rapier3d_medial::elementary::distance::{self, signed_distance};
 use rapier3d_medial::elementary::penetration;
+use rapier3d_medial::elementary::test_list::ElementaryTest;
 use rapier3d_medial::math::lane::{Scalar, Vec3};
 use rapier3d_medial::math::tolerance::SLACK_ULPS;
 
@@ -47,5 +48,37 @@ fn errors_stay_below_the_slack() {
             double < SLACK_ULPS,
             "{family:?}: {double} in double precision"
         );
+    }
+}
+
+/// Cones called further apart than a margin are, by the oracle; and most of those that are, are called so.
+#[test]
+fn what_is_called_beyond_is() {
+    for family in Family::ALL {
+        let mut rng = Rng::new(900 + family as u64);
+        let (mut called, mut clear) = (0, 0);
+        for k in 0..2000 {
+            let query = family.query([1 + k % 2, 1 + k / 2 % 2], false, &mut rng);
+            let paths = Paths::new(&query);
+            let [a, b] = query.balls.each_ref().map(|balls| convert::<f64>(balls));
+            let (lower, upper) = distance_at(&paths, 0.0);
+            let scale = paths.at(0.0).scale();
+            let ends = [a.len(), b.len()].map(|n| [0, n as u8 - 1]);
+            let f = distance::family(&ElementaryTest::cone_cone(ends[0], ends[1]), &a, &b);
+            // Just below, just above, and well below what is between them.
+            for share in [1.0 - 1.0e-9, 1.0 + 1.0e-9, 0.5] {
+                let margin = lower * share;
+                let beyond = distance::is_beyond(&f, margin);
+                assert!(
+                    !beyond || upper > margin,
+                    "{family:?} {k}: {upper} {margin}"
+                );
+                if lower - margin > 0.1 * scale {
+                    clear += 1;
+                    called += usize::from(beyond);
+                }
+            }
+        }
+        assert!(10 * called >= 9 * clear, "{family:?}: {called} of {clear}");
     }
 }

@@ -4,12 +4,14 @@
 use crate::ccd::rng::Rng;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::elementary::distance::signed_distance;
+use rapier3d_medial::elementary::test_list::Share;
 use rapier3d_medial::elementary::{
     self, MovingSphere, Paths, ToiOptions, ToiStatus, f64 as double,
 };
 use rapier3d_medial::math::lane::Vec3;
 use rapier3d_medial::math::{Pose, Real, Vector};
-use rapier3d_medial::pair::{contacts, first_contact, nearest_spheres};
+use rapier3d_medial::medial::tree::Below;
+use rapier3d_medial::pair::{Volumes, contacts, first_contact, nearest_spheres};
 use rapier3d_medial::{MedialMesh, MedialSphere};
 
 pub(crate) fn vector(rng: &mut Rng) -> Vector {
@@ -166,6 +168,48 @@ fn distance_and_contacts_are_those_of_brute_force() {
         }
     }
     assert!(near > 1000 && found_any > 100, "{near} {found_any}");
+}
+
+/// A mesh of which no directions are tried before the search.
+struct Bare<'a>(&'a MedialMesh);
+
+impl Volumes for Bare<'_> {
+    fn roots(&self) -> u32 {
+        self.0.roots()
+    }
+    fn bound(&self, node: u32) -> (Vector, Real) {
+        self.0.bound(node)
+    }
+    fn below(&self, node: u32) -> Below {
+        self.0.below(node)
+    }
+    fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share) {
+        Volumes::primitive(self.0, index)
+    }
+}
+
+/// What directions keep apart is left out of the search, and nothing else: the contacts are those of the whole
+/// search, to the bit.
+#[test]
+fn directions_leave_out_no_contact() {
+    let mut rng = Rng::new(79);
+    let (mut nodes, mut all_nodes, mut near) = (0, 0, 0);
+    for k in 0..2000 {
+        let (a, b) = (mesh(&mut rng), mesh(&mut rng));
+        let pose = Pose::new(
+            vector(&mut rng) * (0.3 + 0.001 * k as Real),
+            vector(&mut rng) * 3.0,
+        );
+        let margin = [0.0, 0.005, 0.02, 0.1][k % 4];
+        let (found, counts) = contacts(&a, &b, &pose, margin);
+        let (whole, all) = contacts(&Bare(&a), &Bare(&b), &pose, margin);
+        assert_eq!(found, whole, "{k}");
+        nodes += counts.nodes;
+        all_nodes += all.nodes;
+        near += usize::from(!found.is_empty());
+    }
+    assert!((500..1500).contains(&near), "{near}");
+    assert!(2 * nodes < all_nodes, "{nodes} of {all_nodes}");
 }
 
 /// Bodies within the tolerance of each other at the start touch at time 0, however their bounding balls

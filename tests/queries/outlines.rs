@@ -8,11 +8,12 @@ use nalgebra::Vector3;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::elementary::{InitialContact, ToiOptions, ToiStatus};
 use rapier3d_medial::math::{Pose, Real, Vector};
+use rapier3d_medial::medial::shell::Shell;
 use rapier3d_medial::medial::tree::Below;
 use rapier3d_medial::pair::first_contact::{Query, first_contact_counted};
-use rapier3d_medial::pair::outline::{Left, Outline, Shell, apart_until};
+use rapier3d_medial::pair::outline::{Left, Outline, apart_until};
 use rapier3d_medial::{MedialMesh, MedialSphere};
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Spheres on a body in its frame, with the primitive that each is on.
 type Sampled = Vec<(usize, Vector3<f64>, f64)>;
@@ -78,7 +79,7 @@ fn judge(
     each: usize,
     what: &str,
 ) -> (usize, bool) {
-    let shells = meshes.map(|m| Rc::new(Shell::of_mesh(m)));
+    let shells = meshes.map(|m| Arc::new(Shell::of_mesh(m)));
     let a = Outline::new(&shells[0], motions[0], [0.0, 1.0]);
     let b = Outline::new(&shells[1], &later(motions[1], from), [from, 1.0]);
     let apart = apart_until(&a, &b, from, target);
@@ -179,7 +180,7 @@ fn a_query_that_pauses_gives_the_same_answer() {
             ..Default::default()
         };
         let (whole, all) = first_contact_counted(&a, &still, &b, &moving, 1.0, &options);
-        let outline = |m, motion| Outline::new(&Rc::new(Shell::of_mesh(m)), motion, [0.0, 1.0]);
+        let outline = |m, motion| Outline::new(&Arc::new(Shell::of_mesh(m)), motion, [0.0, 1.0]);
         let target = options.target_distance.max(0.0) + options.tolerance;
         let apart = apart_until(&outline(&a, &still), &outline(&b, &moving), 0.0, target);
         for left in [None, apart.map(|apart| apart.left)] {
