@@ -306,7 +306,7 @@ fn toi_jobs(mesh: &MedialMesh, count: usize) -> Vec<ToiJob> {
 
 fn mesh_pairs(devices: &mut Devices) -> Vec<Value> {
     println!(
-        "mesh pairs of 1,236 x 1,236, ms    CPU  CPU x2  device  device and CPU   stage   proven of the free"
+        "mesh pairs of 1,236 x 1,236, ms    CPU  CPU x2  device  device and CPU   stage   device to CPU x2, least and median   proven of the free"
     );
     let mesh = creature();
     let row = |count: usize| {
@@ -342,13 +342,17 @@ fn mesh_pairs(devices: &mut Devices) -> Vec<Value> {
         let wrong = both.filter(|(a, p)| p.is_free() && !apart(a.toi.status));
         assert_eq!(wrong.count(), 0, "free on the device, not on the CPU");
         let proven = proposals.iter().filter(|p| p.is_free()).count();
+        let [_, middle, _, middle_two, _] = times.each_mut().map(|t| median(t));
         let [a, b, c, two, stage] = times.map(least);
+        let ratios = [b / two, middle / middle_two];
         let given_up = (devices.gpu.counts().given_up - before) / SHORT_ROUNDS as u64;
         println!(
-            "{count:>30} {a:>7.2} {two:>7.2} {b:>7.2} {c:>15.2} {stage:>7.2}   {proven} of {free}, {given_up} given up"
+            "{count:>30} {a:>7.2} {two:>7.2} {b:>7.2} {c:>15.2} {stage:>7.2} {:>18.2} {:>18.2}   {proven} of {free}, {given_up} given up",
+            ratios[0], ratios[1]
         );
         json!({
             "mesh_pairs": count, "cpu_ms": a, "cpu_two_threads_ms": two, "device_ms": b, "device_and_cpu_ms": c,
+            "cpu_two_threads_median_ms": middle_two, "device_median_ms": middle,
             "stage_ms": stage, "proven": proven, "free": free, "given_up": given_up,
         })
     };

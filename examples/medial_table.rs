@@ -10,11 +10,12 @@
 //!
 //! Writes Markdown, after each row. Lengths have the longest side of the source's box as the unit, as in
 //! the paper. H is measured with parry's triangle meshes, not with the builder's trees: at all vertices
-//! of both surfaces and at 200,000 points more on each, which no fit has seen; the solid's boundary is
-//! drawn with triangles of a quarter of the error. "Before" is the builder's own measure of what it
-//! enclosed, by points that no fit has seen either; uncovered and bloat are its own too, and ± is by how
-//! much a distance may exceed them between the points that it looked at. MB is the largest resident set
-//! during the build, where the system tells it (Linux), and what of it the builder's arrays are.
+//! of both surfaces and at points on each that no fit has seen, so many that each stands for a square
+//! whose side, "apart", is less than H/4; the solid's boundary is drawn with triangles of a quarter of
+//! the error. "Before" is the builder's own measure of what it enclosed, by points that no fit has seen
+//! either; uncovered and bloat are its own too, and ± is by how much a distance may exceed them between
+//! the points that it looked at. MB is the largest resident set during the build, where the system tells
+//! it (Linux), and what of it the builder's arrays are.
 //!
 //! Last comes a ring at 27 primitives beside parry's convex decomposition, both against the true ring.
 
@@ -46,14 +47,17 @@ const TABLE_3: [(&str, [Real; 5]); 6] = [
     ("armadillo", [0.138, 0.059, 0.051, 0.0383, 0.0279]),
     ("t-rex", [0.121, 0.045, 0.029, 0.020, 0.017]),
 ];
-/// Points at which errors are looked for, on each surface, besides the vertices.
-const POINTS: usize = 200_000;
+/// Points at which errors are looked for, on each surface, besides the vertices: at least.
+const POINTS: Real = 200_000.0;
+/// Distance of these points, in builder's errors. The boundary is larger than the source by less than
+/// what is between its square and that of a quarter.
+const APART: Real = 0.2;
 /// The solid's boundary is drawn no finer than this: four million triangles.
 const FINEST: Real = 0.0012;
 
 const HEAD: &str = "\
-| model | triangles | primitives | paper | H before | H | uncovered | bloat | ± | Euler | MB | arrays | seconds | of which |
-|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
+| model | triangles | primitives | paper | H before | H | apart | uncovered | bloat | ± | Euler | MB | arrays | seconds | of which |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
 struct Options {
@@ -170,20 +174,24 @@ fn row(
             .map_err(|e| format!("{name}: {e}"))?;
     let peak = peak_megabytes();
     let side = report.longest_side;
-    let spacing = (0.25 * report.hausdorff.error()).max(FINEST * side);
-    let error = surface_error(&medial, mesh, spacing, POINTS).map(|e| e.largest() / side);
+    let error = report.hausdorff.error();
+    let spacing = (0.25 * error).max(FINEST * side);
+    let area: Real = mesh.to_parry().triangles().map(|t| t.area()).sum();
+    let points = POINTS.max(area / (APART * error).powi(2));
+    let error = surface_error(&medial, mesh, spacing, points as usize).map(|e| e.largest() / side);
     let before = report.hausdorff_before_enclosure.map(|h| h.error() / side);
     let shown = |error: Option<Real>| error.map_or("–".into(), |e| format!("{e:.4}"));
     let seconds: f64 = report.seconds.iter().map(|s| s.1).sum();
     let long = report.seconds.iter().filter(|s| s.1 > 0.05 * seconds);
     let stages: Vec<String> = long.map(|(stage, s)| format!("{stage} {s:.1}")).collect();
     let row = format!(
-        "| {name} | {} | {} of {size} | {} | {} | {} | {:.5} | {:.4} | {:.4} | {} | {} | {} | {seconds:.1} | {} |\n",
+        "| {name} | {} | {} of {size} | {} | {} | {} | {:.5} | {:.5} | {:.4} | {:.4} | {} | {} | {} | {seconds:.1} | {} |\n",
         mesh.indices.len(),
         report.primitives,
         shown(paper(name, size)),
         shown(before),
         shown(error),
+        (area / points).sqrt() / side,
         report.hausdorff.uncovered / side,
         report.hausdorff.bloat / side,
         report.hausdorff.sampling / side,

@@ -5,62 +5,87 @@
 // room, or takes too long, is given up, and the CPU has the pair: nothing is cut.
 
 @group(0) @binding(0) var<uniform> params: CullParams;
-@group(0) @binding(1) var<storage, read> pairs: array<Pair>;
-@group(0) @binding(2) var<storage, read> nodes: array<Node>;
-@group(0) @binding(3) var<storage, read> primitives: array<Primitive>;
-@group(0) @binding(4) var<storage, read_write> meetings: array<Meeting>;
-// What is known of each pair; last how many primitive pairs meet, and how many mesh pairs are taken.
+@group(0) @binding(1) var pairs: texture_2d<u32>;
+@group(0) @binding(2) var nodes: texture_2d<u32>;
+@group(0) @binding(3) var primitives: texture_2d<u32>;
+// Of each two primitives whose balls meet their indices, and that of the mesh pair.
+@group(0) @binding(4) var<storage, read_write> meetings: array<vec4<u32>>;
+// What is known of each pair, 0 before; last how many primitive pairs meet, and how many mesh pairs are taken.
 @group(0) @binding(5) var<storage, read_write> answers: array<atomic<u32>>;
 
-// From below, what is still to be looked at: on either side a node, or two neighbours where its index is
-// marked so. From above, primitive pairs whose balls meet.
+// The first of two neighbouring nodes on either side; which of their four pairs are left to be looked at
+// is in the highest bits of its own. One node that was not split is the first with a neighbour that never
+// meets.
+var<private> first: vec2<u32>;
+var<private> left: u32;
+// From below, such pairs that wait, with what is left of each. From above, primitive pairs whose balls
+// meet. The place for the next of either is written whether or not there is one.
 var<private> work: array<vec2<u32>, WALK_ROOM>;
 var<private> open: u32;
 var<private> kept: u32;
 
-// The mark of two neighbours; in a node's `below`, that of a leaf.
+// In a node's `below` the mark of a leaf.
 const MARK = 0x80000000u;
 
-struct Part { swept: Swept, radius: f32, index: u32, below: u32 }
+// Where in the highest bits of an index it is kept what is left: fewer nodes than that fit the texture.
+const LEFT = 28u;
 
-fn part(side: Side, index: u32) -> Part {
-  let bound = nodes[index].bound;
-  return Part(sweep(side, bound), bound.w, index, nodes[index].below);
+fn side(pair: u32, k: u32) -> Side {
+  let at = pair * PAIR + k * SIDE;
+  return Side(three(pairs, at), three(pairs, at + 3u), reals(pairs, at + 6u));
 }
 
-// Two nodes that meet are to be looked at again: both split where they are about as large, else the
-// larger one. One place writes for both outcomes: to write costs as much as to compare.
-fn consider(wanted: bool, p: Part, q: Part, reach: f32) {
-  let met = wanted && meet(p.swept, q.swept, reach);
-  let p_leaf = p.below >= MARK;
-  let q_leaf = q.below >= MARK;
-  let leaves = p_leaf && q_leaf;
-  let split = vec2<bool>(
-    leaves || (!p_leaf && (q_leaf || p.radius * WALK_SIMILAR >= q.radius)),
-    leaves || (!q_leaf && (p_leaf || q.radius * WALK_SIMILAR >= p.radius)),
-  );
-  let next = select(vec2<u32>(p.index, q.index), vec2<u32>(p.below, q.below) ^ vec2<u32>(MARK), split);
-  if (met) { work[select(open, WALK_ROOM - 1u - kept, leaves)] = next; }
-  open += u32(met && !leaves);
-  kept += u32(met && leaves);
+// Roots, and bits of the reach.
+fn roots(pair: u32) -> vec4<u32> { return texel(pairs, pair * PAIR + 2u * SIDE); }
+
+fn ball(side: Side, node: u32) -> Swept { return sweep(side, reals(nodes, node * NODE)); }
+
+fn primitive(side: Side, index: u32) -> Simplex {
+  let spheres = three(primitives, index * PRIMITIVE);
+  return Simplex(sweep(side, spheres[0]), sweep(side, spheres[1]), sweep(side, spheres[2]));
 }
 
-
-// Splits the node pair on top.
+// Takes the next pair of nodes and looks which of their children meet: both nodes are split where they
+// are about as large, else the larger one. Two leaves are kept.
 fn look(a: Side, b: Side, reach: f32) {
-  open--;
-  let top = work[open];
-  let both = top >= vec2<u32>(MARK);
-  let first = top & vec2<u32>(MARK - 1u);
-  let second = first + select(vec2<u32>(0u), vec2<u32>(1u), both);
-  let p0 = part(a, first.x);
-  let q0 = part(b, first.y);
-  let p1 = part(a, second.x);
-  let q1 = part(b, second.y);
-  consider(true, p0, q0, reach);
-  consider(both.x, p1, q0, reach);
-  consider(both.y, p0, q1, reach);
-  consider(both.x && both.y, p1, q1, reach);
+  if (left == 0u) {
+    open--;
+    let top = work[open];
+    left = top.x >> LEFT;
+    first = vec2<u32>(top.x & ((1u << LEFT) - 1u), top.y);
+  }
+  let next = firstTrailingBit(left);
+  left &= left - 1u;
+  let index = first + vec2<u32>(next & 1u, next >> 1u);
+  let p = texel(nodes, index.x * NODE + 1u);
+  let q = texel(nodes, index.y * NODE + 1u);
+  let below = vec2<u32>(p.x, q.x);
+  let radius = bitcast<vec2<f32>>(vec2<u32>(p.y, q.y));
+  let leaf = below >= vec2<u32>(MARK);
+  let leaves = leaf.x && leaf.y;
+  let split = vec2<bool>(
+    !leaf.x && (leaf.y || radius.x * WALK_SIMILAR >= radius.y),
+    !leaf.y && (leaf.x || radius.y * WALK_SIMILAR >= radius.x),
+  );
+  let parts = select(index, below, split);
+  let p0 = ball(a, parts.x);
+  let q0 = ball(b, parts.y);
+  let p1 = ball(a, parts.x + u32(split.x));
+  let q1 = ball(b, parts.y + u32(split.y));
+  var met = u32(meet(p0, q0, reach));
+  met += u32(split.x && meet(p1, q0, reach)) << 1u;
+  met += u32(split.y && meet(p0, q1, reach)) << 2u;
+  met += u32(split.x && split.y && meet(p1, q1, reach)) << 3u;
+  let deeper = met != 0u && !leaves;
+  // One place for both: to write costs as much as to compare.
+  let wait = vec2<u32>(first.x | (left << LEFT), first.y);
+  work[select(open, WALK_ROOM - 1u - kept, leaves)] = select(wait, below ^ vec2<u32>(MARK), leaves);
+  open += u32(deeper && left != 0u);
+  kept += u32(leaves);
+  if (deeper) {
+    first = parts;
+    left = met;
+  }
 }
 
 // Hands the primitive pairs of a mesh pair on. What fits is written in any case: room that is counted and
@@ -69,9 +94,9 @@ fn hand_on(pair: u32, whole: bool) {
   kept = select(0u, kept, whole);
   let at = atomicAdd(&answers[params.pairs], kept);
   for (var k = 0u; k < kept && at + k < params.room; k++) {
-    meetings[at + k] = Meeting(work[WALK_ROOM - 1u - k], pair, 0u);
+    meetings[at + k] = vec4<u32>(work[WALK_ROOM - 1u - k], pair, 0u);
   }
-  atomicStore(&answers[pair], select(GIVEN_UP, FREE, whole && at + kept <= params.room));
+  atomicStore(&answers[pair], select(GIVEN_UP, FREE + kept, whole && at + kept <= params.room));
 }
 
 @compute @workgroup_size(WALKS)
@@ -82,38 +107,48 @@ fn walk() {
   var reach = 0.0;
   var looks = 0u;
   var whole = true;
+  var taken = 0u;
   loop {
-    if (open == 0u) {
+    if (left == 0u && open == 0u) {
       if (pair < params.pairs) { hand_on(pair, whole); }
+      taken++;
+      if (taken > WALK_PAIRS) { break; }
       pair = atomicAdd(&answers[params.pairs + 1u], 1u);
       if (pair >= params.pairs) { break; }
-      a = pairs[pair].sides[0];
-      b = pairs[pair].sides[1];
-      reach = pairs[pair].reach;
-      work[0] = vec2<u32>(a.root, b.root);
-      open = 1u;
+      a = side(pair, 0u);
+      b = side(pair, 1u);
+      let last = roots(pair);
+      reach = bitcast<f32>(last.z);
+      first = last.xy;
+      left = 1u;
       kept = 0u;
       looks = 0u;
       whole = true;
     }
     // A few before the next look whether it is done: that is checked for all neighbours at once.
-    for (var k = 0u; k < WALK_STRETCH && open > 0u; k++) {
+    for (var k = 0u; k < WALK_STRETCH && (left | open) != 0u; k++) {
       looks++;
-      whole = open + kept + 4u <= WALK_ROOM && looks <= WALK_LOOKS;
-      if (whole) { look(a, b, reach); } else { open = 0u; }
+      whole = open + kept < WALK_ROOM && looks <= WALK_LOOKS;
+      if (whole) { look(a, b, reach); } else { left = 0u; open = 0u; }
     }
   }
 }
 
-// Of a mesh pair that is given up, or of which one primitive pair is not proven, the others are skipped.
+// Each proof brings the mesh pair's answer nearer to FREE. Of one that is given up, or of which a primitive
+// pair is not proven, the others are skipped.
 @compute @workgroup_size(WALKS)
 fn prove(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
   let count = min(atomicLoad(&answers[params.pairs]), params.room);
   for (var k = id.x + id.y * groups.x * WALKS; k < count; k += groups.x * groups.y * WALKS) {
     let met = meetings[k];
-    if (atomicLoad(&answers[met.pair]) != FREE) { continue; }
-    let a = simplex(pairs[met.pair].sides[0], met.primitives.x);
-    let b = simplex(pairs[met.pair].sides[1], met.primitives.y);
-    if (!stays_free(a, b, pairs[met.pair].reach)) { atomicMax(&answers[met.pair], OPEN); }
+    let pair = met.z;
+    if (atomicLoad(&answers[pair]) > FREE + WALK_ROOM) { continue; }
+    let a = primitive(side(pair, 0u), met.x);
+    let b = primitive(side(pair, 1u), met.y);
+    if (stays_free(a, b, bitcast<f32>(roots(pair).z))) {
+      atomicSub(&answers[pair], 1u);
+    } else {
+      atomicMax(&answers[pair], OPEN);
+    }
   }
 }

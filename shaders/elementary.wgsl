@@ -9,7 +9,7 @@
 // the others; the slack covers its rounding.
 
 @group(0) @binding(0) var<uniform> params: ElementaryParams;
-@group(0) @binding(1) var<storage, read> queries: array<Query>;
+@group(0) @binding(1) var queries: texture_2d<u32>;
 // FREE or OPEN.
 @group(0) @binding(2) var<storage, read_write> answers: array<u32>;
 
@@ -84,16 +84,23 @@ fn stays_free(query: Query, triangle: bool) -> bool {
   return false;
 }
 
+fn query(q: u32) -> Query { return Query(three(queries, q * QUERY), corners(q * QUERY + 3u)); }
+
+fn corners(at: u32) -> array<vec3<f32>, 3> {
+  let words = three(queries, at);
+  return array<vec3<f32>, 3>(words[0].xyz, words[1].xyz, words[2].xyz);
+}
+
 // Cone with cone.
 @compute @workgroup_size(THREADS)
 fn cones(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
   let q = id.x + id.y * groups.x * THREADS;
-  if (q < params.count) { answers[q] = select(OPEN, FREE, stays_free(queries[q], false)); }
+  if (q < params.count) { answers[q] = select(OPEN, FREE, stays_free(query(q), false)); }
 }
 
 // Sphere with slab. An entry point of its own, so that no device computes both.
 @compute @workgroup_size(THREADS)
 fn slabs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
   let q = id.x + id.y * groups.x * THREADS;
-  if (q < params.count) { answers[q] = select(OPEN, FREE, stays_free(queries[q], true)); }
+  if (q < params.count) { answers[q] = select(OPEN, FREE, stays_free(query(q), true)); }
 }

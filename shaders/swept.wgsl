@@ -24,13 +24,8 @@ fn meet(a: Swept, b: Swept, reach: f32) -> bool {
   return !(length(y + rate * t) > a.radius + b.radius + reach);
 }
 
-struct Simplex { s0: Swept, s1: Swept, s2: Swept }
-
 // Unused spheres repeat the last.
-fn simplex(side: Side, primitive: u32) -> Simplex {
-  let s = primitives[primitive].spheres;
-  return Simplex(sweep(side, s[0]), sweep(side, s[1]), sweep(side, s[2]));
-}
+struct Simplex { s0: Swept, s1: Swept, s2: Swept }
 
 fn at(s: Swept, t: f32) -> vec3<f32> { return s.start + s.chord * t; }
 

@@ -64,6 +64,14 @@ impl<S: Scalar> Frame<S> {
     pub fn point(&self, local: Vec3<S>) -> Vec3<S> {
         self.center + self.arm(local)
     }
+
+    /// Rows of the matrix that does so: where the axes and the origin go.
+    pub fn rows(&self) -> [[S; 4]; 3] {
+        let [x, y, z] = &self.columns;
+        let origin = self.point(Vec3::zero());
+        let row = |of: fn(&Vec3<S>) -> S| [of(x), of(y), of(z), of(&origin)];
+        [row(|v| v.x), row(|v| v.y), row(|v| v.z)]
+    }
 }
 
 /// Position, velocity and acceleration of a point, per step.

@@ -31,10 +31,10 @@ const SPREAD: u64 = 8;
 const GROUPS: [u32; 3] = [1, 100, 10_000];
 
 /// Most that the library allocates for a batch by itself, in two halves.
-fn library(bare: &Bare, copies: &[usize]) -> u64 {
+fn library(bare: &Bare, copies: &[usize], cleared: bool) -> u64 {
     let most = GROUPS.map(|groups| {
         let [_, most] = allocations(|| {
-            block_on(async { bare.submit(copies, groups) });
+            block_on(async { bare.submit(copies, cleared, groups) });
             block_on(async { bare.collect() });
         });
         most
@@ -50,7 +50,7 @@ fn allocations_are_counted() {
     let Some(bare) = block_on(Bare::open(&ELEMENTARY, 1)) else {
         return;
     };
-    assert!(library(&bare, &[0, 1]) > 10);
+    assert!(library(&bare, &[0, 1], false) > 10);
 }
 
 /// What is packed does not fit the device, so that the library is not called.
@@ -84,7 +84,7 @@ fn elementary_tests_allocate_nothing_of_ours() {
         return;
     };
     let bare = block_on(Bare::open(&ELEMENTARY, 1)).expect("an adapter");
-    let library = library(&bare, &[0, 1]);
+    let library = library(&bare, &[0, 1], false);
     let apart = LinearPath {
         start: [Vec3::new(3.0, 0.0, 0.0); 4],
         rate: [Vec3::zero(); 4],
@@ -111,7 +111,7 @@ fn mesh_pairs_allocate_nothing_of_ours_but_answers() {
         return;
     };
     let bare = block_on(Bare::open(&CULL, 2)).expect("an adapter");
-    let library = library(&bare, &[0, 1, 5]);
+    let library = library(&bare, &[0, 1], true);
     let mut jobs = toi_jobs(500);
     let sweeps: Vec<_> = jobs.iter().filter_map(Job::sweep).collect();
     let mut said = Vec::new();

@@ -8,6 +8,7 @@ use crate::scene;
 use pollster::block_on;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::batch::Sweep;
+use rapier3d_medial::batch::gpu::layout::MOST_MEETINGS;
 use rapier3d_medial::batch::gpu::{Gpu, Proposal};
 use rapier3d_medial::math::{Pose, Vector};
 use rapier3d_medial::{MedialMesh, MedialPrimitive, MedialSphere};
@@ -198,6 +199,36 @@ fn entangled_meshes_are_given_up() {
     let expected = [Proposal::Free, Proposal::Open, Proposal::Free];
     assert_eq!(propose(&mut gpu, &drawn), expected);
     assert_eq!(gpu.counts().given_up, 1);
+}
+
+/// More primitive pairs than a batch has room for, of mesh pairs that all meet: those that find none are
+/// given up, and none is called free for want of them.
+#[test]
+fn what_finds_no_room_is_given_up() {
+    let Some(mut gpu) = scene::gpu(scene::options()) else {
+        return;
+    };
+    let ball = |k: usize| MedialSphere::new(Vector::X * (0.01 * k as f32), 1.0);
+    let cluster = |size| MedialMesh::new((0..size).map(ball).collect(), vec![], vec![]);
+    let meshes = [10, 11].map(|size| cluster(size).expect("balls"));
+    let sweep = Sweep {
+        meshes: [&meshes[0], &meshes[1]],
+        motions: [NonlinearRigidMotion::identity(); 2],
+        seconds: 0.0,
+        reach: 0.0,
+    };
+    // All balls of one meet all of the other.
+    let fit = MOST_MEETINGS / 110;
+    let sweeps = vec![sweep; fit + 500];
+    let mut proposals = Vec::new();
+    for asked in [&sweeps[..fit], &sweeps] {
+        let before = gpu.counts().given_up;
+        block_on(gpu.propose(asked, &mut proposals)).expect("proposals");
+        let open = proposals.iter().filter(|p| **p == Proposal::Open).count();
+        let given_up = gpu.counts().given_up - before;
+        assert_eq!(open, asked.len());
+        assert_eq!(given_up as usize, asked.len() - fit);
+    }
 }
 
 /// Meshes are sent once, shared by their bodies, dropped on request, and found again.

@@ -3,7 +3,7 @@
 
 use naga::back::{glsl, hlsl, msl, spv, wgsl};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use naga::{AddressSpace, Module, ShaderStage, TypeInner};
+use naga::{AddressSpace, ImageClass, Module, ScalarKind, ShaderStage, TypeInner};
 use rapier3d_medial::batch::gpu::layout::{LAYOUTS, MAX_GROUPS};
 use rapier3d_medial::batch::gpu::shaders::MODULES;
 
@@ -22,7 +22,8 @@ fn parsed() -> Vec<(&'static str, Module, ModuleInfo)> {
         .collect()
 }
 
-/// The portable limits: 8 storage buffers a stage, 256 threads a group, 16 KB of its memory.
+/// The portable limits: 8 storage buffers a stage and 16 textures, 256 threads a group, 16 KB of its
+/// memory.
 #[test]
 fn shaders_keep_to_what_every_device_offers() {
     for (name, module, info) in parsed() {
@@ -43,7 +44,7 @@ fn shaders_keep_to_what_every_device_offers() {
             let threads: u32 = entry.workgroup_size.iter().product();
             assert!((1..=256).contains(&threads), "{name}: {threads} threads");
             let uses = info.get_entry_point(index);
-            let (mut storage, mut shared, mut used) = (0, 0, Vec::new());
+            let (mut storage, mut textures, mut shared, mut used) = (0, 0, 0, Vec::new());
             for (handle, variable) in module.global_variables.iter() {
                 if uses[handle].is_empty() {
                     continue;
@@ -51,6 +52,16 @@ fn shaders_keep_to_what_every_device_offers() {
                 used.extend(variable.binding.map(|b| b.binding as usize));
                 match variable.space {
                     AddressSpace::Storage { .. } => storage += 1,
+                    AddressSpace::Handle => {
+                        let ty = &module.types[variable.ty].inner;
+                        // Whole numbers of a texture that is only read need no feature and no filter.
+                        let TypeInner::Image { class, .. } = ty else {
+                            panic!("{name}: {ty:?}");
+                        };
+                        let (kind, multi) = (ScalarKind::Uint, false);
+                        assert_eq!(*class, ImageClass::Sampled { kind, multi }, "{name}");
+                        textures += 1;
+                    }
                     AddressSpace::WorkGroup => shared += layouter[variable.ty].size,
                     AddressSpace::Uniform | AddressSpace::Private => {}
                     other => panic!("{name}: {other:?} is not portable"),
@@ -60,6 +71,7 @@ fn shaders_keep_to_what_every_device_offers() {
             used.sort_unstable();
             assert_eq!(used, listed.stages[index].1, "{name}.{stage}");
             assert!((1..=8).contains(&storage), "{name}.{stage}: {storage}");
+            assert!((1..=16).contains(&textures), "{name}.{stage}: {textures}");
             assert!(shared <= 16 << 10, "{name}.{stage}: {shared} bytes");
         }
     }

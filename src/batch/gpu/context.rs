@@ -6,8 +6,9 @@ use crate::error::GpuError;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::available_parallelism;
 use wgpu::{
-    Backends, Buffer, BufferUsages, Device, DeviceDescriptor, DeviceType, Error, Features,
-    Instance, InstanceDescriptor, Limits, PollType, PowerPreference, Queue, RequestAdapterOptions,
+    Backends, BindingResource, Buffer, BufferUsages, Device, DeviceDescriptor, DeviceType, Error,
+    Features, Instance, InstanceDescriptor, Limits, PollType, PowerPreference, Queue,
+    RequestAdapterOptions,
 };
 
 /// Which device to take and how much of it.
@@ -15,7 +16,8 @@ use wgpu::{
 pub struct GpuOptions {
     /// Whether an adapter that computes on the CPU will do.
     pub software: bool,
-    /// Most bytes of a buffer that shaders see; what the device allows if that is less.
+    /// Most bytes of a buffer or a texture that shaders see, beyond a texture's first row of 16 KiB; what
+    /// the device allows if that is less.
     pub binding_bytes: u64,
     /// Whether shaders are timed, where the device can; the marks take time of their own.
     pub timed: bool,
@@ -236,6 +238,10 @@ impl Growing {
             what,
             usage,
         })
+    }
+
+    pub(super) fn bound(&self) -> BindingResource<'_> {
+        self.buffer.as_entire_binding()
     }
 
     /// Makes room; returns whether the buffer is a new one, its contents gone.

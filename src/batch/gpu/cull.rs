@@ -2,58 +2,49 @@
 
 use super::clock::Clock;
 use super::context::{Context, Growing};
-use super::layout::{CullParams, Meeting, Node, Pair, Primitive, WALK_ROOM, WALKS};
+use super::layout::{
+    CullParams, MOST_MEETINGS, Node, PROOFS, Pair, Primitive, WALK_PAIRS, WALK_ROOM, WALKS,
+};
 use super::meshes::Meshes;
 use super::shaders::CULL;
 use super::stage::Stage;
-use super::transfer::{ALIGNMENT, Transfer};
+use super::texels::{ROW, Texels};
+use super::transfer::{ALIGNMENT, Target, Transfer};
 use crate::error::GpuError;
 use wgpu::BufferUsages;
-
-/// Indices of the buffers below, as they are bound.
-const PARAMS: usize = 0;
-const PAIRS: usize = 1;
-const NODES: usize = 2;
-const PRIMITIVES: usize = 3;
-const MEETINGS: usize = 4;
-const ANSWERS: usize = 5;
 
 /// Words after the answers: meetings found, and pairs taken.
 const COUNTERS: usize = 2;
 
-/// Most meetings that a batch has room for, 16 bytes each; pairs beyond are given up.
-const MOST_MEETINGS: usize = 1 << 20;
+/// Bytes of a meeting.
+const MEETING: usize = 16;
 
 pub(super) struct Cull {
     /// Walk and proof.
     stages: Vec<Stage>,
-    buffers: Vec<Growing>,
+    params: Growing,
+    pairs: Texels,
+    nodes: Texels,
+    primitives: Texels,
+    meetings: Growing,
+    answers: Growing,
     bound: bool,
 }
 
 impl Cull {
     pub(super) fn new(context: &mut Context) -> Result<Self, GpuError> {
-        let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
-        let all = [
-            ("parameters", size_of::<CullParams>(), uniform),
-            ("mesh pairs", size_of::<Pair>(), storage),
-            ("nodes", size_of::<Node>(), storage),
-            ("primitives", size_of::<Primitive>(), storage),
-            ("meetings", size_of::<Meeting>(), storage),
-            (
-                "answers",
-                size_of::<u32>(),
-                storage | BufferUsages::COPY_SRC,
-            ),
-        ];
-        let buffers = all
-            .into_iter()
-            .map(|(what, bytes, usage)| Growing::new(context, what, bytes as u64, usage))
-            .collect::<Result<_, _>>()?;
+        let params = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
+        let meetings = BufferUsages::STORAGE;
+        let answers = meetings | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+        let bytes = size_of::<CullParams>() as u64;
         Ok(Self {
             stages: Stage::all(context, &CULL),
-            buffers,
+            params: Growing::new(context, "parameters", bytes, params)?,
+            pairs: Texels::new(context, "mesh pairs")?,
+            nodes: Texels::new(context, "nodes")?,
+            primitives: Texels::new(context, "primitives")?,
+            meetings: Growing::new(context, "meetings", 1, meetings)?,
+            answers: Growing::new(context, "answers", 1, answers)?,
             bound: false,
         })
     }
@@ -65,19 +56,29 @@ impl Cull {
         pairs: &[Pair],
         meshes: &mut Meshes,
     ) -> Result<(), GpuError> {
-        let mut reserve = |k: usize, bytes| self.buffers[k].reserve(context, bytes as u64);
-        let moved = reserve(NODES, size_of_val(&meshes.nodes[..]))?
-            | reserve(PRIMITIVES, size_of_val(&meshes.primitives[..]))?;
+        let (nodes, primitives) = (&meshes.nodes[..], &meshes.primitives[..]);
+        let moved = self.nodes.reserve(context, size_of_val(nodes))?
+            | self.primitives.reserve(context, size_of_val(primitives))?;
         if moved {
             meshes.send_again();
         }
-        let fresh = reserve(PAIRS, size_of_val(pairs))?
-            | reserve(MEETINGS, room(pairs) * size_of::<Meeting>())?
-            | reserve(ANSWERS, answered(pairs) + COUNTERS * size_of::<u32>())?;
+        let meetings = room(pairs) * MEETING;
+        let answers = answered(pairs) + COUNTERS * size_of::<u32>();
+        let fresh = self.pairs.reserve(context, size_of_val(pairs))?
+            | self.meetings.reserve(context, meetings as u64)?
+            | self.answers.reserve(context, answers as u64)?;
         if moved || fresh || !self.bound {
-            let buffers: Vec<_> = self.buffers.iter().map(|b| &b.buffer).collect();
+            // As they are bound.
+            let resources = [
+                self.params.bound(),
+                self.pairs.bound(),
+                self.nodes.bound(),
+                self.primitives.bound(),
+                self.meetings.bound(),
+                self.answers.bound(),
+            ];
             for stage in &mut self.stages {
-                stage.bind(context, &buffers);
+                stage.bind(context, &resources);
             }
             self.bound = true;
         }
@@ -97,36 +98,43 @@ impl Cull {
             pairs: pairs.len() as u32,
             room: room(pairs) as u32,
         };
-        let none = [0_u32; COUNTERS];
         let (nodes, primitives) = meshes.sent;
-        let items: [(&[u8], usize, usize); 5] = [
-            (bytemuck::bytes_of(&params), PARAMS, 0),
-            (bytemuck::cast_slice(pairs), PAIRS, 0),
+        let (nodes, nodes_from) = unsent(&meshes.nodes, nodes * size_of::<Node>());
+        let sent = primitives * size_of::<Primitive>();
+        let (primitives, primitives_from) = unsent(&meshes.primitives, sent);
+        let items: [(&[u8], Target<'_>); 4] = [
             (
-                bytemuck::cast_slice(&meshes.nodes[nodes..]),
-                NODES,
-                nodes * size_of::<Node>(),
+                bytemuck::bytes_of(&params),
+                Target::Buffer(&self.params.buffer, 0),
             ),
-            (
-                bytemuck::cast_slice(&meshes.primitives[primitives..]),
-                PRIMITIVES,
-                primitives * size_of::<Primitive>(),
-            ),
-            (bytemuck::bytes_of(&none), ANSWERS, answered(pairs)),
+            (bytemuck::cast_slice(pairs), Target::Rows(&self.pairs, 0)),
+            (nodes, Target::Rows(&self.nodes, nodes_from)),
+            (primitives, Target::Rows(&self.primitives, primitives_from)),
         ];
-        up.begin(context, &items.map(|i| i.0.len())).await?;
+        let sizes = items.map(|(bytes, to)| to.room(bytes.len()));
+        up.begin(context, &sizes).await?;
         let timed = Clock::bytes(context.clock.as_ref());
         down.begin(context, &[answered(pairs), timed]).await?;
         let mut encoder = context.device.create_command_encoder(&Default::default());
-        for (bytes, k, at) in items {
-            up.send(&mut encoder, bytes, &self.buffers[k].buffer, at as u64)?;
+        for (bytes, to) in items {
+            up.send(&mut encoder, bytes, to)?;
         }
-        // No more threads than it has: the next mesh pair goes to whichever is done with one.
-        let groups = |threads: usize| threads.min(context.threads).div_ceil(WALKS);
+        // What was not looked at is not free, whatever the batch before said.
+        let words = (answered(pairs) + COUNTERS * size_of::<u32>()) as u64;
+        encoder.clear_buffer(&self.answers.buffer, 0, Some(words));
+        // No more threads than it has, as far as they may take all: the next mesh pair goes to whichever
+        // is done with one.
+        let groups = |tasks: usize, each: usize| {
+            let threads = context.threads.max(tasks.div_ceil(each));
+            tasks.min(threads).div_ceil(WALKS)
+        };
         let [walk, prove] = [0, 1].map(|k| &self.stages[k]);
-        let stages = [(walk, groups(pairs.len())), (prove, groups(room(pairs)))];
+        let stages = [
+            (walk, groups(pairs.len(), WALK_PAIRS)),
+            (prove, groups(room(pairs), PROOFS)),
+        ];
         Stage::run(context, &mut encoder, &stages);
-        down.receive(&mut encoder, &self.buffers[ANSWERS].buffer, answered(pairs));
+        down.receive(&mut encoder, &self.answers.buffer, answered(pairs));
         if let Some(clock) = &context.clock {
             clock.receive(&mut encoder, down);
         }
@@ -159,6 +167,17 @@ impl Cull {
         .await?;
         Ok(seconds)
     }
+}
+
+/// What has not been sent of a list of which so many bytes have been, and the row that it starts in: a row
+/// that was sent in part goes once more.
+fn unsent<T: bytemuck::NoUninit>(list: &[T], sent: usize) -> (&[u8], usize) {
+    let bytes: &[u8] = bytemuck::cast_slice(list);
+    let from = match sent < bytes.len() {
+        true => sent / ROW * ROW,
+        false => bytes.len(),
+    };
+    (&bytes[from..], from / ROW)
 }
 
 /// Bytes of the answers that come back.

@@ -5,7 +5,8 @@ use super::context::{Context, Growing};
 use super::layout::{ElementaryParams, FREE, Query, THREADS};
 use super::shaders::ELEMENTARY;
 use super::stage::Stage;
-use super::transfer::{ALIGNMENT, Transfer};
+use super::texels::Texels;
+use super::transfer::{ALIGNMENT, Target, Transfer};
 use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
@@ -30,7 +31,7 @@ pub(super) struct Elementary {
     /// Cone–cone and sphere–slab.
     stages: Vec<Stage>,
     params: Growing,
-    queries: Growing,
+    queries: Texels,
     answers: Growing,
     bound: bool,
 }
@@ -46,7 +47,7 @@ impl Elementary {
                 size_of::<ElementaryParams>() as u64,
                 BufferUsages::UNIFORM | BufferUsages::COPY_DST,
             )?,
-            queries: Growing::new(context, "queries", 1, storage | BufferUsages::COPY_DST)?,
+            queries: Texels::new(context, "queries")?,
             answers: Growing::new(context, "answers", 1, storage | BufferUsages::COPY_SRC)?,
             bound: false,
         })
@@ -76,23 +77,27 @@ impl Elementary {
         let params = bytemuck::bytes_of(&params);
         let queries = paths.len() * QUERY;
         let answers = paths.len() * size_of::<u32>();
-        let fresh = self.queries.reserve(context, queries as u64)?
+        let fresh = self.queries.reserve(context, queries)?
             | self.answers.reserve(context, answers as u64)?;
         if fresh || !self.bound {
-            let buffers = [&self.params, &self.queries, &self.answers].map(|b| &b.buffer);
+            let [params, answers] = [&self.params, &self.answers].map(Growing::bound);
+            let resources = [params, self.queries.bound(), answers];
             for stage in &mut self.stages {
-                stage.bind(context, &buffers);
+                stage.bind(context, &resources);
             }
             self.bound = true;
         }
-        up.begin(context, &[params.len(), queries]).await?;
+        let to_params = Target::Buffer(&self.params.buffer, 0);
+        let to_queries = Target::Rows(&self.queries, 0);
+        let sizes = [to_params.room(params.len()), to_queries.room(queries)];
+        up.begin(context, &sizes).await?;
         let timed = Clock::bytes(context.clock.as_ref());
         down.begin(context, &[answers, timed]).await?;
         let mut encoder = context.device.create_command_encoder(&Default::default());
-        up.send(&mut encoder, params, &self.params.buffer, 0)?;
+        up.send(&mut encoder, params, to_params)?;
         let packed = paths.iter().map(|path| pack(path, domain, tolerance));
         let packed = packed.map(bytemuck::cast::<Query, [u8; QUERY]>);
-        up.send_each(&mut encoder, packed, &self.queries.buffer)?;
+        up.send_each(&mut encoder, packed, to_queries)?;
         let stage = &self.stages[usize::from(domain == Domain::Triangle)];
         let groups = paths.len().div_ceil(THREADS);
         Stage::run(context, &mut encoder, &[(stage, groups)]);

@@ -58,8 +58,10 @@ twins! {
         /// Inner: index of the first of two neighbouring children. Leaf: index of its primitive, with
         /// the highest bit set.
         below: u32 = "u32",
+        /// Its ball's radius once more: whether it is split is asked without its place.
+        radius: f32 = "f32",
         /// Nothing.
-        pad: [u32; 3] = "array<u32, 3>",
+        pad: [u32; 2] = "vec2<u32>",
     }
     /// A primitive, in the body's frame.
     Primitive {
@@ -75,26 +77,15 @@ twins! {
         /// Centre of rotation in the body's frame, and the sagitta per length of lever arm: an eighth
         /// of the squared angle.
         turn: [f32; 4] = "vec4<f32>",
-        /// Index of the root of the mesh's tree.
-        root: u32 = "u32",
-        /// Nothing.
-        pad: [u32; 3] = "array<u32, 3>",
     }
     /// Two bodies over the step, or a piece of it.
     Pair {
         /// Both.
         sides: [Side; 2] = "array<Side, 2>",
+        /// Indices of the roots of the meshes' trees.
+        roots: [u32; 2] = "vec2<u32>",
         /// Distance that counts as contact, with the slack for rounding.
         reach: f32 = "f32",
-        /// Nothing.
-        pad: [u32; 3] = "array<u32, 3>",
-    }
-    /// Two primitives whose balls meet in the step.
-    Meeting {
-        /// Indices of the primitives.
-        primitives: [u32; 2] = "vec2<u32>",
-        /// Index of the mesh pair.
-        pair: u32 = "u32",
         /// Nothing.
         pad: u32 = "u32",
     }
@@ -107,34 +98,52 @@ twins! {
     }
 }
 
-/// A test or a mesh pair that is proven free in the whole step; not 0, which a shader never wrote.
+/// A test or a mesh pair that is proven free in the whole step; not 0, which no shader wrote. Of a mesh
+/// pair it is more by each primitive pair that has not been proven: what is not looked at stays open.
 pub const FREE: u32 = 1;
-/// It is not.
-pub const OPEN: u32 = 2;
+/// It is not; or less, by the proofs of other primitive pairs.
+pub const OPEN: u32 = 1 << 30;
 /// Too much of it meets to be looked at.
-pub const GIVEN_UP: u32 = 3;
+pub const GIVEN_UP: u32 = 1 << 31;
 /// Threads of a group.
 pub const THREADS: usize = 64;
 /// Threads of a group that walks down trees: fewer, so that a few hundred mesh pairs keep more of a
 /// device busy than a few of its parts.
 pub const WALKS: usize = 8;
+/// Texels in a row of the records: with the portable limit of 8,192 rows they hold the portable limit
+/// of a binding.
+pub const TEXELS: u32 = 1024;
 /// Groups in one dimension of a dispatch: the portable limit; wgpu drops what exceeds it.
 pub const MAX_GROUPS: u32 = 65_535;
 
 /// Rounds of the search for a direction. Fewer prove less, and nothing wrong.
 const GILBERT_ROUNDS: u32 = 6;
-/// Node pairs and primitive pairs that a walk down two trees holds at once; a walk that finds more is
-/// given up.
+/// Pairs of split nodes and primitive pairs that a walk down two trees holds at once; a walk that finds
+/// more is given up.
 pub const WALK_ROOM: u32 = 128;
-/// Node pairs that a walk splits before it is given up.
+/// Node pairs and primitive pairs that a walk takes up before it is given up.
 const WALK_LOOKS: u32 = 1024;
-/// Node pairs that a walk splits before it looks whether it is done: less, and the next mesh pair is
+/// Node pairs that a walk takes up before it looks whether it is done: less, and the next mesh pair is
 /// fetched for one thread at a time; more, and threads that are done wait longer.
-const WALK_STRETCH: u32 = 4;
+const WALK_STRETCH: u32 = 12;
+/// Mesh pairs that a thread takes at most: lavapipe ends loops, whatever they do, after 65,535 rounds of
+/// all that a thread runs.
+pub const WALK_PAIRS: usize = 64;
+/// Primitive pairs that a thread proves at most, for the same reason.
+pub const PROOFS: usize = 1024;
 /// Up to this ratio of their radii two nodes are split together, as on the CPU.
 const WALK_SIMILAR: f64 = 3.0;
 /// Directions tried in turn, each from where the last proof ends.
 const PROOF_ROUNDS: u32 = 6;
+
+/// Most meetings that a batch has room for, 16 bytes each; pairs beyond are given up.
+pub const MOST_MEETINGS: usize = 1 << 20;
+
+/// Texels of a record.
+const fn texels<T>() -> u32 {
+    assert!(size_of::<T>().is_multiple_of(16));
+    size_of::<T>() as u32 / 16
+}
 
 /// The constants in WGSL.
 pub fn constants() -> String {
@@ -152,9 +161,16 @@ pub fn constants() -> String {
         ("GIVEN_UP", GIVEN_UP),
         ("THREADS", THREADS as u32),
         ("WALKS", WALKS as u32),
+        ("TEXELS", TEXELS),
+        ("QUERY", texels::<Query>()),
+        ("NODE", texels::<Node>()),
+        ("PRIMITIVE", texels::<Primitive>()),
+        ("SIDE", texels::<Side>()),
+        ("PAIR", texels::<Pair>()),
         ("WALK_ROOM", WALK_ROOM),
         ("WALK_LOOKS", WALK_LOOKS),
         ("WALK_STRETCH", WALK_STRETCH),
+        ("WALK_PAIRS", WALK_PAIRS as u32),
         ("MAX_GROUPS", MAX_GROUPS),
         ("GILBERT_ROUNDS", GILBERT_ROUNDS),
         ("PROOF_ROUNDS", PROOF_ROUNDS),

@@ -2,9 +2,9 @@
 //! mesh is sent once, whatever the number of its bodies.
 
 use super::layout::{Node, Primitive};
+use crate::math::fast_hash::FastMap;
 use crate::medial::tree::Below;
 use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
-use std::collections::HashMap;
 
 /// Marks a leaf in [`Node::below`].
 const LEAF: u32 = 1 << 31;
@@ -24,7 +24,7 @@ pub(super) struct Meshes {
     pub(super) primitives: Vec<Primitive>,
     /// Nodes and primitives that the device has.
     pub(super) sent: (usize, usize),
-    residents: HashMap<usize, Resident>,
+    residents: FastMap<usize, Resident>,
     batch: u64,
 }
 
@@ -113,7 +113,8 @@ impl Meshes {
             Node {
                 bound: packed(MedialSphere::new(node.center, node.radius)),
                 below,
-                pad: [0; 3],
+                radius: node.radius,
+                pad: [0; 2],
             }
         });
         self.nodes.extend(nodes);

@@ -14,6 +14,7 @@ mod meshes;
 pub mod shaders;
 mod stage;
 mod sweep;
+mod texels;
 mod transfer;
 
 pub use context::GpuOptions;
@@ -263,7 +264,7 @@ impl Gpu {
             if answer != layout::FREE {
                 proposals[sweep as usize] = Proposal::Open;
             }
-            self.counts.given_up += u64::from(answer == layout::GIVEN_UP);
+            self.counts.given_up += u64::from([0, layout::GIVEN_UP].contains(&answer));
         }
         Ok(())
     }

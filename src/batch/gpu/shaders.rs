@@ -23,6 +23,7 @@ impl Module {
 pub const ELEMENTARY: Module = Module {
     name: "elementary",
     files: &[
+        include_str!("../../../shaders/texels.wgsl"),
         include_str!("../../../shaders/nearest.wgsl"),
         include_str!("../../../shaders/elementary.wgsl"),
     ],
@@ -33,6 +34,7 @@ pub const ELEMENTARY: Module = Module {
 pub const CULL: Module = Module {
     name: "cull",
     files: &[
+        include_str!("../../../shaders/texels.wgsl"),
         include_str!("../../../shaders/swept.wgsl"),
         include_str!("../../../shaders/cull.wgsl"),
     ],

@@ -4,8 +4,9 @@ use super::context::Context;
 use super::layout::MAX_GROUPS;
 use super::shaders::Module;
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, CommandEncoder, ComputePipeline,
-    ComputePipelineDescriptor, PipelineCompilationOptions, ShaderModuleDescriptor, ShaderSource,
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, CommandEncoder,
+    ComputePipeline, ComputePipelineDescriptor, PipelineCompilationOptions, ShaderModuleDescriptor,
+    ShaderSource,
 };
 
 /// One entry point of a shader.
@@ -44,11 +45,11 @@ impl Stage {
         module.stages.iter().map(stage).collect()
     }
 
-    /// Binds what it uses of its module's buffers; they stay bound until the next call.
-    pub(super) fn bind(&mut self, context: &mut Context, buffers: &[&Buffer]) {
+    /// Binds what it uses of its module's resources; they stay bound until the next call.
+    pub(super) fn bind(&mut self, context: &mut Context, resources: &[BindingResource]) {
         let entry = |&binding: &usize| BindGroupEntry {
             binding: binding as u32,
-            resource: buffers[binding].as_entire_binding(),
+            resource: resources[binding].clone(),
         };
         let entries: Vec<_> = self.uses.iter().map(entry).collect();
         let group = context.device.create_bind_group(&BindGroupDescriptor {

@@ -4,8 +4,6 @@
 use super::layout::{Pair, Side};
 use crate::batch::job::Sweep;
 use crate::elementary::first_contact::motion_is_finite;
-use crate::math::Vector;
-use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::tolerance::GPU_SLACK_ULPS;
 
@@ -50,7 +48,6 @@ impl Sweep<'_> {
             // Rounded up: a sagitta must not shrink.
             let sagitta = angle * angle * (0.125 * (1.0 + 1.0e-6));
             side.turn = [center.x, center.y, center.z, sagitta as f32];
-            side.root = roots[k];
             let root = &self.meshes[k].tree().nodes()[0];
             let extent = f64::from((root.center - center).length() + root.radius);
             let lever = f64::from(center.length()) + extent;
@@ -62,28 +59,22 @@ impl Sweep<'_> {
         }
         let reach = self.reach + scale * GPU_SLACK_ULPS * f64::from(f32::EPSILON);
         // Also false for what is not a number, which a device may take for anything.
-        let plain = |side: &Side| {
-            let turned = side.start.iter().chain(&side.end).flatten();
-            let mut numbers = turned.chain(&side.turn);
-            numbers.all(|x| f64::from(*x).abs() < LARGEST)
-        };
+        let numbers: &[f32] = bytemuck::cast_slice(&sides);
+        let plain = numbers
+            .iter()
+            .fold(true, |all, x| all & (x.abs() < LARGEST as f32));
         let finite = self.motions.iter().all(motion_is_finite);
-        let sound = finite && scale < LARGEST && sides.iter().all(plain);
+        let sound = finite && scale < LARGEST && plain;
         sound.then(|| Pair {
             sides,
+            roots,
             reach: (reach as f32).next_up(),
-            pad: [0; 3],
+            pad: 0,
         })
     }
 }
 
-/// Rows of a body's placement at a time: where the axes and the origin go.
+/// Rows of a body's placement at a time.
 fn rows(motion: &RigidMotion<f64>, time: f64) -> [[f32; 4]; 3] {
-    let frame = motion.frame(time);
-    let arm = |v: Vector| frame.arm(Vec3::from_vector(v));
-    let back = arm(Vector::ZERO);
-    let [x, y, z] = [Vector::X, Vector::Y, Vector::Z].map(|axis| arm(axis) - back);
-    let origin = frame.center + back;
-    let row = |of: fn(&Vec3<f64>) -> f64| [&x, &y, &z, &origin].map(|v| of(v) as f32);
-    [row(|v| v.x), row(|v| v.y), row(|v| v.z)]
+    motion.frame(time).rows().map(|row| row.map(|x| x as f32))
 }

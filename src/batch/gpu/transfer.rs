@@ -2,11 +2,16 @@
 //! has it. `Queue::write_buffer` would allocate one at every call.
 
 use super::context::{Context, Growing};
+use super::layout::TEXELS;
+use super::texels::{ROW, Texels};
 use crate::error::GpuError;
 use std::future::poll_fn;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Poll, Waker};
-use wgpu::{Buffer, BufferUsages, CommandEncoder, MapMode};
+use wgpu::{
+    Buffer, BufferUsages, CommandEncoder, Extent3d, MapMode, Origin3d, TexelCopyBufferInfo,
+    TexelCopyBufferLayout, TexelCopyTextureInfo,
+};
 
 /// Start of the next item in the upload buffer: what copies have to be aligned to.
 pub(super) const ALIGNMENT: usize = 16;
@@ -38,6 +43,58 @@ impl Signal {
             }
         })
         .await
+    }
+}
+
+/// Where an item of the upload buffer is copied to.
+#[derive(Clone, Copy)]
+pub(super) enum Target<'a> {
+    /// A buffer, from this byte on.
+    Buffer(&'a Buffer, u64),
+    /// A texture, from this row on.
+    Rows(&'a Texels, usize),
+}
+
+impl Target<'_> {
+    /// What an item of so many bytes takes of the upload buffer: whole rows are copied to a texture.
+    pub(super) fn room(&self, bytes: usize) -> usize {
+        bytes.next_multiple_of(match self {
+            Self::Buffer(..) => ALIGNMENT,
+            Self::Rows(..) => ROW,
+        })
+    }
+
+    fn copy(&self, encoder: &mut CommandEncoder, from: &Buffer, at: u64, bytes: usize) {
+        match *self {
+            Self::Buffer(to, start) => {
+                encoder.copy_buffer_to_buffer(from, at, to, start, bytes as u64);
+            }
+            Self::Rows(to, row) => {
+                let layout = TexelCopyBufferLayout {
+                    offset: at,
+                    bytes_per_row: Some(ROW as u32),
+                    rows_per_image: None,
+                };
+                let from = TexelCopyBufferInfo {
+                    buffer: from,
+                    layout,
+                };
+                let origin = Origin3d {
+                    y: row as u32,
+                    ..Origin3d::ZERO
+                };
+                let to = TexelCopyTextureInfo {
+                    origin,
+                    ..to.texture.as_image_copy()
+                };
+                let size = Extent3d {
+                    width: TEXELS,
+                    height: bytes.div_ceil(ROW) as u32,
+                    depth_or_array_layers: 1,
+                };
+                encoder.copy_buffer_to_texture(from, to, size);
+            }
+        }
     }
 }
 
@@ -78,7 +135,7 @@ impl Transfer {
         })
     }
 
-    /// Makes room for all items of a step; sizes in bytes.
+    /// Makes room for all items of a step; sizes in bytes, those to send as [`Target::room`] has them.
     pub(super) async fn begin(
         &mut self,
         context: &mut Context,
@@ -96,13 +153,12 @@ impl Transfer {
         Ok(())
     }
 
-    /// Writes an item and has it copied to the start of a buffer of the device, `at` bytes in.
+    /// Writes an item and has it copied.
     pub(super) fn send(
         &mut self,
         encoder: &mut CommandEncoder,
         bytes: &[u8],
-        to: &Buffer,
-        at: u64,
+        to: Target<'_>,
     ) -> Result<(), GpuError> {
         if bytes.is_empty() {
             return Ok(());
@@ -111,8 +167,8 @@ impl Transfer {
         let range = from..from + bytes.len() as u64;
         let mut view = self.room.buffer.get_mapped_range_mut(range).map_err(of)?;
         view.slice(..).copy_from_slice(bytes);
-        encoder.copy_buffer_to_buffer(&self.room.buffer, from, to, at, bytes.len() as u64);
-        self.used += bytes.len().next_multiple_of(ALIGNMENT);
+        to.copy(encoder, &self.room.buffer, from, bytes.len());
+        self.used += to.room(bytes.len());
         Ok(())
     }
 
@@ -122,14 +178,14 @@ impl Transfer {
         &mut self,
         encoder: &mut CommandEncoder,
         items: impl ExactSizeIterator<Item = [u8; N]>,
-        to: &Buffer,
+        to: Target<'_>,
     ) -> Result<(), GpuError> {
         let (from, bytes) = (self.used as u64, items.len() * N);
         let range = from..from + bytes as u64;
         let mut view = self.room.buffer.get_mapped_range_mut(range).map_err(of)?;
         view.slice(..).into_chunks::<N>().0.write_iter(items);
-        encoder.copy_buffer_to_buffer(&self.room.buffer, from, to, 0, bytes as u64);
-        self.used += bytes.next_multiple_of(ALIGNMENT);
+        to.copy(encoder, &self.room.buffer, from, bytes);
+        self.used += to.room(bytes);
         Ok(())
     }
 
