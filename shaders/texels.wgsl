@@ -1,6 +1,6 @@
 // Records in textures of four words a texel, row after row. Neighbouring threads read different ones.
 // Whole texels with no test of a bound come at a few times the speed of a storage buffer's words on
-// lavapipe, which fetches those thread by thread; real GPUs have both in the same caches.
+// lavapipe, which fetches those thread by thread. On no real GPU has it been measured.
 
 fn texel(records: texture_2d<u32>, at: u32) -> vec4<u32> {
   return textureLoad(records, vec2<u32>(at % TEXELS, at / TEXELS), 0);

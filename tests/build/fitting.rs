@@ -224,16 +224,18 @@ fn a_fitted_solid_covers_its_source_or_as_much_as_asked() {
 #[test]
 fn the_number_of_threads_does_not_matter() {
     let mesh = wavy_ring();
-    let on = |threads: usize| {
+    let on = |threads: usize, primitives: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let (medial, report) = pool
             .expect("threads")
-            .install(|| built(&mesh, Quality::Balanced, 10, true));
+            .install(|| built(&mesh, Quality::Balanced, primitives, true));
         let bits =
             |s: &MedialSphere| [s.center.x, s.center.y, s.center.z, s.radius].map(f32::to_bits);
         let spheres: Vec<_> = medial.spheres().iter().map(bits).collect();
         let (edges, faces) = (medial.edges().to_vec(), medial.faces().to_vec());
         (spheres, edges, faces, report.hausdorff)
     };
-    assert_eq!(on(1), on(2));
+    for primitives in [10, 200] {
+        assert_eq!(on(1, primitives), on(2, primitives), "{primitives}");
+    }
 }
