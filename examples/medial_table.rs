@@ -10,9 +10,9 @@
 //!
 //! Writes Markdown, after each row. Lengths have the longest side of the source's box as the unit, as in
 //! the paper. H is measured with parry's triangle meshes, not with the builder's trees: at all vertices
-//! of both surfaces and at points on each that no fit has seen, so many that each stands for a square
-//! whose side, "apart", is less than H/4; the solid's boundary is drawn with triangles of a quarter of
-//! the error. "Before" is the builder's own measure of what it enclosed, by points that no fit has seen
+//! of both surfaces and at points on each that no fit has seen, so many that on the source each stands for
+//! a square whose side, "apart", is a fifth of the builder's error or less; the solid's boundary is drawn
+//! with triangles of a quarter of it. "Before" is the builder's own measure of what it enclosed, by points that no fit has seen
 //! either; uncovered and bloat are its own too, and ± is by how much a distance may exceed them between
 //! the points that it looked at. MB is the largest resident set during the build, where the system tells
 //! it (Linux), and what of it the builder's arrays are.
@@ -49,8 +49,10 @@ const TABLE_3: [(&str, [Real; 5]); 6] = [
 ];
 /// Points at which errors are looked for, on each surface, besides the vertices: at least.
 const POINTS: Real = 200_000.0;
-/// Distance of these points, in builder's errors. The boundary is larger than the source by less than
-/// what is between its square and that of a quarter.
+/// And at most: a minute of them.
+const MOST_POINTS: Real = 2.0e7;
+/// Side of the square that each of these points stands for, in builder's errors. On a boundary 1.56 times as
+/// large as the source it is a quarter.
 const APART: Real = 0.2;
 /// The solid's boundary is drawn no finer than this: four million triangles.
 const FINEST: Real = 0.0012;
@@ -177,7 +179,7 @@ fn row(
     let error = report.hausdorff.error();
     let spacing = (0.25 * error).max(FINEST * side);
     let area: Real = mesh.to_parry().triangles().map(|t| t.area()).sum();
-    let points = POINTS.max(area / (APART * error).powi(2));
+    let points = (area / (APART * error).powi(2)).clamp(POINTS, MOST_POINTS);
     let error = surface_error(&medial, mesh, spacing, points as usize).map(|e| e.largest() / side);
     let before = report.hausdorff_before_enclosure.map(|h| h.error() / side);
     let shown = |error: Option<Real>| error.map_or("–".into(), |e| format!("{e:.4}"));

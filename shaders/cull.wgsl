@@ -10,7 +10,8 @@
 @group(0) @binding(3) var primitives: texture_2d<u32>;
 // Of each two primitives whose balls meet their indices, and that of the mesh pair.
 @group(0) @binding(4) var<storage, read_write> meetings: array<vec4<u32>>;
-// What is known of each pair, 0 before; last how many primitive pairs meet, and how many mesh pairs are taken.
+// What is known of each pair, 0 before; last how many primitive pairs meet, and how many mesh pairs are
+// taken.
 @group(0) @binding(5) var<storage, read_write> answers: array<atomic<u32>>;
 
 // The first of two neighbouring nodes on either side; which of their four pairs are left to be looked at
@@ -93,10 +94,11 @@ fn look(a: Side, b: Side, reach: f32) {
 fn hand_on(pair: u32, whole: bool) {
   kept = select(0u, kept, whole);
   let at = atomicAdd(&answers[params.pairs], kept);
-  for (var k = 0u; k < kept && at + k < params.room; k++) {
+  var k = 0u;
+  for (; k < kept && at + k < params.room; k++) {
     meetings[at + k] = vec4<u32>(work[WALK_ROOM - 1u - k], pair, 0u);
   }
-  atomicStore(&answers[pair], select(GIVEN_UP, FREE + kept, whole && at + kept <= params.room));
+  atomicStore(&answers[pair], select(GIVEN_UP, FREE + kept, whole && k == kept));
 }
 
 @compute @workgroup_size(WALKS)

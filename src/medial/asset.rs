@@ -77,7 +77,7 @@ impl MedialMesh {
             counts.primitives,
         ]);
         out.numbers([parts.thickness]);
-        out.numbers(mass_numbers(&self.solid_mass_properties()));
+        out.numbers(mass_numbers(self.solid_mass_properties()));
         out.numbers(parts.source_mass.as_ref().map_or([0.0; MASS], mass_numbers));
         out.words([0]);
         for s in &parts.spheres {

@@ -62,7 +62,7 @@ impl Shell {
         shell
     }
 
-    /// Of a shape that the hull of these points holds, of which there are 64 at most.
+    /// Of a shape that the hull of these points holds, of which there are [`MOST`] at most.
     pub fn of_points(points: &[Vector]) -> Self {
         let count = points.len().min(MOST);
         Self {

@@ -1,4 +1,5 @@
-//! Near sphere pairs of two bodies at fixed poses: the points of contact manifolds.
+//! Near sphere pairs of two bodies at fixed poses: the points of contact manifolds. What a few directions
+//! keep apart ([`super::outline`]) is not searched.
 //!
 //! Each elementary test gives its nearest sphere pair, in contact along the line of centres
 //! (paper §4.5: "contact point and contact normal through the nearest sphere pair"). Where medial
@@ -189,7 +190,7 @@ impl<'a> PrimitivePair<'a> {
     /// Adds the sphere pairs within `margin`.
     pub(super) fn contacts(&self, margin: f64, found: &mut Vec<SpherePair>, counts: &mut Counts) {
         if let Some(crossing) = self.crossing() {
-            self.push_crossing(crossing, found);
+            self.push_crossing(crossing, margin, found);
             return;
         }
         let mut feature = 0;
@@ -252,9 +253,16 @@ impl<'a> PrimitivePair<'a> {
         (&a[..self.shares[0].spheres], &b[..self.shares[1].spheres])
     }
 
-    fn push_crossing(&self, crossing: slab_crossing::Crossing<f64>, found: &mut Vec<SpherePair>) {
+    fn push_crossing(
+        &self,
+        crossing: slab_crossing::Crossing<f64>,
+        margin: f64,
+        found: &mut Vec<SpherePair>,
+    ) {
         let (gap, n) = self.deepest();
-        found.push(self.across(crossing.point, gap, n));
+        if gap <= margin {
+            found.push(self.across(crossing.point, gap, n));
+        }
     }
 
     /// A contact whose points lie on both sides of a point.

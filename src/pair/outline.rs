@@ -1,6 +1,6 @@
 //! Two bodies as wholes: what of them a few directions keep apart. Along a direction all primitives of
-//! the first that end before the second begins are done with for the rest of the step, and so are those
-//! of the second that begin after the first ends; what is left of both gives the next direction. Most
+//! the first that end before the second begins are done with for the rest of the step (or for good, of
+//! bodies at rest), and so are those of the second that begin after the first ends; what is left of both gives the next direction. Most
 //! neighbours in a crowd are used up in a few rounds, and of those that touch little is left to search.
 //!
 //! On straight paths the gap of two sets of balls along a direction is concave in time (a least of linear
@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// Directions tried. With 6 a ninth more queries are begun in a heap of links, with 24 a twentieth fewer.
 const TRIES: usize = 12;
 
-/// Balls and primitives of a body on its motion, on straight paths, world frame.
+/// Balls and primitives of a body on its motion, on straight paths, or at rest; both bodies in one frame.
 pub struct Outline {
     /// When the motion starts, and how long it goes on, in seconds.
     times: [f64; 2],

@@ -182,8 +182,8 @@ impl Answers {
 
     /// Notes how deep the contacts of a pair are that were written just now, a length.
     pub fn note_depth(&self, depth: Real) {
-        self.depth
-            .fetch_max(depth.max(0.0).to_bits(), Ordering::Relaxed);
+        let depth = depth.max(0.0).abs();
+        self.depth.fetch_max(depth.to_bits(), Ordering::Relaxed);
     }
 
     /// The deepest noted since the last call.

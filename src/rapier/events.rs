@@ -83,7 +83,7 @@ struct Loop<'a> {
 }
 
 /// Finds and resolves the impacts on the motions of `snapshot`, which is at the bodies' last poses
-/// afterwards. No contact in the narrow phase is deeper than `depth`.
+/// afterwards. No contact of a medial collider in the narrow phase is deeper than `depth`.
 pub fn resolve(
     snapshot: &mut Snapshot,
     asker: Asker,

@@ -4,9 +4,8 @@ use crate::math::{Real, Vector};
 use parry3d::bounding_volume::Aabb;
 use wide::f32x8;
 
-/// All pairs of boxes that meet, the lower index first. The sweep goes along the axis on which their
-/// centres spread most: heaps may be towers. Of what it finds, eight at a time are looked at along the
-/// other two.
+/// All pairs of boxes that meet, the lower index first, eight at a time. The sweep goes along the axis on
+/// which their centres spread most: heaps may be towers.
 pub fn meeting(boxes: &[Aabb]) -> Vec<[usize; 2]> {
     let axis = widest(boxes);
     let mut order: Vec<usize> = (0..boxes.len()).collect();
@@ -23,21 +22,21 @@ pub fn meeting(boxes: &[Aabb]) -> Vec<[usize; 2]> {
         order.chunks(8).map(eight).collect()
     };
     // NaN meets nothing.
-    let others = [1, 2].map(|k| {
+    let sides = [0, 1, 2].map(|k| {
         let axis = (axis + k) % 3;
         (axis, eights(|b| b.mins, axis), eights(|b| b.maxs, axis))
     });
-    let mins = eights(|b| b.mins, axis);
+    let (_, mins, _) = &sides[0];
     let mut pairs = Vec::new();
     for (n, &i) in order.iter().enumerate() {
         let a = &boxes[i];
         let end = f32x8::splat(a.maxs[axis]);
         for e in (n + 1) / 8..mins.len() {
             let mut meet = mins[e].simd_le(end);
-            if n + 1 <= 8 * e && meet.to_bitmask() == 0 {
+            if n < 8 * e && meet.to_bitmask() == 0 {
                 break;
             }
-            for (axis, mins, maxs) in &others {
+            for (axis, mins, maxs) in &sides {
                 meet = meet
                     & mins[e].simd_le(f32x8::splat(a.maxs[*axis]))
                     & maxs[e].simd_ge(f32x8::splat(a.mins[*axis]));

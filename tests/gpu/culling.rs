@@ -9,8 +9,9 @@ use pollster::block_on;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::batch::Sweep;
 use rapier3d_medial::batch::gpu::layout::MOST_MEETINGS;
-use rapier3d_medial::batch::gpu::{Gpu, Proposal};
-use rapier3d_medial::math::{Pose, Vector};
+use rapier3d_medial::batch::gpu::{Gpu, GpuOptions, Proposal};
+use rapier3d_medial::error::GpuError;
+use rapier3d_medial::math::{Pose, Real, Vector};
 use rapier3d_medial::{MedialMesh, MedialPrimitive, MedialSphere};
 
 struct Drawn {
@@ -272,4 +273,40 @@ fn large_coordinates_cost_nothing() {
         motion.start.translation.x += 8192.0;
     }
     assert_eq!(propose(&mut gpu, &drawn), near);
+}
+
+/// A batch that is too large, whose meshes made the nodes' texture grow, and then one that fits: it is told of
+/// its own meshes.
+#[test]
+fn what_grew_for_a_batch_that_failed_is_used_by_the_next() {
+    let options = GpuOptions {
+        binding_bytes: 1 << 17,
+        ..scene::options()
+    };
+    let Some(mut gpu) = scene::gpu(options) else {
+        return;
+    };
+    let balls = |count: u8, apart: Real, radius: Real| {
+        let ball = |k| MedialSphere::new(Vector::X * (apart * Real::from(k)), radius);
+        MedialMesh::new((0..count).map(ball).collect(), vec![], vec![]).expect("balls")
+    };
+    let (small, large) = (balls(3, 10.0, 0.01), balls(250, 0.01, 1.0));
+    let beside = NonlinearRigidMotion::constant_position(Pose::from_translation(Vector::Y * 0.5));
+    let sweep = |mesh| Sweep {
+        meshes: [mesh, mesh],
+        motions: [NonlinearRigidMotion::identity(), beside],
+        seconds: 0.0,
+        reach: 0.0,
+    };
+    let mut said = Vec::new();
+    block_on(gpu.propose(&[sweep(&small)], &mut said)).expect("proposals");
+    assert_eq!(said, [Proposal::Free]);
+    let many = vec![sweep(&large); 600];
+    let refused = block_on(gpu.propose(&many, &mut said));
+    assert!(
+        matches!(refused, Err(GpuError::TooLarge { .. })),
+        "{refused:?}"
+    );
+    block_on(gpu.propose(&many[..1], &mut said)).expect("proposals");
+    assert_ne!(said, [Proposal::Free]);
 }

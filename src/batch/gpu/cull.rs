@@ -56,6 +56,8 @@ impl Cull {
         pairs: &[Pair],
         meshes: &mut Meshes,
     ) -> Result<(), GpuError> {
+        // Of what may be replaced some may be, before there is no room for the rest.
+        let bound = std::mem::replace(&mut self.bound, false);
         let (nodes, primitives) = (&meshes.nodes[..], &meshes.primitives[..]);
         let moved = self.nodes.reserve(context, size_of_val(nodes))?
             | self.primitives.reserve(context, size_of_val(primitives))?;
@@ -67,7 +69,7 @@ impl Cull {
         let fresh = self.pairs.reserve(context, size_of_val(pairs))?
             | self.meetings.reserve(context, meetings as u64)?
             | self.answers.reserve(context, answers as u64)?;
-        if moved || fresh || !self.bound {
+        if moved || fresh || !bound {
             // As they are bound.
             let resources = [
                 self.params.bound(),
@@ -80,8 +82,8 @@ impl Cull {
             for stage in &mut self.stages {
                 stage.bind(context, &resources);
             }
-            self.bound = true;
         }
+        self.bound = true;
         Ok(())
     }
 

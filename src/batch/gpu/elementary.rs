@@ -77,16 +77,18 @@ impl Elementary {
         let params = bytemuck::bytes_of(&params);
         let queries = paths.len() * QUERY;
         let answers = paths.len() * size_of::<u32>();
+        // As for mesh pairs.
+        let bound = std::mem::replace(&mut self.bound, false);
         let fresh = self.queries.reserve(context, queries)?
             | self.answers.reserve(context, answers as u64)?;
-        if fresh || !self.bound {
+        if fresh || !bound {
             let [params, answers] = [&self.params, &self.answers].map(Growing::bound);
             let resources = [params, self.queries.bound(), answers];
             for stage in &mut self.stages {
                 stage.bind(context, &resources);
             }
-            self.bound = true;
         }
+        self.bound = true;
         let to_params = Target::Buffer(&self.params.buffer, 0);
         let to_queries = Target::Rows(&self.queries, 0);
         let sizes = [to_params.room(params.len()), to_queries.room(queries)];

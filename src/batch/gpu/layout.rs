@@ -98,8 +98,9 @@ twins! {
     }
 }
 
-/// A test or a mesh pair that is proven free in the whole step; not 0, which no shader wrote. Of a mesh
-/// pair it is more by each primitive pair that has not been proven: what is not looked at stays open.
+/// A test or a mesh pair that is proven free in the whole step; not 0, which is what no shader has written.
+/// Of a mesh pair it is more by each primitive pair that has not been proven: what is not looked at stays
+/// open.
 pub const FREE: u32 = 1;
 /// It is not; or less, by the proofs of other primitive pairs.
 pub const OPEN: u32 = 1 << 30;
@@ -127,8 +128,13 @@ const WALK_LOOKS: u32 = 1024;
 /// fetched for one thread at a time; more, and threads that are done wait longer.
 const WALK_STRETCH: u32 = 12;
 /// Mesh pairs that a thread takes at most: lavapipe ends loops, whatever they do, after 65,535 rounds of
-/// all that a thread runs.
-pub const WALK_PAIRS: usize = 64;
+/// all that a thread runs, or that its neighbours run while it waits.
+pub const WALK_PAIRS: usize = 24;
+const _: () = {
+    // Looks, and stretches of them; what it hands on, while neighbours wait, of which each may.
+    let rounds = WALK_LOOKS + 2 * WALK_LOOKS.div_ceil(WALK_STRETCH) + WALKS as u32 * WALK_ROOM;
+    assert!(WALK_PAIRS as u32 * rounds < 65_535);
+};
 /// Primitive pairs that a thread proves at most, for the same reason.
 pub const PROOFS: usize = 1024;
 /// Up to this ratio of their radii two nodes are split together, as on the CPU.

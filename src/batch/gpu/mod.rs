@@ -39,9 +39,10 @@ pub struct GpuCounts {
     pub submissions: u64,
     /// Times that answers were mapped and waited for.
     pub maps: u64,
-    /// Mesh pairs, or pieces of their step, of which too much meets to be looked at there.
+    /// Mesh pairs, or pieces of their step, of which too much meets to be looked at there, or that it never
+    /// took up.
     pub given_up: u64,
-    /// Buffers made since the device was opened: constant in steps like those before.
+    /// Buffers and textures made since the device was opened: constant in steps like those before.
     pub buffers_made: u64,
     /// Groups of bindings made since then: likewise.
     pub bindings_made: u64,
