@@ -286,11 +286,11 @@ fn what_grew_for_a_batch_that_failed_is_used_by_the_next() {
     let Some(mut gpu) = scene::gpu(options) else {
         return;
     };
-    let balls = |count: u8, apart: Real, radius: Real| {
+    let balls = |count: u16, apart: Real, radius: Real| {
         let ball = |k| MedialSphere::new(Vector::X * (apart * Real::from(k)), radius);
         MedialMesh::new((0..count).map(ball).collect(), vec![], vec![]).expect("balls")
     };
-    let (small, large) = (balls(3, 10.0, 0.01), balls(250, 0.01, 1.0));
+    let (small, large) = (balls(3, 10.0, 0.01), balls(600, 0.01, 1.0));
     let beside = NonlinearRigidMotion::constant_position(Pose::from_translation(Vector::Y * 0.5));
     let sweep = |mesh| Sweep {
         meshes: [mesh, mesh],
