@@ -33,7 +33,7 @@ pub fn nearest_in_family<S: Scalar>(domain: Domain, f: &Family<S>) -> Nearest<S>
     }
 }
 
-/// Whether the spheres of a cone–cone test are certainly further than `margin` from each other, in a fifth
+/// Whether the spheres of a cone–cone test are certainly further than `margin` from each other, in half
 /// of the time of [`nearest_in_family`]: proven by the direction between the nearest points of the axes
 /// ([`certificate::lower_bound`]), found by solving for one parameter after the other.
 pub fn is_beyond<S: Scalar>(f: &Family<S>, margin: S) -> bool {

@@ -1,7 +1,8 @@
 //! Two bodies as wholes: what of them a few directions keep apart. Along a direction all primitives of
 //! the first that end before the second begins are done with for the rest of the step (or for good, of
-//! bodies at rest), and so are those of the second that begin after the first ends; what is left of both gives the next direction. Most
-//! neighbours in a crowd are used up in a few rounds, and of those that touch little is left to search.
+//! bodies at rest), and so are those of the second that begin after the first ends; what is left of both
+//! gives the next direction. Most neighbours in a crowd are used up in a few rounds, and of those that
+//! touch little is left to search.
 //!
 //! On straight paths the gap of two sets of balls along a direction is concave in time (a least of linear
 //! functions less a greatest): between two times it is no less than the chord of its values there. Where
