@@ -19,10 +19,23 @@ pub fn nearest_in_test<S: Scalar>(
 }
 
 /// The difference of both sides of an elementary test of two primitives.
+#[inline]
 pub fn family<S: Scalar>(test: &ElementaryTest, a: &[Ball<S>], b: &[Ball<S>]) -> Family<S> {
-    let y = test.corners.map(|(i, j)| b[j as usize].0 - a[i as usize].0);
-    let radius = test.corners.map(|(i, j)| a[i as usize].1 + b[j as usize].1);
-    cone_cone::family(&y, &radius)
+    let corner = |k: usize| {
+        let (i, j) = test.corners[k];
+        let (p, q) = (a[i as usize], b[j as usize]);
+        (q.0 - p.0, p.1 + q.1)
+    };
+    // The fourth corner follows from these.
+    let ((w, r0), (y1, r1), (y2, r2)) = (corner(0), corner(1), corner(2));
+    Family {
+        w,
+        u: y1 - w,
+        v: y2 - w,
+        r0,
+        da: r1 - r0,
+        db: r2 - r0,
+    }
 }
 
 /// The nearest spheres of a family.

@@ -146,6 +146,7 @@ impl Placement {
             translation: Vec3::from_vector(pose.translation),
         }
     }
+    #[inline]
     pub(super) fn point(&self, local: Vector) -> Vec3<f64> {
         let v = Vec3::<f64>::from_vector(local);
         let [x, y, z] = self.rotation;
@@ -175,12 +176,13 @@ impl<'a> PrimitivePair<'a> {
     ) -> Self {
         let (a, share_a) = body1.primitive(indices[0]);
         let (b, share_b) = body2.primitive(indices[1]);
-        let ball = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
+        let first = |s: &MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
+        let second = |s: &MedialSphere| (place.point(s.center), f64::from(s.radius));
         Self {
             indices,
             balls: [
-                a.map(ball),
-                b.map(|s| (place.point(s.center), f64::from(s.radius))),
+                [first(&a[0]), first(&a[1]), first(&a[2])],
+                [second(&b[0]), second(&b[1]), second(&b[2])],
             ],
             shares: [share_a, share_b],
             place,
@@ -298,7 +300,7 @@ impl<'a> PrimitivePair<'a> {
         let point2 = b.0 - normal * b.1;
         let near = SAME_POINT * (a.1 + b.1);
         let seen = found.iter().rev().any(|c| {
-            (Vec3::<f64>::from_vector(c.points[0]) - point1).length() <= near
+            (Vec3::<f64>::from_vector(c.points[0]) - point1).length_sq() <= near * near
                 && Vec3::<f64>::from_vector(c.normal).dot(normal) >= SAME_PATCH
         });
         if !seen {

@@ -31,10 +31,6 @@ const AHEAD: Real = 1.0;
 /// in the other, or past it.
 const REACH: Real = 0.25;
 
-/// How fast a body may be pushed on, in units of the speed of what pushes it: a light one struck by a heavy
-/// one, at full restitution.
-const PUSHED_ON: Real = 2.0;
-
 /// A collider at the start of a step.
 pub struct Start {
     /// The motion its velocities announce.
@@ -47,7 +43,7 @@ pub struct Start {
     skin: Real,
     /// Whether the user has a hook on its solver contacts.
     pub modified: bool,
-    /// Speed of what may push it ([`super::pushes`]).
+    /// How fast it may be pushed ([`super::pushes`]).
     pub pushed: Real,
 }
 
@@ -134,15 +130,21 @@ pub fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
 }
 
 /// How far two colliders may move against each other in the step, by their velocities, gravity, forces and
-/// what is near them, after what they may have moved before rapier asks. Beside joints it has no bound.
+/// what is near them, or have moved before rapier asks. Beside joints it has no bound. A pair that had moved
+/// so far towards each other, and is pushed on in that very step, gets into each other by as much at most,
+/// and is computed in the next.
 fn way(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
     let dt = parameters.dt;
     let [a, b] = starts.map(|s| s.acceleration);
     // Either may be held by something.
     let pull = a.length().max(b.length()).max(a.distance(b));
+    // What falls for `s` substeps of `dt / s`, each after its velocity has changed, falls this much of
+    // `pull dt²`.
+    let substeps = parameters.num_solver_iterations.max(1) as Real;
+    let fallen = (substeps + 1.0) / (2.0 * substeps);
     let kept = parameters.contact_recycle_distance();
-    let pushed = PUSHED_ON * starts[0].pushed.max(starts[1].pushed);
-    kept + pull * dt * dt + (pushed + closing(starts)) * dt
+    let pushed = starts[0].pushed.max(starts[1].pushed) * dt;
+    kept.max(pushed) + pull * fallen * dt * dt + closing(starts) * dt
 }
 
 /// From where contacts computed ahead have to be brought back to.
