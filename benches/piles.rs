@@ -5,12 +5,16 @@
 //! cargo bench --bench piles                    # 30, 200 and 1,000 rings: minutes
 //! cargo bench --bench piles -- --rings 30 --recycle 0.01
 //! cargo bench --bench piles -- --settle 900    # steps before the first turn
-//! cargo bench --bench piles -- --heap 1        # other rings tilted
+//! cargo bench --bench piles -- --heaps 7       # of how many heaps the ratio is told
 //! ```
+//!
+//! What a heap costs depends on whether something in it still rolls, more than on what it is made of. So
+//! of all kinds one heap is shown, and of the decomposition the ratio over many, whose rings are tilted
+//! otherwise. Of 1,000 rings there is one heap.
 //!
 //! Every kind gets the same rings at the same places, rapier's defaults, and time to settle. Then
 //! the kinds take turns, nine times: the ratios of one turn are of the same minute of the machine.
-//! `--recycle` sets rapier's contact recycle distance after `attach`, which sets 0.005.
+//! `--recycle` sets rapier's contact recycle distance after `attach`, which sets 0.004.
 //! Hulls settle into another heap (they have no hole), so theirs is another scene of equal numbers.
 
 mod common;
@@ -31,6 +35,9 @@ const STEPS: usize = 30;
 const SETTLE: Real = 240.0;
 /// Above this many rings only the medial mesh, the hull and the decomposition run.
 const ALL_KINDS: usize = 30;
+/// Heaps, unless `--heaps` says otherwise, of up to [`MANY`] rings.
+const HEAPS: Real = 21.0;
+const MANY: usize = 200;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
@@ -86,7 +93,8 @@ struct Pile {
 }
 
 impl Pile {
-    /// Rings in layers of a square, tilted one by one, in a pen as wide as the square.
+    /// Rings in layers of a square, tilted one by one, in a pen as wide as the square. From the eighth heap on
+    /// they are tilted a little further.
     fn new(kind: Kind, rings: usize, heap: usize) -> Self {
         let mut world = PhysicsWorld::default();
         let side = if rings > 100 { 6 } else { 3 };
@@ -113,7 +121,8 @@ impl Pile {
                 0.6 + 0.5 * layer as Real,
                 at(place / side),
             );
-            let tilt = Vector::new(0.3, 0.0, 0.2) * (((k + heap) % 7) as Real - 3.0);
+            let further = 1.0 + 0.03 * (heap / 7) as Real;
+            let tilt = Vector::new(0.3, 0.0, 0.2) * (((k + heap) % 7) as Real - 3.0) * further;
             let body = RigidBodyBuilder::dynamic()
                 .pose(Pose::new(center, tilt))
                 .additional_mass_properties(mass)
@@ -180,10 +189,27 @@ impl Pile {
     }
 }
 
-fn piles(rings: usize) {
+/// Lets heaps of some kinds settle; then they take turns.
+fn run(rings: usize, heap: usize, kinds: impl Iterator<Item = Kind>) -> Vec<Pile> {
     let settle = argument("--settle").unwrap_or(SETTLE) as usize;
-    let heap = argument("--heap").unwrap_or(0.0) as usize;
-    println!("\n{rings} rings, heap {heap}, {TURNS} turns of {STEPS} steps, after {settle}");
+    let mut piles: Vec<Pile> = kinds.map(|kind| Pile::new(kind, rings, heap)).collect();
+    piles.iter_mut().for_each(|pile| pile.step(settle));
+    for _ in 0..TURNS {
+        piles.iter_mut().for_each(Pile::turn);
+    }
+    piles
+}
+
+/// Ratios of the times of two kinds, turn by turn: the median, and all in their order.
+fn ratios(medial: &Pile, other: &Pile) -> (f64, Vec<f64>) {
+    let turns = medial.milliseconds.iter().zip(&other.milliseconds);
+    let mut ratios: Vec<f64> = turns.map(|(m, p)| m / p).collect();
+    (median(&mut ratios), ratios)
+}
+
+/// All kinds, in one heap.
+fn kinds(rings: usize) {
+    println!("\n{rings} rings, heap 0, {TURNS} turns of {STEPS} steps");
     println!(
         "{:<24}{:>9}{:>9}{:>16}{:>11}{:>10}{:>13}  hash",
         "", "ms/step", "ratio", "spread", "manifolds", "contacts", "mean height"
@@ -191,17 +217,10 @@ fn piles(rings: usize) {
     let kinds = Kind::ALL
         .into_iter()
         .filter(|kind| rings <= ALL_KINDS || !matches!(kind, Kind::Triangles | Kind::Voxels));
-    let mut piles: Vec<Pile> = kinds.map(|kind| Pile::new(kind, rings, heap)).collect();
-    piles.iter_mut().for_each(|pile| pile.step(settle));
-    for _ in 0..TURNS {
-        piles.iter_mut().for_each(Pile::turn);
-    }
-    let medial = piles[0].milliseconds.clone();
+    let piles = run(rings, 0, kinds);
     for pile in &piles {
-        let ratios = medial.iter().zip(&pile.milliseconds).map(|(m, p)| m / p);
-        let mut ratios: Vec<f64> = ratios.collect();
-        let ratio = median(&mut ratios);
-        let spread = format!("{:.2} to {:.2}", ratios[0], ratios[TURNS - 1]);
+        let (ratio, all) = ratios(&piles[0], pile);
+        let spread = format!("{:.2} to {:.2}", all[0], all[TURNS - 1]);
         let (height, hash) = pile.state();
         let [manifolds, contacts] = pile.solved();
         println!(
@@ -210,6 +229,28 @@ fn piles(rings: usize) {
             median(&mut pile.milliseconds.clone()),
         );
     }
+}
+
+/// The medial mesh and the decomposition, in many heaps.
+fn heaps(rings: usize, count: usize) {
+    let mut hash = Hash::new();
+    let of_heap = |heap| {
+        let piles = run(rings, heap, [Kind::Medial, Kind::Decomposition].into_iter());
+        for x in piles.iter().flat_map(|pile| pile.state().1.into_bytes()) {
+            hash.add(x.into());
+        }
+        ratios(&piles[0], &piles[1]).0
+    };
+    let mut all: Vec<f64> = (0..count).map(of_heap).collect();
+    let middle = median(&mut all);
+    println!(
+        "to VHACD, {count} heaps: {middle:.2}, half of them {:.2} to {:.2}, all {:.2} to {:.2}  {}",
+        all[count / 4],
+        all[count - 1 - count / 4],
+        all[0],
+        all[count - 1],
+        hash.short()
+    );
 }
 
 /// The number after an argument of the command line.
@@ -222,5 +263,13 @@ fn main() {
     let wanted = argument("--rings").map(|n| n as usize);
     println!("{}; ratio: medial mesh to the row's", processor());
     let sizes = wanted.map_or(vec![30, 200, 1000], |n| vec![n]);
-    sizes.into_iter().for_each(piles);
+    for rings in sizes {
+        kinds(rings);
+        if rings <= MANY {
+            heaps(
+                rings,
+                argument("--heaps").unwrap_or(HEAPS).max(1.0) as usize,
+            );
+        }
+    }
 }

@@ -52,10 +52,9 @@ fn fast_bodies_whose_contacts_are_modified_pass_through_each_other() {
     assert!(missed > 8, "only {missed} of 16 are missed now");
 }
 
-/// rapier keeps what is known of a pair that has hardly moved, whatever comes near it meanwhile. A ball 9 mm
+/// rapier keeps what is known of a pair that has hardly moved, whatever comes near it meanwhile. A ball 6.5 mm
 /// above a plate has no contacts with it, and is struck by another that was far when that was computed: the
-/// push takes it into the plate before it is computed anew, in the next step. What pushes it further than a
-/// quarter of its thickness in a step is for the event loop.
+/// push takes it into the plate before it is computed anew, in the next step. What it takes further than a quarter of its thickness in a step is for the event loop.
 #[test]
 fn what_is_struck_by_something_new_gets_into_what_was_near() {
     let ball = MedialMesh::ball(0.1).expect("a ball");
@@ -71,8 +70,8 @@ fn what_is_struck_by_something_new_gets_into_what_was_near() {
             .insert(body, ColliderBuilder::medial_mesh(ball.clone()))
             .0
     };
-    let near = put(0.209, 0.03);
-    put(0.489, 1.2);
+    let near = put(0.2065, 0.03);
+    put(0.4865, 1.2);
     let mut pipeline = MedialPipeline::new(MedialOptions::default());
     pipeline.attach(&mut world);
     let depth = (0..40).map(|_| {
@@ -82,7 +81,7 @@ fn what_is_struck_by_something_new_gets_into_what_was_near() {
     let depths: Vec<Real> = depth.collect();
     let deepest = depths.iter().fold(Real::MIN, |a, b| a.max(*b));
     println!("{deepest} m deep, {} m after 40 steps", depths[39]);
-    assert!(deepest > 0.002, "only {deepest} m deep now");
+    assert!(deepest > 0.003, "only {deepest} m deep now");
     assert!(depths[39] < 0.001, "it stays {} m deep", depths[39]);
 }
 

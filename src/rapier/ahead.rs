@@ -43,7 +43,7 @@ pub struct Start {
     skin: Real,
     /// Whether the user has a hook on its solver contacts.
     pub modified: bool,
-    /// How fast it may be pushed ([`super::pushes`]).
+    /// Speed of what may push it ([`super::pushes`]).
     pub pushed: Real,
 }
 
@@ -121,30 +121,56 @@ fn closing([a, b]: [&Start; 2]) -> Real {
     (a.motion.linvel - b.motion.linvel).length() + a.swing() + b.swing()
 }
 
-/// Gap, without contact skins, that two colliders may close in the step: their [`way`], at most rapier's
-/// prediction distance.
+/// Gap, without contact skins, that two colliders may close before their contacts are computed again: their
+/// [`way`], at most rapier's prediction distance.
 pub fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
     parameters
         .prediction_distance()
         .min(way(starts, parameters))
 }
 
-/// How far two colliders may move against each other in the step, by their velocities, gravity, forces and
-/// what is near them, or have moved before rapier asks. Beside joints it has no bound. A pair that had moved
-/// so far towards each other, and is pushed on in that very step, gets into each other by as much at most,
-/// and is computed in the next.
+/// How far two colliders may move against each other before their contacts are computed again, by their
+/// velocities, gravity, forces and what is near them. Beside joints it has no bound.
+///
+/// Either in this step, in which something may push them (rapier lets nothing bounce before the poses are
+/// final, so no push is faster than what pushes), or in those in which rapier keeps their contacts. A pair
+/// that is kept, and pushed then, gets further.
 fn way(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
     let dt = parameters.dt;
     let [a, b] = starts.map(|s| s.acceleration);
     // Either may be held by something.
     let pull = a.length().max(b.length()).max(a.distance(b));
-    // What falls for `s` substeps of `dt / s`, each after its velocity has changed, falls this much of
-    // `pull dt²`.
+    let gains = pull * dt * dt;
     let substeps = parameters.num_solver_iterations.max(1) as Real;
-    let fallen = (substeps + 1.0) / (2.0 * substeps);
-    let kept = parameters.contact_recycle_distance();
+    let falls = gains * (substeps + 1.0) / (2.0 * substeps);
+    let closes = closing(starts) * dt;
     let pushed = starts[0].pushed.max(starts[1].pushed) * dt;
-    kept.max(pushed) + pull * fallen * dt * dt + closing(starts) * dt
+    let kept = parameters.contact_recycle_distance();
+    let unasked = unasked(closes, [gains, falls], kept);
+    (closes + falls + pushed).max(unasked)
+}
+
+/// How far a pair gets while rapier keeps its contacts: until the end of the last step at whose start it has
+/// moved by no more than `kept`. Without forces it closes by at most `closes` in a step; with them by `falls`
+/// more in the first one, and by `gains` more in each than in the one before.
+///
+/// After `n` steps that begin at `c <= closes` it has come `n c + (n (n - 1) / 2) gains + n falls`, and the
+/// next one adds `c + n gains + falls`: the most over all `c` and `n`. From [`STEPS`] on `n gains` is at most
+/// `√(2 kept gains)`, and `c` at most `kept / n`.
+fn unasked(closes: Real, [gains, falls]: [Real; 2], kept: Real) -> Real {
+    const STEPS: u8 = 4;
+    let mut furthest = kept;
+    let mut fallen = falls;
+    for n in (1..=STEPS).map(Real::from) {
+        if fallen > kept {
+            return furthest;
+        }
+        let steady = closes.min((kept - fallen) / n);
+        fallen += n * gains + falls;
+        furthest = furthest.max((n + 1.0) * steady + fallen);
+    }
+    let steady = closes.min(kept / Real::from(STEPS));
+    furthest.max(kept + steady + (2.0 * kept * gains).sqrt() + falls)
 }
 
 /// From where contacts computed ahead have to be brought back to.

@@ -3,7 +3,7 @@
 use super::ahead::{Ahead, Start, Starts};
 use super::hanging::{self, is_hooked};
 use super::items::{Item, Items, Sets};
-use super::pushes::{self, Pusher};
+use super::pushes;
 use super::recycled::{Place, Recycled};
 use super::sweep::meeting;
 use crate::batch::PairJob;
@@ -79,20 +79,17 @@ impl<'a> Scene<'a> {
         let start = |item: &Item| item.start(sets.gravity, sets.parameters.dt);
         let mut all: Vec<Start> = items.all.iter().map(start).collect();
         let mut boxes: Vec<Aabb> = items.all.iter().map(|item| item.aabb).collect();
-        let pusher = |(item, start): (&Item, &Start)| Pusher {
-            speed: match item.parent {
-                Some((body, _)) if pushes::is_tied(&sets, body) => Real::MAX,
-                _ => start.speed(),
-            },
-            restitution: item.collider.restitution(),
+        let speed = |(item, start): (&Item, &Start)| match item.parent {
+            Some((body, _)) if pushes::is_tied(&sets, body) => Real::MAX,
+            _ => start.speed(),
         };
-        let mut pushers: Vec<Pusher> = items.all.iter().zip(&all).map(pusher).collect();
-        for (aabb, pusher) in pushes::others(&sets) {
+        let mut speeds: Vec<Real> = items.all.iter().zip(&all).map(speed).collect();
+        for (aabb, speed) in pushes::others(&sets) {
             boxes.push(aabb);
-            pushers.push(pusher);
+            speeds.push(speed);
         }
         let met = meeting(&boxes);
-        let pushed = pushes::pushed(&pushers, &met);
+        let pushed = pushes::pushed(&speeds, &met);
         for (start, pushed) in all.iter_mut().zip(pushed) {
             start.pushed = pushed;
         }

@@ -14,17 +14,9 @@ use rapier3d::geometry::Collider;
 /// shares it out.
 const HANDED_ON: usize = 3;
 
-/// What pushes, and is pushed.
-#[derive(Clone, Copy)]
-pub struct Pusher {
-    /// Bound on the speed of its points.
-    pub speed: Real,
-    /// Its restitution.
-    pub restitution: Real,
-}
-
-/// Moving colliders that are not medial, with their boxes, as far as contacts are looked for.
-pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Pusher)> + 'a {
+/// Moving colliders that are not medial: their boxes, as far as contacts are looked for, and bounds on the
+/// speed of their points.
+pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Real)> + 'a {
     let moving = |collider: &Collider| {
         let handle = collider.parent()?;
         let body = sets.bodies.get(handle)?;
@@ -39,11 +31,7 @@ pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Pusher)> + 'a {
             false => linear.length() + angular.length() * arm,
         };
         let margin = sets.parameters.prediction_distance() + collider.contact_skin();
-        let pusher = Pusher {
-            speed,
-            restitution: collider.restitution(),
-        };
-        (speed > 0.0).then(|| (aabb.loosened(margin), pusher))
+        (speed > 0.0).then(|| (aabb.loosened(margin), speed))
     };
     sets.colliders
         .iter_enabled()
@@ -56,21 +44,15 @@ pub fn is_tied(sets: &Sets, body: RigidBodyHandle) -> bool {
         || sets.multibody_joints.rigid_body_link(body).is_some()
 }
 
-/// For each of some colliders the largest speed that gets to it over at most [`HANDED_ON`] pairs that are
-/// near each other. What is much lighter than what strikes it leaves at `1 + e` times its speed, where the
-/// pair's restitution `e` is at most the sum of both, by any of rapier's rules, and 1.
-pub fn pushed(pushers: &[Pusher], near: &[[usize; 2]]) -> Vec<Real> {
-    let mut reached: Vec<Real> = pushers.iter().map(|p| p.speed).collect();
-    let bounce = |[i, j]: [usize; 2]| {
-        let both = pushers[i].restitution + pushers[j].restitution;
-        1.0 + both.clamp(0.0, 1.0)
-    };
-    for hop in 0..HANDED_ON {
+/// For each of some colliders of these speeds the largest speed that gets to it over at most
+/// [`HANDED_ON`] pairs that are near each other.
+pub fn pushed(speeds: &[Real], near: &[[usize; 2]]) -> Vec<Real> {
+    let mut reached = speeds.to_vec();
+    for _ in 0..HANDED_ON {
         let before = reached.clone();
         for &[i, j] in near {
-            let bounced = if hop == 0 { bounce([i, j]) } else { 1.0 };
-            reached[i] = reached[i].max(bounced * before[j]);
-            reached[j] = reached[j].max(bounced * before[i]);
+            reached[i] = reached[i].max(before[j]);
+            reached[j] = reached[j].max(before[i]);
         }
     }
     reached
