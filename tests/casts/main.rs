@@ -14,3 +14,4 @@ mod shapes;
 mod solid;
 mod table;
 mod turns;
+mod way_out;
