@@ -4,6 +4,9 @@
 #[path = "build/broken.rs"]
 #[allow(dead_code)] // Shared with `tests/build`, which uses all of it.
 mod broken;
+#[path = "build/combined.rs"]
+#[allow(dead_code)]
+mod combined;
 #[path = "build/meshes.rs"]
 #[allow(dead_code)]
 mod meshes;
@@ -54,7 +57,8 @@ fn fast_bodies_whose_contacts_are_modified_pass_through_each_other() {
 
 /// rapier keeps what is known of a pair that has hardly moved, whatever comes near it meanwhile. A ball 6.5 mm
 /// above a plate has no contacts with it, and is struck by another that was far when that was computed: the
-/// push takes it into the plate before it is computed anew, in the next step. What it takes further than a quarter of its thickness in a step is for the event loop.
+/// push takes it into the plate before it is computed anew, in the next step. What it takes further than a
+/// quarter of its thickness in a step is for the event loop.
 #[test]
 fn what_is_struck_by_something_new_gets_into_what_was_near() {
     let ball = MedialMesh::ball(0.1).expect("a ball");
@@ -129,7 +133,7 @@ fn rapier_panics_when_a_compound_in_contact_gets_another_shape() {
 /// one over the gap. With 200 the error is 0.13 of the size.
 #[test]
 fn parts_of_a_mesh_in_hundreds_of_pieces_are_given_up() {
-    let mesh = broken::combined(56);
+    let mesh = combined::combined(56);
     let mut options = BuildOptions::default();
     options.primitives = Some(60);
     let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod broken;
+mod combined;
 mod corpus;
 mod delaunay;
 mod distance;
@@ -12,6 +13,7 @@ mod options;
 #[path = "../medial/oracle.rs"]
 #[allow(dead_code)] // Shared with `tests/medial`, which uses all of it.
 mod oracle;
+mod planted;
 mod scale;
 mod shapes;
 mod topology;
