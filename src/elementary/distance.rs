@@ -26,16 +26,9 @@ pub fn family<S: Scalar>(test: &ElementaryTest, a: &[Ball<S>], b: &[Ball<S>]) ->
         let (p, q) = (a[i as usize], b[j as usize]);
         (q.0 - p.0, p.1 + q.1)
     };
-    // The fourth corner follows from these.
-    let ((w, r0), (y1, r1), (y2, r2)) = (corner(0), corner(1), corner(2));
-    Family {
-        w,
-        u: y1 - w,
-        v: y2 - w,
-        r0,
-        da: r1 - r0,
-        db: r2 - r0,
-    }
+    let (p, q, r) = (corner(0), corner(1), corner(2));
+    // The fourth follows from these.
+    cone_cone::family(&[p.0, q.0, r.0, r.0], &[p.1, q.1, r.1, r.1])
 }
 
 /// The nearest spheres of a family.
