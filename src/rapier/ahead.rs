@@ -155,8 +155,8 @@ fn way(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
 /// more in the first one, and by `gains` more in each than in the one before.
 ///
 /// After `n` steps that begin at `c <= closes` it has come `n c + (n (n - 1) / 2) gains + n falls`, and the
-/// next one adds `c + n gains + falls`: the most over all `c` and `n`. From [`STEPS`] on `n gains` is at most
-/// `√(2 kept gains)`, and `c` at most `kept / n`.
+/// next one adds `c + n gains + falls`: the most over all `c` and `n`. Beyond `STEPS` of them `n gains` is at most
+/// `√(2 kept gains)`, since `falls` is half of `gains` or more, and `c` at most `kept / n`.
 fn unasked(closes: Real, [gains, falls]: [Real; 2], kept: Real) -> Real {
     const STEPS: u8 = 4;
     let mut furthest = kept;

@@ -26,9 +26,9 @@ use std::sync::Arc;
 use web_time::Instant;
 
 /// Contact recycle distance that [`MedialPipeline::attach`] sets, in units of rapier's length unit
-/// (rapier's own default is 0.05). Contacts that a pair can close in this distance, and in what its
-/// velocities add, are computed and solved; so a smaller distance takes more contact computations of
-/// fewer contacts. Contacts in which a body hangs are computed anew much sooner, whatever it is: rapier is
+/// (rapier's own default is 0.05). Contacts that a pair can close before it has moved by this
+/// distance, and in the step after, are computed and solved; so a smaller distance takes more contact
+/// computations of fewer contacts. Contacts in which a body hangs are computed anew much sooner, whatever it is: rapier is
 /// made to by bit 31 of the collider's hooks, which stays until the next step and calls no hook.
 pub const RECYCLE_DISTANCE: Real = 0.004;
 
