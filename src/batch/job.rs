@@ -5,7 +5,8 @@ use crate::math::tolerance::MAX_ITERATIONS;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
-use crate::pair::first_contact::Counts;
+pub use crate::pair::first_contact::ToiResult;
+use crate::pair::first_contact::{Counts, Query};
 use parry3d::query::NonlinearRigidMotion;
 
 /// One question of a batch. Answers depend on the job alone, never on the batch it is in.
@@ -110,29 +111,14 @@ pub struct ToiJob {
     pub options: ToiOptions,
 }
 
-/// Answer to a [`ToiJob`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ToiResult {
-    /// First contact, with the guarantee of [`crate::pair::first_contact()`].
-    pub toi: Toi,
-    /// Work it took.
-    pub counts: Counts,
-}
-
 impl Job for ToiJob {
     type Answer = ToiResult;
     /// A query takes from below a microsecond to some hundreds; small groups spread the long ones.
     const PER_THREAD: usize = 4;
     fn answer(&self) -> ToiResult {
-        let (toi, counts) = crate::pair::first_contact::first_contact_counted(
-            &self.mesh1,
-            &self.motion1,
-            &self.mesh2,
-            &self.motion2,
-            self.seconds,
-            &self.options,
-        );
-        ToiResult { toi, counts }
+        let motions = [&self.motion1, &self.motion2];
+        let bodies = (&self.mesh1, &self.mesh2);
+        Query::new(motions, bodies, self.seconds, &self.options, None).settle()
     }
     fn sweep(&self) -> Option<Sweep<'_>> {
         let options = &self.options;
@@ -156,6 +142,7 @@ impl Job for ToiJob {
         ToiResult {
             toi: Toi::separated(&self.options),
             counts: Counts::default(),
+            deepest: f64::INFINITY,
         }
     }
 }

@@ -8,7 +8,7 @@
 //! on a line.
 
 use super::first_contact::Counts;
-use super::outline::{Outline, apart_until};
+use super::outline;
 use super::volumes::Volumes;
 use crate::elementary::certificate::ActiveFace;
 use crate::elementary::distance::{crossing, deeper, family, is_beyond, nearest_in_family};
@@ -66,20 +66,8 @@ pub fn contacts(
         return (found, counts);
     }
     let place = Placement::new(pos12);
-    let left = match (body1.shell(), body2.shell()) {
-        (Some(shell1), Some(shell2)) => {
-            let a = Outline::resting(shell1, Vec3::from_vector);
-            let b = Outline::resting(shell2, |p| place.point(p));
-            let Some(apart) = apart_until(&a, &b, 0.0, prediction) else {
-                return (found, counts);
-            };
-            Some(apart.left)
-        }
-        _ => None,
-    };
-    let meet = |i: u32, j: u32| match &left {
-        Some([a, b]) => a.meets(i) && b.meets(j),
-        None => true,
+    let Some(near) = outline::near(body1, body2, |p| place.point(p), prediction) else {
+        return (found, counts);
     };
     let mut stack: Vec<[u32; 2]> = Vec::new();
     for i in 0..body1.roots() {
@@ -87,7 +75,7 @@ pub fn contacts(
     }
     let margin = f64::from(prediction);
     while let Some([i, j]) = stack.pop() {
-        if !meet(i, j) {
+        if !near.meet([i, j]) {
             continue;
         }
         counts.nodes += 1;

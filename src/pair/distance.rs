@@ -6,6 +6,7 @@
 
 use super::contacts::{Placement, PrimitivePair, SpherePair};
 use super::first_contact::Counts;
+use super::outline;
 use super::volumes::Volumes;
 use crate::math::lane::Vec3;
 use crate::math::{Pose, Real};
@@ -28,6 +29,20 @@ pub fn nearest_spheres(
     let place = Placement::new(pos12);
     let mut best: Option<SpherePair> = None;
     let mut limit = f64::from(max_distance);
+    // Directions tell little of what is far.
+    let size = if body1.roots() > 0 {
+        body1.bound(0).1
+    } else {
+        0.0
+    };
+    let near = if max_distance < size {
+        outline::near(body1, body2, |p| place.point(p), max_distance)
+    } else {
+        Some(outline::Near::default())
+    };
+    let Some(near) = near else {
+        return (None, counts);
+    };
     let mut heap = BinaryHeap::new();
     let entry = |i: u32, j: u32| {
         let (a, b) = (body1.bound(i), body2.bound(j));
@@ -46,8 +61,11 @@ pub fn nearest_spheres(
         if e.bound > limit {
             break;
         }
-        counts.nodes += 1;
         let [i, j] = e.nodes;
+        if !near.meet([i, j]) {
+            continue;
+        }
+        counts.nodes += 1;
         match (body1.below(i), body2.below(j)) {
             (Below::Primitive(p), Below::Primitive(q)) => {
                 found.clear();

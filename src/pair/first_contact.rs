@@ -45,9 +45,20 @@ pub fn first_contact_counted(
     seconds: Real,
     options: &ToiOptions,
 ) -> (Toi, Counts) {
-    let mut query = Query::new([motion1, motion2], (body1, body2), seconds, options, None);
-    query.search(1.0);
-    (query.toi(), query.counts())
+    let query = Query::new([motion1, motion2], (body1, body2), seconds, options, None);
+    let found = query.settle();
+    (found.toi, found.counts)
+}
+
+/// All that a query found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToiResult {
+    /// First contact, with the guarantee of [`first_contact()`].
+    pub toi: Toi,
+    /// Work it took.
+    pub counts: Counts,
+    /// As [`Query::deepest`]; −∞ where it is not known.
+    pub deepest: f64,
 }
 
 /// A query of [`first_contact`] that is taken only as far as its answer matters. Its answer is the same,
@@ -100,6 +111,16 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
         let free = self.search.as_mut().and_then(|s| s.run(until));
         self.settled = free.is_none();
         free.map(rounded_down)
+    }
+
+    /// Searches to the end.
+    pub fn settle(mut self) -> ToiResult {
+        self.search(1.0);
+        ToiResult {
+            toi: self.toi(),
+            counts: self.counts(),
+            deepest: self.deepest(),
+        }
     }
 
     /// Least signed distance at the start, a length, of primitives that touched then and were let sink in

@@ -9,6 +9,7 @@
 //! a direction gets no further, the next one is its mirror image at the line between the two balls that
 //! overlap most (Chung and Wang, "Quick collision detection of polytopes in virtual environments", 1996).
 
+use super::volumes::Volumes;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::{Real, Vector};
@@ -173,6 +174,35 @@ impl Left {
         let primitives = self.shell.nodes.get(node as usize);
         primitives.is_none_or(|p| p & self.primitives != 0)
     }
+}
+
+/// What of two bodies at rest may be near; by default all.
+#[derive(Default)]
+pub struct Near(Option<[Left; 2]>);
+
+impl Near {
+    /// Whether a node of each may be.
+    pub fn meet(&self, [i, j]: [u32; 2]) -> bool {
+        let left = self.0.as_ref();
+        left.is_none_or(|[a, b]| a.meets(i) && b.meets(j))
+    }
+}
+
+/// What of two bodies at rest may come within `reach` of each other; `None`: nothing. `place` puts points of
+/// the second in the frame of the first.
+pub fn near(
+    body1: &impl Volumes,
+    body2: &impl Volumes,
+    place: impl Fn(Vector) -> Vec3<f64>,
+    reach: Real,
+) -> Option<Near> {
+    let (Some(shell1), Some(shell2)) = (body1.shell(), body2.shell()) else {
+        return Some(Near::default());
+    };
+    let a = Outline::resting(shell1, Vec3::from_vector);
+    let b = Outline::resting(shell2, place);
+    let apart = apart_until(&a, &b, 0.0, reach)?;
+    Some(Near(Some(apart.left)))
 }
 
 /// How far two bodies are known to stay apart.

@@ -9,7 +9,8 @@ use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::mesh::Simplex;
 use crate::medial::{MedialMesh, MedialSphere};
-use crate::pair::first_contact::{Counts, first_contact_counted};
+use crate::pair::first_contact::{Counts, Query, ToiResult};
+use crate::pair::outline::Left;
 use crate::pair::{Volumes, nearest_spheres};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
@@ -47,16 +48,24 @@ pub struct Cast<'a> {
 }
 
 impl Cast<'_> {
-    /// First contact as the query tells it, with the mesh as first body; times are fractions of the
-    /// cast's. `options` take the place of the cast's own target and choice of contact at the start.
-    pub fn toi(&self, options: &ToiOptions) -> Result<(Toi, Counts), Unsweepable> {
+    /// First contact as the query tells it. `options` take the place of the cast's own target and choice of
+    /// contact at the start; where it is known what is `left` of both, no more of the mesh is looked at.
+    pub fn toi(
+        &self,
+        options: &ToiOptions,
+        left: Option<[Left; 2]>,
+    ) -> Result<ToiResult, Unsweepable> {
         let [start, end] = self.times;
         let motions = [self.motion1, self.motion2].map(|m| started(m, start));
         let finite = motions.iter().all(motion_is_finite);
         if !(finite && end >= start && (end - start).is_finite()) {
-            return Ok((Toi::bad_input(options), Counts::default()));
+            return Ok(ToiResult {
+                toi: Toi::bad_input(options),
+                counts: Counts::default(),
+                deepest: f64::INFINITY,
+            });
         }
-        self.query(&motions[0], &motions[1], end - start, options)
+        self.query(&motions[0], &motions[1], end - start, options, left)
     }
 
     /// The hit, with the mesh as first shape, or `None` if there is none.
@@ -73,7 +82,12 @@ impl Cast<'_> {
             target_distance: self.target_distance,
             ..ToiOptions::default()
         };
-        let (mut toi, mut counts) = self.query(&motion1, &motion2, seconds, &options)?;
+        let found = self.query(&motion1, &motion2, seconds, &options, None)?;
+        let ToiResult {
+            mut toi,
+            mut counts,
+            ..
+        } = found;
         let approach = (motion2.linvel - motion1.linvel).dot(toi.normal);
         let stop = self.stop_at_penetration || self.stop_approach && approach < 0.0;
         if toi.upper <= 0.0 && !stop {
@@ -83,10 +97,10 @@ impl Cast<'_> {
                 initial_contact: InitialContact::Deepen { by: FURTHER * core },
                 ..options
             };
-            let (other, more) = self.query(&motion1, &motion2, seconds, &deeper)?;
-            toi = other;
-            counts.nodes += more.nodes;
-            counts.tests += more.tests;
+            let further = self.query(&motion1, &motion2, seconds, &deeper, None)?;
+            toi = further.toi;
+            counts.nodes += further.counts.nodes;
+            counts.tests += further.counts.tests;
         }
         if toi.status == ToiStatus::Separated {
             return Ok((None, counts));
@@ -116,11 +130,10 @@ impl Cast<'_> {
         motion2: &NonlinearRigidMotion,
         seconds: Real,
         options: &ToiOptions,
-    ) -> Result<(Toi, Counts), Unsweepable> {
+        left: Option<[Left; 2]>,
+    ) -> Result<ToiResult, Unsweepable> {
         if let Some(other) = self.other.as_shape::<MedialMesh>() {
-            let (toi, counts) =
-                first_contact_counted(self.mesh, motion1, other, motion2, seconds, options);
-            return Ok((self.with_normal(toi, other, motion1, motion2), counts));
+            return Ok(self.search(other, motion1, motion2, seconds, options, left));
         }
         let region = swept_region(
             self.mesh,
@@ -134,24 +147,40 @@ impl Cast<'_> {
             return Err(Unsweepable);
         }
         let Parts { soup, turned, .. } = &parts;
-        let (toi, mut counts) =
-            first_contact_counted(self.mesh, motion1, soup, motion2, seconds, options);
-        let mut toi = self.with_normal(toi, soup, motion1, motion2);
-        toi.primitives[1] = parts.soup_subshape(toi.primitives[1]);
+        let mut found = self.search(soup, motion1, motion2, seconds, options, left);
+        found.toi.primitives[1] = parts.soup_subshape(found.toi.primitives[1]);
         if !turned.is_empty() {
             let (mut other, more) =
                 advance::first_contact(self.mesh, motion1, turned, motion2, seconds, options);
             other.primitives[1] = parts.turned_subshape(other.primitives[1]);
-            counts.nodes += more.nodes;
-            counts.tests += more.tests;
-            toi = earlier(toi, other);
+            found.counts.nodes += more.nodes;
+            found.counts.tests += more.tests;
+            found.toi = earlier(found.toi, other);
+            found.deepest = f64::NEG_INFINITY;
         }
         if options.initial_contact == InitialContact::Stop
             && let Some(inside) = self.starts_inside(motion1, motion2, options)
         {
-            return Ok((inside, counts));
+            found.toi = inside;
         }
-        Ok((toi, counts))
+        Ok(found)
+    }
+
+    fn search(
+        &self,
+        other: &impl Volumes,
+        motion1: &NonlinearRigidMotion,
+        motion2: &NonlinearRigidMotion,
+        seconds: Real,
+        options: &ToiOptions,
+        left: Option<[Left; 2]>,
+    ) -> ToiResult {
+        let (motions, bodies) = ([motion1, motion2], (self.mesh, other));
+        let found = Query::new(motions, bodies, seconds, options, left).settle();
+        ToiResult {
+            toi: self.with_normal(found.toi, other, motion1, motion2),
+            ..found
+        }
     }
 
     /// The overlap at the start, if a medial sphere's centre is inside the other then, deeper than the

@@ -10,12 +10,12 @@ use super::turned::Turned;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::Soup;
-use parry3d::bounding_volume::Aabb;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
 
-/// Size of a half-space's stand-in, in units of the reach of the motion: slabs of radius 0 in the
+/// Inner radius of a half-space's stand-in, in units of the reach of the motion: a slab of radius 0 in the
 /// half-space's plane, larger than anything the body can reach.
-const PLANE_REACH: Real = 4.0;
+const PLANE_REACH: Real = 2.0;
 
 /// What a shape is made of, in the shape's frame.
 #[derive(Clone, Debug, Default)]
@@ -58,6 +58,7 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
         return true;
     }
     let soup = &mut parts.soup;
+    let local = || region.transform_by(&pose.inverse());
     let point = |p: Vector| pose * p;
     let ball = |p: Vector, radius: Real| MedialSphere::new(point(p), radius);
     match shape.as_typed_shape() {
@@ -71,14 +72,16 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
             let i = &t.inner_shape;
             soup.push(&[i.a, i.b, i.c].map(|p| ball(p, t.border_radius)));
         }
-        TypedShape::Cuboid(c) => add_cuboid(soup, c, pose, 0.0),
-        TypedShape::RoundCuboid(c) => add_cuboid(soup, &c.inner_shape, pose, c.border_radius),
-        TypedShape::ConvexPolyhedron(c) => add_polyhedron(soup, c, pose, 0.0),
+        TypedShape::Cuboid(c) => add_cuboid(soup, c, pose, 0.0, &local()),
+        TypedShape::RoundCuboid(c) => {
+            add_cuboid(soup, &c.inner_shape, pose, c.border_radius, &local());
+        }
+        TypedShape::ConvexPolyhedron(c) => add_polyhedron(soup, c, pose, 0.0, region),
         TypedShape::RoundConvexPolyhedron(c) => {
-            add_polyhedron(soup, &c.inner_shape, pose, c.border_radius);
+            add_polyhedron(soup, &c.inner_shape, pose, c.border_radius, region);
         }
         TypedShape::TriMesh(m) => {
-            let local = region.transform_by(&pose.inverse());
+            let local = local();
             for i in m.bvh().intersect_aabb(&local) {
                 let t = m.triangle(i);
                 parts.soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
@@ -86,7 +89,7 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
             }
         }
         TypedShape::Polyline(l) => {
-            let local = region.transform_by(&pose.inverse());
+            let local = local();
             for i in l.bvh().intersect_aabb(&local) {
                 let s = l.segment(i);
                 parts.soup.push(&[ball(s.a, 0.0), ball(s.b, 0.0)]);
@@ -94,25 +97,26 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
             }
         }
         TypedShape::HeightField(h) => {
-            let local = region.transform_by(&pose.inverse());
+            let local = local();
             h.map_elements_in_local_aabb(&local, &mut |i, t| {
                 parts.soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
                 parts.name(i);
             });
         }
         TypedShape::Voxels(v) => {
-            let local = region.transform_by(&pose.inverse());
+            let local = local();
             let cube = Cuboid::new(v.voxel_size() * 0.5);
             for voxel in v.voxels_intersecting_local_aabb(&local) {
                 if !voxel.state.is_empty() {
                     let at = pose * Pose::from_translation(voxel.center);
-                    add_cuboid(&mut parts.soup, &cube, &at, 0.0);
+                    let near = region.transform_by(&at.inverse());
+                    add_cuboid(&mut parts.soup, &cube, &at, 0.0, &near);
                     parts.name(voxel.linear_id.flat_id() as u32);
                 }
             }
         }
         TypedShape::HalfSpace(plane) => {
-            let local = region.transform_by(&pose.inverse());
+            let local = local();
             add_plane(soup, plane, pose, &local);
         }
         TypedShape::Compound(c) => {
@@ -132,49 +136,96 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
     true
 }
 
-fn add_cuboid(soup: &mut Soup, cuboid: &Cuboid, pose: &Pose, border: Real) {
+/// The faces of a cuboid, as far as `region` (in its frame) meets them.
+fn add_cuboid(soup: &mut Soup, cuboid: &Cuboid, pose: &Pose, border: Real, region: &Aabb) {
     let h = cuboid.half_extents;
-    let corner = |i: usize| {
-        let sign = |bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
-        let local = Vector::new(sign(0) * h.x, sign(1) * h.y, sign(2) * h.z);
-        MedialSphere::new(pose * local, border)
-    };
-    // Each face by its four corners: bit k of a corner is its side along axis k.
-    const FACES: [[usize; 4]; 6] = [
-        [0, 2, 6, 4],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 3, 7, 6],
-        [0, 1, 3, 2],
-        [4, 5, 7, 6],
-    ];
-    for [a, b, c, d] in FACES {
-        soup.push(&[a, b, c].map(corner));
-        soup.push(&[a, c, d].map(corner));
-    }
-}
-
-fn add_polyhedron(soup: &mut Soup, hull: &ConvexPolyhedron, pose: &Pose, border: Real) {
-    let ring = hull.vertices_adj_to_face();
-    for face in hull.faces() {
-        let first = face.first_vertex_or_edge as usize;
-        let n = face.num_vertices_or_edges as usize;
-        let at =
-            |k: usize| MedialSphere::new(pose * hull.points()[ring[first + k] as usize], border);
-        for k in 1..n.saturating_sub(1) {
-            soup.push(&[at(0), at(k), at(k + 1)]);
+    for axis in 0..3 {
+        for side in [-h[axis], h[axis]] {
+            if side + border < region.mins[axis] || side - border > region.maxs[axis] {
+                continue;
+            }
+            let other = [(axis + 1) % 3, (axis + 2) % 3];
+            let at = |[x, y]: [Real; 2]| {
+                let mut local = Vector::splat(side);
+                (local[other[0]], local[other[1]]) = (x, y);
+                MedialSphere::new(pose * local, border)
+            };
+            let spans = other.map(|k| [region.mins[k] - border, region.maxs[k] + border]);
+            add_rectangle(soup, other.map(|k| h[k]), spans, at);
         }
     }
 }
 
-/// A square of the half-space's plane that `region` (in its frame) cannot look past, as two slabs.
+/// What of a rectangle about the origin of a plane is nearest to anything within `spans` along its two axes:
+/// one triangle where it has the room, two else. `at` puts a point of the plane in place.
+fn add_rectangle(
+    soup: &mut Soup,
+    half: [Real; 2],
+    spans: [[Real; 2]; 2],
+    at: impl Fn([Real; 2]) -> MedialSphere,
+) {
+    let mut sides = [[0.0; 2]; 2];
+    // Ends of the legs of a right triangle over both spans, where there is room for them.
+    let mut legs = [None; 2];
+    for k in 0..2 {
+        let (h, [least, most]) = (half[k], spans[k]);
+        if least > h || most < -h {
+            return;
+        }
+        let length = most - least;
+        let leg = 2.5 * length;
+        let [from, to] = [least - 0.125 * length, most + 0.125 * length];
+        legs[k] = if from >= -h && from + leg <= h {
+            Some([from, from + leg])
+        } else if to <= h && to - leg >= -h {
+            Some([to, to - leg])
+        } else {
+            None
+        };
+        sides[k] = [h.min(most + length), (-h).max(least - length)];
+    }
+    if let [Some([x, across]), Some([y, up])] = legs {
+        soup.push(&[[x, y], [across, y], [x, up]].map(at));
+        return;
+    }
+    let [[right, left], [top, bottom]] = sides;
+    let [a, b, c, d] = [[left, bottom], [right, bottom], [right, top], [left, top]].map(at);
+    soup.push(&[a, b, c]);
+    soup.push(&[a, c, d]);
+}
+
+/// The faces of a hull as triangles, as far as `region` (in the parts' frame) meets their boxes.
+fn add_polyhedron(
+    soup: &mut Soup,
+    hull: &ConvexPolyhedron,
+    pose: &Pose,
+    border: Real,
+    region: &Aabb,
+) {
+    let ring = hull.vertices_adj_to_face();
+    for face in hull.faces() {
+        let first = face.first_vertex_or_edge as usize;
+        let n = face.num_vertices_or_edges as usize;
+        let at = |k: usize| pose * hull.points()[ring[first + k] as usize];
+        for k in 1..n.saturating_sub(1) {
+            let corners = [at(0), at(k), at(k + 1)];
+            let face = Aabb::from_points(corners).loosened(border);
+            // A region that is not a number holds everything.
+            let apart = face.mins.cmpgt(region.maxs) | region.mins.cmpgt(face.maxs);
+            if !apart.any() {
+                soup.push(&corners.map(|p| MedialSphere::new(p, border)));
+            }
+        }
+    }
+}
+
+/// A triangle of the half-space's plane that `region` (in its frame) cannot look past.
 fn add_plane(soup: &mut Soup, plane: &HalfSpace, pose: &Pose, region: &Aabb) {
     let n = plane.normal;
     let foot = region.center() - n * n.dot(region.center());
     let reach = PLANE_REACH * (region.half_extents().length() + n.dot(region.center()).abs());
     let u = n.any_orthonormal_vector() * reach;
     let v = n.cross(u);
-    let at = |x: Real, y: Real| MedialSphere::new(pose * (foot + u * x + v * y), 0.0);
-    soup.push(&[at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0)]);
-    soup.push(&[at(-1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
+    let at = |[x, y]: [Real; 2]| MedialSphere::new(pose * (foot + u * x + v * y), 0.0);
+    soup.push(&[[0.0, 2.0], [-1.75, -1.0], [1.75, -1.0]].map(at));
 }

@@ -8,6 +8,7 @@ use super::recycled::{Place, Recycled};
 use super::sweep::meeting;
 use crate::batch::PairJob;
 use crate::math::Real;
+use crate::parry::answers::Key;
 use parry3d::bounding_volume::Aabb;
 use rapier3d::geometry::ColliderHandle;
 use std::collections::HashSet;
@@ -31,10 +32,13 @@ pub struct Candidates {
 /// Finds all near pairs of medial colliders: at least one of them dynamic and awake, not on the same
 /// body, groups compatible. The order of the two is the narrow phase's (lower collider index
 /// first).
-pub fn find(sets: Sets, recycled: &mut Recycled) -> Candidates {
+pub fn find(sets: Sets, recycled: &mut Recycled, muted: &HashSet<Key>) -> Candidates {
     let scene = Scene::new(sets);
     recycled.begin(sets.parameters);
-    let asked = |pair: &&[usize; 2]| recycled.needs_update(&scene.place(pair), scene.asked(pair));
+    let asked = |pair: &&[usize; 2]| {
+        let place = scene.place(pair);
+        recycled.needs_update(&place, scene.asked(pair)) && !scene.is_muted(pair, &place, muted)
+    };
     let asked = scene.pairs.iter().filter(asked);
     let (ahead, jobs) = asked.map(|pair| scene.at_the_end(pair)).unzip();
     let fresh = scene.items.all.iter().zip(&scene.fresh);
@@ -131,6 +135,11 @@ impl<'a> Scene<'a> {
             rotations: [a.pose.rotation, b.pose.rotation],
             reach: a.reach.max(b.reach),
         }
+    }
+
+    fn is_muted(&self, pair: &[usize; 2], place: &Place, muted: &HashSet<Key>) -> bool {
+        let [a, b] = self.of(pair);
+        !muted.is_empty() && muted.contains(&Key::new(a.mesh, b.mesh, &place.pos12))
     }
 
     fn asked(&self, pair: &[usize; 2]) -> bool {

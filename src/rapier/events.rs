@@ -220,7 +220,7 @@ impl Loop<'_> {
         }
         let met = self.response.met(pair);
         let (asker, deep) = (self.asker, self.is_deep(pair));
-        let Some(question) = asker.question(self.snapshot, pair, time, met, deep) else {
+        let Some(mut question) = asker.question(self.snapshot, pair, time, met, deep) else {
             return;
         };
         let medial = |k: &usize| self.snapshot.parts[*k].medial().is_some();
@@ -235,7 +235,8 @@ impl Loop<'_> {
         let reach = question.first.target_distance + question.first.tolerance;
         let outlines = &mut self.outlines;
         if let Some((until, left)) = outlines.apart_until(self.snapshot, pair, time, reach) {
-            let inquiry = Awaited::Answer(Inquiry::new(time, question, left));
+            question.left = left;
+            let inquiry = Awaited::Answer(Inquiry::new(time, question));
             self.waiting.insert(pair, until, inquiry);
         }
     }

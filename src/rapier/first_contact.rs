@@ -9,11 +9,14 @@
 use super::effects::{Effect, Effects, Wanted};
 use super::motion::Snapshot;
 use super::tuning::Tuning;
-use crate::batch::{ToiJob, ToiResult};
+use crate::batch::ToiJob;
 use crate::elementary::{InitialContact, Paths, Toi, ToiOptions, ToiStatus};
 use crate::math::{Real, Vector};
-use crate::pair::first_contact::{Counts, first_contact_counted};
+use crate::medial::MedialMesh;
+use crate::pair::first_contact::{Counts, Query, ToiResult};
+use crate::pair::outline::Left;
 use crate::parry::cast::Cast;
+use crate::parry::near::nearest;
 use parry3d::query::NonlinearRigidMotion;
 
 /// What a query found, and its price.
@@ -82,6 +85,8 @@ pub struct Question {
     pub first: ToiOptions,
     /// Asked for too where the pair is deep: what it must not sink below.
     pub floor: Option<ToiOptions>,
+    /// All of both that may come as near as is asked, where that is known.
+    pub left: Option<[Left; 2]>,
 }
 
 /// Asks for first contacts in a step of `dt` seconds.
@@ -187,11 +192,13 @@ impl Asker<'_> {
             Question {
                 first: options(target, tuning.sink * thickness),
                 floor: Some(floor),
+                left: None,
             }
         } else {
             Question {
                 first: floor,
                 floor: None,
+                left: None,
             }
         })
     }
@@ -224,121 +231,94 @@ impl Asker<'_> {
         known: Option<ToiResult>,
         work: &mut Work,
     ) -> Option<Hit> {
-        let known = known.map(|known| (known.toi, known.counts));
-        let mut hit = self.query(snapshot, pair, time, &question.first, known, work);
-        if let Some(floor) = &question.floor
-            && hit.is_none_or(|h| h.time > time)
-            && self.within(snapshot, pair, time, self.near_floor(snapshot, pair), work)
-        {
-            let other = self.query(snapshot, pair, time, floor, None, work);
-            hit = match (hit, other) {
-                (Some(a), Some(b)) if a.time <= b.time => Some(a),
-                (a, b) => b.or(a),
-            };
+        let motions = pair.map(|k| snapshot.motion(k, time));
+        let seconds = self.dt - time;
+        let mut query = |options: &ToiOptions, known: Option<ToiResult>| {
+            let left = question.left.as_ref();
+            let asked = || ask(snapshot, pair, &motions, seconds, options, left);
+            let found = known.or_else(asked)?;
+            work.begin(&motions, options);
+            work.add(found.counts);
+            Some((Hit::of(&found.toi, time, seconds), found.deepest))
+        };
+        let (hit, deepest) = query(&question.first, known)?;
+        let goes_on = hit.is_none_or(|h| h.time > time);
+        let deep = goes_on && self.is_deep(snapshot, pair, deepest);
+        let floor = question.floor.as_ref().filter(|_| deep);
+        match (hit, floor.and_then(|options| query(options, None)?.0)) {
+            (Some(a), Some(b)) if a.time <= b.time => Some(a),
+            (a, b) => b.or(a),
         }
-        hit
     }
 
-    /// Signed distance from which the floor is asked for: what touches less deep meets its own deeper target
-    /// first.
-    fn near_floor(&self, snapshot: &Snapshot, pair: [usize; 2]) -> Real {
-        (self.tuning.sink - self.tuning.floor) * snapshot.thickness(pair)
-    }
-
-    /// Whether what touches is deep enough for the floor, given its signed distance.
+    /// Whether what touches is so deep that the floor is asked for: what is less deep meets its own deeper
+    /// target first.
     pub fn is_deep(&self, snapshot: &Snapshot, pair: [usize; 2], distance: f64) -> bool {
-        let asked = within(snapshot, pair, self.near_floor(snapshot, pair));
-        distance <= f64::from(asked.target_distance + asked.tolerance)
+        let near_floor = (self.tuning.sink - self.tuning.floor) * snapshot.thickness(pair);
+        distance <= f64::from(reach(snapshot, pair, near_floor))
     }
 
     /// Whether the pair touches at the start of the step, so that the solver has it.
     pub fn touches(&self, snapshot: &Snapshot, pair: [usize; 2], work: &mut Work) -> bool {
-        let gap = self.gap(snapshot.thickness(pair));
-        self.within(snapshot, pair, 0.0, self.tuning.touching * gap, work)
-    }
-
-    /// Whether the surfaces are within `distance` of each other at `time`.
-    fn within(
-        &self,
-        snapshot: &Snapshot,
-        pair: [usize; 2],
-        time: Real,
-        distance: Real,
-        work: &mut Work,
-    ) -> bool {
-        let still = |m: NonlinearRigidMotion| NonlinearRigidMotion::constant_position(m.start);
-        let motions = pair.map(|k| still(snapshot.motion(k, time)));
-        let options = within(snapshot, pair, distance);
-        let answer = ask(snapshot, pair, &motions, 1.0, &options);
-        answer.is_some_and(|(toi, counts)| {
+        let gap = self.tuning.touching * self.gap(snapshot.thickness(pair));
+        let [start1, start2] = pair.map(|k| snapshot.motion(k, 0.0).start);
+        let [shape1, shape2] = pair.map(|k| &*snapshot.parts[k].shape);
+        let (mesh, other, pos12) = match shape1.as_shape::<MedialMesh>() {
+            Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2)),
+            None => (shape2.as_shape(), shape1, start2.inv_mul(&start1)),
+        };
+        let reach = reach(snapshot, pair, gap);
+        let found = mesh.and_then(|mesh| nearest(mesh, other, &pos12, reach).ok());
+        found.is_some_and(|(nearest, counts)| {
             work.add(counts);
-            toi.status != ToiStatus::Separated
+            nearest.is_some()
         })
-    }
-
-    /// One query from `time` on, or the answer that is known to it.
-    pub fn query(
-        &self,
-        snapshot: &Snapshot,
-        pair: [usize; 2],
-        time: Real,
-        options: &ToiOptions,
-        known: Option<(Toi, Counts)>,
-        work: &mut Work,
-    ) -> Option<Hit> {
-        let motions = pair.map(|k| snapshot.motion(k, time));
-        let seconds = self.dt - time;
-        let answer = known.or_else(|| ask(snapshot, pair, &motions, seconds, options));
-        let (toi, counts) = answer?;
-        work.begin(&motions, options);
-        work.add(counts);
-        Hit::of(&toi, time, seconds)
     }
 }
 
-/// Asks whether the surfaces are within `distance`.
-fn within(snapshot: &Snapshot, [i, j]: [usize; 2], distance: Real) -> ToiOptions {
-    ToiOptions {
-        target_distance: distance + snapshot.parts[i].skin + snapshot.parts[j].skin,
-        ..ToiOptions::default()
-    }
+/// Distance between two shapes, a length, up to which their surfaces count as `distance` apart, skins
+/// included.
+fn reach(snapshot: &Snapshot, [i, j]: [usize; 2], distance: Real) -> Real {
+    let skins = snapshot.parts[i].skin + snapshot.parts[j].skin;
+    distance + skins + ToiOptions::default().tolerance
 }
 
 /// The certified query for two colliders, one of them medial. `None` for shapes that cannot be swept.
 fn ask(
     snapshot: &Snapshot,
-    [i, j]: [usize; 2],
+    pair: [usize; 2],
     motions: &[NonlinearRigidMotion; 2],
     seconds: Real,
     options: &ToiOptions,
-) -> Option<(Toi, Counts)> {
-    let (p, q) = (&snapshot.parts[i], &snapshot.parts[j]);
-    let [m1, m2] = motions;
+    left: Option<&[Left; 2]>,
+) -> Option<ToiResult> {
+    let [p, q] = pair.map(|k| &snapshot.parts[k]);
     if let (Some(a), Some(b)) = (p.medial(), q.medial()) {
-        return Some(first_contact_counted(a, m1, b, m2, seconds, options));
+        let query = Query::new(motions.each_ref(), (a, b), seconds, options, left.cloned());
+        return Some(query.settle());
     }
     let flipped = p.medial().is_none();
-    let (mesh, other, m1, m2) = if flipped {
-        (q, p, m2, m1)
-    } else {
-        (p, q, m1, m2)
-    };
+    let order = if flipped { [1, 0] } else { [0, 1] };
+    let [mesh, other] = order.map(|k| [p, q][k]);
+    let [motion1, motion2] = order.map(|k| &motions[k]);
     let cast = Cast {
-        motion1: m1,
+        motion1,
         mesh: mesh.medial()?,
-        motion2: m2,
+        motion2,
         other: &*other.shape,
         times: [0.0, seconds],
         target_distance: options.target_distance,
         stop_at_penetration: true,
         stop_approach: false,
     };
-    let (mut toi, counts) = cast.toi(options).ok()?;
+    let left = left.map(|left| order.map(|k| left[k].clone()));
+    let mut found = cast.toi(options, left).ok()?;
     if flipped {
+        let toi = &mut found.toi;
         toi.normal = -toi.normal;
         toi.points.swap(0, 1);
         toi.spheres.swap(0, 1);
         toi.primitives.swap(0, 1);
     }
-    Some((toi, counts))
+    Some(found)
 }

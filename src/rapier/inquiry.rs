@@ -7,7 +7,6 @@ use crate::elementary::ToiOptions;
 use crate::math::Real;
 use crate::medial::MedialMesh;
 use crate::pair::first_contact::Query;
-use crate::pair::outline::Left;
 
 /// The medial meshes of both, where they are.
 pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
@@ -17,7 +16,6 @@ pub struct Inquiry<'m> {
     /// Seconds into the step.
     from: Real,
     question: Question,
-    left: Option<[Left; 2]>,
     begun: Option<Begun<'m>>,
 }
 
@@ -55,12 +53,11 @@ impl From<Option<Hit>> for Known {
 }
 
 impl<'m> Inquiry<'m> {
-    /// Nothing is looked at yet; `left` is all that may meet of two meshes.
-    pub fn new(from: Real, question: Question, left: Option<[Left; 2]>) -> Self {
+    /// Nothing is looked at yet.
+    pub fn new(from: Real, question: Question) -> Self {
         Self {
             from,
             question,
-            left,
             begun: None,
         }
     }
@@ -82,7 +79,7 @@ impl<'m> Inquiry<'m> {
             return hit.into();
         };
         let seconds = asker.dt - from;
-        let left = &self.left;
+        let left = &self.question.left;
         let begin = |options: &ToiOptions, work: &mut Work| {
             let motions = pair.map(|k| snapshot.motion(k, from));
             work.begin(&motions, options);

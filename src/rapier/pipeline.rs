@@ -269,38 +269,6 @@ impl MedialPipeline {
         let before = self.batch.report().clone();
         let clock = Instant::now();
         report.medial_colliders = items::make_unique(colliders);
-        let sets = Sets {
-            gravity,
-            parameters,
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            narrow_phase,
-        };
-        let found = candidates::find(sets, &mut self.recycled);
-        hanging::ask_anew(&found.fresh, colliders);
-        let mut results = self.batch.run(&found.jobs);
-        report.pairs = found.pairs;
-        report.jobs = found.jobs.len();
-        let jobs = found.jobs.iter().zip(&found.ahead);
-        for ((job, ahead), result) in jobs.clone().zip(&mut results) {
-            ahead.bring_back(result);
-            self.recycled.set_touching(job, !result.contacts.is_empty());
-            report.contacts += result.contacts.len();
-            report.culled_nodes += u64::from(result.counts.nodes);
-            report.elementary_tests += u64::from(result.counts.tests);
-        }
-        let keys = jobs.map(|(job, ahead)| ahead.key(job));
-        let answers = keys.zip(results);
-        let starts = found.starts;
-        let compute = Box::new(move |job| starts.contacts(job));
-        self.answers.replace(answers, compute);
-        self.answers.take_counts();
-        self.answers.take_depth();
-        report.batch_seconds = clock.elapsed().as_secs_f64();
-
-        let clock = Instant::now();
         self.effects.clean(colliders);
         let asker = Asker {
             effects: &self.effects,
@@ -325,12 +293,44 @@ impl MedialPipeline {
         let prediction = parameters.prediction_distance();
         let muted = muting::muted(&snapshot, &asker, &rules, prediction, &mut work);
         report.muted = muted.len();
+        report.mute_seconds = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        let sets = Sets {
+            gravity,
+            parameters,
+            bodies,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            narrow_phase,
+        };
+        let found = candidates::find(sets, &mut self.recycled, &muted);
+        hanging::ask_anew(&found.fresh, colliders);
+        let mut results = self.batch.run(&found.jobs);
+        report.pairs = found.pairs;
+        report.jobs = found.jobs.len();
+        let jobs = found.jobs.iter().zip(&found.ahead);
+        for ((job, ahead), result) in jobs.clone().zip(&mut results) {
+            ahead.bring_back(result);
+            self.recycled.set_touching(job, !result.contacts.is_empty());
+            report.contacts += result.contacts.len();
+            report.culled_nodes += u64::from(result.counts.nodes);
+            report.elementary_tests += u64::from(result.counts.tests);
+        }
+        let keys = jobs.map(|(job, ahead)| ahead.key(job));
+        let answers = keys.zip(results);
+        let starts = found.starts;
+        let compute = Box::new(move |job| starts.contacts(job));
+        self.answers.replace(answers, compute);
         self.answers.mute(muted);
         self.answers
             .give_one_point(self.effects.one_point(colliders));
+        self.answers.take_counts();
+        self.answers.take_depth();
         let speculators = Speculators::set(&snapshot, &self.effects, asker.unit, bodies);
         report.speculative = speculators.count();
-        report.mute_seconds = clock.elapsed().as_secs_f64();
+        report.batch_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
         let once = Once::new(events, &mut self.told);

@@ -2,6 +2,7 @@
 //! them.
 
 mod bearing;
+mod faces;
 mod flat;
 mod inside;
 mod linear;

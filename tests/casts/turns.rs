@@ -59,8 +59,9 @@ fn cast(floor: &SharedShape, at: Vector, turn: Real) -> (Toi, Counts) {
         stop_at_penetration: true,
         stop_approach: true,
     };
-    cast.toi(&ToiOptions::default())
-        .expect("rapier's own shape")
+    let found = cast.toi(&ToiOptions::default(), None);
+    let found = found.expect("rapier's own shape");
+    (found.toi, found.counts)
 }
 
 /// Height of the lower tip's sphere over the floor.

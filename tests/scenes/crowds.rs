@@ -142,63 +142,94 @@ fn full_heaps_sleep() {
     }
 }
 
-/// Milliseconds per step beside rapier's compounds in the same run, step by step in turn.
+/// What the steps of a heap cost, nothing asleep: ours, rapier's compounds, and the same medial meshes without
+/// the pipeline, step by step in turn.
+struct Cost {
+    /// Medians and means in milliseconds.
+    medians: [f64; 3],
+    means: [f64; 3],
+    /// Impacts, continuous queries, node pairs and elementary tests a step, and milliseconds of impacts.
+    counts: [f64; 5],
+}
+
+fn cost((_, shapes, grid): &Kind, speed: Real, seed: u64, steps: std::ops::Range<usize>) -> Cost {
+    let (mut ours, _) = throw(shapes, *grid, speed, seed, medial);
+    let (mut theirs, _) = throw(shapes, *grid, speed, seed, compound);
+    let (mut plain, _) = throw(shapes, *grid, speed, seed, medial);
+    for world in [&mut ours, &mut theirs, &mut plain] {
+        for (_, body) in world.bodies.iter_mut() {
+            *body.activation_mut() = RigidBodyActivation::cannot_sleep();
+        }
+    }
+    let mut pipeline = attached(&mut ours);
+    let mut times = [vec![], vec![], vec![]];
+    let mut counts = [0.0; 5];
+    let count = steps.len() as f64;
+    for step in 0..steps.end {
+        let clock = Instant::now();
+        let report = pipeline.step(&mut ours);
+        let a = clock.elapsed();
+        theirs.step();
+        let b = clock.elapsed();
+        plain.step();
+        let c = clock.elapsed();
+        if !steps.contains(&step) {
+            continue;
+        }
+        for (times, time) in times.iter_mut().zip([a, b - a, c - b]) {
+            times.push(time.as_secs_f64() * 1.0e3);
+        }
+        let counted = [
+            report.events as f64,
+            report.continuous_queries as f64,
+            report.culled_nodes as f64,
+            report.elementary_tests as f64,
+            report.event_seconds * 1.0e3,
+        ];
+        (0..5).for_each(|k| counts[k] += counted[k] / count);
+    }
+    Cost {
+        means: times.each_ref().map(|t| t.iter().sum::<f64>() / count),
+        medians: times.map(|mut t| *middle(&mut t)),
+        counts,
+    }
+}
+
+fn middle(values: &mut [f64]) -> &f64 {
+    values.sort_by(f64::total_cmp);
+    &values[values.len() / 2]
+}
+
+/// Milliseconds per step, and their ratios to rapier's compounds and to rapier's plain step, over nine heaps:
+/// the median of a ratio and between which it lies.
 #[test]
 #[ignore = "a measurement"]
 fn full_heaps_cost() {
-    for (name, shapes, grid) in kinds().into_iter().take(2) {
-        for (speed, skipped, steps) in [(60.0, 0, 60), (5.0, 500, 100)] {
-            let (mut ours, _) = throw(&shapes, grid, speed, 902, medial);
-            let (mut theirs, _) = throw(&shapes, grid, speed, 902, compound);
-            let (mut plain, _) = throw(&shapes, grid, speed, 902, medial);
-            for world in [&mut ours, &mut theirs, &mut plain] {
-                for (_, body) in world.bodies.iter_mut() {
-                    *body.activation_mut() = RigidBodyActivation::cannot_sleep();
-                }
+    for kind in kinds().iter().take(2) {
+        for (speed, steps) in [(60.0, 0..60), (5.0, 500..600)] {
+            println!("{}, {speed} m/s, steps {steps:?}", kind.0);
+            let mut ratios = [vec![], vec![]];
+            for seed in 902..911 {
+                let Cost {
+                    medians,
+                    means,
+                    counts: [events, queries, nodes, tests, loops],
+                } = cost(kind, speed, seed, steps.clone());
+                println!(
+                    "  medial, compound, medial without the pipeline: {medians:.2?} ms, means {means:.2?}; \
+                     a step {events:.0} impacts, {queries:.0} continuous queries, {nodes:.0} node pairs, \
+                     {tests:.0} tests, {loops:.2} ms of impacts"
+                );
+                ratios[0].push(medians[0] / medians[1]);
+                ratios[1].push(medians[0] / medians[2]);
             }
-            let mut pipeline = attached(&mut ours);
-            let mut times = [vec![], vec![], vec![]];
-            let mut counts = [0.0; 5];
-            for step in 0..skipped + steps {
-                let clock = Instant::now();
-                let report = pipeline.step(&mut ours);
-                let a = clock.elapsed();
-                theirs.step();
-                let b = clock.elapsed();
-                plain.step();
-                let c = clock.elapsed();
-                if step >= skipped {
-                    let all = [a, b - a, c - b].map(|t| t.as_secs_f64() * 1.0e3);
-                    (0..3).for_each(|k| times[k].push(all[k]));
-                    let counted = [
-                        report.events as f64,
-                        report.continuous_queries as f64,
-                        report.culled_nodes as f64,
-                        report.elementary_tests as f64,
-                        report.event_seconds * 1.0e3,
-                    ];
-                    (0..5).for_each(|k| counts[k] += counted[k] / steps as f64);
-                }
+            for (mut ratios, to) in ratios.into_iter().zip(["compounds", "rapier's plain step"]) {
+                let median = *middle(&mut ratios);
+                let [least, .., most] = &ratios[..] else {
+                    continue;
+                };
+                println!("  {median:.2} of {to} ({least:.2} to {most:.2})");
             }
-            let means = times
-                .each_ref()
-                .map(|t| t.iter().sum::<f64>() / steps as f64);
-            let [a, b, c] = times.map(|mut t| {
-                t.sort_by(f64::total_cmp);
-                t[t.len() / 2]
-            });
-            let [events, queries, nodes, tests, loops] = counts;
-            println!(
-                "a step: {events:.0} impacts, {queries:.0} continuous queries, {nodes:.0} node pairs, \
-                 {tests:.0} tests, {loops:.2} ms of impacts; means {means:.2?} ms"
-            );
-            println!(
-                "{name}, {speed} m/s, steps {skipped} to {}: medial {a:.2} ms, compound {b:.2}, \
-                 medial without the pipeline {c:.2}: ratios {:.2} and {:.2}",
-                skipped + steps,
-                a / b,
-                a / c
-            );
         }
     }
 }

@@ -1,0 +1,209 @@
+//! Casts and distances of loose spheres against boxes of any size, near their edges and corners: of a wide face
+//! only what can be reached is looked at. The distance of a point to a box is a closed form, so that the oracle
+//! marches in `f64`, and no step of it is longer than what is left of that distance.
+
+use crate::rng::Rng;
+use crate::rotating::{rotation, vector};
+use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
+use parry3d::math::{Pose, Real};
+use parry3d::query::{NonlinearRigidMotion, QueryDispatcher};
+use parry3d::shape::SharedShape;
+use rapier3d_medial::parry::MedialDispatcher;
+use rapier3d_medial::parry::cast::Cast;
+use rapier3d_medial::{MedialMesh, MedialSphere, ToiOptions, ToiStatus};
+
+const CASES: usize = 3_000;
+
+/// Longest step of the oracle's march close to contact: it looks between two moments no closer than a body moves
+/// meanwhile, 2e-5 of some metres per second.
+const SHORTEST: f64 = 2.0e-6;
+
+/// Rounding of `f32` coordinates, in units of the largest.
+const ROUNDING: f64 = 4.0e-6;
+
+fn wide(v: parry3d::math::Vector) -> Vector3<f64> {
+    Vector3::new(v.x.into(), v.y.into(), v.z.into())
+}
+
+/// A motion in double precision.
+struct Path {
+    center: Vector3<f64>,
+    local_center: Vector3<f64>,
+    rotation: UnitQuaternion<f64>,
+    linvel: Vector3<f64>,
+    angvel: Vector3<f64>,
+}
+
+impl Path {
+    fn new(motion: &NonlinearRigidMotion) -> Self {
+        let q = motion.start.rotation;
+        let [x, y, z, w] = [q.x, q.y, q.z, q.w].map(f64::from);
+        let rotation = UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z));
+        let local_center = wide(motion.local_center);
+        Self {
+            center: wide(motion.start.translation) + rotation * local_center,
+            local_center,
+            rotation,
+            linvel: wide(motion.linvel),
+            angvel: wide(motion.angvel),
+        }
+    }
+
+    fn at(&self, t: f64) -> nalgebra::Isometry3<f64> {
+        let rotation = UnitQuaternion::from_scaled_axis(self.angvel * t) * self.rotation;
+        let origin = self.center + self.linvel * t - rotation * self.local_center;
+        nalgebra::Isometry3::from_parts(Translation3::from(origin), rotation)
+    }
+}
+
+/// Some spheres, and a box of half extents `half`, rounded by `border`.
+struct Case {
+    spheres: Vec<MedialSphere>,
+    half: Vector3<f64>,
+    border: f64,
+    paths: [Path; 2],
+}
+
+impl Case {
+    fn distance(&self, t: f64) -> f64 {
+        let [body, other] = self.paths.each_ref().map(|path| path.at(t));
+        let seen = other.inv_mul(&body);
+        let of = |s: &MedialSphere| {
+            let p = (seen * Point3::from(wide(s.center))).coords;
+            let out = (p.abs() - self.half).map(|x| x.max(0.0));
+            out.norm() - self.border - f64::from(s.radius)
+        };
+        self.spheres.iter().map(of).fold(f64::MAX, f64::min)
+    }
+
+    /// Bound on the speed of any point of a sphere, seen from the box.
+    fn speed(&self) -> f64 {
+        let [body, other] = &self.paths;
+        let arm = |s: &MedialSphere| (wide(s.center) - body.local_center).norm();
+        let own = self.spheres.iter().map(arm).fold(0.0, f64::max);
+        let slide = body.linvel.norm() + other.linvel.norm();
+        let apart = (body.center - other.center).norm() + slide + own;
+        slide + body.angvel.norm() * own + other.angvel.norm() * apart
+    }
+
+    /// The least distance until `end`, or less than `target` where it falls below that.
+    fn least(&self, target: f64, end: f64) -> f64 {
+        let (mut t, mut least) = (0.0, f64::MAX);
+        let speed = self.speed();
+        loop {
+            let distance = self.distance(t);
+            least = least.min(distance);
+            if least < target || t >= end {
+                return least;
+            }
+            t = (t + ((distance - target) / speed).max(SHORTEST)).min(end);
+        }
+    }
+}
+
+/// A point of a box's surface, more often than not near an edge or a corner.
+fn on_surface(rng: &mut Rng, half: Vector3<f64>) -> Vector3<f64> {
+    let axis = rng.below(3);
+    let mut point = half.map(|h| match rng.below(3) {
+        0 => h * rng.sign(),
+        1 => (h - rng.range(0.0, 0.4)) * rng.sign(),
+        _ => h * rng.range(-1.0, 1.0),
+    });
+    point[axis] = half[axis] * rng.sign();
+    point
+}
+
+#[test]
+fn of_a_wide_face_what_is_near_is_hit() {
+    let dispatcher = MedialDispatcher::default();
+    let mut rng = Rng::new(71);
+    let [mut hits, mut free, mut cases] = [0; 3];
+    while cases < CASES {
+        let half = Vector3::from_fn(|_, _| rng.log_range(0.05, 60.0) as Real);
+        let border = if rng.chance(0.5) {
+            0.0
+        } else {
+            rng.log_range(0.01, 0.3) as Real
+        };
+        let sphere = |rng: &mut Rng| {
+            let radius = rng.log_range(0.02, 0.3) as Real;
+            MedialSphere::new(vector(rng.in_ball() * 0.4), radius)
+        };
+        let spheres: Vec<_> = (0..1 + rng.below(3)).map(|_| sphere(&mut rng)).collect();
+        let moves = if rng.chance(0.5) { 1.0 } else { 0.0 };
+        let motion2 = NonlinearRigidMotion {
+            start: Pose::from_parts(vector(rng.in_ball() * 5.0), rotation(&mut rng)),
+            local_center: vector(rng.in_ball() * 0.3),
+            linvel: vector(rng.in_ball() * moves),
+            angvel: vector(rng.in_ball() * 0.05 * moves),
+        };
+        let aimed = motion2.start * vector(on_surface(&mut rng, half.map(f64::from)));
+        let from = aimed + vector(rng.direction() * rng.range(0.5, 2.0));
+        let to = aimed + vector(rng.in_ball() * 0.6);
+        let motion1 = NonlinearRigidMotion {
+            start: Pose::from_parts(from, rotation(&mut rng)),
+            local_center: vector(rng.in_ball() * 0.3),
+            linvel: (to - from) * rng.range(0.5, 2.0) as Real,
+            angvel: vector(rng.in_ball() * 3.0),
+        };
+        let case = Case {
+            spheres: spheres.clone(),
+            half: half.map(f64::from),
+            border: border.into(),
+            paths: [&motion1, &motion2].map(Path::new),
+        };
+        let at_start = case.distance(0.0);
+        if at_start < 0.05 {
+            continue;
+        }
+        cases += 1;
+        let mesh = MedialMesh::new(spheres, vec![], vec![]).expect("loose spheres");
+        let cuboid = if border > 0.0 {
+            SharedShape::round_cuboid(half.x, half.y, half.z, border)
+        } else {
+            SharedShape::cuboid(half.x, half.y, half.z)
+        };
+        let rounding = ROUNDING * f64::from(half.max() + 8.0);
+        let pos12 = motion1.start.inv_mul(&motion2.start);
+        let distance = dispatcher.distance(&pos12, &mesh, &*cuboid);
+        let distance = f64::from(distance.expect("supported").distance);
+        assert!(
+            (distance - at_start).abs() < rounding,
+            "{distance} {at_start}"
+        );
+
+        let target = if rng.chance(0.5) { 0.0 } else { 0.03 };
+        let cast = Cast {
+            motion1: &motion1,
+            mesh: &mesh,
+            motion2: &motion2,
+            other: &*cuboid,
+            times: [0.0, 1.0],
+            target_distance: target as Real,
+            stop_at_penetration: true,
+            stop_approach: true,
+        };
+        let options = ToiOptions {
+            target_distance: target as Real,
+            ..ToiOptions::default()
+        };
+        let toi = cast.toi(&options, None).expect("a built-in shape").toi;
+        let end = match toi.status {
+            ToiStatus::Separated => 1.0,
+            _ => f64::from(toi.lower),
+        };
+        let least = case.least(target - rounding, end);
+        let said = || format!("{toi:?}, least {least}, target {target}, {half:?}, {border}");
+        assert!(least >= target - rounding, "late or missed: {}", said());
+        if toi.status == ToiStatus::Separated {
+            free += 1;
+        } else {
+            hits += 1;
+            let there = case.distance(end) - target;
+            let tolerance = f64::from(options.tolerance) + rounding;
+            assert!(there <= tolerance, "early by {there}: {}", said());
+        }
+    }
+    println!("{hits} hits, {free} free");
+    assert!(hits > CASES / 4 && free > CASES / 4, "{hits} {free}");
+}
