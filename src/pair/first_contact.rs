@@ -57,7 +57,7 @@ pub struct ToiResult {
     pub toi: Toi,
     /// Work it took.
     pub counts: Counts,
-    /// As [`Query::deepest`]; −∞ where it is not known.
+    /// As [`Query::deepest`].
     pub deepest: f64,
 }
 

@@ -17,7 +17,7 @@ use crate::math::{Real, Vector};
 use crate::medial::tree::Below;
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::Volumes;
-use crate::pair::first_contact::Counts;
+use crate::pair::first_contact::{Counts, ToiResult};
 use parry3d::query::NonlinearRigidMotion;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -50,10 +50,14 @@ pub fn first_contact(
     motion2: &NonlinearRigidMotion,
     seconds: Real,
     options: &ToiOptions,
-) -> (Toi, Counts) {
+) -> ToiResult {
     let finite = motion_is_finite(motion1) && motion_is_finite(motion2) && seconds.is_finite();
     if !finite || !options.tolerance.is_finite() || !options.target_distance.is_finite() {
-        return (Toi::bad_input(options), Counts::default());
+        return ToiResult {
+            toi: Toi::bad_input(options),
+            counts: Counts::default(),
+            deepest: f64::INFINITY,
+        };
     }
     let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
     let pivots = motion1.local_center.length() + motion2.local_center.length();
@@ -70,6 +74,7 @@ pub fn first_contact(
         lower: 1.0,
         upper: 1.0,
         found: None,
+        deepest: f64::INFINITY,
     };
     search.run(bodies);
     // From the pair's frame to the world: it starts at the first body's origin and moves with the
@@ -77,7 +82,11 @@ pub fn first_contact(
     let elapsed = search.lower * f64::from(seconds);
     let origin = Vec3::<f64>::from_vector(motion1.start.translation)
         + Vec3::from_vector(motion2.linvel) * elapsed;
-    (search.answer(bodies, origin), search.counts)
+    ToiResult {
+        toi: search.answer(bodies, origin),
+        counts: search.counts,
+        deepest: search.deepest,
+    }
 }
 
 struct Search<'a> {
@@ -95,6 +104,8 @@ struct Search<'a> {
     lower: f64,
     upper: f64,
     found: Option<Found>,
+    /// As [`crate::pair::first_contact::Query::deepest`].
+    deepest: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -228,6 +239,7 @@ impl Search<'_> {
             };
             let start = self.advance(body, balls, &at_start).near.distance();
             if start <= limits.target + limits.tolerance {
+                self.deepest = self.deepest.min(start);
                 limits.start = if entry.spent == 0 { 0.0 } else { entry.time };
                 limits.target = start - f64::from(by) - limits.tolerance;
             }

@@ -48,8 +48,9 @@ pub struct Cast<'a> {
 }
 
 impl Cast<'_> {
-    /// First contact as the query tells it. `options` take the place of the cast's own target and choice of
-    /// contact at the start; where it is known what is `left` of both, no more of the mesh is looked at.
+    /// First contact as the query tells it, with the mesh as first body; times are fractions of the cast's.
+    /// `options` take the place of its own target and choice of contact at the start. Where it is known what is
+    /// `left` of both, the mesh first, no more of the mesh is looked at.
     pub fn toi(
         &self,
         options: &ToiOptions,
@@ -150,13 +151,13 @@ impl Cast<'_> {
         let mut found = self.search(soup, motion1, motion2, seconds, options, left);
         found.toi.primitives[1] = parts.soup_subshape(found.toi.primitives[1]);
         if !turned.is_empty() {
-            let (mut other, more) =
+            let mut other =
                 advance::first_contact(self.mesh, motion1, turned, motion2, seconds, options);
-            other.primitives[1] = parts.turned_subshape(other.primitives[1]);
-            found.counts.nodes += more.nodes;
-            found.counts.tests += more.tests;
-            found.toi = earlier(found.toi, other);
-            found.deepest = f64::NEG_INFINITY;
+            other.toi.primitives[1] = parts.turned_subshape(other.toi.primitives[1]);
+            found.counts.nodes += other.counts.nodes;
+            found.counts.tests += other.counts.tests;
+            found.toi = earlier(found.toi, other.toi);
+            found.deepest = found.deepest.min(other.deepest);
         }
         if options.initial_contact == InitialContact::Stop
             && let Some(inside) = self.starts_inside(motion1, motion2, options)
@@ -298,7 +299,8 @@ fn swept_region(
 ) -> Aabb {
     let (root_center, root_radius) = mesh.bound(0);
     let to_local = motion2.start.inverse();
-    let from = to_local * (motion1.start * root_center);
+    let at = motion1.start * root_center;
+    let from = to_local * at;
     let slide = (motion1.linvel - motion2.linvel) * seconds;
     let to = from + to_local.rotation * slide;
     // Turning moves the root's centre by at most twice its lever arm, and the angle times it.
@@ -309,8 +311,18 @@ fn swept_region(
     let angle2 = motion2.angvel.length() * seconds;
     let arm2 = (from - motion2.local_center).length() + slide.length() + own;
     let reach = root_radius + target.max(0.0) + own + swing(angle2, arm2 + root_radius);
-    // A margin for rounding: the numbers in play are the box's own coordinates.
-    let size = reach + from.abs().max_element() + to.abs().max_element();
+    // A margin for rounding: the numbers in play are the box's own coordinates, and those that it comes from.
+    let sizes = [
+        [from, to, at],
+        [root_center, motion1.local_center, motion1.start.translation],
+        [
+            to_local.translation,
+            motion2.local_center,
+            motion2.start.translation,
+        ],
+    ];
+    let sizes = sizes.as_flattened().iter().map(|p| p.abs().max_element());
+    let size = reach + sizes.sum::<Real>();
     let reach = Vector::splat(reach + 64.0 * Real::EPSILON * size);
     Aabb::new(from.min(to) - reach, from.max(to) + reach)
 }

@@ -17,6 +17,9 @@ use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
 /// half-space's plane, larger than anything the body can reach.
 const PLANE_REACH: Real = 2.0;
 
+/// What rounding takes from the coordinates of a box put in another frame, in units of the coordinates.
+const ROUNDING: Real = 64.0 * Real::EPSILON;
+
 /// What a shape is made of, in the shape's frame.
 #[derive(Clone, Debug, Default)]
 pub struct Parts {
@@ -58,7 +61,7 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
         return true;
     }
     let soup = &mut parts.soup;
-    let local = || region.transform_by(&pose.inverse());
+    let local = || seen_from(pose, region);
     let point = |p: Vector| pose * p;
     let ball = |p: Vector, radius: Real| MedialSphere::new(point(p), radius);
     match shape.as_typed_shape() {
@@ -109,8 +112,7 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
             for voxel in v.voxels_intersecting_local_aabb(&local) {
                 if !voxel.state.is_empty() {
                     let at = pose * Pose::from_translation(voxel.center);
-                    let near = region.transform_by(&at.inverse());
-                    add_cuboid(&mut parts.soup, &cube, &at, 0.0, &near);
+                    add_cuboid(&mut parts.soup, &cube, &at, 0.0, &seen_from(&at, region));
                     parts.name(voxel.linear_id.flat_id() as u32);
                 }
             }
@@ -136,6 +138,14 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
     true
 }
 
+/// A box of the parts' frame in that of `pose`, with what rounding may take from it.
+fn seen_from(pose: &Pose, region: &Aabb) -> Aabb {
+    let sizes = [pose.translation, region.mins, region.maxs].map(|p| p.abs().max_element());
+    let size: Real = sizes.into_iter().sum();
+    let seen = region.transform_by(&pose.inverse());
+    Aabb::new(seen.mins - size * ROUNDING, seen.maxs + size * ROUNDING)
+}
+
 /// The faces of a cuboid, as far as `region` (in its frame) meets them.
 fn add_cuboid(soup: &mut Soup, cuboid: &Cuboid, pose: &Pose, border: Real, region: &Aabb) {
     let h = cuboid.half_extents;
@@ -156,39 +166,52 @@ fn add_cuboid(soup: &mut Soup, cuboid: &Cuboid, pose: &Pose, border: Real, regio
     }
 }
 
-/// What of a rectangle about the origin of a plane is nearest to anything within `spans` along its two axes:
-/// one triangle where it has the room, two else. `at` puts a point of the plane in place.
+/// One side of a rectangle about the origin of a plane.
+struct Side {
+    /// What of it is nearest to anything within a span, and somewhat more.
+    ends: [Real; 2],
+    /// From the right angle to the end of a leg: of two such, a triangle that covers both spans. The spans' far
+    /// corner is at 9/10 of the way to the long side. `None` where there is no room.
+    leg: Option<[Real; 2]>,
+}
+
+impl Side {
+    /// `None` where none of it is within the span.
+    fn new(half: Real, [least, most]: [Real; 2]) -> Option<Self> {
+        if least > half || most < -half {
+            return None;
+        }
+        let length = most - least;
+        let (margin, leg) = (0.125 * length, 2.5 * length);
+        let legs = [
+            [least - margin, least - margin + leg],
+            [most + margin, most + margin - leg],
+        ];
+        let fits = |[from, to]: &[Real; 2]| from.abs() <= half && to.abs() <= half;
+        Some(Self {
+            // Slivers would be hard to compute with.
+            ends: [(-half).max(least - length), half.min(most + length)],
+            leg: legs.into_iter().find(fits),
+        })
+    }
+}
+
+/// What of a rectangle is nearest to anything within `spans` along its two sides: one triangle where it has the
+/// room, two else. `at` puts a point of its plane in place.
 fn add_rectangle(
     soup: &mut Soup,
     half: [Real; 2],
     spans: [[Real; 2]; 2],
     at: impl Fn([Real; 2]) -> MedialSphere,
 ) {
-    let mut sides = [[0.0; 2]; 2];
-    // Ends of the legs of a right triangle over both spans, where there is room for them.
-    let mut legs = [None; 2];
-    for k in 0..2 {
-        let (h, [least, most]) = (half[k], spans[k]);
-        if least > h || most < -h {
-            return;
-        }
-        let length = most - least;
-        let leg = 2.5 * length;
-        let [from, to] = [least - 0.125 * length, most + 0.125 * length];
-        legs[k] = if from >= -h && from + leg <= h {
-            Some([from, from + leg])
-        } else if to <= h && to - leg >= -h {
-            Some([to, to - leg])
-        } else {
-            None
-        };
-        sides[k] = [h.min(most + length), (-h).max(least - length)];
-    }
-    if let [Some([x, across]), Some([y, up])] = legs {
+    let [Some(x), Some(y)] = [0, 1].map(|k| Side::new(half[k], spans[k])) else {
+        return;
+    };
+    if let (Some([x, across]), Some([y, up])) = (x.leg, y.leg) {
         soup.push(&[[x, y], [across, y], [x, up]].map(at));
         return;
     }
-    let [[right, left], [top, bottom]] = sides;
+    let ([left, right], [bottom, top]) = (x.ends, y.ends);
     let [a, b, c, d] = [[left, bottom], [right, bottom], [right, top], [left, top]].map(at);
     soup.push(&[a, b, c]);
     soup.push(&[a, c, d]);
@@ -209,7 +232,9 @@ fn add_polyhedron(
         let at = |k: usize| pose * hull.points()[ring[first + k] as usize];
         for k in 1..n.saturating_sub(1) {
             let corners = [at(0), at(k), at(k + 1)];
-            let face = Aabb::from_points(corners).loosened(border);
+            let face = Aabb::from_points(corners);
+            let sizes = [pose.translation, face.mins, face.maxs].map(|p| p.abs().max_element());
+            let face = face.loosened(border + ROUNDING * sizes.into_iter().sum::<Real>());
             // A region that is not a number holds everything.
             let apart = face.mins.cmpgt(region.maxs) | region.mins.cmpgt(face.maxs);
             if !apart.any() {

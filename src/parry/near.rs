@@ -76,7 +76,8 @@ fn reach(mesh: &MedialMesh, other: &dyn Shape, pos21: &Pose, max_distance: Real)
     let bounds = mesh.spheres().first().map(|s| {
         let center = pos21 * s.center;
         let distance = other.distance_to_local_point(center, true) - s.radius;
-        let size = center.abs().max_element() + s.radius;
+        let sizes = [center, pos21.translation, s.center].map(|p| p.abs().max_element());
+        let size = sizes.into_iter().fold(s.radius, |sum, size| sum + size);
         SLACK * distance.max(0.0) + 64.0 * Real::EPSILON * size
     });
     let bound = bounds.filter(|b| b.is_finite()).unwrap_or(Real::MAX);

@@ -1,4 +1,5 @@
-//! Which pairs of medial colliders may need manifolds in this step: those whose boxes at its start meet.
+//! Which pairs of medial colliders may need manifolds in this step: those whose boxes at its start meet,
+//! and that the event loop has not taken over.
 
 use super::ahead::{Ahead, Start, Starts};
 use super::hanging::{self, is_hooked};

@@ -9,7 +9,7 @@ pub struct StepReport {
     /// Pairs of medial colliders, one of them awake, whose boxes were near at the start.
     pub pairs: usize,
     /// Of these, the pairs whose contacts were computed in the batch; the others had moved too
-    /// little, and rapier recycles theirs.
+    /// little, so that rapier recycles theirs, or are muted.
     pub jobs: usize,
     /// Jobs that the GPU proved free, which the CPU has not looked at.
     pub settled_by_gpu: u64,
@@ -61,9 +61,9 @@ pub struct StepReport {
     pub culled_nodes: u64,
     /// Elementary tests (cone–cone, sphere–slab) executed.
     pub elementary_tests: u64,
-    /// Seconds spent gathering pairs and in the batch.
+    /// Seconds spent gathering near pairs and in the batch.
     pub batch_seconds: f64,
-    /// Seconds spent on choosing the muted pairs.
+    /// Seconds spent gathering colliders and choosing the muted pairs.
     pub mute_seconds: f64,
     /// Seconds of the event loop.
     pub event_seconds: f64,

@@ -1,18 +1,18 @@
-//! Casts and distances of loose spheres against boxes of any size, near their edges and corners: of a wide face
-//! only what can be reached is looked at. The distance of a point to a box is a closed form, so that the oracle
+//! Casts and distances of loose spheres against boxes of any size, near their edges and corners and far from the
+//! world's origin: of a wide face only what can be reached is looked at. The distance of a point to a box is a closed form, so that the oracle
 //! marches in `f64`, and no step of it is longer than what is left of that distance.
 
 use crate::rng::Rng;
 use crate::rotating::{rotation, vector};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
-use parry3d::math::{Pose, Real};
+use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::{NonlinearRigidMotion, QueryDispatcher};
-use parry3d::shape::SharedShape;
+use parry3d::shape::{Cuboid, SharedShape};
 use rapier3d_medial::parry::MedialDispatcher;
 use rapier3d_medial::parry::cast::Cast;
 use rapier3d_medial::{MedialMesh, MedialSphere, ToiOptions, ToiStatus};
 
-const CASES: usize = 3_000;
+const CASES: usize = 12_000;
 
 /// Longest step of the oracle's march close to contact: it looks between two moments no closer than a body moves
 /// meanwhile, 2e-5 of some metres per second.
@@ -21,7 +21,7 @@ const SHORTEST: f64 = 2.0e-6;
 /// Rounding of `f32` coordinates, in units of the largest.
 const ROUNDING: f64 = 4.0e-6;
 
-fn wide(v: parry3d::math::Vector) -> Vector3<f64> {
+fn wide(v: Vector) -> Vector3<f64> {
     Vector3::new(v.x.into(), v.y.into(), v.z.into())
 }
 
@@ -86,15 +86,15 @@ impl Case {
         slide + body.angvel.norm() * own + other.angvel.norm() * apart
     }
 
-    /// The least distance until `end`, or less than `target` where it falls below that.
-    fn least(&self, target: f64, end: f64) -> f64 {
+    /// The least distance until `end`, or less than `target` where it falls below that; and when that is.
+    fn least(&self, target: f64, end: f64) -> (f64, f64) {
         let (mut t, mut least) = (0.0, f64::MAX);
         let speed = self.speed();
         loop {
             let distance = self.distance(t);
             least = least.min(distance);
             if least < target || t >= end {
-                return least;
+                return (least, t);
             }
             t = (t + ((distance - target) / speed).max(SHORTEST)).min(end);
         }
@@ -129,10 +129,18 @@ fn of_a_wide_face_what_is_near_is_hit() {
             let radius = rng.log_range(0.02, 0.3) as Real;
             MedialSphere::new(vector(rng.in_ball() * 0.4), radius)
         };
-        let spheres: Vec<_> = (0..1 + rng.below(3)).map(|_| sphere(&mut rng)).collect();
-        let moves = if rng.chance(0.5) { 1.0 } else { 0.0 };
+        // One sphere that does not turn reaches as far as is looked, and no further.
+        let alone = rng.chance(0.3);
+        let count = if alone { 1 } else { 1 + rng.below(3) };
+        let spheres: Vec<_> = (0..count).map(|_| sphere(&mut rng)).collect();
+        // Where single precision resolves as little as 2 mm.
+        let place = rng
+            .chance(0.5)
+            .then(|| rng.direction() * rng.log_range(1.0e3, 2.0e4));
+        let place = vector(place.unwrap_or_default());
+        let moves = if alone || rng.chance(0.5) { 0.0 } else { 1.0 };
         let motion2 = NonlinearRigidMotion {
-            start: Pose::from_parts(vector(rng.in_ball() * 5.0), rotation(&mut rng)),
+            start: Pose::from_parts(place + vector(rng.in_ball() * 5.0), rotation(&mut rng)),
             local_center: vector(rng.in_ball() * 0.3),
             linvel: vector(rng.in_ball() * moves),
             angvel: vector(rng.in_ball() * 0.05 * moves),
@@ -144,7 +152,7 @@ fn of_a_wide_face_what_is_near_is_hit() {
             start: Pose::from_parts(from, rotation(&mut rng)),
             local_center: vector(rng.in_ball() * 0.3),
             linvel: (to - from) * rng.range(0.5, 2.0) as Real,
-            angvel: vector(rng.in_ball() * 3.0),
+            angvel: vector(rng.in_ball() * if alone { 0.0 } else { 3.0 }),
         };
         let case = Case {
             spheres: spheres.clone(),
@@ -173,12 +181,15 @@ fn of_a_wide_face_what_is_near_is_hit() {
         );
 
         let target = if rng.chance(0.5) { 0.0 } else { 0.03 };
+        // Some just touch.
+        let (_, met) = case.least(target - rng.log_range(3.0e-5, 3.0e-3), 1.0);
+        let seconds = if rng.chance(0.5) { met as Real } else { 1.0 };
         let cast = Cast {
             motion1: &motion1,
             mesh: &mesh,
             motion2: &motion2,
             other: &*cuboid,
-            times: [0.0, 1.0],
+            times: [0.0, seconds],
             target_distance: target as Real,
             stop_at_penetration: true,
             stop_approach: true,
@@ -188,11 +199,12 @@ fn of_a_wide_face_what_is_near_is_hit() {
             ..ToiOptions::default()
         };
         let toi = cast.toi(&options, None).expect("a built-in shape").toi;
-        let end = match toi.status {
+        let share = match toi.status {
             ToiStatus::Separated => 1.0,
             _ => f64::from(toi.lower),
         };
-        let least = case.least(target - rounding, end);
+        let end = share * f64::from(seconds);
+        let (least, _) = case.least(target - rounding, end);
         let said = || format!("{toi:?}, least {least}, target {target}, {half:?}, {border}");
         assert!(least >= target - rounding, "late or missed: {}", said());
         if toi.status == ToiStatus::Separated {
@@ -206,4 +218,58 @@ fn of_a_wide_face_what_is_near_is_hit() {
     }
     println!("{hits} hits, {free} free");
     assert!(hits > CASES / 4 && free > CASES / 4, "{hits} {free}");
+}
+
+/// A child of a compound whose own origin is far from where it is touched: rounding of its pose takes none of
+/// its faces away.
+#[test]
+fn a_face_far_from_its_own_origin_is_there() {
+    let dispatcher = MedialDispatcher::default();
+    let ball = MedialMesh::ball(0.1).expect("a ball");
+    let mut rng = Rng::new(72);
+    for size in [1.0, 30.0, 300.0, 3_000.0] {
+        let corners = Cuboid::new(Vector::splat(size)).to_trimesh().0;
+        let children = [
+            SharedShape::cuboid(size, size, size),
+            SharedShape::convex_hull(&corners).expect("a hull"),
+        ];
+        for (child, _) in children.iter().flat_map(|c| (0..400).map(move |k| (c, k))) {
+            let turn = Rotation::from_scaled_axis(Vector::Y * rng.range(-3.0, 3.0) as Real);
+            let down = Pose::from_parts(Vector::NEG_Y * size, turn);
+            let compound = SharedShape::compound(vec![(down, child.clone())]);
+            let gap = rng.log_range(1.0e-5, 0.1) as Real;
+            let place = vector(rng.in_ball() * 0.2);
+            let at = Pose::from_translation(Vector::new(place.x, 0.1 + gap, place.z));
+            let distance = dispatcher.distance(&at.inverse(), &ball, &*compound);
+            let distance = distance.expect("supported").distance;
+            let rounding = 4.0 * Real::EPSILON * size + 1.0e-6;
+            assert!(
+                (distance - gap).abs() < rounding,
+                "{size}: {distance} {gap}"
+            );
+            let falls = NonlinearRigidMotion {
+                linvel: Vector::NEG_Y,
+                ..NonlinearRigidMotion::constant_position(at)
+            };
+            let cast = Cast {
+                motion1: &falls,
+                mesh: &ball,
+                motion2: &NonlinearRigidMotion::identity(),
+                other: &*compound,
+                times: [0.0, 1.0],
+                target_distance: 0.0,
+                stop_at_penetration: true,
+                stop_approach: true,
+            };
+            let toi = cast
+                .toi(&ToiOptions::default(), None)
+                .expect("built in")
+                .toi;
+            let late = toi.lower - gap - rounding;
+            assert!(
+                toi.status != ToiStatus::Separated && late <= 0.0,
+                "{size}: {toi:?} {gap}"
+            );
+        }
+    }
 }
