@@ -1,6 +1,7 @@
-//! Casts and distances of loose spheres against boxes of any size, near their edges and corners and far from the
-//! world's origin: of a wide face only what can be reached is looked at. The distance of a point to a box is a closed form, so that the oracle
-//! marches in `f64`, and no step of it is longer than what is left of that distance.
+//! Casts and distances of loose spheres against boxes of any size, plain, rounded or of triangles, near their
+//! edges and corners and far from the world's origin: of a wide face only what can be reached is looked at. The
+//! distance of a point to a box is a closed form, so that the oracle marches in `f64`, and no step of it is
+//! longer than what is left of that distance.
 
 use crate::rng::Rng;
 use crate::rotating::{rotation, vector};
@@ -168,8 +169,11 @@ fn of_a_wide_face_what_is_near_is_hit() {
         let mesh = MedialMesh::new(spheres, vec![], vec![]).expect("loose spheres");
         let cuboid = if border > 0.0 {
             SharedShape::round_cuboid(half.x, half.y, half.z, border)
-        } else {
+        } else if rng.chance(0.5) {
             SharedShape::cuboid(half.x, half.y, half.z)
+        } else {
+            let (corners, triangles) = Cuboid::new(vector(half.map(f64::from))).to_trimesh();
+            SharedShape::trimesh(corners, triangles).expect("a closed surface")
         };
         let rounding = ROUNDING * f64::from(half.max() + 8.0);
         let pos12 = motion1.start.inv_mul(&motion2.start);
