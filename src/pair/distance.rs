@@ -30,12 +30,7 @@ pub fn nearest_spheres(
     let mut best: Option<SpherePair> = None;
     let mut limit = f64::from(max_distance);
     // Directions tell little of what is far.
-    let size = if body1.roots() > 0 {
-        body1.bound(0).1
-    } else {
-        0.0
-    };
-    let near = if max_distance < size {
+    let near = if body1.roots() > 0 && max_distance < body1.bound(0).1 {
         outline::near(body1, body2, |p| place.point(p), max_distance)
     } else {
         Some(outline::Near::default())
