@@ -22,7 +22,7 @@ use super::surface::Surface;
 use super::watch::Watch;
 use crate::error::BuildError;
 
-/// Points that dilation looks at, besides the vertices. The certificate finds the rest: more
+/// Points that dilation looks at, besides all vertices. The certificate finds the rest: more
 /// points cost more than they save it.
 const POINTS: usize = 30_000;
 
@@ -91,11 +91,8 @@ impl Growth {
 fn dilate(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(), BuildError> {
     let spread = even_samples(surface, POINTS, &mut Random::new(3));
     let vertices = vertex_samples(surface);
-    let mut uncovered: Vec<Point> = vertices
-        .into_iter()
-        .chain(spread)
-        .map(|s| s.point)
-        .collect();
+    let points = vertices.into_iter().chain(spread).map(|s| s.point);
+    let mut uncovered: Vec<Point> = points.chain(surface.needle_corners().flatten()).collect();
     for pass in 0..DILATION_PASSES {
         let mut growth = Growth::none(draft);
         let tree = PrimitiveTree::new(draft);
@@ -124,9 +121,8 @@ fn dilate(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(),
 }
 
 fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(), BuildError> {
-    let needles = surface.needles.iter();
-    let needles = needles.map(|t| t.map(|v| surface.vertices[v as usize]));
-    let mut open: Vec<[Point; 3]> = surface.all_corners().chain(needles).collect();
+    let triangles = surface.all_corners().chain(surface.needle_corners());
+    let mut open: Vec<[Point; 3]> = triangles.collect();
     let crowd = (draft.primitives().len() as f64 / FINEST_UP_TO).max(1.0);
     for pass in 0..CERTIFICATE_PASSES {
         let mut growth = Growth::none(draft);

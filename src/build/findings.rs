@@ -10,7 +10,8 @@ pub struct Findings {
     pub vertices_unused: usize,
     /// Vertices that became one with another at the same place (within 1e-6 of the longest side).
     pub vertices_welded: usize,
-    /// Triangles dropped because two of their corners are one vertex.
+    /// Triangles of which two corners are one vertex. As segments or points they are covered, and measured
+    /// as far as they stick out, and count for nothing else.
     pub triangles_collapsed: usize,
     /// Triangles dropped because another has the same corners, in whatever order.
     pub triangles_repeated: usize,
@@ -72,7 +73,7 @@ impl Findings {
             ),
             (
                 self.triangles_collapsed,
-                "triangles of fewer than three points dropped",
+                "triangles of fewer than three points: kept as segments only",
             ),
             (self.triangles_repeated, "repeated triangles dropped"),
             (

@@ -101,10 +101,16 @@ pub(super) fn measure(
             start = start.max(d);
         }
     }
+    for p in surface.needle_corners().flatten() {
+        if let Look::Distance(d) = source.look_at_needle(&[p; 3], p, start) {
+            start = start.max(d);
+        }
+    }
     let budget = PIECES + PIECES_PER_PRIMITIVE * draft.primitives().len() as f64;
     let mut search = Search::new(&mut source, start, 0.0, effort, budget);
     let triangles = surface.all_corners().zip(0..surface.triangles.len() as u32);
-    search.in_depth(triangles, |part| watch.at(0.5 * part))?;
+    let needles = surface.needle_corners().map(|corners| (corners, NEEDLE));
+    search.in_depth(triangles.chain(needles), |part| watch.at(0.5 * part))?;
     let (outward, slack) = (search.best, search.slack());
     // What one direction does not need is the other's.
     let left = 2.0 * budget - search.examined() as f64 / effort.share;
@@ -133,8 +139,11 @@ pub(super) fn measure(
     })
 }
 
+/// In place of a triangle's index: a piece without area, which has no normal.
+const NEEDLE: u32 = u32::MAX;
+
 /// From the source surface to the solid's boundary. Pieces: triangles, each with the index of the
-/// source triangle that it is part of.
+/// source triangle that it is part of, or [`NEEDLE`].
 struct FromSource<'a> {
     surface: &'a Surface,
     tree: &'a TriangleTree,
@@ -153,7 +162,7 @@ impl FromSource<'_> {
             return Look::Settled;
         }
         if allowed < best && sticks_out <= best.min(self.uncovered) && leaves(best, normal) {
-            return Look::Hidden;
+            return Look::Hidden(best);
         }
         let near = self.solid.nearest(p, self.hint);
         self.hint = near.primitive;
@@ -192,6 +201,20 @@ impl FromSource<'_> {
         }
     }
 
+    /// How far the middle of a needle sticks out. Inside, it bounds nothing: its distance is 0. Settled
+    /// where all of the needle sticks out of one primitive, which is convex, by no more than `allowed`.
+    fn look_at_needle(&mut self, corners: &[Point; 3], center: Point, allowed: f64) -> Look {
+        let to_hint = |p: Point| self.solid.distance_to(self.hint, p).max(0.0);
+        if to_hint(center) <= self.uncovered && corners.iter().all(|&p| to_hint(p) <= allowed) {
+            return Look::Settled;
+        }
+        let near = self.solid.nearest(center, self.hint);
+        self.hint = near.primitive;
+        let out = near.signed.distance.max(0.0);
+        self.uncovered = self.uncovered.max(out);
+        Look::Distance(out)
+    }
+
     /// Whether each point of a triangle is within `allowed` of the boundary: it sticks out of one
     /// primitive by no more, and moved along its normal by as much it is all outside.
     fn is_settled(&self, corners: &[Point; 3], center: Point, normal: Point, allowed: f64) -> bool {
@@ -218,9 +241,11 @@ impl Side for FromSource<'_> {
 
     fn look(&mut self, piece: &Self::Piece, rho: f64, best: f64, allowed: f64) -> Look {
         let (corners, triangle) = piece;
-        let normal = self.surface.normals[*triangle as usize];
         let [a, b, c] = *corners;
         let center = (a + b + c) * (1.0 / 3.0);
+        let Some(&normal) = self.surface.normals.get(*triangle as usize) else {
+            return self.look_at_needle(corners, center, allowed + rho);
+        };
         if self.is_settled(corners, center, normal, allowed + rho) {
             return Look::Settled;
         }
@@ -262,23 +287,23 @@ impl Side for FromBoundary<'_> {
             self.triangle = triangle;
             return Look::Settled;
         }
-        // A sample that raises neither result need not be measured: the cell is cut all the same.
+        // A sample that raises neither result need not be measured: the cell is cut all the same. The
+        // centre is no farther from the source than the sample and the way between them.
         let sample = self.solid.towards_boundary(cell.center, &near);
-        if self
-            .tree
-            .is_within(self.triangle, sample, self.bloat.min(best))
-        {
-            return Look::Hidden;
+        let way = near.signed.distance.abs();
+        let low = self.bloat.min(best);
+        if self.tree.is_within(self.triangle, sample, low) {
+            return Look::Hidden(low + way);
         }
         let (d, triangle) = self.tree.distance_from(sample, self.triangle);
         self.triangle = triangle;
-        if d <= self.bloat.min(best) || !self.solid.is_on_boundary(sample, &near) {
-            return Look::Hidden;
+        if d <= low || !self.solid.is_on_boundary(sample, &near) {
+            return Look::Hidden(d + way);
         }
         if d > self.bloat && self.tree.signed_distance(sample, d) > 0.0 {
             self.bloat = d;
         }
-        Look::Near(d, d + near.signed.distance.abs())
+        Look::Near(d, d + way)
     }
 
     fn cut(&self, cell: Cell, cells: &mut Vec<Cell>) {

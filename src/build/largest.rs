@@ -3,7 +3,8 @@
 //! The distance to a set changes by at most the way one moves. So a piece with centre `c` and radius
 //! `ρ` holds no point farther than `d(c) + ρ`. Pieces that could exceed the largest distance found so
 //! far, `h`, by more than a slack are cut, the others dropped. What is left in the end: a distance `h`
-//! reached at a sample, and the certainty that no point exceeds it by more than the slack.
+//! reached at a sample, and the certainty that no point exceeds it by more than the slack. A piece too
+//! small to cut leaves what its bound, `d(c) + ρ`, is above `h` in the end, whether it gave a sample or not.
 //!
 //! The first levels are searched in breadth, which soon finds most of `h`, the rest in depth, where
 //! neighbouring pieces follow each other, share hints and need no memory.
@@ -44,8 +45,8 @@ pub enum Look {
     Distance(f64),
     /// A sample near it has the first distance; its own is at most the second.
     Near(f64, f64),
-    /// It gives no sample of its own, but other points of the piece may.
-    Hidden,
+    /// It gives no sample of its own, but other points of the piece may; its own distance is at most this.
+    Hidden(f64),
 }
 
 /// A surface in pieces, to find the largest distance over.
@@ -104,7 +105,7 @@ pub struct Search<'a, S: Side> {
     effort: Effort,
     /// Pieces that gave large distances.
     leaders: Vec<(f64, S::Piece)>,
-    /// Radius of the largest piece that was given up.
+    /// No point of a piece that was given up is farther than this.
     given_up: f64,
     /// Pieces to examine, those examined, and the share of the surface that is done.
     budget: f64,
@@ -134,7 +135,7 @@ impl<'a, S: Side> Search<'a, S> {
 
     /// By how much a distance may exceed the best and the floor, unless it ended early.
     pub fn slack(&self) -> f64 {
-        self.widest.max(self.given_up)
+        self.widest.max(self.given_up - self.high())
     }
 
     /// Pieces looked at so far.
@@ -224,7 +225,7 @@ impl<'a, S: Side> Search<'a, S> {
         let allowed = self.high() + slack - rho;
         let (sample, bound) = match self.side.look(&piece, rho, self.best, allowed) {
             Look::Settled => return,
-            Look::Hidden => (0.0, f64::INFINITY),
+            Look::Hidden(bound) => (0.0, bound),
             Look::Distance(d) => (d, d),
             Look::Near(sample, bound) => (sample, bound),
         };
@@ -243,7 +244,7 @@ impl<'a, S: Side> Search<'a, S> {
         if rho > FINEST {
             self.side.cut(piece, pieces);
         } else {
-            self.given_up = self.given_up.max(rho);
+            self.given_up = self.given_up.max(bound + rho);
         }
     }
 }

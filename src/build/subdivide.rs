@@ -20,8 +20,12 @@ pub fn radius(&[a, b, c]: &[Point; 3]) -> f64 {
         .sqrt()
 }
 
-/// Halves a triangle at the middle of its longest edge.
+/// Halves a triangle at the middle of its longest edge; a segment, its last two corners one, at its middle.
 pub fn halve(t: [Point; 3]) -> [[Point; 3]; 2] {
+    if t[1] == t[2] {
+        let middle = (t[0] + t[1]) * 0.5;
+        return [[t[0], middle, middle], [middle, t[1], t[1]]];
+    }
     let length_sq = |k: usize| (t[(k + 1) % 3] - t[k]).length_sq();
     let k = (0..3).fold(0, |k, j| if length_sq(j) > length_sq(k) { j } else { k });
     let [a, b, c] = [t[k], t[(k + 1) % 3], t[(k + 2) % 3]];

@@ -39,7 +39,8 @@ pub struct Surface {
     pub vertices: Vec<Point>,
     /// Triangles with area; their vertices differ.
     pub triangles: Vec<[u32; 3]>,
-    /// Triangles without area. They count for nothing but enclosure.
+    /// Triangles without area, of three vertices or fewer. They are covered, and measured as far as they
+    /// stick out, and count for nothing else.
     pub needles: Vec<[u32; 3]>,
     /// How far welding moved a vertex at most (longest side 1).
     pub welded: f64,
@@ -75,6 +76,7 @@ impl Surface {
         let Welded {
             vertices,
             mut triangles,
+            collapsed,
             moved,
         } = weld(&entered, indices, &mut findings, watch)?;
         drop(entered);
@@ -82,8 +84,9 @@ impl Surface {
         let area_of = |t: &[u32; 3]| height(corners(&vertices, t)) >= NEEDLE;
         let mut keep = triangles.iter().map(area_of);
         patches.of.retain(|_| keep.next().unwrap_or(false));
-        let (triangles, needles): (Vec<_>, Vec<_>) = triangles.into_iter().partition(area_of);
+        let (triangles, mut needles): (Vec<_>, Vec<_>) = triangles.into_iter().partition(area_of);
         findings.triangles_without_area = needles.len();
+        needles.extend(collapsed);
         if triangles.is_empty() {
             let side = frame.scale;
             return Err(BuildError::ZeroSize {
@@ -189,6 +192,11 @@ impl Surface {
     /// Corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [Point; 3] {
         corners(&self.vertices, &self.triangles[triangle])
+    }
+
+    /// Corners of all triangles without area.
+    pub fn needle_corners(&self) -> impl ExactSizeIterator<Item = [Point; 3]> + Clone + '_ {
+        self.needles.iter().map(|t| corners(&self.vertices, t))
     }
 
     /// Corners of all triangles, in order.

@@ -1,5 +1,5 @@
-//! Welding: vertices at one place become one vertex, and triangles that are then no triangle, or
-//! the same as another, go.
+//! Welding: vertices at one place become one vertex. Triangles that are then the same as another go;
+//! those that are then a segment or a point are kept apart, for they are part of the surface too.
 
 use super::bounds::{Point, coordinate};
 use super::findings::Findings;
@@ -21,6 +21,8 @@ pub struct Welded {
     pub vertices: Vec<Point>,
     /// Triangles of three different vertices, each set of vertices once.
     pub triangles: Vec<[u32; 3]>,
+    /// Triangles of two vertices or one that no other triangle has: segments and points.
+    pub collapsed: Vec<[u32; 3]>,
     /// How far a vertex was moved at most (longest side 1).
     pub moved: f64,
 }
@@ -52,26 +54,48 @@ pub fn weld(
     findings.vertices_welded = used - places.points.len();
     let mut seen = FastSet::default();
     let mut triangles = Vec::with_capacity(indices.len());
+    let mut collapsed = Vec::new();
     for (i, triangle) in indices.iter().enumerate() {
         watch.every(i)?;
         let t = triangle.map(|v| index_of[v as usize]);
-        if t[0] == t[1] || t[1] == t[2] || t[2] == t[0] {
-            findings.triangles_collapsed += 1;
-            continue;
-        }
         let mut key = t;
         key.sort_unstable();
-        if seen.insert(key) {
+        if key[0] == key[1] || key[1] == key[2] {
+            findings.triangles_collapsed += 1;
+            collapsed.push([key[0], key[2], key[2]]);
+        } else if seen.insert(key) {
             triangles.push(t);
         } else {
             findings.triangles_repeated += 1;
         }
     }
+    leave_out_covered(&mut collapsed, &triangles, watch)?;
     Ok(Welded {
         vertices: places.points,
         triangles,
+        collapsed,
         moved: moved_sq.sqrt(),
     })
+}
+
+/// Takes out segments and points that are an edge or a corner of a triangle, or are listed before.
+fn leave_out_covered(
+    collapsed: &mut Vec<[u32; 3]>,
+    triangles: &[[u32; 3]],
+    watch: &mut Watch,
+) -> Result<(), BuildError> {
+    if collapsed.is_empty() {
+        return Ok(());
+    }
+    // Both ends of an edge, the smaller first; of a corner, that vertex twice.
+    let mut covered = FastSet::default();
+    for (i, &[a, b, c]) in triangles.iter().enumerate() {
+        watch.every(i)?;
+        let edges = [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)]);
+        covered.extend(edges.into_iter().chain([a, b, c].map(|v| [v, v])));
+    }
+    collapsed.retain(|&[a, b, _]| covered.insert([a, b]));
+    Ok(())
 }
 
 /// Points farther apart than [`WELD`], in cells.
