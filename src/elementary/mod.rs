@@ -68,7 +68,7 @@ pub struct ToiOptions {
     /// negative lets them overlap that deep first, positive keeps them apart. The guarantee then
     /// holds for `D − target_distance`. Never deeper than the two primitives are thick where they
     /// are thinnest: beyond the smallest sum of their radii medial surfaces may cross, and a deeper
-    /// target is raised to it (with [`InitialContact::Stop`]; under `Deepen` thin tips are not guarded).
+    /// target is raised to it (with [`InitialContact::Stop`]; under `Deepen` ask for [`Cores`] instead).
     pub target_distance: Real,
     /// What becomes of primitives that touch at the start already. Mesh queries only.
     pub initial_contact: InitialContact,
@@ -76,6 +76,59 @@ pub struct ToiOptions {
     pub alternating_start: AlternatingStart,
     /// On which paths the points of a turning body go. Mesh queries only.
     pub paths: Paths,
+    /// Asks for the first contact of cores instead of the bodies themselves. Mesh queries only.
+    pub cores: Option<Cores>,
+}
+
+/// What of two bodies may not meet although they overlap: each primitive loses a share of its radius, as thick
+/// as it and its partner are where they meet ([`crate::medial::thickness`]). A sphere of radius `r` has a
+/// core of radius `r − s min(r, t)`, with `t` the thickness of the thinner of the two primitives. Where both
+/// bodies are medial, `s` is half of [`Self::share`] for each of them; a surface has no inside to give, and
+/// the other body gives all of it. So bodies whose cores do not overlap are no deeper in each other than
+/// `share × t` in any place, and while `share` is at most 1 each core holds its medial axis: no axis has
+/// crossed another, or a surface, however thin the part is.
+///
+/// [`ToiOptions::target_distance`] counts from the cores. Cores that touch at the start with
+/// [`InitialContact::Deepen`] may sink further in, but never to the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cores {
+    /// How deep the bodies may be in each other, in units of the local thickness: from 0 to 1.
+    pub share: Real,
+    /// Bound of that thickness, a length: how thick a partner is that is not medial. Infinite if there is
+    /// none.
+    pub at_most: Real,
+}
+
+impl Cores {
+    /// What the spheres of two primitives of these thicknesses lose: a share of their radius, which is
+    /// taken as `most` where it is larger. Infinite thickness stands for a surface.
+    pub(crate) fn losses(&self, thickness: [Real; 2]) -> [Loss; 2] {
+        let most = thickness[0].min(thickness[1]).min(self.at_most);
+        let solid = thickness.map(Real::is_finite);
+        let share = if solid == [true; 2] {
+            0.5 * self.share
+        } else {
+            self.share
+        };
+        solid.map(|solid| Loss {
+            share: if solid { f64::from(share) } else { 0.0 },
+            most: f64::from(most),
+        })
+    }
+}
+
+/// What spheres lose of their radius.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Loss {
+    share: f64,
+    most: f64,
+}
+
+impl Loss {
+    /// Of a sphere of this radius, a length.
+    pub(crate) fn of(&self, radius: f64) -> f64 {
+        self.share * radius.min(self.most)
+    }
 }
 
 /// Paths of the points of a body that turns in the step.
@@ -107,7 +160,8 @@ pub enum InitialContact {
     /// when its signed distance has fallen below what it is at the start. Other pairs are searched
     /// as usual.
     Deepen {
-        /// By how much, a length, > 0.
+        /// By how much at most, a length, > 0. Where parts are so thin that their axes would cross before,
+        /// by half of what is left to them.
         by: Real,
     },
 }
@@ -122,6 +176,7 @@ impl Default for ToiOptions {
             initial_contact: InitialContact::Stop,
             alternating_start: AlternatingStart::End,
             paths: Paths::Exact,
+            cores: None,
         }
     }
 }

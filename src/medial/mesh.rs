@@ -6,6 +6,7 @@ use super::mass;
 use super::primitive::{MedialPrimitive, MedialSphere};
 use super::shell::Shell;
 use super::simplex::{primitive_of, primitives_of, sorted};
+use super::thickness::{self, Thicknesses};
 use super::tree::SphereTree;
 use crate::error::MeshError;
 use crate::math::{Real, Vector};
@@ -36,6 +37,7 @@ struct MedialData {
     solid_mass: OnceLock<MassProperties>,
     boxes: OnceLock<Bvh>,
     shell: OnceLock<Arc<Shell>>,
+    thicknesses: OnceLock<Thicknesses>,
 }
 
 /// What a mesh is made of and what was computed from it ahead of all queries.
@@ -88,7 +90,7 @@ impl MedialMesh {
             .collect();
         let primitives = primitives_of(spheres.len(), &edges, &faces);
         let tree = SphereTree::new(&spheres, &primitives);
-        let thickness = robust_thickness(&spheres, &primitives);
+        let thickness = thickness::typical(&spheres, &primitives);
         let parts = Parts {
             spheres,
             edges,
@@ -113,6 +115,7 @@ impl MedialMesh {
             solid_mass,
             boxes: OnceLock::new(),
             shell: OnceLock::new(),
+            thicknesses: OnceLock::new(),
         };
         Self {
             data: Arc::new(data),
@@ -206,6 +209,18 @@ impl MedialMesh {
         self.data.parts.thickness
     }
 
+    /// How thin it is in each place. Computed at the first call.
+    pub(crate) fn thicknesses(&self) -> &Thicknesses {
+        let Parts {
+            spheres,
+            primitives,
+            tree,
+            ..
+        } = &self.data.parts;
+        let thicknesses = &self.data.thicknesses;
+        thicknesses.get_or_init(|| Thicknesses::new(spheres, primitives, tree))
+    }
+
     /// Mass properties in the body's frame: of the source mesh when built from one, else of the
     /// solid with overlaps counted once.
     pub fn mass_properties(&self, density: Real) -> MassProperties {
@@ -254,38 +269,4 @@ impl MedialMesh {
     pub fn shares_data(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.data, &other.data)
     }
-}
-
-/// Weighted 5th percentile of the mean radius of each primitive; see [`MedialMesh::thickness`].
-fn robust_thickness(spheres: &[MedialSphere], primitives: &[Simplex]) -> Real {
-    let mut local: Vec<(Real, Real)> = primitives
-        .iter()
-        .map(|p| {
-            let [a, b, c] = p.vertices.map(|v| spheres[v as usize]);
-            let mean = (a.radius + b.radius + c.radius) / 3.0;
-            let (ab, ac): (Vector, Vector) = (b.center - a.center, c.center - a.center);
-            // A cone counts as a strip as wide as itself, a lone sphere as its own section.
-            let area = match p.len {
-                3 => 0.5 * ab.cross(ac).length(),
-                2 => ab.length() * (a.radius + b.radius),
-                _ => a.radius * a.radius,
-            };
-            let mean = if p.len == 2 {
-                0.5 * (a.radius + b.radius)
-            } else {
-                mean
-            };
-            (mean, area)
-        })
-        .collect();
-    local.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let total: Real = local.iter().map(|l| l.1).sum();
-    let mut passed = 0.0;
-    for &(radius, area) in &local {
-        passed += area;
-        if passed >= 0.05 * total {
-            return radius;
-        }
-    }
-    local.last().map_or(0.0, |l| l.0)
 }

@@ -20,6 +20,7 @@ pub mod shell;
 pub mod simplex;
 pub mod solids;
 pub(crate) mod text;
+pub mod thickness;
 pub mod tree;
 
 pub use mesh::MedialMesh;

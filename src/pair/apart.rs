@@ -29,6 +29,14 @@ impl Balls {
         Self { spheres, len, size }
     }
 
+    /// The same with radii less these.
+    pub(super) fn less(mut self, losses: [f64; 3]) -> Self {
+        for (sphere, loss) in self.spheres.iter_mut().zip(losses) {
+            sphere.2 -= loss;
+        }
+        self
+    }
+
     /// Those of the given spheres, each once.
     pub(super) fn only(&self, corners: [u8; 4]) -> Self {
         let mut some = *self;

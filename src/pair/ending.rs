@@ -1,15 +1,16 @@
 //! How the search of [`super::search`] ends: with the witness of the first contact, or unresolved when its
 //! work is used up.
 
+use super::apart::Balls;
+use super::deepening::Threshold;
 use super::queue::Candidate;
 use super::search::Search;
-use super::swept::Side;
 use super::volumes::Volumes;
-use crate::elementary::ToiStatus;
 use crate::elementary::bracket::{Bracket, Limits, witness};
 use crate::elementary::distance::nearest_in_test;
 use crate::elementary::path::RigidPath;
 use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
+use crate::elementary::{Loss, ToiStatus};
 use crate::math::lane::Vec3;
 use crate::medial::MedialSphere;
 use crate::medial::tree::Below;
@@ -44,7 +45,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             start: time,
             ..self.earliest.limits
         };
-        let [(_, share_a), (_, share_b)] = spheres(&self.sides, primitives);
+        let [(_, share_a), (_, share_b)] = self.spheres(primitives);
         let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
         for_each_test(shares[0], shares[1], |test| {
             let mut bracket = Bracket::free(&limits);
@@ -60,22 +61,79 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         &self,
         test: &ElementaryTest,
         pair: [u32; 2],
-        target: f64,
+        threshold: &Threshold,
     ) -> RigidPath<f64> {
-        let [(a, _), (b, _)] = spheres(&self.sides, pair);
-        RigidPath::new(test, &self.motions, target, |second, k| {
-            if second { b[k as usize] } else { a[k as usize] }
+        let [(a, _), (b, _)] = self.spheres(pair);
+        RigidPath::new(test, &self.motions, threshold.target, |second, k| {
+            let (center, radius) = if second { b[k as usize] } else { a[k as usize] };
+            (center, threshold.scale * radius)
         })
+    }
+
+    /// What the spheres of two primitives lose where cores are asked for.
+    pub(super) fn losses(&self, [i, j]: [u32; 2]) -> [Loss; 2] {
+        let Some(cores) = &self.cores else {
+            return [Loss::default(); 2];
+        };
+        let (a, b) = (self.sides.0.body, self.sides.1.body);
+        cores.losses([a.thickness(i), b.thickness(j)])
+    }
+
+    /// Spheres of two primitives, or of their cores, in the bodies' frames, and what they test.
+    pub(super) fn spheres(&self, [i, j]: [u32; 2]) -> [(Spheres, Share); 2] {
+        let losses = self.losses([i, j]);
+        let (a, mut share_a) = self.sides.0.body.primitive(i);
+        let (b, mut share_b) = self.sides.1.body.primitive(j);
+        if self.cores.is_some_and(|c| c.share > 0.0) {
+            // What a core loses depends on its partner, so none leaves a test to a neighbour.
+            [share_a, share_b] = [share_a, share_b].map(|s| Share::whole(s.spheres));
+        }
+        let local = |s: MedialSphere, loss: Loss| {
+            let radius = f64::from(s.radius);
+            (Vec3::from_vector(s.center), radius - loss.of(radius))
+        };
+        [
+            (a.map(|s| local(s, losses[0])), share_a),
+            (b.map(|s| local(s, losses[1])), share_b),
+        ]
+    }
+
+    /// Spheres of two primitives over the piece, or of their cores.
+    pub(super) fn swept(&mut self, nodes: [u32; 2], [p, q]: [u32; 2]) -> [Balls; 2] {
+        let places = [
+            self.sides.0.sweep_leaf(nodes[0], p),
+            self.sides.1.sweep_leaf(nodes[1], q),
+        ];
+        let balls = [
+            *self.sides.0.balls(places[0]),
+            *self.sides.1.balls(places[1]),
+        ];
+        if self.cores.is_none() {
+            return balls;
+        }
+        let [loss_a, loss_b] = self.losses([p, q]);
+        let (a, b) = (
+            self.sides.0.body.primitive(p).0,
+            self.sides.1.body.primitive(q).0,
+        );
+        [
+            balls[0].less(a.map(|s| loss_a.of(s.radius.into()))),
+            balls[1].less(b.map(|s| loss_b.of(s.radius.into()))),
+        ]
     }
 
     /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness:
     /// a test that is proven free until then may be nearer than the one that was found.
     pub(super) fn settle(&mut self) {
-        let Some((test, bracket, pair)) = &mut self.earliest.found else {
+        let Some((_, _, pair)) = self.earliest.found else {
+            return;
+        };
+        let reported = self.spheres(pair);
+        let Some((test, bracket, _)) = &mut self.earliest.found else {
             return;
         };
         let lower = self.earliest.lower;
-        let [(a, share_a), (b, share_b)] = spheres(&self.sides, *pair);
+        let [(a, share_a), (b, share_b)] = reported;
         let then = |side: usize, spheres: Spheres| {
             let turned = self.motions[side].sin_cos(lower);
             spheres.map(|(c, r)| (self.motions[side].point(c).at(lower, turned).position, r))
@@ -106,14 +164,4 @@ fn some_leaf(body: &impl Volumes, mut below: Below) -> u32 {
             Below::Nodes(first, _) => below = body.below(first),
         }
     }
-}
-
-pub(super) fn spheres<A: Volumes, B: Volumes>(
-    sides: &(Side<'_, A>, Side<'_, B>),
-    [i, j]: [u32; 2],
-) -> [(Spheres, Share); 2] {
-    let local = |s: MedialSphere| (Vec3::from_vector(s.center), f64::from(s.radius));
-    let (a, share_a) = sides.0.body.primitive(i);
-    let (b, share_b) = sides.1.body.primitive(j);
-    [(a.map(local), share_a), (b.map(local), share_b)]
 }

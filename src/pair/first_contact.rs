@@ -123,8 +123,9 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
         }
     }
 
-    /// Least signed distance at the start, a length, of primitives that touched then and were let sink in
-    /// ([`crate::elementary::InitialContact::Deepen`]); infinite where there was none. All of them are known once
+    /// How deep primitives that touched at the start and were let sink in
+    /// ([`crate::elementary::InitialContact::Deepen`]) were: the least signed distance, less what counts as
+    /// touching, in units of the thickness of the thinner of the two. Infinite where none touched. All of them are known once
     /// nothing meets before a time after 0.
     pub fn deepest(&self) -> f64 {
         self.search.as_ref().map_or(f64::INFINITY, |s| s.deepest)

@@ -1,15 +1,17 @@
 //! What the search of [`super::search`] does with two primitives: lists their elementary tests, and takes
 //! one of them further.
 
-use super::ending::spheres;
+use super::deepening::Threshold;
 use super::queue::{Candidate, Entry, Open};
 use super::search::Search;
 use super::volumes::Volumes;
 use crate::elementary::InitialContact;
 use crate::elementary::bracket::Limits;
 use crate::elementary::distance::{crossing, signed_distance, thinnest};
+use crate::elementary::penetration::Ball;
 use crate::elementary::resumed::bracket_until;
 use crate::elementary::test_list::{Share, for_each_test};
+use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::medial::tree::Below;
 
@@ -23,25 +25,31 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             return true;
         };
         let pair = [p, q];
-        let [(sa, share_a), (sb, share_b)] = spheres(&self.sides, pair);
+        let [(sa, share_a), (sb, share_b)] = self.spheres(pair);
         let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
         let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
             let turned = self.motions[side].sin_cos(0.0);
             let place = |c| self.motions[side].point(c).at(0.0, turned).position;
             s.iter().map(|s| (place(s.0), s.1)).collect::<Vec<_>>()
         };
+        let tolerance = self.earliest.limits.tolerance;
         let mut target = self.target;
         if self.initial_contact == InitialContact::Stop {
             target = target.max(-thinnest(sa, sb));
         }
+        let mut threshold = Threshold::new(target, tolerance);
         match self.initial_contact {
             InitialContact::Deepen { by } => {
                 let (pa, pb) = (at_start(0, sa), at_start(1, sb));
                 let distance = signed_distance(&pa, &pb);
-                let tolerance = self.earliest.limits.tolerance;
-                self.deepest = self.deepest.min(distance);
-                if distance <= target + tolerance {
-                    target = distance - f64::from(by) - tolerance;
+                let touching = target + tolerance;
+                if distance <= touching {
+                    let depth = (distance - touching) / self.thickness(pair);
+                    self.deepest = self.deepest.min(depth);
+                    let axis = |s: &[Ball<f64>]| s.iter().map(|s| (s.0, 0.0)).collect::<Vec<_>>();
+                    let axes = || signed_distance(&axis(&pa), &axis(&pb));
+                    let thinnest = thinnest(sa, sb);
+                    threshold = Threshold::deepened(distance, thinnest, by.into(), tolerance, axes);
                 }
             }
             // Proven free until later, they cannot cross at the start.
@@ -60,13 +68,12 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             InitialContact::Stop => {}
         }
         // A target of the pair's own leaves no test to a neighbour, whose target is another.
-        let shares = if target == self.target {
+        let shares = if threshold.target == self.target {
             [share_a, share_b]
         } else {
             [share_a, share_b].map(|s| Share::whole(s.spheres))
         };
-        let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
-        let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])].map(|b| *b);
+        let balls = self.swept([i, j], pair);
         for_each_test(shares[0], shares[1], |test| {
             self.proofs += 1;
             let some = [
@@ -77,7 +84,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                 let open = Open {
                     primitives: pair,
                     test,
-                    target,
+                    threshold,
                     spent: 0,
                 };
                 let place = Candidate::Test(self.open.len() as u32);
@@ -89,6 +96,14 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         true
     }
 
+    /// Thickness of the thinner of two primitives, or the least number where it has none.
+    fn thickness(&self, [p, q]: [u32; 2]) -> f64 {
+        let (a, b) = (self.sides.0.body, self.sides.1.body);
+        let thinner = a.thickness(p).min(b.thickness(q));
+        let thinner = self.cores.map_or(thinner, |c| thinner.min(c.at_most));
+        f64::from(thinner.max(Real::MIN_POSITIVE))
+    }
+
     /// Takes one test further, until it is settled or another candidate may come first; returns
     /// whether an earlier contact is still possible.
     pub(super) fn advance(&mut self, place: u32, time: f64) -> bool {
@@ -97,11 +112,12 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         let limits = Limits {
             start: time,
             horizon: self.earliest.upper.min(limits.horizon),
+            tolerance: open.threshold.tolerance,
             max_iterations: limits.max_iterations - open.spent,
             ..limits
         };
         let until = (self.heap.peek()).map_or(limits.horizon, |next| next.time.max(time));
-        let path = self.path(&open.test, open.primitives, open.target);
+        let path = self.path(&open.test, open.primitives, &open.threshold);
         let bracket = bracket_until(&path, open.test.domain, &limits, until);
         self.earliest.tests += u32::from(open.spent == 0);
         open.spent += bracket.iterations;

@@ -5,6 +5,7 @@
 
 mod apart;
 pub mod contacts;
+pub mod deepening;
 pub mod distance;
 mod ending;
 pub mod first_contact;

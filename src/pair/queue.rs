@@ -1,6 +1,7 @@
 //! What the search of [`super::search`] still has to look at, in the order of the time before
 //! which it is proven free.
 
+use super::deepening::Threshold;
 use crate::elementary::test_list::ElementaryTest;
 use std::cmp::Ordering;
 
@@ -18,8 +19,8 @@ pub(super) enum Candidate {
 pub(super) struct Open {
     pub(super) primitives: [u32; 2],
     pub(super) test: ElementaryTest,
-    /// Target distance of this primitive pair.
-    pub(super) target: f64,
+    /// What counts as contact of this primitive pair.
+    pub(super) threshold: Threshold,
     /// Iterations so far.
     pub(super) spent: u32,
 }

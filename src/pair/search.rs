@@ -21,7 +21,7 @@ use super::swept::Side;
 use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
 use crate::elementary::first_contact::{Earliest, options_limits};
-use crate::elementary::{InitialContact, ToiOptions, ToiStatus};
+use crate::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
 use crate::math::motion::RigidMotion;
 use crate::medial::tree::Below;
 use std::collections::BinaryHeap;
@@ -49,6 +49,8 @@ pub(super) struct Search<'a, A, B> {
     /// What culling goes by: no primitive pair has a larger target, raised or not.
     pub(super) reach: f64,
     pub(super) initial_contact: InitialContact,
+    /// What of them may not meet; `None`: all.
+    pub(super) cores: Option<Cores>,
     pub(super) heap: BinaryHeap<Entry>,
     /// One candidate that is not in the heap.
     pub(super) first: Option<Entry>,
@@ -64,7 +66,7 @@ pub(super) struct Search<'a, A, B> {
     /// Node pairs looked at.
     pub(super) nodes: u32,
     pub(super) earliest: Earliest<f64>,
-    /// Least signed distance at the start of primitives that touch then and may deepen.
+    /// As [`super::first_contact::Query::deepest`].
     pub(super) deepest: f64,
 }
 
@@ -100,6 +102,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
                 InitialContact::Deepen { .. } => target,
             },
             initial_contact: options.initial_contact,
+            cores: options.cores,
             heap: BinaryHeap::with_capacity(64),
             first: None,
             open: Vec::with_capacity(16),
@@ -279,9 +282,8 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         let (a, b) = (*self.sides.0.node(i), *self.sides.1.node(j));
         if let (Below::Primitive(p), Below::Primitive(q)) = (a.below, b.below) {
             self.proofs += 1;
-            let places = [self.sides.0.sweep_leaf(i, p), self.sides.1.sweep_leaf(j, q)];
-            let balls = [self.sides.0.balls(places[0]), self.sides.1.balls(places[1])];
-            return match self.free_until(balls, time) {
+            let balls = self.swept([i, j], [p, q]);
+            return match self.free_until(balls.each_ref(), time) {
                 None => true,
                 Some(free) if self.soon(free, time) => self.list_tests([i, j], free),
                 Some(free) => self.wait([i, j], free),

@@ -20,6 +20,11 @@ pub trait Volumes {
     fn below(&self, node: u32) -> Below;
     /// Spheres of a primitive (unused entries repeat the last), and what it tests.
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share);
+    /// Thickness of a primitive, a length ([`crate::medial::thickness`]); infinite for surfaces, and for
+    /// solids whose inside is not in play.
+    fn thickness(&self, _primitive: u32) -> Real {
+        Real::INFINITY
+    }
     /// A few balls that hold the body, if it has such.
     fn shell(&self) -> Option<&Arc<Shell>> {
         None
@@ -46,6 +51,9 @@ impl Volumes for MedialMesh {
             vertices: s.owns_vertex,
         };
         (spheres, share)
+    }
+    fn thickness(&self, primitive: u32) -> Real {
+        self.thicknesses().primitives[primitive as usize]
     }
     fn shell(&self) -> Option<&Arc<Shell>> {
         Some(MedialMesh::shell(self))

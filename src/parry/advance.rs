@@ -17,6 +17,7 @@ use crate::math::{Real, Vector};
 use crate::medial::tree::Below;
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::Volumes;
+use crate::pair::deepening::Threshold;
 use crate::pair::first_contact::{Counts, ToiResult};
 use parry3d::query::NonlinearRigidMotion;
 use std::cmp::Reverse;
@@ -221,8 +222,14 @@ impl Search<'_> {
 
     fn leaf(&mut self, body: &Turned, primitives: [u32; 2], entry: &Entry) {
         self.counts.tests += u32::from(entry.spent == 0);
-        let (balls, len) = self.balls(primitives[0]);
-        let balls = &balls[..len];
+        let (mut all, len) = self.balls(primitives[0]);
+        let thickness = self.mesh.thicknesses().primitives[primitives[0] as usize];
+        let mut thinner = thickness;
+        if let Some(cores) = &self.options.cores {
+            let [loss, _] = cores.losses([thickness, Real::INFINITY]);
+            all = all.map(|(center, radius)| (center, radius - loss.of(radius)));
+            thinner = thinner.min(cores.at_most);
+        }
         let cap = CAP.saturating_mul(self.options.max_iterations);
         let mut limits = Limits {
             start: entry.time,
@@ -237,14 +244,23 @@ impl Search<'_> {
                 steps: 1,
                 ..limits
             };
-            let start = self.advance(body, balls, &at_start).near.distance();
-            if start <= limits.target + limits.tolerance {
-                self.deepest = self.deepest.min(start);
+            let start = self.advance(body, &all[..len], &at_start).near.distance();
+            let touching = limits.target + limits.tolerance;
+            if start <= touching {
+                let depth = (start - touching) / f64::from(thinner.max(Real::MIN_POSITIVE));
+                self.deepest = self.deepest.min(depth);
                 limits.start = if entry.spent == 0 { 0.0 } else { entry.time };
-                limits.target = start - f64::from(by) - limits.tolerance;
+                let thinnest = all.iter().map(|b| b.1).fold(f64::INFINITY, f64::min);
+                let tolerance = limits.tolerance;
+                let axis = all.map(|(center, _)| (center, 0.0));
+                let axes = || self.advance(body, &axis[..len], &at_start).near.distance();
+                let threshold = Threshold::deepened(start, thinnest, by.into(), tolerance, axes);
+                all.iter_mut().for_each(|ball| ball.1 *= threshold.scale);
+                limits.target = threshold.target;
+                limits.tolerance = threshold.tolerance;
             }
         }
-        let advance = self.advance(body, balls, &limits);
+        let advance = self.advance(body, &all[..len], &limits);
         if advance.separated {
             return;
         }

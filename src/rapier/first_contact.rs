@@ -243,7 +243,7 @@ impl Asker<'_> {
         };
         let (hit, deepest) = query(&question.first, known)?;
         let goes_on = hit.is_none_or(|h| h.time > time);
-        let deep = goes_on && self.is_deep(snapshot, pair, deepest);
+        let deep = goes_on && self.is_deep(deepest);
         let floor = question.floor.as_ref().filter(|_| deep);
         match (hit, floor.and_then(|options| query(options, None)?.0)) {
             (Some(a), Some(b)) if a.time <= b.time => Some(a),
@@ -251,11 +251,10 @@ impl Asker<'_> {
         }
     }
 
-    /// Whether what touches is so deep that the floor is asked for: what is less deep meets its own deeper
-    /// target first.
-    pub fn is_deep(&self, snapshot: &Snapshot, pair: [usize; 2], distance: f64) -> bool {
-        let near_floor = (self.tuning.sink - self.tuning.floor) * snapshot.thickness(pair);
-        distance <= f64::from(reach(snapshot, pair, near_floor))
+    /// Whether what touches is so deep ([`Query::deepest`]) that the floor is asked for: what is less deep meets
+    /// its own deeper target first.
+    pub fn is_deep(&self, deepest: f64) -> bool {
+        deepest <= f64::from(self.tuning.sink - self.tuning.floor)
     }
 
     /// Whether the pair touches at the start of the step, so that the solver has it.

@@ -112,7 +112,7 @@ impl<'m> Inquiry<'m> {
         }
         // All that touched at the start is known now.
         let floor = begun.floor.get_or_insert_with(|| {
-            let deep = asker.is_deep(snapshot, pair, begun.first.deepest());
+            let deep = asker.is_deep(begun.first.deepest());
             let asked = question.floor.as_ref().filter(|_| deep);
             asked.map(|options| begin(options, work))
         });

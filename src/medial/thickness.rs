@@ -1,0 +1,122 @@
+//! How thin a medial mesh is: as a whole, and where it may meet something.
+//!
+//! Whether a body can pass through another, or may sink into it, is decided where they meet: an antenna
+//! is as thin as itself, whatever it stands on. So each primitive has a thickness of its own, and each node
+//! of the tree the least below it.
+
+use super::mesh::Simplex;
+use super::primitive::MedialSphere;
+use super::tree::{Below, SphereTree};
+use crate::math::{Real, Vector};
+
+/// Way, in units of the radius, in which a blunt tip grows from nothing to that radius: a tip whose radius
+/// grows more slowly is slender. What of a blunt tip is thinner than `ρ` reaches `4 ρ` at most, so that
+/// what passes it has missed the body; the edges of a box are blunt, and the box is thick. Smaller, and
+/// needles count as thick as where they begin; larger, and sharp edges count as sheets.
+const BLUNT: Real = 4.0;
+
+/// Thickness of a primitive of one to three spheres, a length: the least radius `ρ` such that what is thinner
+/// than `ρ` reaches further than [`BLUNT`]` ρ`, and the largest radius where there is none. 0 for what has
+/// no thickness in some place that is not blunt: sheets, fins, needles.
+pub fn of_primitive(spheres: &[MedialSphere]) -> Real {
+    let radii = spheres.iter().map(|s| s.radius);
+    let (least, most) = radii.fold((Real::MAX, 0.0), |(least, most), r| {
+        (Real::min(least, r), Real::max(most, r))
+    });
+    let steep = BLUNT * slope(spheres);
+    if steep >= 1.0 || least >= most {
+        return most;
+    }
+    (least / (1.0 - steep)).min(most)
+}
+
+/// How fast the radius grows along the medial axis of a primitive, in lengths per length.
+fn slope(spheres: &[MedialSphere]) -> Real {
+    let along = |a: &MedialSphere, b: &MedialSphere| {
+        let way = a.center.distance(b.center);
+        (a.radius - b.radius).abs() / way.max(Real::MIN_POSITIVE)
+    };
+    match spheres {
+        [a, b] => along(a, b),
+        [a, b, c] => {
+            let (e, f): (Vector, Vector) = (b.center - a.center, c.center - a.center);
+            let (de, df) = (b.radius - a.radius, c.radius - a.radius);
+            let square = e.cross(f).length_squared();
+            if square > 0.0 {
+                // The gradient of the radius, whose products with both edges are `de` and `df`.
+                (e * df - f * de).length() / square.sqrt()
+            } else {
+                along(a, b).max(along(b, c)).max(along(c, a))
+            }
+        }
+        _ => 0.0,
+    }
+}
+
+/// Thickness of each primitive, and the least below each node of the tree.
+#[derive(Clone, Debug)]
+pub struct Thicknesses {
+    /// Of each primitive, a length.
+    pub primitives: Vec<Real>,
+    /// The least below each node.
+    pub nodes: Vec<Real>,
+}
+
+impl Thicknesses {
+    /// Of a mesh with these parts.
+    pub(super) fn new(spheres: &[MedialSphere], simplices: &[Simplex], tree: &SphereTree) -> Self {
+        let primitive = |s: &Simplex| {
+            let spheres = s.vertices.map(|v| spheres[v as usize]);
+            of_primitive(&spheres[..usize::from(s.len).clamp(1, 3)])
+        };
+        let primitives: Vec<Real> = simplices.iter().map(primitive).collect();
+        let mut nodes = vec![0.0; tree.nodes().len()];
+        // Children come after their parents.
+        for (k, node) in tree.nodes().iter().enumerate().rev() {
+            nodes[k] = match node.below() {
+                Below::Primitive(p) => primitives[p as usize],
+                Below::Nodes(i, j) => Real::min(nodes[i as usize], nodes[j as usize]),
+            };
+        }
+        Self { primitives, nodes }
+    }
+
+    /// The least of the whole mesh.
+    pub fn least(&self) -> Real {
+        self.nodes.first().copied().unwrap_or(0.0)
+    }
+}
+
+/// Weighted 5th percentile of the mean radius of each primitive; see [`super::MedialMesh::thickness`].
+pub(super) fn typical(spheres: &[MedialSphere], primitives: &[Simplex]) -> Real {
+    let mut local: Vec<(Real, Real)> = primitives
+        .iter()
+        .map(|p| {
+            let [a, b, c] = p.vertices.map(|v| spheres[v as usize]);
+            let mean = (a.radius + b.radius + c.radius) / 3.0;
+            let (ab, ac): (Vector, Vector) = (b.center - a.center, c.center - a.center);
+            // A cone counts as a strip as wide as itself, a lone sphere as its own section.
+            let area = match p.len {
+                3 => 0.5 * ab.cross(ac).length(),
+                2 => ab.length() * (a.radius + b.radius),
+                _ => a.radius * a.radius,
+            };
+            let mean = if p.len == 2 {
+                0.5 * (a.radius + b.radius)
+            } else {
+                mean
+            };
+            (mean, area)
+        })
+        .collect();
+    local.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: Real = local.iter().map(|l| l.1).sum();
+    let mut passed = 0.0;
+    for &(radius, area) in &local {
+        passed += area;
+        if passed >= 0.05 * total {
+            return radius;
+        }
+    }
+    local.last().map_or(0.0, |l| l.0)
+}

@@ -1,0 +1,72 @@
+//! How far primitives that touch at the start may sink into each other
+//! ([`crate::elementary::InitialContact::Deepen`]) before that counts as a contact.
+//!
+//! Mostly by a given length: the target distance falls to that below their distance `s` at the start. Where
+//! parts are thinner than that, no such target is ever met: the medial axes would cross before. There all
+//! radii shrink by one factor instead. With `m` the distance of the axes at the start and `s < 0`, and for
+//! any `0 < b < m`, the factor `σ = (m − b) / (m − s)` leaves primitives that are at least `b` apart: a
+//! pair of spheres of radius sum `R`, whose centres are no nearer than `m` and no nearer than `R + s`, is
+//! further apart than `σ R` by `m − σ R` and by `R + s − σ R`, of which one is at least `b` (they are equal
+//! at `R = m − s`). And spheres with radii of any factor from 0 on hold the axis: where they do not meet,
+//! no axis has crossed another.
+
+/// Share of the asked tolerance below which axes at the start count as crossing: nearer than that, rounding
+/// of the poses decides.
+const CROSSED: f64 = 1.0e-2;
+
+/// Share of the way that is left which the tolerance takes of it.
+const TAKEN: f64 = 0.25;
+
+/// What counts as contact of two primitives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Threshold {
+    /// Factor of all radii, from 0 to 1.
+    pub scale: f64,
+    /// Signed distance of what these leave that counts as contact, a length.
+    pub target: f64,
+    /// Tolerance of it.
+    pub tolerance: f64,
+}
+
+impl Threshold {
+    /// Of primitives as they are.
+    pub fn new(target: f64, tolerance: f64) -> Self {
+        Self {
+            scale: 1.0,
+            target,
+            tolerance,
+        }
+    }
+
+    /// Of primitives whose signed distance at the start is `distance`, so that they touch: they may deepen `by`
+    /// so much, and never to their axes. `thinnest` is the smallest sum of two of their radii, `axes` the
+    /// distance of their medial axes at the start.
+    pub fn deepened(
+        distance: f64,
+        thinnest: f64,
+        by: f64,
+        tolerance: f64,
+        axes: impl FnOnce() -> f64,
+    ) -> Self {
+        let target = distance - by - tolerance;
+        let plain = Self::new(target, tolerance);
+        if -target < thinnest {
+            return plain;
+        }
+        let axes = axes();
+        if axes <= CROSSED * tolerance {
+            return plain;
+        }
+        let (scale, left) = if distance > 0.0 {
+            (1.0, distance)
+        } else {
+            let by = by.min(0.5 * axes);
+            ((axes - by) / (axes - distance), by)
+        };
+        Self {
+            scale,
+            target: 0.0,
+            tolerance: tolerance.min(TAKEN * left),
+        }
+    }
+}
