@@ -9,7 +9,7 @@ use crate::medial::MedialMesh;
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
 use std::collections::{HashMap, HashSet};
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
 /// Two shapes at one relative pose, to the bit.
@@ -89,6 +89,7 @@ pub struct Answers {
     tests: AtomicU64,
     missed: Mutex<Vec<[u64; 2]>>,
     muted: RwLock<HashSet<Key>>,
+    swept_elsewhere: AtomicBool,
     one_point: RwLock<OnePoint>,
     manifolds: AtomicU64,
     intersections: AtomicU64,
@@ -160,6 +161,17 @@ impl Answers {
     pub fn is_muted(&self, shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> bool {
         let muted = self.muted.read().unwrap_or_else(PoisonError::into_inner);
         !muted.is_empty() && muted.contains(&Key::new(shape1, shape2, pos12))
+    }
+
+    /// From now on rapier's own sweeps of medial bodies find nothing, or again what there is: someone else
+    /// takes care of what they meet on their way.
+    pub fn sweep_elsewhere(&self, elsewhere: bool) {
+        self.swept_elsewhere.store(elsewhere, Ordering::Relaxed);
+    }
+
+    /// Whether someone else takes care of it.
+    pub fn is_swept_elsewhere(&self) -> bool {
+        self.swept_elsewhere.load(Ordering::Relaxed)
     }
 
     /// From now on these pairs get their deepest contact only.

@@ -258,6 +258,11 @@ impl QueryDispatcher for MedialDispatcher {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let one_is_medial = medial(g1).is_some() || medial(g2).is_some();
+        // rapier asks so of solid pairs; of what only tells of events it wants the first contact.
+        if one_is_medial && !stop_at_penetration && self.answers.is_swept_elsewhere() {
+            return Ok(None);
+        }
         self.cast(
             [motion1, motion2],
             [g1, g2],

@@ -132,8 +132,10 @@ impl Shape for MedialMesh {
         BoundingSphere::new(root.center, root.radius)
     }
 
-    /// Bounds the body on its way, not only at both ends: whatever it turns about its centre of
-    /// mass, it stays in the ball around that centre.
+    /// Bounds the mesh on its way, not only at both ends: however it turns about its own centre of mass,
+    /// it stays in the ball around that centre. Two poses do not tell what else it may have turned about:
+    /// of a collider that is offset in its body, or one of several, nothing bounds the way between them.
+    /// Neither rapier's step nor this crate asks for it.
     fn compute_swept_aabb(&self, start_pos: &Pose, end_pos: &Pose) -> Aabb {
         let com = self.unit_mass_properties().local_com;
         let root = &self.tree().nodes()[0];

@@ -25,6 +25,14 @@ pub struct Rules<'a> {
 }
 
 impl Rules<'_> {
+    /// Whether the user modifies any contacts: pairs of such a collider are rapier's.
+    pub fn any_modified(&self) -> bool {
+        let modified = ActiveHooks::MODIFY_SOLVER_CONTACTS;
+        self.colliders
+            .iter()
+            .any(|(_, c)| c.active_hooks().contains(modified))
+    }
+
     /// Whether rapier would let them push each other. Pairs whose contacts the user modifies are left
     /// to rapier.
     pub fn respond(&self, snapshot: &Snapshot, pair: [usize; 2]) -> bool {
@@ -88,16 +96,26 @@ pub fn concerned(snapshot: &Snapshot, [i, j]: [usize; 2]) -> bool {
         && (p.medial().is_some() || q.medial().is_some())
 }
 
-/// Pairs of colliders, none of them fixed, whose boxes over the whole step meet, in the narrow phase's
-/// order (lower collider index first).
+/// Pairs of colliders whose boxes over the whole step meet, in the narrow phase's order (lower collider
+/// index first). Of fixed ones only those count that are near what moves: a world may have thousands.
 pub fn sweep(snapshot: &Snapshot, dt: Real, margin: Real) -> Vec<[usize; 2]> {
     let moving = |k: &usize| snapshot.bodies[snapshot.parts[*k].body].kind != Kind::Fixed;
-    let parts: Vec<usize> = (0..snapshot.parts.len()).filter(moving).collect();
     let swept = |&k: &usize| {
         let aabb = snapshot.swept_aabb(k, 0.0, dt);
         aabb.loosened(margin + snapshot.parts[k].skin)
     };
-    let boxes: Vec<Aabb> = parts.iter().map(swept).collect();
+    let (mut parts, fixed): (Vec<usize>, Vec<usize>) = (0..snapshot.parts.len()).partition(moving);
+    let mut boxes: Vec<Aabb> = parts.iter().map(swept).collect();
+    let all = boxes
+        .iter()
+        .fold(Aabb::new_invalid(), |all, b| all.merged(b));
+    for k in fixed {
+        let aabb = swept(&k);
+        if aabb.intersects(&all) {
+            parts.push(k);
+            boxes.push(aabb);
+        }
+    }
     let met = meeting(&boxes)
         .into_iter()
         .map(|pair| pair.map(|n| parts[n]));

@@ -1,6 +1,6 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
-use super::effects::{Effects, Wanted};
+use super::effects::{Effect, Effects, Wanted};
 use super::emit::{Once, Told};
 use super::first_contact::{Asker, Work};
 use super::items::{self, Sets};
@@ -293,6 +293,8 @@ impl MedialPipeline {
         let prediction = parameters.prediction_distance();
         let muted = muting::muted(&snapshot, &asker, &rules, prediction, &mut work);
         report.muted = muted.len();
+        let off = |e: &Effects| e.continuous == Effect::Off;
+        let takes_all = !self.effects.any(off) && !rules.any_modified();
         report.mute_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
@@ -332,6 +334,10 @@ impl MedialPipeline {
         report.speculative = speculators.count();
         report.batch_seconds = clock.elapsed().as_secs_f64();
 
+        // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
+        let can_sweep = soft_bodies.is_empty() && multibody_joints.multibodies().next().is_none();
+        self.answers.sweep_elsewhere(takes_all && can_sweep);
+
         let clock = Instant::now();
         let once = Once::new(events, &mut self.told);
         pipeline.step(
@@ -351,6 +357,7 @@ impl MedialPipeline {
         );
         report.step_seconds = clock.elapsed().as_secs_f64();
         self.answers.mute(HashSet::new());
+        self.answers.sweep_elsewhere(false);
         speculators.restore(bodies);
 
         let clock = Instant::now();

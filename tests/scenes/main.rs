@@ -10,6 +10,7 @@ mod driven;
 mod effects;
 mod endurance;
 mod fast_pairs;
+mod fixed_partners;
 #[cfg_attr(
     not(feature = "enhanced-determinism"),
     allow(dead_code, reason = "the golden holds with that feature only")

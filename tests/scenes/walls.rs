@@ -1,7 +1,7 @@
 //! A fast, spinning ring against walls 2 cm thick: it must not tunnel.
 //!
-//! rapier sweeps fast bodies against fixed ones through our certified query; the same scene with the
-//! default dispatcher shows that walls this thin are tunnelled without it.
+//! The event loop meets fixed partners as it meets all others; the same scene in rapier's own step, with the
+//! default dispatcher, shows that walls this thin are tunnelled without it.
 
 use crate::bodies::*;
 use rapier3d::parry::query::DefaultQueryDispatcher;
@@ -66,7 +66,11 @@ fn tunnels(wall: Wall, speed: Real, phase: u32, certified: bool) -> bool {
             .set_query_dispatcher(DefaultQueryDispatcher);
     }
     (0..60).any(|_| {
-        pipeline.step(&mut world);
+        if certified {
+            pipeline.step(&mut world);
+        } else {
+            world.step();
+        }
         world.bodies[ring].translation().x < -HALF_THICKNESS
     })
 }

@@ -1,0 +1,105 @@
+//! Fixed partners: what turns fast meets them as it meets what moves. Answers are planted: a rod that turns
+//! freely keeps its angular velocity, so one that reaches a pillar and keeps it has passed; loops thrown
+//! at a fixed loop are never linked with it afterwards.
+
+use crate::bodies::*;
+use crate::heaps::{line, linking};
+use crate::random::Random;
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+
+fn cone(a: Vector, b: Vector, radius: Real) -> MedialMesh {
+    let spheres = [a, b].map(|c| MedialSphere::new(c, radius));
+    MedialMesh::new(spheres.to_vec(), vec![[0, 1]], vec![]).expect("a cone")
+}
+
+/// How a rod of half length 1 m is fixed to its body: about its middle, or with the body's origin aside.
+#[derive(Clone, Copy, Debug)]
+enum Mount {
+    Middle,
+    Aside,
+}
+
+/// How many of 32 rods, which turn at `spin` (rad/s) about Z, pass a fixed pillar of radius 5 mm near their
+/// tip.
+fn rods_passed(mount: Mount, spin: Real) -> u32 {
+    let passed = |phase: u32| {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let aside = match mount {
+            Mount::Middle => Vector::ZERO,
+            Mount::Aside => Vector::new(0.4, -0.7, 0.1),
+        };
+        let angle = 0.19 * phase as Real;
+        let turn = Rotation::from_scaled_axis(Vector::new(0.0, 0.0, angle));
+        let pose = Pose::from_parts(turn * -aside, turn);
+        let body = RigidBodyBuilder::dynamic().pose(pose);
+        let body = body.angvel(Vector::new(0.0, 0.0, spin));
+        let rod = cone(aside - Vector::X, aside + Vector::X, 0.02);
+        let (rod, _) = world.insert(body, ColliderBuilder::medial_mesh(rod).restitution(0.5));
+        world.bodies[rod].set_allow_fast_rotation(true);
+        let pillar = cone(
+            Vector::new(0.0, 0.98, -1.0),
+            Vector::new(0.0, 0.98, 1.0),
+            0.005,
+        );
+        world.insert_collider(ColliderBuilder::medial_mesh(pillar), None);
+        let mut pipeline = attached(&mut world);
+        // Either end comes by in half a turn.
+        let steps = (3.3 / (spin * world.integration_parameters.dt)).ceil() as usize;
+        for _ in 0..steps {
+            pipeline.step(&mut world);
+        }
+        (world.bodies[rod].angvel().z - spin).abs() < 1.0e-3 * spin
+    };
+    (0..32).filter(|phase| passed(*phase)).count() as u32
+}
+
+#[test]
+fn no_turning_rod_passes_a_fixed_pillar() {
+    for mount in [Mount::Middle, Mount::Aside] {
+        // 0.75 rad a step, and beyond half a turn.
+        let counts = [45.0, 150.0, 220.0, 360.0].map(|spin| rods_passed(mount, spin));
+        assert_eq!(counts, [0; 4], "{mount:?}");
+    }
+}
+
+/// Throws of loops at a fixed loop: 100, or as many as `FIXED_LOOPS` says.
+fn throws() -> u64 {
+    let asked = std::env::var("FIXED_LOOPS").ok();
+    asked.and_then(|n| n.parse().ok()).unwrap_or(100)
+}
+
+#[test]
+fn no_loop_links_with_a_fixed_one() {
+    let mesh = ring(12, 0.4, 0.03);
+    let linked = |seed: u64| {
+        let mut random = Random(seed);
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let fixed = Pose::new(Vector::ZERO, random.direction() * 3.0);
+        world.insert_collider(
+            ColliderBuilder::medial_mesh(mesh.clone()).position(fixed),
+            None,
+        );
+        let speed = random.within(5.0, 60.0);
+        let toward = random.direction();
+        let aside = random.direction() * random.within(0.0, 0.6);
+        let start = aside - toward * (1.2 + speed * random.within(0.02, 0.05));
+        let body = RigidBodyBuilder::dynamic()
+            .pose(Pose::new(start, random.direction() * 3.0))
+            .linvel(toward * speed)
+            .angvel(random.direction() * random.within(0.0, 360.0));
+        let (thrown, _) = world.insert(body, ColliderBuilder::medial_mesh(mesh.clone()));
+        world.bodies[thrown].set_allow_fast_rotation(true);
+        let still = line(&mesh, &fixed);
+        let mut pipeline = attached(&mut world);
+        let steps = (2.0 / (speed * world.integration_parameters.dt)) as usize + 10;
+        (0..steps).any(|_| {
+            pipeline.step(&mut world);
+            linking(&line(&mesh, world.bodies[thrown].position()), &still) != 0
+        })
+    };
+    let count = (0..throws()).filter(|seed| linked(*seed)).count();
+    assert_eq!(count, 0, "of {} throws", throws());
+}
