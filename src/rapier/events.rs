@@ -9,7 +9,6 @@
 //! current time neither; so no medial axis crosses another on the motion executed.
 
 use super::first_contact::{Asker, Hit, Work};
-use super::hanging;
 use super::inquiry::{Inquiry, Known, Meshes};
 use super::motion::{Kind, Snapshot};
 use super::outlines::Outlines;
@@ -22,7 +21,7 @@ use crate::math::fast_hash::{FastMap, FastSet};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::SharedShape;
-use rapier3d::geometry::{ColliderHandle, NarrowPhase};
+use rapier3d::geometry::{ColliderHandle, ContactManifold, NarrowPhase};
 
 /// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
 /// which grows a little with each meeting of a pair.
@@ -93,12 +92,13 @@ pub fn resolve(
     work: &mut Work,
 ) -> Outcome {
     let guarded = asker.tuning.guarded();
-    let deep = if depth > guarded * snapshot.least_thickness() {
+    let thinnest = snapshot.thinnest_part();
+    let deep = if depth > guarded * thinnest {
         deep(snapshot, narrow_phase, guarded)
     } else {
         FastSet::default()
     };
-    if deep.is_empty() && !asker.may_be_fast(snapshot, asker.tuning.fast) {
+    if deep.is_empty() && !asker.may_be_fast(snapshot, asker.tuning.fast, thinnest) {
         return Outcome::default();
     }
     let pairs = sweep(snapshot, asker.dt, MARGIN * asker.unit);
@@ -145,15 +145,20 @@ fn deep(
     narrow_phase: &NarrowPhase,
     guarded: Real,
 ) -> FastSet<[ColliderHandle; 2]> {
-    let least = guarded * snapshot.least_thickness();
-    let part = |h: ColliderHandle| snapshot.parts.iter().position(|p| p.handle == h);
+    let parts = snapshot.parts.iter().enumerate();
+    let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
     let mut deep = FastSet::default();
     for found in narrow_phase.contact_pairs() {
-        let depth = hanging::depth(found);
-        if depth > least
-            && let [Some(i), Some(j)] = [found.collider1, found.collider2].map(part)
-            && depth > guarded * snapshot.thickness([i, j])
-        {
+        let places = [found.collider1, found.collider2].map(|h| parts.get(&h));
+        let [Some(&i), Some(&j)] = places else {
+            continue;
+        };
+        let is_deep = |m: &ContactManifold| {
+            let depth = m.points.iter().map(|p| -p.dist).fold(0.0, Real::max);
+            let thickness = || snapshot.thickness_at([i, j], [m.subshape1, m.subshape2]);
+            depth > 0.0 && depth > guarded * thickness()
+        };
+        if found.manifolds().iter().any(is_deep) {
             deep.insert(in_order(snapshot, [i, j]).map(|k| snapshot.parts[k].handle));
         }
     }

@@ -3,14 +3,18 @@
 //!
 //! A fast pair stops a small gap before it touches; what touches already may sink a tenth of the
 //! thickness deeper, but no further than [`Tuning::floor`]; what is deeper may sink by a hair. A slow pair is
-//! left to the solver down to that floor. The floor is half way to the medial axes, so that none
-//! crosses another.
+//! left to the solver down to that floor. At the floor the cores of the bodies meet
+//! ([`crate::elementary::Cores`]), half way to the medial axes in each place, so that none crosses another.
+//!
+//! Who is fast depends on what may meet: a pair that is slow for bodies as thick as these mostly are is fast
+//! where thinner parts of them are near each other ([`Thin`]).
 
 use super::effects::{Effect, Effects, Wanted};
 use super::motion::Snapshot;
+use super::thin_parts::Thin;
 use super::tuning::Tuning;
 use crate::batch::ToiJob;
-use crate::elementary::{InitialContact, Paths, Toi, ToiOptions, ToiStatus};
+use crate::elementary::{Cores, InitialContact, Paths, Toi, ToiOptions, ToiStatus};
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::first_contact::{Counts, Query, ToiResult};
@@ -63,8 +67,10 @@ pub struct Hit {
     pub normal: Vector,
     /// Middle of the nearest points, world frame.
     pub point: Vector,
-    /// Depth below the surfaces, ≥ 0, a length.
+    /// Depth below the surfaces, a length; < 0 above them.
     pub depth: Real,
+    /// The primitives that meet; 0 of a shape that is not medial.
+    pub primitives: [u32; 2],
 }
 
 impl Hit {
@@ -74,7 +80,8 @@ impl Hit {
             time: time + toi.lower * seconds,
             normal: toi.normal,
             point: (toi.points[0] + toi.points[1]) * 0.5,
-            depth: (toi.points[0] - toi.points[1]).dot(toi.normal).max(0.0),
+            depth: (toi.points[0] - toi.points[1]).dot(toi.normal),
+            primitives: toi.primitives,
         })
     }
 }
@@ -110,15 +117,20 @@ impl Asker<'_> {
         let [gap, share] = self.tuning.gap;
         (gap * self.unit)
             .min(share * thickness)
-            .max(Real::MIN_POSITIVE)
+            .max(self.least_gap())
+    }
+
+    /// The least of all gaps, a length.
+    pub fn least_gap(&self) -> Real {
+        (self.tuning.least_gap * self.unit).max(Real::MIN_POSITIVE)
     }
 
     fn effects_of(&self, snapshot: &Snapshot, pair: [usize; 2]) -> Effects {
         self.effects.of(pair.map(|k| snapshot.parts[k].handle))
     }
 
-    /// Whether first contacts of the pair are wanted: by default, when it travels more than `share` of
-    /// its thickness in the whole step.
+    /// Whether the pair as a whole is fast: by default, when it travels more than `share` of its thickness
+    /// in the whole step.
     pub fn is_fast(&self, snapshot: &Snapshot, pair: [usize; 2], share: Real) -> bool {
         match self.effects_of(snapshot, pair).continuous {
             Effect::On => true,
@@ -127,12 +139,29 @@ impl Asker<'_> {
         }
     }
 
-    /// Whether a pair can be fast at all, or is watched whatever it does. In a scene at rest none is, and
-    /// no pair need be looked for.
-    pub fn may_be_fast(&self, snapshot: &Snapshot, share: Real) -> bool {
+    /// Whether first contacts of the pair are wanted from `time` on: of a fast pair, and by default where parts
+    /// may meet that are so thin that the pair is fast for them.
+    fn is_searched(&self, snapshot: &Snapshot, pair: [usize; 2], time: Real) -> bool {
+        if self.is_fast(snapshot, pair, self.tuning.fast) {
+            return true;
+        }
+        if self.effects_of(snapshot, pair).continuous != Effect::Auto {
+            return false;
+        }
+        let skins: Real = pair.iter().map(|k| snapshot.parts[*k].skin).sum();
+        let gap = 2.0 * self.gap(snapshot.thickness(pair));
+        let thin = Thin {
+            thickness: snapshot.travel(pair, self.dt) / self.tuning.fast,
+            reach: snapshot.travel(pair, self.dt - time) + skins + gap,
+        };
+        thin.may_meet(snapshot, pair, time)
+    }
+
+    /// Whether a pair can travel more than `share` of this thickness, or is watched whatever it does. In a
+    /// scene at rest none does, and no pair need be looked for.
+    pub fn may_be_fast(&self, snapshot: &Snapshot, share: Real, thickness: Real) -> bool {
         let asked = |e: &Effects| e.continuous == Effect::On || e.guard == Effect::On;
-        self.effects.any(asked)
-            || 2.0 * snapshot.most_travel(self.dt) > share * snapshot.least_thickness()
+        self.effects.any(asked) || 2.0 * snapshot.most_travel(self.dt) > share * thickness
     }
 
     /// Whether the solver gets contacts of the pair for all that it may reach in the step.
@@ -155,14 +184,17 @@ impl Asker<'_> {
         met: u32,
         deep: bool,
     ) -> Option<Question> {
-        let fast = self.is_fast(snapshot, pair, self.tuning.fast);
+        if time >= self.dt || snapshot.travel(pair, self.dt - time) <= 0.0 {
+            return None;
+        }
+        let fast = self.is_searched(snapshot, pair, time);
         let effects = self.effects_of(snapshot, pair);
         let watched = match effects.guard {
             Effect::On => true,
             Effect::Off => false,
             Effect::Auto => deep,
         };
-        if !(fast || watched) || time >= self.dt || snapshot.travel(pair, self.dt - time) <= 0.0 {
+        if !(fast || watched) {
             return None;
         }
         let tuning = &self.tuning;
@@ -173,14 +205,17 @@ impl Asker<'_> {
             Effect::Off => Paths::Straight,
             Effect::On | Effect::Auto => Paths::Exact,
         };
-        let options = |target: Real, by: Real| ToiOptions {
+        let at_most = snapshot.foreign_thickness(pair);
+        let options = |target: Real, by: Real, share: Real| ToiOptions {
             paths,
             target_distance: skin + target,
             tolerance: tuning.tolerance * gap,
             initial_contact: InitialContact::Deepen { by },
+            cores: Some(Cores { share, at_most }),
             ..ToiOptions::default()
         };
-        let floor = options(-tuning.floor * thickness, tuning.hair * gap);
+        let hair = tuning.hair * gap;
+        let floor = options(0.5 * self.least_gap(), hair, tuning.floor);
         // Where a meeting was, the gap is that of the target to within the tolerance: a larger target
         // makes it count as touching.
         let target = if self.stops(snapshot, pair) {
@@ -190,7 +225,7 @@ impl Asker<'_> {
         };
         Some(if fast {
             Question {
-                first: options(target, tuning.sink * thickness),
+                first: options(target, (tuning.sink * thickness).max(hair), 0.0),
                 floor: Some(floor),
                 left: None,
             }

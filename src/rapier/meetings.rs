@@ -19,6 +19,8 @@ struct Meeting {
     normal: Vector,
     /// Depth then, a length.
     depth: Real,
+    /// The primitives that met.
+    primitives: [u32; 2],
 }
 
 /// All meetings of a step.
@@ -50,6 +52,7 @@ impl Meetings {
             points: poses.map(|pose| pose.inverse_transform_point(hit.point)),
             normal: poses[0].rotation.inverse() * hit.normal,
             depth: hit.depth,
+            primitives: hit.primitives,
         };
         self.last.insert(pair, meeting);
     }
@@ -77,7 +80,8 @@ impl Meetings {
             time,
             normal,
             point: (p + q) * 0.5,
-            depth: (meeting.depth - opened).max(0.0),
+            depth: meeting.depth - opened,
+            primitives: meeting.primitives,
         };
         (normal != Vector::ZERO).then_some((hit, opened))
     }

@@ -27,6 +27,7 @@ mod response;
 pub mod saved_world;
 mod speculative;
 mod sweep;
+mod thin_parts;
 mod tuning;
 mod waiting;
 

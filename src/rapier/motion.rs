@@ -208,8 +208,10 @@ pub struct Part {
     /// Sphere round it, in its own frame.
     pub bound: BoundingSphere,
     /// How thin it is, a length: the radius that nearly all of a medial mesh has, or what rapier's
-    /// own test of fast bodies goes by. 0 for surfaces.
+    /// own test of fast bodies goes by. Infinite for surfaces.
     pub thickness: Real,
+    /// How thin its thinnest part is.
+    pub least: Real,
     /// How far outside its shape it is solid.
     pub skin: Real,
 }
@@ -277,9 +279,10 @@ impl Snapshot {
         let bound = shape.compute_local_bounding_sphere();
         let arm = offset * bound.center() - body.motion.local_center;
         body.reach = body.reach.max(arm.length() + bound.radius());
-        let thickness = match shape.as_shape::<MedialMesh>() {
-            Some(mesh) => mesh.thickness(),
-            None => shape.ccd_thickness(),
+        let [thickness, least] = match shape.as_shape::<MedialMesh>() {
+            Some(mesh) => [mesh.thickness(), mesh.thicknesses().least()],
+            None if shape.ccd_thickness() > 0.0 => [shape.ccd_thickness(); 2],
+            None => [Real::INFINITY; 2],
         };
         self.parts.push(Part {
             handle,
@@ -289,6 +292,7 @@ impl Snapshot {
             bound,
             shape,
             thickness,
+            least,
             skin: collider.contact_skin(),
         });
     }
@@ -315,19 +319,44 @@ impl Snapshot {
         }
     }
 
-    /// How thin the thinner of two colliders is, a length; surfaces do not count.
+    /// How thin the thinner of two colliders is as a whole, a length; surfaces do not count.
     pub fn thickness(&self, [i, j]: [usize; 2]) -> Real {
-        let of = |k: usize| {
-            let t = self.parts[k].thickness;
-            if t > 0.0 { t } else { Real::MAX }
-        };
-        of(i).min(of(j)).min(1.0e6)
+        self.parts[i].thickness.min(self.parts[j].thickness)
     }
 
-    /// How thin the thinnest collider is, a length; surfaces do not count.
+    /// How thin the thinner of two colliders is where these primitives of theirs are.
+    pub fn thickness_at(&self, pair: [usize; 2], primitives: [u32; 2]) -> Real {
+        let of = |k: usize| {
+            let part = &self.parts[pair[k]];
+            let local = part.medial().map(|mesh| &mesh.thicknesses().primitives);
+            let local = local.and_then(|all| all.get(primitives[k] as usize));
+            local.copied().unwrap_or(part.thickness)
+        };
+        of(0).min(of(1))
+    }
+
+    /// How thick the thinner of two colliders is that is not medial, a length; infinite where there is
+    /// none.
+    pub fn foreign_thickness(&self, pair: [usize; 2]) -> Real {
+        let parts = pair.map(|k| &self.parts[k]);
+        let foreign = parts.into_iter().filter(|p| p.medial().is_none());
+        foreign.map(|p| p.thickness).fold(Real::INFINITY, Real::min)
+    }
+
+    /// How thin the thinnest collider is as a whole, a length; surfaces do not count.
     pub fn least_thickness(&self) -> Real {
-        let solid = self.parts.iter().map(|p| p.thickness).filter(|t| *t > 0.0);
-        solid.fold(1.0e6, Real::min)
+        self.parts
+            .iter()
+            .map(|p| p.thickness)
+            .fold(Real::INFINITY, Real::min)
+    }
+
+    /// How thin the thinnest part of any collider is, a length.
+    pub fn thinnest_part(&self) -> Real {
+        self.parts
+            .iter()
+            .map(|p| p.least)
+            .fold(Real::INFINITY, Real::min)
     }
 
     /// Bound on how far a point of any collider moves in `seconds`.

@@ -18,7 +18,7 @@ pub fn muted(
     work: &mut Work,
 ) -> HashSet<Key> {
     let mut keys = HashSet::new();
-    if !asker.may_be_fast(snapshot, asker.tuning.muted) {
+    if !asker.may_be_fast(snapshot, asker.tuning.muted, snapshot.least_thickness()) {
         return keys;
     }
     for pair in sweep(snapshot, asker.dt, 0.0) {

@@ -161,7 +161,7 @@ impl Response {
             return None;
         }
         let (hit, opened) = self.met.contact(snapshot, pair, time)?;
-        let thickness = snapshot.thickness(pair);
+        let thickness = snapshot.thickness_at(pair, hit.primitives);
         let gap = asker.gap(thickness);
         if opened > gap {
             return None;
@@ -215,7 +215,9 @@ impl Response {
             [m.linvel + m.angvel.cross(arm), m.angvel]
         });
         let tuning = &asker.tuning;
-        let sunk = hit.depth - tuning.push_from * snapshot.thickness(pair);
+        // Thin parts are kept as far from each other as the least gap.
+        let thickness = snapshot.thickness_at(pair, hit.primitives);
+        let sunk = hit.depth - (tuning.push_from * thickness - asker.least_gap());
         let out = tuning.push * sunk.max(0.0) / asker.dt;
         if let Some(j) = impact.impulse(velocities, 0.0) {
             *self.impulses.entry(pair).or_insert(0.0) += j.length();

@@ -14,12 +14,12 @@ use crate::math::Real;
 /// Constants of the event loop. The defaults are what is meant to be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
-    /// Relative travel in a step, in units of the thinner collider's thickness, from which a pair is
-    /// fast. With [`Self::floor`] it makes a whole half: a slow pair deeper than the floor less this at
+    /// Relative travel in a step, in units of the thickness of the thinner of two parts that may meet, from
+    /// which a pair is fast. With [`Self::floor`] it makes a whole half: a slow pair deeper than the floor less this at
     /// the start is watched, any other cannot get to the floor.
     pub fast: Real,
-    /// Depth no pair may reach, in units of the thickness: half way to the medial axes. Above 1 they
-    /// cross. Halved and doubled, bodies of a heap get 0.2 and 0.5 of the radii of both deep instead of
+    /// Depth no pair may reach, in units of the local thickness: half way to the medial axes
+    /// ([`crate::elementary::Cores`]). Above 1 they cross. Halved and doubled, bodies of a heap get 0.2 and 0.5 of the radii of both deep instead of
     /// 0.27, and queries go from 340 a step to 536 and 315 at 20 m/s.
     pub floor: Real,
     /// Relative travel in a step, in units of the thickness, from which a pair is muted. Between this
@@ -28,6 +28,10 @@ pub struct Tuning {
     /// Gap at which a fast pair counts as in contact, in units of rapier's length unit, and of the
     /// thickness, whichever is less.
     pub gap: [Real; 2],
+    /// The least such gap, in units of rapier's length unit, however thin the parts are; floors are half of
+    /// it further out. Ten times the rounding of poses 40 m from the origin; larger, and sheets of
+    /// radius 0 rest on air that can be seen.
+    pub least_gap: Real,
     /// Tolerance of the query, in units of the gap: smaller costs iterations.
     pub tolerance: Real,
     /// Gap up to which a pair touches at the start and belongs to the solver, in units of [`Self::gap`].
@@ -60,6 +64,7 @@ impl Default for Tuning {
             floor: 0.5,
             muted: 1.0,
             gap: [1.0e-3, 0.1],
+            least_gap: 5.0e-5,
             tolerance: 0.1,
             touching: 0.45,
             stopping: 0.25,

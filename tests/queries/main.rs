@@ -16,6 +16,7 @@ mod truth_of_examples {
 mod bad_input;
 mod batch;
 mod coherence;
+mod deepening;
 mod distance;
 mod effort;
 mod families;

@@ -22,6 +22,7 @@ mod heaps;
 mod held;
 mod impacts;
 mod knots;
+mod local_thickness;
 mod oracle;
 mod partners;
 mod random;
