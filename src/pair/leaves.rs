@@ -25,8 +25,8 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             return true;
         };
         let pair = [p, q];
-        let [(sa, share_a), (sb, share_b)] = self.spheres(pair);
-        let (sa, sb) = (&sa[..share_a.spheres], &sb[..share_b.spheres]);
+        let [(all_a, share_a), (all_b, share_b)] = self.spheres(pair);
+        let (sa, sb) = (&all_a[..share_a.spheres], &all_b[..share_b.spheres]);
         let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
             let turned = self.motions[side].sin_cos(0.0);
             let place = |c| self.motions[side].point(c).at(0.0, turned).position;
@@ -73,14 +73,21 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         } else {
             [share_a, share_b].map(|s| Share::whole(s.spheres))
         };
-        let balls = self.swept([i, j], pair);
+        // What their contact needs, not the search's: what touches already has a target of its own, and mostly
+        // directions put it off for good.
+        let mut balls = self.swept([i, j], pair);
+        if threshold.scale < 1.0 {
+            let lost = |s: &Ball<f64>| (1.0 - threshold.scale) * s.1;
+            let [a, b] = [all_a, all_b].map(|s| s.each_ref().map(lost));
+            balls = [balls[0].less(a), balls[1].less(b)];
+        }
         for_each_test(shares[0], shares[1], |test| {
             self.proofs += 1;
             let some = [
                 balls[0].only(test.corners.map(|c| c.0)),
                 balls[1].only(test.corners.map(|c| c.1)),
             ];
-            if let Some(free) = self.free_until([&some[0], &some[1]], time) {
+            if let Some(free) = self.above_until([&some[0], &some[1]], &threshold, time) {
                 let open = Open {
                     primitives: pair,
                     test,

@@ -14,6 +14,7 @@
 //! from below at any moment: a search that has used up [`WORK`] ends there, unresolved, and says so.
 
 use super::apart::{Balls, free_until};
+use super::deepening::Threshold;
 use super::ending::{ROOT_PIECES, WORK};
 use super::outline::Left;
 use super::queue::{Candidate, Entry, Open};
@@ -343,17 +344,23 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
 
     /// Until when directions prove two primitives free from `time` on; `None` if as long as the
     /// search asks.
-    pub(super) fn free_until(&self, balls: [&Balls; 2], time: f64) -> Option<f64> {
+    fn free_until(&self, balls: [&Balls; 2], time: f64) -> Option<f64> {
+        let touching = Threshold::new(self.reach, self.earliest.limits.tolerance);
+        self.above_until(balls, &touching, time)
+    }
+
+    /// The same, until what counts as contact of them; its factor is not applied.
+    pub(super) fn above_until(
+        &self,
+        balls: [&Balls; 2],
+        threshold: &Threshold,
+        time: f64,
+    ) -> Option<f64> {
         let [start, end] = self.times;
         let length = end - start;
         let until = (self.earliest.upper.min(end) - start) / length;
         let from = (time - start) / length;
-        let free = free_until(
-            balls,
-            [from, until],
-            self.reach,
-            self.earliest.limits.tolerance,
-        )?;
+        let free = free_until(balls, [from, until], threshold.target, threshold.tolerance)?;
         if free <= from {
             return Some(time);
         }
