@@ -24,17 +24,24 @@ fn edge_minimum(y: vec3<f32>, e: vec3<f32>, d: f32) -> f32 {
 
 // Interior stationary point, not clamped; z says whether it exists.
 fn interior_stationary(f: Family) -> vec3<f32> {
-  let n = cross(f.u, f.v);
-  let nn = length_sq(n);
-  let independent = length_sq(f.u) * length_sq(f.v) * (64.0 * EPSILON * EPSILON) + TINY < nn;
-  let safe_nn = select(1.0, nn, independent);
-  let u_dual = cross(f.v, n);
-  let v_dual = cross(n, f.u);
-  let g = (u_dual * f.da + v_dual * f.db) / safe_nn;
-  let hh = 1.0 - length_sq(g);
+  let uu = length_sq(f.u);
+  let uv = dot(f.u, f.v);
+  let uw = dot(f.u, f.w);
+  let safe_uu = max(uu, TINY);
+  let k = uv / safe_uu;
+  let v = f.v - f.u * k;
+  let w = f.w - f.u * (uw / safe_uu);
+  let vv = length_sq(v);
+  let independent = uu > TINY && length_sq(f.v) * (64.0 * EPSILON * EPSILON) + TINY < vv;
+  let safe_vv = select(1.0, vv, independent);
+  let d = f.db - f.da * k;
+  let hh = 1.0 - f.da * f.da / safe_uu - d * d / safe_vv;
   let real = EPSILON < hh;
-  let z = g * (abs(dot(f.w, n)) / sqrt(safe_nn * select(1.0, hh, real))) - f.w;
-  return vec3<f32>(dot(u_dual, z) / safe_nn, dot(v_dual, z) / safe_nn, select(0.0, 1.0, independent && real));
+  let wv = dot(w, v);
+  let s = length(w - v * (wv / safe_vv)) / sqrt(select(1.0, hh, real));
+  let beta = (s * d - wv) / safe_vv;
+  let alpha = (s * f.da - uw - beta * uv) / safe_uu;
+  return vec3<f32>(alpha, beta, select(0.0, 1.0, independent && real));
 }
 
 fn nearer(a: Nearest, b: Nearest) -> Nearest {

@@ -5,9 +5,12 @@
 //!    contact.
 //! 2. `upper` falls to the first root of that fixed pair (paper Eq. 4, root `t⁽¹⁾`): a proven
 //!    contact, since the pair is on both bodies.
-//! 3. `lower` rises by the largest of three proven steps: Lipschitz, fixed direction, turning
-//!    direction ([`super::certificate`]); a little less than proven, for rounding.
-//! 4. `upper − lower ≤ time_tolerance`: contact. `lower` at the end without a root: separated.
+//! 3. `lower` rises by the largest of the proven steps: fixed direction, turning direction, on curved
+//!    paths the bound of the fixed direction over the largest speed ([`super::certificate`]); a little
+//!    less than proven, for rounding. Never by the distance of the pair found: that is above the
+//!    least distance by as much as the pair is not the nearest one.
+//! 4. `upper − lower ≤ time_tolerance`: contact. `lower` at the end without a root: separated. Without
+//!    any step, the next round would be the same: unresolved.
 //!
 //! # Changes versus the paper
 //! - It starts at the end of the step and walks back, which can land in a later contact interval;
@@ -16,7 +19,7 @@
 //!   are lost); here a miss is proven for all sphere pairs.
 //! - Its Conditions 1 and 2 (touching at `t0` or `t1`) need no special case.
 
-use super::certificate::{ActiveFace, first_step, fixed_step, turning_step};
+use super::certificate::{ActiveFace, first_step, fixed_step, lower_bound, turning_step};
 use super::path::Path;
 use super::test_list::Domain;
 use super::{cone_cone, sphere_slab};
@@ -147,7 +150,8 @@ pub struct Running<L: Lane> {
     pub active: L::Mask,
     pub(super) fresh: L::Mask,
     pub(super) rooted: L::Mask,
-    pub(super) speed: L,
+    /// Bound of the corners' speeds; of use on curved paths only.
+    speed: L,
 }
 
 impl<L: Lane> Running<L> {
@@ -156,9 +160,10 @@ impl<L: Lane> Running<L> {
     #[inline(always)]
     pub fn new<P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Self {
         let slack = path.scale() * L::splat(SLACK_ULPS * L::EPSILON);
-        let speed = path.speed().max(L::splat(L::TINY));
-        let mut running = Self::at(limits, slack, speed);
-        if !P::CURVED {
+        let mut running = Self::at(limits, slack);
+        if P::CURVED {
+            running.speed = path.speed().max(L::splat(L::TINY));
+        } else {
             let c = path.at(limits.start);
             let remaining = limits.horizon - limits.start;
             let step = first_step(path, domain, &c, slack, remaining);
@@ -174,7 +179,7 @@ impl<L: Lane> Running<L> {
 
     /// Nothing known yet.
     #[inline(always)]
-    pub(super) fn at(limits: &Limits<L>, slack: L, speed: L) -> Self {
+    pub(super) fn at(limits: &Limits<L>, slack: L) -> Self {
         let none = L::Mask::splat(false);
         let zero = L::zero();
         Self {
@@ -199,7 +204,7 @@ impl<L: Lane> Running<L> {
             active: L::Mask::splat(true),
             fresh: L::Mask::splat(true),
             rooted: none,
-            speed,
+            speed: L::one(),
         }
     }
 
@@ -222,7 +227,7 @@ impl<L: Lane> Running<L> {
         b.contact = b.contact | touching;
         b.upper = L::select(touching, lower, b.upper);
         let face = ActiveFace::new(domain, &f, &s, &c.rate);
-        let n = face.direction(domain, &f, &s);
+        let n = face.direction(domain, &f);
         b.normal = Vec3::select(active, n, b.normal);
         active = active & !touching;
         self.active = active;
@@ -240,8 +245,12 @@ impl<L: Lane> Running<L> {
         }
 
         let remaining = b.upper - lower;
-        let lipschitz = (s.distance - slack).max(zero) / self.speed;
-        let mut step = lipschitz.max(fixed_step(path, domain, &c, n, slack, remaining));
+        let mut step = fixed_step(path, domain, &c, n, slack, remaining);
+        if P::CURVED {
+            // On straight paths the fixed direction's step is never shorter.
+            let bound = lower_bound(domain, &f, n) - slack;
+            step = step.max(bound.max(zero) / self.speed);
+        }
         if (active & (lower + step).lt(b.upper)).any() {
             let m = face.turning_rate(&s, n, y_rate);
             step = step.max(turning_step(path, domain, &c, n, m, slack, remaining));
@@ -254,7 +263,7 @@ impl<L: Lane> Running<L> {
         active = active & !free;
         let closed = active & self.rooted & (b.upper - b.lower).le(limits.time_tolerance);
         b.contact = b.contact | closed;
-        self.active = active & !closed;
+        self.active = active & !closed & lower.lt(b.lower);
     }
 }
 
@@ -264,7 +273,7 @@ pub fn witness<L: Lane, P: Path<L>>(path: &P, domain: Domain, t: L) -> (Nearest<
     let c = path.at(t);
     let f = cone_cone::family(&c.y, path.radius());
     let s = nearest_spheres(domain, &f);
-    let normal = ActiveFace::new(domain, &f, &s, &c.rate).direction(domain, &f, &s);
+    let normal = ActiveFace::new(domain, &f, &s, &c.rate).direction(domain, &f);
     (s, normal)
 }
 

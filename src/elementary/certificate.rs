@@ -26,45 +26,61 @@ use super::path::{Corners, Path};
 use super::test_list::Domain;
 use crate::math::lane::{Lane, Mask, Vec3};
 use crate::math::nearest::{Family, Nearest};
-use crate::math::tolerance::{NEVER, PARALLEL_ULPS, TURNING_REGULARISATION};
+use crate::math::tolerance::{NEVER, TURNING_REGULARISATION};
 
 /// Edges of the domain along which the nearest sphere pair is free to move, with their rates and
 /// radius slopes; zero where it is not.
 #[derive(Clone, Copy)]
 pub struct ActiveFace<L> {
+    /// Direction of the nearest pair, `y/|y|`.
+    rough: Vec3<L>,
     edge: [Vec3<L>; 2],
     rate: [Vec3<L>; 2],
     slope: [L; 2],
 }
 
 impl<L: Lane> ActiveFace<L> {
-    /// Reads the face off the parameters of the nearest pair.
+    /// Reads the face off the parameters of the nearest pair. A bound of the domain holds the pair only
+    /// where the distance falls beyond it (the sign of its Lagrange multiplier): among pairs that differ
+    /// by rounding alone, the one found may lie on a bound that the nearest one does not touch, and a
+    /// direction for that corner would prove nothing.
     #[inline(always)]
     pub fn new(domain: Domain, f: &Family<L>, s: &Nearest<L>, rates: &[Vec3<L>; 4]) -> Self {
         let (zero, one) = (L::zero(), L::one());
-        let (u_rate, v_rate) = (rates[1] - rates[0], rates[2] - rates[0]);
-        let free_a = zero.lt(s.alpha) & s.alpha.lt(one);
-        let free_b = zero.lt(s.beta) & s.beta.lt(one);
         let none = Vec3::zero();
-        // On the triangle's third edge, α + β = 1, the only freedom is from u to v.
-        let third = match domain {
-            Domain::Box => L::Mask::splat(false),
+        let rough = s.y * (one / s.length.max(L::splat(L::TINY).sqrt()));
+        let (u_rate, v_rate) = (rates[1] - rates[0], rates[2] - rates[0]);
+        // How fast the distance grows with α and β.
+        let (a, b) = (rough.dot(f.u) - f.da, rough.dot(f.v) - f.db);
+        let (first, second) = (s.alpha.le(zero), s.beta.le(zero));
+        let (third, free_a, free_b) = match domain {
+            Domain::Box => {
+                let held_a = (first & zero.le(a)) | (one.le(s.alpha) & a.le(zero));
+                let held_b = (second & zero.le(b)) | (one.le(s.beta) & b.le(zero));
+                (L::Mask::splat(false), !held_a, !held_b)
+            }
             Domain::Triangle => {
-                free_a & free_b & (L::splat(1.0 - 8.0 * L::EPSILON)).lt(s.alpha + s.beta)
+                let last = L::splat(1.0 - 8.0 * L::EPSILON).lt(s.alpha + s.beta);
+                let held_a = first & L::select(last, b, zero).le(a);
+                let held_b = second & L::select(last, a, zero).le(b);
+                let held_sum = last & L::select(second, a, b).le(zero);
+                // On the third edge, α + β = 1, the only freedom is from u to v.
+                let third = held_sum & !(held_a | held_b);
+                (third, !(held_a | held_sum), !(held_b | held_sum))
             }
         };
-        let second = free_b & !third;
         let pick =
             |along: Vec3<L>, u: Vec3<L>| Vec3::select(third, along, Vec3::select(free_a, u, none));
         Self {
-            edge: [pick(f.v - f.u, f.u), Vec3::select(second, f.v, none)],
+            rough,
+            edge: [pick(f.v - f.u, f.u), Vec3::select(free_b, f.v, none)],
             rate: [
                 pick(v_rate - u_rate, u_rate),
-                Vec3::select(second, v_rate, none),
+                Vec3::select(free_b, v_rate, none),
             ],
             slope: [
                 L::select(third, f.db - f.da, L::select(free_a, f.da, zero)),
-                L::select(second, f.db, zero),
+                L::select(free_b, f.db, zero),
             ],
         }
     }
@@ -73,20 +89,19 @@ impl<L: Lane> ActiveFace<L> {
     /// ill-conditioned for thin primitives: without this 8–13 % of such queries stall in `f32`.
     /// Of the two the one with the larger bound is kept.
     #[inline(always)]
-    pub fn direction(&self, domain: Domain, f: &Family<L>, s: &Nearest<L>) -> Vec3<L> {
+    pub fn direction(&self, domain: Domain, f: &Family<L>) -> Vec3<L> {
         let tiny = L::splat(L::TINY);
         let one = L::one();
-        let rough = s.y * (one / s.length.max(tiny));
+        let rough = self.rough;
         let [e1, e2] = self.edge;
-        let (g11, g22, g12) = (e1.length_sq(), e2.length_sq(), e1.dot(e2));
-        let (r1, r2) = (rough.dot(e1) - self.slope[0], rough.dot(e2) - self.slope[1]);
-        let least = L::splat(PARALLEL_ULPS * L::EPSILON) * g11 * g22;
-        let determinant = (g11 * g22 - g12 * g12).max(least);
-        let both = tiny.lt(determinant);
-        let inverse = one / L::select(both, determinant, one);
-        let k1 = L::select(both, (r1 * g22 - r2 * g12) * inverse, r1 / g11.max(tiny));
-        let k2 = L::select(both, (r2 * g11 - r1 * g12) * inverse, r2 / g22.max(tiny));
-        let refined = rough - e1 * k1 - e2 * k2;
+        let inverse = one / e1.length_sq().max(tiny);
+        // The second edge across the first: near-parallel edges keep their digits so.
+        let k = e1.dot(e2) * inverse;
+        let across = e2 - e1 * k;
+        let r1 = rough.dot(e1) - self.slope[0];
+        let r2 = rough.dot(across) - (self.slope[1] - self.slope[0] * k);
+        let k2 = r2 / across.length_sq().max(tiny);
+        let refined = rough - e1 * (r1 * inverse) - across * k2;
         let refined = refined * (one / refined.length_sq().max(tiny).sqrt());
         let better = lower_bound(domain, f, rough).lt(lower_bound(domain, f, refined));
         Vec3::select(better, refined, rough)
@@ -170,7 +185,7 @@ pub fn first_step<L: Lane, P: Path<L>>(
     let speed_sq = drift.length_sq().max(tiny);
     let closest = -(middle.dot(drift) / speed_sq);
     let passing = middle + drift * closest.max(L::zero()).min(remaining);
-    let n = passing * (L::one() / passing.length().max(tiny));
+    let n = passing * (L::one() / passing.length().max(tiny.sqrt()));
     let step = fixed_step(path, domain, c, n, slack, remaining);
     let n = drift * -(L::one() / speed_sq.sqrt());
     step.max(fixed_step(path, domain, c, n, slack, remaining))

@@ -246,10 +246,10 @@ fn to_rows<L: Octet>(running: &Running<L>, rounds: L) -> [[f32; LANES]; LANES] {
         b.upper,
         b.tolerance,
         b.slack,
-        running.speed,
         b.start_distance,
         rooted,
         rounds,
+        L::zero(),
     ])
 }
 
@@ -261,12 +261,12 @@ fn from_rows<L: Octet>(rows: [[f32; LANES]; LANES], limits: &Limits<L>) -> (Runn
         upper,
         tolerance,
         slack,
-        speed,
         start_distance,
         rooted,
         rounds,
+        _,
     ] = rows_of::<L>(rows);
-    let mut running = Running::at(limits, slack, speed);
+    let mut running = Running::at(limits, slack);
     running.bracket.lower = lower;
     running.bracket.upper = upper;
     running.bracket.tolerance = tolerance;
@@ -321,7 +321,7 @@ fn finish<L: Octet>(
     let contact = L::bits(running.bracket.contact);
     let separated = L::bits(running.bracket.separated);
     for lane in finished {
-        let [lower, upper, tolerance, slack, _, start_distance, _, rounds] = states[lane];
+        let [lower, upper, tolerance, slack, start_distance, _, rounds, _] = states[lane];
         let [alpha, beta, distance, x, y, z, length, normal] = rows[lane];
         results[group[lane].index] = Bracket {
             lower,

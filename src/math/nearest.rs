@@ -17,11 +17,15 @@
 //! `n·e = d` with `n = (y + x e)/|y + x e|`, gives `x = (d √(q/D) − y·e)/|e|²`. For `D ≤ 0` one
 //! end sphere contains the other and `S` is monotone: the larger sphere's end wins.
 //!
-//! **Interior.** Stationarity asks for a unit `n` with `n·u = da`, `n·v = db`. With `N = u × v`
-//! and the reciprocal basis `u* = v × N/N²`, `v* = N × u/N²`, the in-plane part of `n` is
-//! `g = da u* + db v*`, its height `h = √(1 − |g|²)`, and `y` must be parallel to `n`:
-//! `y = s·g + w⊥` with `s = |w·N|/(|N| h)`; so `z = s g − w` and `α = u*·z`, `β = v*·z`.
-//! It exists iff `|g| < 1` and `u`, `v` are independent.
+//! **Interior.** Stationarity asks for a unit `n` with `n·u = da`, `n·v = db`. With `v′ = v − k u` and
+//! `w′` the parts of `v` and `w` across `u` (`k = u·v/|u|²`), `n·v′ = d′ = db − k da`, so the height of `n` over
+//! the plane of `u` and `v` is `h`, `h² = 1 − da²/|u|² − d′²/|v′|²`. `y` is parallel to `n`, and its
+//! height is that of `w`, `w″ = w′ − v′ (w′·v′)/|v′|²`: `|y| = s = |w″|/h`. Along `v′` and `u` then
+//! `β = (s d′ − w′·v′)/|v′|²`, `α = (s da − u·w − β u·v)/|u|²`. It exists iff `h² > 0` and `u`, `v` are
+//! independent. Near-parallel axes, at an angle `θ`, make `β` uncertain by some `EPSILON/θ`; but the
+//! distance along the valley in which it moves changes by `θ` times that, since `α` follows `β`. (From the
+//! reciprocal basis `v × N`, `N × u` with `N = u × v`, each would have an error of its own, and `y` would
+//! be off by `√EPSILON` of the length of the axes.)
 //!
 //! A strip method (clamp one parameter, solve the other) is wrong by up to 0.13, coordinate
 //! descent by 3e-2 in units of the input: hence the enumeration.
@@ -96,24 +100,24 @@ pub fn edge_minimum<L: Lane>(y: Vec3<L>, e: Vec3<L>, d: L) -> L {
 /// The interior stationary point, not clamped, and whether it exists.
 #[inline(always)]
 pub fn interior_stationary<L: Lane>(f: &Family<L>) -> (L, L, L::Mask) {
-    let n = f.u.cross(f.v);
-    let nn = n.length_sq();
+    let (one, tiny) = (L::one(), L::splat(L::TINY));
+    let (uu, uv, uw) = (f.u.length_sq(), f.u.dot(f.v), f.u.dot(f.w));
+    let inverse_uu = one / uu.max(tiny);
+    let k = uv * inverse_uu;
+    let (v, w) = (f.v - f.u * k, f.w - f.u * (uw * inverse_uu));
+    let vv = v.length_sq();
     let eps_sq = L::splat(64.0 * L::EPSILON * L::EPSILON);
-    let independent = (f.u.length_sq() * f.v.length_sq() * eps_sq + L::splat(L::TINY)).lt(nn);
-    let safe_nn = L::select(independent, nn, L::one());
-    let inverse = L::one() / safe_nn;
-    let u_dual = f.v.cross(n);
-    let v_dual = n.cross(f.u);
-    let g = (u_dual * f.da + v_dual * f.db) * inverse;
-    let hh = L::one() - g.length_sq();
+    let independent = tiny.lt(uu) & (f.v.length_sq() * eps_sq + tiny).lt(vv);
+    let inverse_vv = one / L::select(independent, vv, one);
+    let d = f.db - f.da * k;
+    let hh = one - f.da * f.da * inverse_uu - d * d * inverse_vv;
     let real = L::splat(L::EPSILON).lt(hh);
-    let s = f.w.dot(n).abs() / (safe_nn * L::select(real, hh, L::one())).sqrt();
-    let z = g * s - f.w;
-    (
-        u_dual.dot(z) * inverse,
-        v_dual.dot(z) * inverse,
-        independent & real,
-    )
+    let wv = w.dot(v);
+    let height = w - v * (wv * inverse_vv);
+    let s = (height.length_sq() / L::select(real, hh, one)).sqrt();
+    let beta = (s * d - wv) * inverse_vv;
+    let alpha = (s * f.da - uw - beta * uv) * inverse_uu;
+    (alpha, beta, independent & real)
 }
 
 #[inline(always)]

@@ -30,12 +30,8 @@ pub const MAX_ITERATIONS: u32 = 4096;
 /// of the division that gave it, and of the sum with the time reached.
 pub const STEP_ULPS: f64 = 4.0;
 
-/// Smallest determinant of the normal equations of two active edges, in units of
-/// `EPSILON × product of squared lengths`. Below it they count as parallel. Only the quality of a
-/// direction depends on it, never soundness: the corners are checked for whatever direction comes.
-pub const PARALLEL_ULPS: f64 = 16.0;
-
-/// Regularisation of the turning rate's normal equations (no unit). As above: quality only.
+/// Regularisation of the turning rate's normal equations (no unit). Only the quality of a direction
+/// depends on it, never soundness: the corners are checked for whatever direction comes.
 pub const TURNING_REGULARISATION: f64 = 1.0e-6;
 
 /// Stands for "no root in the step"; any number above 1 serves.

@@ -206,18 +206,21 @@ impl<'a> PrimitivePair<'a> {
         if test.domain == Domain::Box
             && let Some(second) = second_on_line(&f, &s, normal, margin)
         {
-            let normal = self.direction(test.domain, &f, &second);
+            // Not the nearest pair, so its centres alone have its direction.
+            let normal = match is_lost(&second) {
+                false => second.y * (1.0 / second.length),
+                true => self.deepest().1,
+            };
             self.push(test, feature | 1 << 16, &second, normal, found);
         }
     }
 
     /// Unit direction of a nearest pair; where the centres coincide, the deepest one.
     fn direction(&self, domain: Domain, f: &Family<f64>, s: &Nearest<f64>) -> Vec3<f64> {
-        let radius = s.length - s.distance;
-        if s.length > penetration::LOST * radius.abs() && s.length > 0.0 {
-            return ActiveFace::new(domain, f, s, &[Vec3::zero(); 4]).direction(domain, f, s);
+        if is_lost(s) {
+            return self.deepest().1;
         }
-        self.deepest().1
+        ActiveFace::new(domain, f, s, &[Vec3::zero(); 4]).direction(domain, f)
     }
 
     fn deepest(&self) -> (f64, Vec3<f64>) {
@@ -311,6 +314,12 @@ impl<'a> PrimitivePair<'a> {
             points: [points[0].to_vector(), self.place.inverse_point(points[1])],
         }
     }
+}
+
+/// Whether the centres of a pair are too near each other to give a direction.
+fn is_lost(s: &Nearest<f64>) -> bool {
+    let radius = s.length - s.distance;
+    !(s.length > penetration::LOST * radius.abs() && s.length > 0.0)
 }
 
 /// For nearly parallel cones: the sphere pair at the other end of the line along which they run

@@ -129,7 +129,8 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         self.earliest.tests += u32::from(open.spent == 0);
         open.spent += bracket.iterations;
         let settled = bracket.contact || bracket.separated || !bracket.slack.is_finite();
-        if settled || bracket.iterations >= limits.max_iterations {
+        // Without a bound that lies later it has used up its iterations, or none of them gains any more.
+        if settled || bracket.lower <= until {
             let Open {
                 test, primitives, ..
             } = open;

@@ -19,6 +19,7 @@ mod coherence;
 mod deepening;
 mod distance;
 mod effort;
+mod extremes;
 mod families;
 mod first_contact;
 mod fuzz;

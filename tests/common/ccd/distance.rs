@@ -69,6 +69,11 @@ impl Corners {
         self.len += 1;
     }
 
+    /// The differences of centres.
+    pub fn centers(&self) -> &[Vector3<f64>] {
+        &self.z[..self.len]
+    }
+
     /// Largest `|z_k|` plus largest `R_k`.
     pub fn scale(&self) -> f64 {
         let z = self.z[..self.len].iter().map(|z| z.norm());

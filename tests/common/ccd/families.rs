@@ -7,6 +7,7 @@
 //! `|y| + δ ≥ 0`. So hits, misses and grazing are drawn in the proportion wanted.
 
 use super::distance::{Goal, distance};
+use super::extremes;
 use super::motion::{Ball, Motion, Paths, Query, Rigid};
 use super::rng::Rng;
 use super::shapes::{self, Spheres};
@@ -58,6 +59,21 @@ pub enum Family {
     NearEqual,
     /// A step of length zero.
     ZeroStep,
+    /// Axes at an angle of 1e-9 to 1e-2, no or hardly any thickness, crossing face to face.
+    NearParallel,
+    /// Lengths of up to 1e6 radii.
+    Needle,
+    /// No thickness at all, crossing.
+    Wire,
+    /// Bodies up to 10 km from their own origin, from the world's, or from both.
+    FarOrigin,
+    /// Balls of 1e-6 to 1e-2 sizes that cross 1 to 1e4 sizes in the step, half of them straight at the
+    /// other body.
+    Bullet,
+    /// Axes on one line, along which they move, through each other or side by side.
+    Coaxial,
+    /// One body 10 to 1,000 sizes long and wide.
+    Long,
 }
 
 impl Family {
@@ -86,6 +102,17 @@ impl Family {
         Self::ZeroStep,
     ];
 
+    /// Those made to break a certificate: their queries are judged at the default tolerances and at 0.
+    pub const EXTREME: [Self; 7] = [
+        Self::NearParallel,
+        Self::Needle,
+        Self::Wire,
+        Self::FarOrigin,
+        Self::Bullet,
+        Self::Coaxial,
+        Self::Long,
+    ];
+
     /// Length of a body of this family.
     pub fn size(self) -> f64 {
         match self {
@@ -98,6 +125,11 @@ impl Family {
     /// A query between primitives of the given numbers of spheres, on straight paths or in rigid
     /// motion. All its numbers are `f32` values, so that no precision under test rounds them.
     pub fn query(self, counts: [usize; 2], rigid: bool, rng: &mut Rng) -> Query {
+        if Self::EXTREME.contains(&self) {
+            let mut query = extremes::query(self, counts, rigid, rng);
+            query.map(&|x| f64::from(x as f32));
+            return query;
+        }
         let mut plan = Plan::new(self, counts, rng);
         self.adjust(&mut plan, rng);
         let mut query = plan.draw(rigid, rng);
@@ -187,26 +219,32 @@ impl Family {
 }
 
 /// What a query is drawn from.
-struct Plan {
-    bodies: [Spheres; 2],
+pub(super) struct Plan {
+    pub(super) bodies: [Spheres; 2],
     /// Copies of one body and its motion, disturbed in the last places.
     copies: bool,
     /// Angle turned by each body in the step.
-    angle: f64,
+    pub(super) angle: f64,
     /// Relative displacement of the bodies in the step.
-    travel: f64,
+    pub(super) travel: f64,
     /// Time at which the bodies are placed.
-    time: f64,
+    pub(super) time: f64,
     /// Signed distance then.
-    gap: f64,
+    pub(super) gap: f64,
     /// Rate of the signed distance then, per step; `None` leaves what was drawn.
-    rate: Option<f64>,
+    pub(super) rate: Option<f64>,
     /// Interpolated centres that coincide then, instead of a gap.
-    crossing: bool,
+    pub(super) crossing: bool,
+    /// Bound of the size of both bodies together.
+    pub(super) reach: f64,
+    /// Direction of the relative displacement, of bodies that are not turned at the start.
+    pub(super) heading: Option<Vector3<f64>>,
+    /// The same turn for both, at the start and in the step.
+    pub(super) together: bool,
 }
 
 impl Plan {
-    fn new(family: Family, counts: [usize; 2], rng: &mut Rng) -> Self {
+    pub(super) fn new(family: Family, counts: [usize; 2], rng: &mut Rng) -> Self {
         Self {
             bodies: shapes::pair(family, counts, rng),
             copies: family == Family::NearEqual,
@@ -216,11 +254,14 @@ impl Plan {
             gap: rng.range(-0.3, 0.6),
             rate: None,
             crossing: false,
+            reach: 4.0,
+            heading: None,
+            together: false,
         }
     }
 
     /// Both bodies in the origin, with their motions.
-    fn draw(&self, rigid: bool, rng: &mut Rng) -> Query {
+    pub(super) fn draw(&self, rigid: bool, rng: &mut Rng) -> Query {
         let seconds = [1.0, 1.0 / 60.0][rng.below(2)];
         let common = rng.in_ball() * rng.range(0.0, 2.0);
         let mut motions = [
@@ -230,13 +271,18 @@ impl Plan {
         if self.copies {
             motions[1] = motions[0];
         }
+        if self.together {
+            motions[1].rotation = motions[0].rotation;
+            motions[1].angvel = motions[0].angvel;
+        }
         if self.travel == 0.0 && !self.copies {
             motions[1].linvel = motions[0].linvel;
             for motion in &mut motions {
                 motion.angvel = Vector3::zeros();
             }
         } else {
-            motions[1].linvel += rng.direction() * (self.travel / seconds);
+            let heading = self.heading.unwrap_or_else(|| rng.direction());
+            motions[1].linvel += heading * (self.travel / seconds);
         }
         let ball = |(center, radius)| Ball {
             center,
@@ -252,7 +298,11 @@ impl Plan {
     }
 
     fn motion(&self, common: Vector3<f64>, seconds: f64, rng: &mut Rng) -> Rigid {
-        let pose = UnitQuaternion::from_scaled_axis(rng.direction() * rng.range(0.0, TAU));
+        let turn = match self.heading {
+            None => rng.direction() * rng.range(0.0, TAU),
+            Some(_) => Vector3::zeros(),
+        };
+        let pose = UnitQuaternion::from_scaled_axis(turn);
         Rigid {
             translation: Vector3::zeros(),
             rotation: [pose.i, pose.j, pose.k, pose.w],
@@ -263,7 +313,7 @@ impl Plan {
     }
 
     /// Moves the first body so that it is where it should be at the planned time.
-    fn place(&self, query: &mut Query, rng: &mut Rng) {
+    pub(super) fn place(&self, query: &mut Query, rng: &mut Rng) {
         let weights = shapes::weights(query.balls[0].len() * query.balls[1].len(), rng);
         let (y, radius) = Paths::new(query).at(self.time).blend(&weights);
         if self.crossing {
@@ -271,7 +321,7 @@ impl Plan {
             return;
         }
         // Anywhere apart first: three bounding radii are at most 2 + 1 sizes each.
-        let apart = 4.0 + 2.0 * radius;
+        let apart = self.reach + 2.0 * radius;
         query.shift(0, rng.direction() * apart - y);
         let paths = Paths::new(query);
         let near = distance(&paths.at(self.time), Goal::Value);

@@ -3,7 +3,7 @@
 //! A verdict of missed, late or false is a proof of guilt: it holds with all rounding of the oracle
 //! taken in favour of the answer.
 
-use super::contact::{FirstContact, distance_at, first_contact};
+use super::contact::{FirstContact, distance_at, first_contact, passage};
 use super::motion::{Paths, Query};
 use rapier3d_medial::elementary::ToiStatus;
 use std::time::Duration;
@@ -48,11 +48,18 @@ impl Truth {
         // cannot tell from apart. They are deemed in contact at the smallest distance that it can,
         // which is sooner than they are.
         let (least, sooner) = if paths.is_thin() {
-            (2.0 * paths.rounding(), THIN_SOONER)
+            let rounding = paths.rounding();
+            (2.0 * rounding, THIN_SOONER * (rounding / 1.0e-13).max(1.0))
         } else {
             (f64::NEG_INFINITY, 0.0)
         };
-        let contact = first_contact(&paths, target.max(least));
+        let contact = match passage(&paths) {
+            Some(time) => FirstContact {
+                free_until: 0.0,
+                contact_at: Some(time),
+            },
+            None => first_contact(&paths, target.max(least)),
+        };
         Self {
             paths,
             target,
@@ -66,8 +73,18 @@ impl Truth {
         self.contact.contact_at.is_some()
     }
 
-    /// Judges an answer whose bracket should be at most `width` wide.
+    /// Judges an answer whose bracket should be at most `width` wide, and how sharp it is.
     pub fn judge(&self, answer: &Answer, width: f64) -> Verdict {
+        let mut verdict = self.convict(answer, width);
+        if answer.status == ToiStatus::Contact {
+            verdict.early = Some(self.early(answer));
+        }
+        verdict
+    }
+
+    /// As [`Self::judge`], but for how early it is: with a tolerance of a few roundings that takes a
+    /// hundred times as long as all the rest.
+    pub fn convict(&self, answer: &Answer, width: f64) -> Verdict {
         let mut verdict = Verdict::default();
         // Bounds of how far the bodies are from what counts as contact.
         let gap = |time: f64| {
@@ -80,7 +97,6 @@ impl Truth {
             ToiStatus::Separated => verdict.missed = self.is_hit(),
             ToiStatus::Contact => {
                 verdict.false_hit = gap(answer.upper).0 > answer.tolerance;
-                verdict.early = Some(self.early(answer));
                 let before = |contact: f64| (contact - answer.lower).max(0.0);
                 let contact = self
                     .contact

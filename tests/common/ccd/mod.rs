@@ -3,6 +3,7 @@
 
 pub mod contact;
 pub mod distance;
+pub mod extremes;
 pub mod families;
 pub mod judge;
 pub mod motion;

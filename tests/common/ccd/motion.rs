@@ -176,6 +176,8 @@ pub struct Paths {
     /// Centre of the first body less that of the second, at the start and its change.
     center: Vector3<f64>,
     shift: Vector3<f64>,
+    /// Sizes of what `center` is a sum of.
+    terms: f64,
 }
 
 /// Rounding of any value below, in units of [`Paths::reach`]. A corner is a sum of 5 rounded
@@ -204,6 +206,7 @@ impl Paths {
                     bodies,
                     center: zero,
                     shift: zero,
+                    terms: 0.0,
                 }
             }
             Motion::Rigid(motions, seconds) => {
@@ -222,6 +225,9 @@ impl Paths {
                     bodies,
                     center: (motions[0].translation - motions[1].translation) + (arms[0] - arms[1]),
                     shift: (motions[0].linvel - motions[1].linvel) * *seconds,
+                    terms: arms[0].norm()
+                        + arms[1].norm()
+                        + (motions[0].translation - motions[1].translation).norm(),
                 }
             }
         }
@@ -276,10 +282,15 @@ impl Paths {
             .all(|radius| radius == 0.0)
     }
 
+    /// How many spheres each body has.
+    pub fn counts(&self) -> [usize; 2] {
+        self.bodies.each_ref().map(|body| body.count)
+    }
+
     /// How much any value computed here may be wrong by rounding.
     pub fn rounding(&self) -> f64 {
         let reach = self.bodies.iter().map(Body::reach).sum::<f64>();
-        ROUNDING * (reach + self.center.norm() + self.shift.norm())
+        ROUNDING * (reach + self.terms + self.shift.norm())
     }
 
     fn push(&self, t: f64, grow: f64, corners: &mut Corners) {

@@ -24,6 +24,9 @@ pub enum Subject {
 }
 
 impl Subject {
+    /// Those that give a guarantee.
+    pub const CERTIFIED: [Self; 3] = [Self::Single, Self::Lanes, Self::Double];
+
     /// The tolerances it is asked for, with bodies of the given length. For the paper's iteration
     /// it is the distance at which it stops.
     pub fn options(self, size: f64) -> ToiOptions {
@@ -173,7 +176,7 @@ fn medial(ball: &Ball) -> MedialSphere {
     MedialSphere::new(vector(&ball.center), ball.radius as f32)
 }
 
-fn rigid(motion: &Rigid) -> NonlinearRigidMotion {
+pub fn rigid(motion: &Rigid) -> NonlinearRigidMotion {
     let [x, y, z, w] = motion.rotation.map(|q| q as f32);
     NonlinearRigidMotion::new(
         Pose::from_parts(vector(&motion.translation), Rotation::from_xyzw(x, y, z, w)),
