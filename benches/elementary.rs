@@ -93,6 +93,7 @@ fn rounded(path: &LinearPath<f64>) -> LinearPath<f32> {
         start: path.start.map(vector),
         rate: path.rate.map(vector),
         radius: path.radius.map(|r| r as f32),
+        size: 0.0,
     }
 }
 

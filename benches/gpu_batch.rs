@@ -67,6 +67,7 @@ fn path(random: &mut Random) -> LinearPath<f32> {
         start: corners.map(|[a, b]| vector(away + ends[b] - ends[a])),
         rate: [vector(fly); 4],
         radius: corners.map(|[a, b]| radii[a] + radii[b]),
+        size: 0.0,
     }
 }
 

@@ -4,7 +4,13 @@
 //!
 //! ```text
 //! cargo run --release --example hard_cases [queries]
+//! cargo run --release --example hard_cases queries extremes
 //! ```
+//!
+//! The second takes so many queries of each of the families made to break a certificate (`Family::EXTREME`),
+//! half at the default tolerance and half at 0, mesh queries among them, and prints what is wrong:
+//! separated though in contact, `lower` after the contact, contact told of bodies apart; and what stays
+//! unresolved, which is no error.
 //!
 //! One row per family and subject: queries, percent in contact, answers that missed a contact, were
 //! late, false, misnamed or unresolved, how long contacts are told before the bodies touch and before
@@ -97,6 +103,100 @@ fn run(chunks: usize) -> Vec<Tallies> {
     total
 }
 
+/// Draws, asks and judges one chunk of an extreme family.
+fn run_extreme(family: Family, chunk: usize) -> [Tally; Subject::CERTIFIED.len()] {
+    let mut rng = Rng::new(((100 + family as u64) << 32) + chunk as u64);
+    let draw = |k| family.query([1 + k % 3, 1 + k / 3 % 3], k / 9 % 2 == 1, &mut rng);
+    let queries: Vec<_> = (0..CHUNK).map(draw).collect();
+    let truths: Vec<_> = queries.iter().map(|query| Truth::new(query, 0.0)).collect();
+    Subject::CERTIFIED.map(|subject| {
+        let mut tally = Tally::default();
+        let mut options = subject.options(family.size());
+        if chunk % 2 == 1 {
+            options.tolerance = 0.0;
+        }
+        for (truth, answer) in truths.iter().zip(subject.answers(&queries, &options)) {
+            if let Some(answer) = answer {
+                let verdict = truth.convict(&answer, options.time_tolerance.into());
+                tally.add(truth, &answer, &verdict, 0.0);
+            }
+        }
+        tally
+    })
+}
+
+/// Runs so many queries of each extreme family on all cores; returns whether every promise was kept.
+fn extremes(queries: usize) -> bool {
+    let chunks = queries.div_ceil(CHUNK);
+    println!(
+        "family           subject  queries  hit%  separated  late  apart  named  wide  unresolved"
+    );
+    let mut kept = true;
+    for family in Family::EXTREME {
+        let next = AtomicUsize::new(0);
+        let worker = || {
+            let mut sum = [Counted::default(); Subject::CERTIFIED.len()];
+            loop {
+                let chunk = next.fetch_add(1, Ordering::Relaxed);
+                if chunk >= chunks {
+                    return sum;
+                }
+                for (sum, tally) in sum.iter_mut().zip(run_extreme(family, chunk)) {
+                    sum.add(&Counted::new(&tally));
+                }
+            }
+        };
+        let workers = std::thread::available_parallelism().map_or(1, usize::from);
+        let mut total = [Counted::default(); Subject::CERTIFIED.len()];
+        std::thread::scope(|scope| {
+            let handles: Vec<_> = (0..workers).map(|_| scope.spawn(worker)).collect();
+            for found in handles.into_iter().flat_map(|handle| handle.join()) {
+                for (sum, counts) in total.iter_mut().zip(found) {
+                    sum.add(&counts);
+                }
+            }
+        });
+        for (subject, Counted([queries, hits, missed, late, apart, named, wide, open])) in
+            Subject::CERTIFIED.into_iter().zip(total)
+        {
+            println!(
+                "{:17}{:7}{queries:>9} {:5.1} {missed:>10}{late:>6}{apart:>7}{named:>7}{wide:>6}{open:>12}",
+                format!("{family:?}"),
+                format!("{subject:?}"),
+                100.0 * hits as f64 / queries.max(1) as f64,
+            );
+            kept &= missed + late + apart + named + wide == 0;
+        }
+    }
+    kept
+}
+
+/// Counts of a tally, without the time of each answer: queries, hits, missed, late, false, misnamed, wide,
+/// unresolved.
+#[derive(Clone, Copy, Default)]
+struct Counted([usize; 8]);
+
+impl Counted {
+    fn new(t: &Tally) -> Self {
+        Self([
+            t.queries,
+            t.hits,
+            t.missed,
+            t.late,
+            t.false_hits,
+            t.misnamed,
+            t.wide,
+            t.unresolved,
+        ])
+    }
+
+    fn add(&mut self, other: &Self) {
+        for (sum, count) in self.0.iter_mut().zip(other.0) {
+            *sum += count;
+        }
+    }
+}
+
 fn merge(sum: &mut Tallies, tallies: Tallies) {
     for (sum, tally) in sum.iter_mut().zip(tallies) {
         sum.merge(tally);
@@ -173,6 +273,15 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
+    if std::env::args()
+        .nth(2)
+        .is_some_and(|mode| mode == "extremes")
+    {
+        return match extremes(queries) {
+            true => ExitCode::SUCCESS,
+            false => ExitCode::FAILURE,
+        };
+    }
     let mut families = run(queries.div_ceil(CHUNK * Family::ALL.len()));
 
     println!("Lanes: eight of f32, {}", Lanes::Fastest.path());

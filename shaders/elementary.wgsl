@@ -55,7 +55,7 @@ fn stays_free(query: Query, triangle: bool) -> bool {
   let f = Family(s0.xyz, s1.xyz, s2.xyz, s0.w, s1.w, s2.w);
   let m = Motion(f, r0, query.rate[1] - r0, query.rate[2] - r0);
   let far = max(abs(s0.w), max(abs(query.start[1].w), abs(query.start[2].w))) + max(size(triangle, f), size(triangle, family(m, 1.0)));
-  let slack = far * (GPU_SLACK_ULPS * EPSILON);
+  let slack = far * (GPU_SLACK_ULPS * EPSILON) + sqrt(TINY);
   let middle = select(0.5, 1.0 / 3.0, triangle);
   var t = clamp(closest(f.w + (f.u + f.v) * middle, m.w + (m.u + m.v) * middle), 0.0, 1.0);
   var proven = Piece(t, t);
@@ -67,7 +67,7 @@ fn stays_free(query: Query, triangle: bool) -> bool {
     let radius = s.length - s.distance;
     let met = s.y + rate * (clamp(t + closest(s.y, rate), 0.0, 1.0) - t);
     if (length_sq(met) < radius * radius && radius > 0.0) { return false; }
-    let n = s.y / max(s.length, TINY);
+    let n = s.y / max(s.length, sqrt(TINY));
     var piece = in_front(Piece(0.0, 1.0), n, f.w, m.w, f.r0 + slack);
     piece = in_front(piece, n, f.w + f.u, m.w + m.u, f.r0 + f.da + slack);
     piece = in_front(piece, n, f.w + f.v, m.w + m.v, f.r0 + f.db + slack);

@@ -241,6 +241,7 @@ mod measure {
             start: corners.map(|[a, b]| Vec3::from_vector(away + ends[b] - ends[a])),
             rate: [Vec3::from_vector(fly); 4],
             radius: corners.map(|[a, b]| radii[a] + radii[b]),
+            size: 0.0,
         }
     }
 }

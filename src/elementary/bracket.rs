@@ -23,6 +23,7 @@ use super::certificate::{ActiveFace, first_step, fixed_step, lower_bound, turnin
 use super::path::Path;
 use super::test_list::Domain;
 use super::{cone_cone, sphere_slab};
+use crate::math::approach::first_touch;
 use crate::math::lane::{Lane, Mask, Scalar, Vec3};
 use crate::math::nearest::{Family, Nearest};
 use crate::math::tolerance::{NEVER, SLACK_ULPS, STEP_ULPS, TOLERANCE_PER_SLACK};
@@ -102,22 +103,14 @@ fn nearest_spheres<L: Lane>(domain: Domain, f: &Family<L>) -> Nearest<L> {
 }
 
 /// First time after `s` at which the fixed sphere pair is in contact, moving with `y_rate` (and no
-/// acceleration): root `t⁽¹⁾` of paper Eq. (4). [`NEVER`] if there is none.
-///
-/// Not from the parabola's discriminant, whose digits are lost when the radii are below
-/// `√EPSILON` of the distance travelled, but from the point of closest approach, and only if the
-/// pair is within `reach` there: a root is a proof of contact.
+/// acceleration): root `t⁽¹⁾` of paper Eq. (4). [`NEVER`] if there is none, or if the pair is not within
+/// `reach` there: a root is a proof of contact.
 #[inline(always)]
 fn fixed_pair_root<L: Lane>(s: &Nearest<L>, y_rate: Vec3<L>, reach: L) -> L {
-    let zero = L::zero();
     let radius = s.length - s.distance;
-    let speed_sq = y_rate.length_sq().max(L::splat(L::TINY));
-    let closest = -(s.y.dot(y_rate) / speed_sq);
-    let across = (s.y + y_rate * closest).length_sq();
-    let inside = radius * radius - across;
-    let root = closest - (inside.max(zero) / speed_sq).sqrt();
+    let (root, exists) = first_touch(s.y, y_rate, radius);
     let distance = (s.y + y_rate * root).length() - radius;
-    let exists = zero.le(radius) & zero.le(inside) & zero.le(root) & distance.le(reach);
+    let exists = exists & L::zero().le(root) & distance.le(reach);
     L::select(exists, root, L::splat(NEVER))
 }
 
@@ -159,7 +152,7 @@ impl<L: Lane> Running<L> {
     /// lets the others begin later.
     #[inline(always)]
     pub fn new<P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Self {
-        let slack = path.scale() * L::splat(SLACK_ULPS * L::EPSILON);
+        let slack = path.scale() * L::splat(SLACK_ULPS * L::EPSILON) + L::splat(L::TINY).sqrt();
         let mut running = Self::at(limits, slack);
         if P::CURVED {
             running.speed = path.speed().max(L::splat(L::TINY));

@@ -107,7 +107,7 @@ fn limits(options: &ToiOptions) -> Option<Limits<f64>> {
     })
 }
 
-fn movers(s: &[MovingSphere], origin: Vec3<f64>) -> Option<Vec<Mover<f64>>> {
+fn movers(s: &[MovingSphere]) -> Option<Vec<Mover<f64>>> {
     let good = |s: &MovingSphere| {
         vec3(s.center).is_finite()
             && vec3(s.displacement).is_finite()
@@ -116,15 +116,14 @@ fn movers(s: &[MovingSphere], origin: Vec3<f64>) -> Option<Vec<Mover<f64>>> {
     };
     ((1..=3).contains(&s.len()) && s.iter().all(good)).then(|| {
         s.iter()
-            .map(|s| (vec3(s.center) - origin, vec3(s.displacement), s.radius))
+            .map(|s| (vec3(s.center), vec3(s.displacement), s.radius))
             .collect()
     })
 }
 
 /// As [`super::first_contact()`], in double precision.
 pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions) -> Toi {
-    let origin = a.first().map_or(Vec3::zero(), |s| vec3(s.center));
-    match (movers(a, origin), movers(b, origin), limits(options)) {
+    match (movers(a), movers(b), limits(options)) {
         (Some(a), Some(b), Some(limits)) => {
             Toi::from_earliest(&linear([a, b], options.target_distance, limits))
         }
@@ -168,8 +167,7 @@ pub fn first_contact_rigid(
 
 /// As [`super::alternating()`], in double precision.
 pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions) -> Toi {
-    let origin = a.first().map_or(Vec3::zero(), |s| vec3(s.center));
-    let (Some(a), Some(b)) = (movers(a, origin), movers(b, origin)) else {
+    let (Some(a), Some(b)) = (movers(a), movers(b)) else {
         return Toi::bad_input(options);
     };
     let limits = baseline::Limits {

@@ -136,8 +136,7 @@ pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOption
     straight_toi(&earliest, [a, b], options)
 }
 
-/// Both primitives relative to the first sphere, so that large coordinates cost no digits; `None` if
-/// they or the options are refused.
+/// Both primitives; `None` if they or the options are refused.
 pub(super) fn movers(
     a: &[MovingSphere],
     b: &[MovingSphere],
@@ -150,13 +149,9 @@ pub(super) fn movers(
     if !valid([a.len(), b.len()], options, checks) {
         return None;
     }
-    let origin = Vec3::<f32>::from_vector(a[0].center);
     let mover = |s: &MovingSphere| -> Mover<f32> {
-        (
-            Vec3::from_vector(s.center) - origin,
-            Vec3::from_vector(s.displacement),
-            s.radius,
-        )
+        let center = Vec3::from_vector(s.center);
+        (center, Vec3::from_vector(s.displacement), s.radius)
     };
     Some([a, b].map(|side| side.iter().map(mover).collect()))
 }

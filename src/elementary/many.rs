@@ -360,9 +360,9 @@ fn side_by_side<L: Octet>(paths: [&LinearPath<f32>; LANES]) -> LinearPath<L> {
         let [a, b, c, _] = p.rate;
         [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y]
     });
-    let [dz2, dx3, dy3, dz3, ..] = eight(|p| {
+    let [dz2, dx3, dy3, dz3, size, ..] = eight(|p| {
         let [_, _, c, d] = p.rate;
-        [c.z, d.x, d.y, d.z, 0.0, 0.0, 0.0, 0.0]
+        [c.z, d.x, d.y, d.z, p.size, 0.0, 0.0, 0.0]
     });
     LinearPath {
         start: [
@@ -378,5 +378,6 @@ fn side_by_side<L: Octet>(paths: [&LinearPath<f32>; LANES]) -> LinearPath<L> {
             Vec3::new(dx3, dy3, dz3),
         ],
         radius: [r0, r1, r2, r3],
+        size,
     }
 }

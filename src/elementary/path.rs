@@ -28,7 +28,7 @@ pub trait Path<L: Lane> {
     fn speed(&self) -> L;
     /// Bounds of the lengths of acceleration and jerk of a corner over all times.
     fn curvature(&self, corner: usize) -> (L, L);
-    /// Size of the numbers in play, for the rounding slack.
+    /// Bound of the numbers whose rounding enters a bound of the distance, for the rounding slack.
     fn scale(&self) -> L;
 }
 
@@ -41,11 +41,14 @@ pub struct LinearPath<L> {
     pub rate: [Vec3<L>; 4],
     /// Radius sums.
     pub radius: [L; 4],
+    /// Size of a number that is in the radius sums and may cancel there: the target distance.
+    pub size: L,
 }
 
 impl<L: Lane> LinearPath<L> {
-    /// `centers` gives centre, displacement and radius of sphere `i` of the first (`false`) or the
-    /// second (`true`) primitive.
+    /// `sphere` gives centre, displacement and radius of sphere `i` of the first (`false`) or the second
+    /// (`true`) primitive. Centres in world space: each corner is one difference, rounded once to a
+    /// number of its own size, however far both are from the origin.
     #[inline]
     pub fn new(
         test: &ElementaryTest,
@@ -60,6 +63,7 @@ impl<L: Lane> LinearPath<L> {
             start: corner.map(|c| c.0),
             rate: corner.map(|c| c.1),
             radius: corner.map(|c| c.2),
+            size: target_distance.abs(),
         }
     }
 }
@@ -103,7 +107,7 @@ impl<L: Lane> Path<L> for LinearPath<L> {
             sq = sq.max(self.start[k].length_sq()).max(end.length_sq());
             radius = radius.max(self.radius[k].abs());
         }
-        sq.sqrt() + radius
+        sq.sqrt() + radius + self.size
     }
 }
 
@@ -113,6 +117,8 @@ pub struct RigidPath<S> {
     motions: [RigidMotion<S>; 2],
     corners: [[PointPath<S>; 2]; 4],
     radius: [S; 4],
+    /// As [`LinearPath::size`].
+    size: S,
 }
 
 impl<S: Scalar> RigidPath<S> {
@@ -136,6 +142,7 @@ impl<S: Scalar> RigidPath<S> {
             motions: *motions,
             corners: corner.map(|c| c.0),
             radius: corner.map(|c| c.1),
+            size: target_distance.abs(),
         }
     }
 }
@@ -170,15 +177,11 @@ impl<S: Scalar> Path<S> for RigidPath<S> {
         let [a, b] = &self.corners[corner];
         (a.acceleration + b.acceleration, a.jerk + b.jerk)
     }
+    /// Positions are sums of what [`PointPath::terms`] counts and of the displacement, each rounded a few
+    /// times; where a body is far from its own origin they cancel, and their rounding is left.
     fn scale(&self) -> S {
-        let start = self.at(S::zero());
-        let reach = start.y.iter().map(|y| y.length()).fold(S::zero(), S::max);
         let radius = self.radius.iter().map(|r| r.abs()).fold(S::zero(), S::max);
-        let arms = self
-            .corners
-            .iter()
-            .map(|[a, b]| a.arm() + b.arm())
-            .fold(S::zero(), S::max);
-        reach + radius + arms + self.speed()
+        let terms = self.corners.iter().map(|[a, b]| a.terms() + b.terms());
+        terms.fold(S::zero(), S::max) + self.speed() + radius + self.size
     }
 }

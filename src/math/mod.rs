@@ -1,5 +1,6 @@
 //! L0: numbers and geometry that know nothing of medial meshes.
 
+pub(crate) mod approach;
 pub(crate) mod fast_hash;
 pub mod lane;
 #[cfg(target_arch = "x86_64")]

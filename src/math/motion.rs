@@ -26,6 +26,8 @@ pub struct RigidMotion<S> {
     drift: [Vec3<S>; 3],
     /// Centre of rotation in the body's frame.
     local_center: Vec3<S>,
+    /// Sizes of the numbers that `center` is a sum of: they may cancel, their rounding does not.
+    terms: S,
 }
 
 /// Path of one point of a [`RigidMotion`].
@@ -36,6 +38,8 @@ pub struct PointPath<S> {
     across: Vec3<S>,
     turned: Vec3<S>,
     angle: S,
+    /// Sizes of the numbers that positions are sums of, but for the displacement.
+    terms: S,
     /// Length of the acceleration: `ω²|ρ⊥|`.
     pub acceleration: S,
     /// Length of the jerk: `ω³|ρ⊥|`.
@@ -131,6 +135,7 @@ impl<S: Scalar> RigidMotion<S> {
             columns,
             drift: [Vec3::zero(); 3],
             local_center,
+            terms: origin.length() + local_center.length(),
         }
     }
 
@@ -160,6 +165,7 @@ impl<S: Scalar> RigidMotion<S> {
             across,
             turned: self.axis.cross(rho),
             angle: self.angle,
+            terms: self.terms + rho.length(),
             acceleration,
             jerk: acceleration * self.angle,
         }
@@ -194,6 +200,11 @@ impl<S: Scalar> RigidMotion<S> {
     /// Angular velocity, in radians per step.
     pub fn angular_velocity(&self) -> Vec3<S> {
         self.axis * self.angle
+    }
+
+    /// Sizes of the numbers that the centre of rotation is a sum of.
+    pub fn terms(&self) -> S {
+        self.terms
     }
 
     /// Angle turned in the step, in radians.
@@ -233,10 +244,10 @@ impl<S: Scalar> PointPath<S> {
         self.angle * self.across.length()
     }
 
-    /// Distance from the axis of rotation, when there is a rotation: digits lost to turning are
-    /// proportional to it.
-    pub fn arm(&self) -> S {
-        self.across.length()
+    /// Sizes of the numbers that positions are sums of, but for the displacement: of the body's origin
+    /// in the pair's frame, of its centre of rotation in its own, and of the arm from there.
+    pub fn terms(&self) -> S {
+        self.terms
     }
 }
 

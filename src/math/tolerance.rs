@@ -3,10 +3,17 @@
 
 /// Rounding slack of a certificate, in units of `EPSILON × scale` (no unit).
 ///
-/// `scale` is the largest `|y|` over the corners at both ends of the step plus the largest radius
-/// sum. A corner is a sum of at most 8 rounded terms of that size. Measured on 78,860 hits in
-/// `f32`: below 0.5 some `lower` exceeded the true contact time, from 1 on none did; 8 leaves a
-/// margin of 8 and costs nothing but a larger smallest tolerance.
+/// `scale` bounds the numbers whose rounding enters a bound of the distance ([`crate::elementary::path::Path::scale`]):
+/// - on straight paths the largest `|y|` over the corners at both ends of the step, the largest radius sum, and
+///   the target distance. A corner is one rounded difference of centres, wherever the world's origin is;
+/// - in rigid motion the way and swing of a corner in the step, its arms from both centres of rotation, these
+///   centres' distances from their bodies' origins, and the distance of those origins: positions are sums of these,
+///   which may cancel where a body is far from its own origin.
+///
+/// A corner is a sum of at most 8 rounded terms of that size. Measured on 78,860 hits in `f32`: below 0.5 some
+/// `lower` exceeded the true contact time, from 1 on none did; 8 leaves a margin of 8 and costs nothing but
+/// a larger smallest tolerance. The slack is never below `√TINY` (1e-15 in `f32`, 1e-100 in `f64`, in the user's
+/// unit), whose square is the smallest that keeps its digits.
 pub const SLACK_ULPS: f64 = 8.0;
 
 /// Smallest tolerance in units of the slack. At 2 the last step before contact is at least one

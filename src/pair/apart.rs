@@ -17,11 +17,11 @@ pub(super) struct Balls {
 }
 
 impl Balls {
-    /// One to three of them.
-    pub(super) fn new(balls: impl ExactSizeIterator<Item = Ball>) -> Self {
+    /// One to three of them; `terms`: sizes of the numbers that their positions are sums of, beyond those.
+    pub(super) fn new(balls: impl ExactSizeIterator<Item = Ball>, terms: f64) -> Self {
         let len = balls.len();
         let mut spheres = [(Vec3::zero(), Vec3::zero(), 0.0); 3];
-        let mut size = 0.0;
+        let mut size = terms;
         for (k, ball) in balls.enumerate() {
             spheres[k..].fill(ball);
             size += ball.0.taxicab() + ball.1.taxicab() + ball.2;

@@ -23,6 +23,7 @@ use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
 use crate::elementary::first_contact::{Earliest, options_limits};
 use crate::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
+use crate::math::approach::first_touch;
 use crate::math::motion::RigidMotion;
 use crate::medial::tree::Below;
 use std::collections::BinaryHeap;
@@ -251,18 +252,14 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         let tolerance = self.earliest.limits.tolerance;
         let radius = a.radius + b.radius + self.reach + tolerance;
         let radius = (radius + 64.0 * f64::EPSILON * radius.abs()).max(0.0);
-        let (yy, yr, rr) = (y.length_sq(), y.dot(rate), rate.length_sq());
-        let c = yy - radius * radius;
         let (mut time, mut depth) = (self.times[0], 0.0);
-        if c <= 0.0 {
-            depth = (yy.sqrt() - radius) / radius.max(f64::MIN_POSITIVE);
+        let distance = y.length();
+        if distance <= radius {
+            depth = (distance - radius) / radius.max(f64::MIN_POSITIVE);
         } else {
-            let discriminant = yr * yr - rr * c;
-            if yr >= 0.0 || discriminant < 0.0 {
-                return;
-            }
-            let entry = c / (discriminant.sqrt() - yr);
-            if entry > 1.0 {
+            // The margins of the radii cover its rounding.
+            let (entry, exists) = first_touch(y, rate, radius);
+            if !exists || y.dot(rate) >= 0.0 || entry > 1.0 {
                 return;
             }
             time += entry * (self.times[1] - self.times[0]);
@@ -294,12 +291,12 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         // Directions tell how far the node's ball is from the primitive itself.
         let large = match (a.below, b.below) {
             (Below::Nodes(..), Below::Primitive(q)) if a.radius * SIMILAR < b.radius => {
-                let ball = Balls::new([(a.start, a.chord, a.radius)].into_iter());
+                let ball = Balls::new([(a.start, a.chord, a.radius)].into_iter(), 0.0);
                 let place = self.sides.1.sweep_leaf(j, q);
                 Some([ball, *self.sides.1.balls(place)])
             }
             (Below::Primitive(p), Below::Nodes(..)) if b.radius * SIMILAR < a.radius => {
-                let ball = Balls::new([(b.start, b.chord, b.radius)].into_iter());
+                let ball = Balls::new([(b.start, b.chord, b.radius)].into_iter(), 0.0);
                 let place = self.sides.0.sweep_leaf(i, p);
                 Some([*self.sides.0.balls(place), ball])
             }

@@ -104,7 +104,7 @@ impl<'a, V: Volumes> Side<'a, V> {
             let (from, chord, sagitta) = self.chord(Vec3::from_vector(s.center));
             (from, chord, f64::from(s.radius) + sagitta)
         });
-        let balls = Balls::new(balls);
+        let balls = Balls::new(balls, self.motion.terms());
         self.balls.push(balls);
         new
     }
@@ -136,8 +136,8 @@ impl<'a, V: Volumes> Side<'a, V> {
         let (start, chord, sagitta) = self.chord(Vec3::from_vector(center));
         let radius = f64::from(radius) + sagitta;
         // Rounding of positions, chords and the time at which they meet: a few ulps of the numbers in
-        // play.
-        let size = start.taxicab() + chord.taxicab() + radius;
+        // play, which are larger than the positions where a body is far from its own origin.
+        let size = start.taxicab() + chord.taxicab() + radius + self.motion.terms();
         Swept {
             start,
             chord,

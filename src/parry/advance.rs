@@ -61,11 +61,9 @@ pub fn first_contact(
         };
     }
     let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
-    let pivots = motion1.local_center.length() + motion2.local_center.length();
     let mut search = Search {
         mesh,
         motions,
-        pivots: pivots.into(),
         options,
         counts: Counts::default(),
         heap: BinaryHeap::new(),
@@ -93,8 +91,6 @@ pub fn first_contact(
 struct Search<'a> {
     mesh: &'a MedialMesh,
     motions: [RigidMotion<f64>; 2],
-    /// Distances of the centres of rotation from the bodies' origins, summed.
-    pivots: f64,
     options: &'a ToiOptions,
     counts: Counts,
     heap: BinaryHeap<Reverse<Entry>>,
@@ -297,7 +293,7 @@ impl Search<'_> {
     }
 
     fn advance(&mut self, body: &Turned, balls: &[Ball], limits: &Limits) -> Advance {
-        let advance = follow(&self.motions, self.pivots, body, balls, limits);
+        let advance = follow(&self.motions, body, balls, limits);
         self.work += advance.steps;
         advance
     }

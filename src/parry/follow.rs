@@ -76,7 +76,6 @@ struct Corner {
 /// Follows 1 to 3 interpolated spheres until they meet the body.
 pub fn follow(
     motions: &[RigidMotion<f64>; 2],
-    pivots: f64,
     body: &Turned,
     balls: &[Ball],
     limits: &Limits,
@@ -138,7 +137,7 @@ pub fn follow(
         let at = &at[..corners.len()];
         let distances = at.iter().map(|b| b.0.length());
         let far = distances.fold(0.0, f64::max);
-        let arms = largest(|c| c.path.arm()) + pivot.arm() + pivots;
+        let arms = largest(|c| c.path.terms()) + pivot.terms();
         let size = body.reach() + largest(|c| c.radius) + far + speed + arms;
         known.slack = ULPS * f64::EPSILON * size;
         known.near = body.nearest(&place, at);

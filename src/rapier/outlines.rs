@@ -3,6 +3,8 @@
 
 use super::motion::Snapshot;
 use crate::math::Real;
+use crate::math::approach::first_touch;
+use crate::math::lane::Vec3;
 use crate::medial::shell::Shell;
 use crate::pair::outline::{Left, Outline, apart_until};
 use parry3d::query::NonlinearRigidMotion;
@@ -99,19 +101,17 @@ fn spheres_apart_until(
         let bound = &snapshot.parts[k].bound;
         radius += (bound.center() - motion.local_center).length() + bound.radius();
     }
-    // Rounding of the positions.
-    let size = centers.iter().map(|c| c.abs().max_element()).sum::<Real>();
-    radius += 16.0 * Real::EPSILON * size;
-    let y = (centers[1] - centers[0]).as_dvec3();
-    let rate = (motions[1].linvel - motions[0].linvel).as_dvec3();
-    let c = y.length_squared() - f64::from(radius).powi(2);
-    if c > 0.0 {
-        let (yr, rr) = (y.dot(rate), rate.length_squared());
-        let discriminant = yr * yr - rr * c;
-        if yr >= 0.0 || discriminant < 0.0 {
+    // Rounding of the positions: a few ulps of all that they are sums of.
+    let terms = |m: &NonlinearRigidMotion| m.start.translation.length() + m.local_center.length();
+    radius += 16.0 * Real::EPSILON * (motions.iter().map(terms).sum::<Real>() + radius);
+    let y = Vec3::<f64>::from_vector(centers[1]) - Vec3::from_vector(centers[0]);
+    let rate = Vec3::<f64>::from_vector(motions[1].linvel) - Vec3::from_vector(motions[0].linvel);
+    if y.length() > f64::from(radius) {
+        let (touch, exists) = first_touch(y, rate, radius.into());
+        if !exists || y.dot(rate) >= 0.0 {
             return None;
         }
-        let until = (time + (c / (discriminant.sqrt() - yr)) as Real).next_down();
+        let until = (time + touch as Real).next_down();
         return (until <= end).then_some(until.max(time));
     }
     Some(time)

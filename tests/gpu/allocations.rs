@@ -89,6 +89,7 @@ fn elementary_tests_allocate_nothing_of_ours() {
         start: [Vec3::new(3.0, 0.0, 0.0); 4],
         rate: [Vec3::zero(); 4],
         radius: [0.5; 4],
+        size: 0.0,
     };
     for count in [1, 5_000] {
         let paths = vec![apart; count];

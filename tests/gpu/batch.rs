@@ -112,3 +112,29 @@ fn steps_make_nothing_on_the_device() {
         "{first:?}"
     );
 }
+
+/// Bodies far apart that turn for ever: the CPU ends on its cap, and a device that takes fewer pieces of the
+/// step would call them free.
+#[test]
+fn endless_turns_are_answered_as_by_the_cpu() {
+    if scene::gpu(scene::options()).is_none() {
+        return;
+    }
+    let mut batch = block_on(Batch::open_async(Backend::Gpu, scene::options()));
+    let mut jobs = toi_jobs(4);
+    for (job, turn) in jobs.iter_mut().zip([3.0, 15.0, 17.0, 1.0e6]) {
+        job.motion2.start.translation.x += 50.0;
+        job.motion2.angvel = job.motion2.angvel.normalize_or_zero() * (turn * 60.0);
+    }
+    let expected = cpu::run(&jobs);
+    let status = |k: usize| expected[k].toi.status;
+    assert_eq!(
+        [status(0), status(3)],
+        [ToiStatus::Separated, ToiStatus::Unresolved]
+    );
+    for (answer, expected) in batch.run(&jobs).iter().zip(&expected) {
+        assert_eq!(essence(&answer.toi), essence(&expected.toi));
+    }
+    let report = batch.report();
+    assert_eq!((report.settled_by_gpu, report.unfit), (2, 2));
+}

@@ -1,9 +1,11 @@
 //! Culling on the device against brute force by the oracle: no mesh pair that comes within reach is
 //! called free, and most of the others are.
 
-use crate::ccd::contact::first_contact;
+use crate::ccd::contact::{first_contact, passage};
+use crate::ccd::families::Family;
 use crate::ccd::motion::Paths;
 use crate::ccd::rng::Rng;
+use crate::ccd::subject::meshes;
 use crate::scene;
 use pollster::block_on;
 use rapier3d::parry::query::NonlinearRigidMotion;
@@ -309,4 +311,38 @@ fn what_grew_for_a_batch_that_failed_is_used_by_the_next() {
     );
     block_on(gpu.propose(&many[..1], &mut said)).expect("proposals");
     assert_ne!(said, [Proposal::Free]);
+}
+
+/// The families made to break a certificate: what the device calls free stays apart, by the oracle.
+#[test]
+fn no_extreme_within_reach_is_free() {
+    let Some(mut gpu) = scene::gpu(scene::options()) else {
+        return;
+    };
+    for family in Family::EXTREME {
+        let mut rng = Rng::new(7300 + family as u64);
+        let draw = |k: usize| family.query([1 + k % 3, 1 + k / 3 % 3], true, &mut rng);
+        let queries: Vec<_> = (0..270).map(draw).collect();
+        let drawn = queries.iter().filter_map(|q| Some((q, meshes(q)?)));
+        let drawn: Vec<_> = drawn.collect();
+        let sweeps: Vec<_> = drawn
+            .iter()
+            .map(|(_, ([a, b], motions, seconds))| Sweep {
+                meshes: [a, b],
+                motions: *motions,
+                seconds: *seconds,
+                reach: 0.0,
+            })
+            .collect();
+        let mut proposals = Vec::new();
+        block_on(gpu.propose(&sweeps, &mut proposals)).expect("proposals");
+        let free = proposals.iter().filter(|p| p.is_free()).count();
+        println!("{family:?}: {free} of {} free", drawn.len());
+        for ((query, _), proposal) in drawn.iter().zip(&proposals) {
+            let exact = Paths::new(query);
+            let contact = passage(&exact).or(first_contact(&exact, 0.0).contact_at);
+            let right = !proposal.is_free() || contact.is_none();
+            assert!(right, "{family:?}\n{query:?}");
+        }
+    }
 }

@@ -128,7 +128,12 @@ impl Elementary {
 /// goes as a contact, for the CPU to judge.
 fn pack(path: &LinearPath<f32>, domain: Domain, tolerance: f32) -> Query {
     let with = |v: Vec3<f32>, w: f32| [v.x, v.y, v.z, w];
-    let start = [0, 1, 2, 3].map(|k| with(path.start[k], up(path.radius[k] + tolerance)));
+    let start = [0, 1, 2, 3].map(|k| {
+        with(
+            path.start[k],
+            up(path.radius[k] + tolerance + path.size * (4.0 * f32::EPSILON)),
+        )
+    });
     let rate = [0, 1, 2, 3].map(|k| with(path.rate[k], 0.0));
     let fourth = match domain {
         Domain::Box => 1.0,

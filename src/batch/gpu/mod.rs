@@ -118,6 +118,7 @@ impl Gpu {
             start: [Vec3::new(1.0, 0.0, 0.0); 4],
             rate: [Vec3::zero(); 4],
             radius: [0.0; 4],
+            size: 0.0,
         };
         let mut free = Vec::new();
         for domain in [Domain::Box, Domain::Triangle] {

@@ -4,6 +4,7 @@
 use super::layout::{Pair, Side};
 use crate::batch::job::Sweep;
 use crate::elementary::first_contact::motion_is_finite;
+use crate::math::lane::Lane;
 use crate::math::motion::RigidMotion;
 use crate::math::tolerance::GPU_SLACK_ULPS;
 
@@ -14,11 +15,16 @@ const LARGEST: f64 = 1.0e15;
 /// arm. Larger pieces prove less, smaller ones cost a pair each.
 const PIECE_ANGLE: f64 = 0.5;
 
-/// Most pieces of a step; a body that turns further is culled less well.
+/// Most pieces of a step; a body that turns further is left to the CPU, where endless turns end on the cap of
+/// the work ([`crate::pair`]): with more pieces for the CPU than for the device, the device would say free where
+/// the CPU says unresolved. With as many, the device gives up first: it walks 1,024 node pairs a piece, a
+/// sixteenth of the cap in 32 of them.
 const MAX_PIECES: f64 = 32.0;
 
 impl Sweep<'_> {
-    /// Its pieces as the device gets them; `None` where a number is not finite or too large.
+    /// Its pieces as the device gets them; `None` where a number is not finite or too large, or a body turns
+    /// so far that the CPU, which takes more pieces then, might end on its work cap: the device must not
+    /// know more than the CPU.
     pub(super) fn pairs(&self, roots: [u32; 2]) -> impl Iterator<Item = Option<Pair>> {
         let [m1, m2] = &self.motions;
         let paths = RigidMotion::pair(m1, m2, self.seconds.into());
@@ -39,12 +45,14 @@ impl Sweep<'_> {
     ) -> Option<Pair> {
         let mut sides = [Side::default(); 2];
         let mut scale = self.reach.abs();
+        let mut turns_little = true;
         for (k, side) in sides.iter_mut().enumerate() {
             let motion = &motions[k];
             side.start = rows(motion, start);
             side.end = rows(motion, end);
             let center = self.motions[k].local_center;
             let angle = motion.angle() * (end - start);
+            turns_little &= angle <= PIECE_ANGLE * (1.0 + 1.0e-6);
             // Rounded up: a sagitta must not shrink.
             let sagitta = angle * angle * (0.125 * (1.0 + 1.0e-6));
             side.turn = [center.x, center.y, center.z, sagitta as f32];
@@ -57,14 +65,15 @@ impl Sweep<'_> {
             };
             scale += away(&side.start) + away(&side.end) + 2.0 * lever + sagitta * extent;
         }
-        let reach = self.reach + scale * GPU_SLACK_ULPS * f64::from(f32::EPSILON);
+        let slack = scale * GPU_SLACK_ULPS * f64::from(f32::EPSILON) + f32::TINY.sqrt();
+        let reach = self.reach + slack;
         // Also false for what is not a number, which a device may take for anything.
         let numbers: &[f32] = bytemuck::cast_slice(&sides);
         let plain = numbers
             .iter()
             .fold(true, |all, x| all & (x.abs() < LARGEST as f32));
         let finite = self.motions.iter().all(motion_is_finite);
-        let sound = finite && scale < LARGEST && plain;
+        let sound = finite && turns_little && scale < LARGEST && plain;
         sound.then(|| Pair {
             sides,
             roots,

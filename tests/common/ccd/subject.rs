@@ -4,10 +4,11 @@ use super::judge::Answer;
 use super::motion::{Ball, Motion, Query, Rigid};
 use nalgebra::Vector3;
 use parry3d::query::NonlinearRigidMotion;
-use rapier3d_medial::MedialSphere;
 use rapier3d_medial::elementary::many::{Lanes, first_contacts};
 use rapier3d_medial::elementary::{self, MovingSphere, Toi, ToiOptions};
 use rapier3d_medial::math::{Pose, Rotation, Vector};
+use rapier3d_medial::pair::first_contact;
+use rapier3d_medial::{MedialMesh, MedialSphere};
 use std::time::{Duration, Instant};
 
 /// What is under test.
@@ -19,19 +20,21 @@ pub enum Subject {
     Double,
     /// The certified query in single precision, many at once; straight paths only.
     Lanes,
+    /// The certified query of two meshes of one primitive each; rigid motion only.
+    Mesh,
     /// The paper's iteration in double precision; straight paths only.
     Paper,
 }
 
 impl Subject {
     /// Those that give a guarantee.
-    pub const CERTIFIED: [Self; 3] = [Self::Single, Self::Lanes, Self::Double];
+    pub const CERTIFIED: [Self; 4] = [Self::Single, Self::Lanes, Self::Double, Self::Mesh];
 
     /// The tolerances it is asked for, with bodies of the given length. For the paper's iteration
     /// it is the distance at which it stops.
     pub fn options(self, size: f64) -> ToiOptions {
         let (tolerance, time_tolerance) = match self {
-            Self::Single | Self::Lanes => (1.0e-4, 1.0e-6),
+            Self::Single | Self::Lanes | Self::Mesh => (1.0e-4, 1.0e-6),
             Self::Double => (1.0e-9, 1.0e-10),
             Self::Paper => (1.0e-6, 1.0e-6),
         };
@@ -44,7 +47,7 @@ impl Subject {
     /// By how much its contact time may exceed the true one: nothing where that is guaranteed.
     pub fn late_by(self) -> f64 {
         match self {
-            Self::Single | Self::Lanes | Self::Double => 0.0,
+            Self::Single | Self::Lanes | Self::Double | Self::Mesh => 0.0,
             Self::Paper => 1.0e-3,
         }
     }
@@ -82,6 +85,7 @@ impl Subject {
                 return Some(answer(&toi, time));
             }
             Self::Lanes => return self.answers(std::slice::from_ref(query), options)[0],
+            Self::Mesh => return mesh_answer(query, options),
             Self::Double | Self::Paper => {}
         }
         let [a, b] = &query.balls;
@@ -112,6 +116,43 @@ impl Subject {
             time,
         })
     }
+}
+
+/// The bodies of a query in rigid motion as meshes of one primitive each, with their motions and the seconds
+/// of the step; `None` of what is no mesh.
+pub fn meshes(query: &Query) -> Option<([MedialMesh; 2], [NonlinearRigidMotion; 2], f32)> {
+    let Motion::Rigid(motions, seconds) = &query.motion else {
+        return None;
+    };
+    let mesh = |balls: &Vec<Ball>| {
+        let (edges, faces) = match balls.len() {
+            2 => (vec![[0, 1]], vec![]),
+            3 => (vec![], vec![[0, 1, 2]]),
+            _ => (vec![], vec![]),
+        };
+        MedialMesh::new(each(balls, medial), edges, faces).ok()
+    };
+    let [a, b] = query.balls.each_ref().map(mesh);
+    Some(([a?, b?], motions.each_ref().map(rigid), *seconds as f32))
+}
+
+/// The answer of a mesh query. It is found in `f64` and told in `f32`: the time of contact is rounded, and
+/// the bodies are within the tolerance but for how far they move meanwhile.
+fn mesh_answer(query: &Query, options: &ToiOptions) -> Option<Answer> {
+    let Motion::Rigid(motions, seconds) = &query.motion else {
+        return None;
+    };
+    let ([a, b], [m1, m2], length) = meshes(query)?;
+    let (toi, time) = timed(|| first_contact(&a, &m1, &b, &m2, length, options));
+    let swing = |k: usize| {
+        let arm = |ball: &Ball| (ball.center - motions[k].local_center).norm();
+        let arms = query.balls[k].iter().map(arm);
+        motions[k].angvel.norm() * arms.fold(0.0, f64::max)
+    };
+    let speed = (motions[0].linvel - motions[1].linvel).norm() + swing(0) + swing(1);
+    let mut answer = answer(&toi, time);
+    answer.tolerance += 0.5 * f64::from(f32::EPSILON) * speed * *seconds;
+    Some(answer)
 }
 
 fn answer(toi: &Toi, time: Duration) -> Answer {
@@ -176,7 +217,7 @@ fn medial(ball: &Ball) -> MedialSphere {
     MedialSphere::new(vector(&ball.center), ball.radius as f32)
 }
 
-pub fn rigid(motion: &Rigid) -> NonlinearRigidMotion {
+fn rigid(motion: &Rigid) -> NonlinearRigidMotion {
     let [x, y, z, w] = motion.rotation.map(|q| q as f32);
     NonlinearRigidMotion::new(
         Pose::from_parts(vector(&motion.translation), Rotation::from_xyzw(x, y, z, w)),
