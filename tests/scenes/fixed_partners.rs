@@ -20,30 +20,58 @@ enum Mount {
     Aside,
 }
 
-/// How many of 32 rods, which turn at `spin` (rad/s) about Z, pass a fixed pillar of radius 5 mm near their
-/// tip.
-fn rods_passed(mount: Mount, spin: Real) -> u32 {
+/// What a pillar along Z, of radius or half width 5 mm, is.
+#[derive(Clone, Copy, Debug)]
+enum Pillar {
+    Medial,
+    Capsule,
+    Cuboid,
+    Cylinder,
+    TriMesh,
+}
+
+impl Pillar {
+    fn collider(self) -> ColliderBuilder {
+        let half = Vector::new(0.005, 0.005, 1.0);
+        match self {
+            Self::Medial => ColliderBuilder::medial_mesh(cone(-Vector::Z, Vector::Z, half.x)),
+            Self::Capsule => ColliderBuilder::capsule_z(half.z, half.x),
+            Self::Cuboid => ColliderBuilder::cuboid(half.x, half.y, half.z),
+            Self::Cylinder => ColliderBuilder::cylinder(half.z, half.x).rotation(Vector::new(
+                1.570_796_4,
+                0.0,
+                0.0,
+            )),
+            Self::TriMesh => {
+                let (vertices, indices) = Cuboid::new(half).to_trimesh();
+                ColliderBuilder::trimesh(vertices, indices).expect("a cuboid is a mesh")
+            }
+        }
+        .translation(Vector::new(0.0, 0.98, 0.0))
+    }
+}
+
+/// How many of 32 rods, which turn at `spin` (rad/s) about Z, pass a fixed pillar near their tip.
+fn rods_passed(mount: Mount, pillar: Pillar, spin: Real) -> u32 {
+    let aside = match mount {
+        Mount::Middle => Vector::ZERO,
+        Mount::Aside => Vector::new(0.4, -0.7, 0.1),
+    };
+    // Their masses are measured once.
+    let rod = cone(aside - Vector::X, aside + Vector::X, 0.02);
+    let pillar = pillar.collider();
     let passed = |phase: u32| {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
-        let aside = match mount {
-            Mount::Middle => Vector::ZERO,
-            Mount::Aside => Vector::new(0.4, -0.7, 0.1),
-        };
         let angle = 0.19 * phase as Real;
         let turn = Rotation::from_scaled_axis(Vector::new(0.0, 0.0, angle));
         let pose = Pose::from_parts(turn * -aside, turn);
         let body = RigidBodyBuilder::dynamic().pose(pose);
         let body = body.angvel(Vector::new(0.0, 0.0, spin));
-        let rod = cone(aside - Vector::X, aside + Vector::X, 0.02);
-        let (rod, _) = world.insert(body, ColliderBuilder::medial_mesh(rod).restitution(0.5));
+        let collider = ColliderBuilder::medial_mesh(rod.clone()).restitution(0.5);
+        let (rod, _) = world.insert(body, collider);
         world.bodies[rod].set_allow_fast_rotation(true);
-        let pillar = cone(
-            Vector::new(0.0, 0.98, -1.0),
-            Vector::new(0.0, 0.98, 1.0),
-            0.005,
-        );
-        world.insert_collider(ColliderBuilder::medial_mesh(pillar), None);
+        world.insert_collider(pillar.clone(), None);
         let mut pipeline = attached(&mut world);
         // Either end comes by in half a turn.
         let steps = (3.3 / (spin * world.integration_parameters.dt)).ceil() as usize;
@@ -59,8 +87,18 @@ fn rods_passed(mount: Mount, spin: Real) -> u32 {
 fn no_turning_rod_passes_a_fixed_pillar() {
     for mount in [Mount::Middle, Mount::Aside] {
         // 0.75 rad a step, and beyond half a turn.
-        let counts = [45.0, 150.0, 220.0, 360.0].map(|spin| rods_passed(mount, spin));
+        let spins = [45.0, 150.0, 220.0, 360.0];
+        let counts = spins.map(|spin| rods_passed(mount, Pillar::Medial, spin));
         assert_eq!(counts, [0; 4], "{mount:?}");
+    }
+}
+
+#[test]
+fn no_turning_rod_passes_a_pillar_of_another_shape() {
+    use Pillar::*;
+    for pillar in [Capsule, Cuboid, Cylinder, TriMesh] {
+        let counts = [45.0, 360.0].map(|spin| rods_passed(Mount::Aside, pillar, spin));
+        assert_eq!(counts, [0; 2], "{pillar:?}");
     }
 }
 

@@ -66,9 +66,9 @@ pub fn crossed(axes: [[Vector; 2]; 2], before: [Pose; 2], after: [Pose; 2]) -> b
     (0..PARTS).any(|n| matches!((sides(n), sides(n + 1)), (Some(a), Some(b)) if a != b))
 }
 
-/// How many of the throws at this speed take the antenna of a plate through that of another, or through
+/// How many of the throws at this speed take the antenna of a body through that of another, or through
 /// a fixed pillar of radius 0.01.
-fn antennas_passed(antenna: [Real; 2], pillar: bool, speed: Real, throws: u32) -> u32 {
+fn antennas_passed(mesh: &MedialMesh, pillar: bool, speed: Real, throws: u32) -> u32 {
     let thrown = |phase: u32| {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
@@ -76,12 +76,11 @@ fn antennas_passed(antenna: [Real; 2], pillar: bool, speed: Real, throws: u32) -
         let x = 0.4 + travel * phase as Real / throws as Real;
         let lean = 0.02 * phase as Real - 0.3;
         let pose = Pose::new(Vector::new(x, 2.2, -1.6), Vector::new(1.57, lean, 0.0));
-        let mesh = plate(antenna);
         let body = RigidBodyBuilder::dynamic().pose(pose);
         let body = body.linvel(Vector::new(-speed, 0.0, 0.0));
         let (moving, _) = world.insert(body, ColliderBuilder::medial_mesh(mesh.clone()));
         let resting = (!pillar).then(|| {
-            let collider = ColliderBuilder::medial_mesh(mesh);
+            let collider = ColliderBuilder::medial_mesh(mesh.clone());
             world.insert(RigidBodyBuilder::dynamic(), collider).0
         });
         if pillar {
@@ -106,13 +105,13 @@ fn antennas_passed(antenna: [Real; 2], pillar: bool, speed: Real, throws: u32) -
 
 #[test]
 fn no_antenna_of_a_plate_passes_another() {
-    let counts = [2.0, 3.0, 4.0].map(|v| antennas_passed([0.01; 2], false, v, THROWS));
+    let counts = [2.0, 3.0, 4.0].map(|v| antennas_passed(&plate([0.01; 2]), false, v, THROWS));
     assert_eq!(counts, [0; 3], "at 2, 3 and 4 m/s");
 }
 
 #[test]
 fn no_antenna_passes_a_fixed_pillar() {
-    let counts = [2.0, 3.0, 4.0].map(|v| antennas_passed([0.01; 2], true, v, THROWS));
+    let counts = [2.0, 3.0, 4.0].map(|v| antennas_passed(&plate([0.01; 2]), true, v, THROWS));
     assert_eq!(counts, [0; 3], "at 2, 3 and 4 m/s");
 }
 
@@ -120,7 +119,7 @@ fn no_antenna_passes_a_fixed_pillar() {
 #[test]
 fn no_antenna_is_pressed_through_another() {
     for pillar in [false, true] {
-        let counts = [0.1, 0.3, 1.0].map(|v| antennas_passed([0.01; 2], pillar, v, 4));
+        let counts = [0.1, 0.3, 1.0].map(|v| antennas_passed(&plate([0.01; 2]), pillar, v, 4));
         assert_eq!(counts, [0; 3], "pillar: {pillar}; at 0.1, 0.3 and 1 m/s");
     }
 }
@@ -158,7 +157,7 @@ fn no_antenna_sinks_through_a_pillar() {
 #[test]
 fn no_tapered_antenna_passes_another() {
     for radii in [[0.25, 0.005], [0.1, 0.0]] {
-        let counts = [2.0, 4.0].map(|v| antennas_passed(radii, false, v, THROWS));
+        let counts = [2.0, 4.0].map(|v| antennas_passed(&plate(radii), false, v, THROWS));
         assert_eq!(counts, [0; 2], "{radii:?} at 2 and 4 m/s");
     }
 }
@@ -246,4 +245,24 @@ fn what_rings_cost() {
             "{name}: tests {tests}, nodes {nodes}, queries {queries}, events {events}, {ms:.1} ms"
         );
     }
+}
+
+/// A box of a triangle mesh with a rod that stands on it, as the builder makes it.
+#[test]
+fn no_rod_of_a_built_box_passes_another() {
+    let (mut vertices, mut indices) = Cuboid::new(Vector::splat(0.4)).to_trimesh();
+    let (rod, faces) = Cuboid::new(Vector::new(0.015, 1.4, 0.015)).to_trimesh();
+    let first = vertices.len() as u32;
+    let aside = Vector::new(0.0, 1.4, 0.0);
+    vertices.extend(rod.into_iter().map(|p| p + aside));
+    indices.extend(faces.into_iter().map(|face| face.map(|v| v + first)));
+    let options = BuildOptions {
+        primitives: Some(40),
+        quality: Quality::Fast,
+        ..BuildOptions::default()
+    };
+    let built = MedialMesh::from_trimesh(&vertices, &indices, &options);
+    let (mesh, _) = built.expect("a box with a rod");
+    let counts = [2.0, 3.0, 4.0].map(|v| antennas_passed(&mesh, false, v, THROWS));
+    assert_eq!(counts, [0; 3], "at 2, 3 and 4 m/s");
 }
