@@ -90,6 +90,8 @@ pub struct Answers {
     missed: Mutex<Vec<[u64; 2]>>,
     muted: RwLock<HashSet<Key>>,
     swept_elsewhere: AtomicBool,
+    /// Whether all contacts of a pair were turned off by the user.
+    passing: RwLock<HashMap<Key, bool>>,
     one_point: RwLock<OnePoint>,
     manifolds: AtomicU64,
     intersections: AtomicU64,
@@ -172,6 +174,27 @@ impl Answers {
     /// Whether someone else takes care of it.
     pub fn is_swept_elsewhere(&self) -> bool {
         self.swept_elsewhere.load(Ordering::Relaxed)
+    }
+
+    /// Notes whether the user turned contacts of a pair off, under both orders of its shapes. It passes in
+    /// sweeps of this step if all that is noted of it is off.
+    pub fn let_pass(&self, keys: [Key; 2], off: bool) {
+        let mut passing = self.passing.write().unwrap_or_else(PoisonError::into_inner);
+        for key in keys {
+            *passing.entry(key).or_insert(true) &= off;
+        }
+    }
+
+    /// No pair passes any more.
+    pub fn let_none_pass(&self) {
+        let passing = self.passing.write();
+        passing.unwrap_or_else(PoisonError::into_inner).clear();
+    }
+
+    /// Whether a pair passes in sweeps.
+    pub fn passes(&self, shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> bool {
+        let passing = self.passing.read().unwrap_or_else(PoisonError::into_inner);
+        !passing.is_empty() && passing.get(&Key::new(shape1, shape2, pos12)) == Some(&true)
     }
 
     /// From now on these pairs get their deepest contact only.

@@ -44,6 +44,10 @@ impl MedialDispatcher {
         let flipped = medial(shapes[0]).is_none();
         let [first, second] = if flipped { [1, 0] } else { [0, 1] };
         let mesh = medial(shapes[first]).ok_or(Unsupported)?;
+        let pos12 = motions[0].start.inv_mul(&motions[1].start);
+        if self.answers.passes(shapes[0], shapes[1], &pos12) {
+            return Ok(None);
+        }
         let cast = Cast {
             motion1: motions[first],
             mesh,
@@ -345,8 +349,21 @@ impl MedialDispatcher {
                 return Ok(());
             }
             bearing::look_again(manifolds);
+            // parry knows its own manifolds again; those of a flat face it would begin anew, without what the
+            // user's hooks keep in them.
+            let flat = if !manifolds.is_empty() && flat::wrote(manifolds) {
+                manifolds.clone()
+            } else {
+                Vec::new()
+            };
             let found = DefaultQueryDispatcher
                 .contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+            for manifold in manifolds.iter_mut() {
+                let ids = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2];
+                if let Some(before) = flat.iter().find(|m| ids(m) == ids(manifold)) {
+                    manifold.data = before.data.clone();
+                }
+            }
             bearing::hand_on(manifolds, &borne, prediction, side);
             bearing::choose(manifolds, center, prediction, &borne, side);
             return found;

@@ -67,10 +67,13 @@ pub fn write_manifolds<M, C>(
         {
             Some(m) => m,
             None => {
-                let previous = old.iter().find(|m| {
-                    [m.subshape1, m.subshape2] == c.primitives
-                        && m.local_n1.dot(c.normal) >= SAME_NORMAL
-                });
+                // What the user's hooks keep stays where the normal turns over.
+                let of_pair =
+                    |m: &&ContactManifold<M, C>| [m.subshape1, m.subshape2] == c.primitives;
+                let mut same = old.iter().filter(of_pair);
+                let previous = same
+                    .find(|m| m.local_n1.dot(c.normal) >= SAME_NORMAL)
+                    .or_else(|| old.iter().find(of_pair));
                 let data = previous.map(|m| m.data.clone()).unwrap_or_default();
                 let mut m = ContactManifold::with_data(a, b, data);
                 m.local_n1 = c.normal;

@@ -13,7 +13,7 @@ use super::inquiry::{Inquiry, Known, Meshes};
 use super::motion::{Kind, Snapshot};
 use super::outlines::Outlines;
 use super::pairs::{Rules, concerned, in_order, sweep};
-use super::response::Response;
+use super::response::{Blow, Response};
 use super::waiting::Waiting;
 use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::Real;
@@ -31,13 +31,13 @@ const MARGIN: Real = 5.0e-3;
 /// a stop at the start would change nothing.
 const STOPS_WITHIN: [Real; 2] = [1.0e-3, 1.0 - 1.0e-3];
 
-/// An impact that happened.
-#[derive(Clone, Copy, Debug)]
+/// What two colliders gave each other in the impacts of a step.
+#[derive(Clone, Debug)]
 pub struct Impulse {
     /// Both colliders, in the narrow phase's order.
     pub colliders: [ColliderHandle; 2],
-    /// Impulse between them, summed over the step.
-    pub impulse: Real,
+    /// Where and how much.
+    pub blows: Vec<Blow>,
 }
 
 /// What the event loop did.
@@ -327,9 +327,9 @@ impl Loop<'_> {
             .response
             .impulses
             .iter()
-            .map(|(pair, impulse)| Impulse {
+            .map(|(pair, blows)| Impulse {
                 colliders: pair.map(|k| self.snapshot.parts[k].handle),
-                impulse: *impulse,
+                blows: blows.clone(),
             })
             .collect();
         outcome

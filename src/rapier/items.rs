@@ -1,6 +1,7 @@
 //! The medial colliders at the start of a step.
 
 use super::ahead::Start;
+use super::enabled::enabled;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -32,8 +33,8 @@ pub struct Sets<'a> {
 
 /// Gives every medial collider an instance id of its own; colliders that share a shape would share
 /// answers. Returns how many medial colliders there are.
-pub fn make_unique(colliders: &mut ColliderSet) -> usize {
-    let medial = colliders.iter_enabled().filter_map(|(handle, collider)| {
+pub fn make_unique(bodies: &RigidBodySet, colliders: &mut ColliderSet) -> usize {
+    let medial = enabled(bodies, colliders).filter_map(|(handle, collider)| {
         let mesh = collider.shape().as_shape::<MedialMesh>()?;
         Some((mesh.instance_id(), handle))
     });
@@ -106,7 +107,7 @@ impl<'a> Items<'a> {
     /// Those of a world, as far as their poses are finite.
     pub fn new(sets: &Sets<'a>) -> Self {
         let prediction = sets.parameters.prediction_distance();
-        let medial = sets.colliders.iter_enabled();
+        let medial = enabled(sets.bodies, sets.colliders);
         let medial =
             medial.filter_map(|(handle, collider)| item(sets, prediction, handle, collider));
         let mut all: Vec<Item> = medial.collect();

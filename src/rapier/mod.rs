@@ -7,6 +7,7 @@ pub mod collider;
 pub mod debug_draw;
 mod effects;
 mod emit;
+mod enabled;
 mod events;
 mod first_contact;
 mod hanging;
@@ -29,6 +30,7 @@ mod speculative;
 mod sweep;
 mod thin_parts;
 mod tuning;
+mod verdicts;
 mod waiting;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};

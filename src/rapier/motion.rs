@@ -2,6 +2,7 @@
 //! gave them. rapier turns a body in `n` linearised pieces, so a fast turn ends short of `|ω| dt`;
 //! what counts is where the body is, and the turns it made on the way.
 
+use super::enabled::enabled;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::medial::MedialMesh;
@@ -46,7 +47,10 @@ pub struct Body {
     pub motion: NonlinearRigidMotion,
     /// Seconds into the step at which `motion` starts.
     pub time: Real,
-    /// Linear and angular velocity that the solver works with, per second.
+    /// Pose at the start of the step.
+    start: Pose,
+    /// Linear and angular velocity that the solver works with, per second. The angular velocity turns with
+    /// the body: where the step turns it about another axis, one fixed in the world would change its energy.
     pub velocity: [Vector; 2],
     /// The same before rapier's step.
     velocity_before: [Vector; 2],
@@ -79,6 +83,7 @@ impl Body {
                 ..NonlinearRigidMotion::constant_position(*body.position())
             },
             time: 0.0,
+            start: *body.position(),
             velocity: [body.linvel(), body.angvel()],
             velocity_before: [body.linvel(), body.angvel()],
             reach: 0.0,
@@ -96,6 +101,7 @@ impl Body {
             awake: false,
             motion: NonlinearRigidMotion::identity(),
             time: 0.0,
+            start: Pose::IDENTITY,
             velocity: [Vector::ZERO; 2],
             velocity_before: [Vector::ZERO; 2],
             reach: 0.0,
@@ -120,7 +126,6 @@ impl Body {
 
     /// The motion that took it to where it is after rapier's step.
     fn moved(&mut self, body: &RigidBody, iterations: usize, dt: Real) {
-        self.velocity = [body.linvel(), body.angvel()];
         // rapier computes the mass of a body that is new in this step only now.
         let properties = body.mass_properties();
         let com = properties.local_mprops.local_com;
@@ -131,6 +136,8 @@ impl Body {
         self.dominance = body.effective_dominance_group();
         self.motion.local_center = com;
         let (start, end) = (self.motion.start, *body.position());
+        let spin = start.rotation * (end.rotation.inverse() * body.angvel());
+        self.velocity = [body.linvel(), spin];
         let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
         let turn = unwrapped(turn, body.angvel() * dt, iterations.max(1) as Real);
         self.motion.linvel = (end * com - start * com) / dt;
@@ -155,8 +162,10 @@ impl Body {
 
     /// Moves it to where it is at `time`.
     pub fn advance(&mut self, time: Real) {
+        let before = self.motion.start.rotation;
         self.motion = self.motion_from(time);
         self.motion.start.rotation = self.motion.start.rotation.normalize();
+        self.velocity[1] = self.motion.start.rotation * (before.inverse() * self.velocity[1]);
         self.time = time;
     }
 }
@@ -230,6 +239,8 @@ pub struct Snapshot {
     pub bodies: Vec<Body>,
     /// Colliders that are solid and enabled.
     pub parts: Vec<Part>,
+    /// Whether the motions are those that rapier's step made.
+    pub followed: bool,
 }
 
 impl Snapshot {
@@ -244,9 +255,10 @@ impl Snapshot {
         let mut snapshot = Self {
             bodies: vec![Body::ground()],
             parts: Vec::new(),
+            followed: false,
         };
         let mut indices = FastMap::default();
-        for (handle, collider) in colliders.iter_enabled() {
+        for (handle, collider) in enabled(bodies, colliders) {
             if collider.is_sensor() {
                 continue;
             }
@@ -299,6 +311,7 @@ impl Snapshot {
 
     /// Replaces the announced motions by those that rapier's step made.
     pub fn follow(&mut self, parameters: &IntegrationParameters, bodies: &RigidBodySet) {
+        self.followed = true;
         for body in &mut self.bodies {
             if let Some(b) = body.handle.and_then(|h| bodies.get(h))
                 && body.kind != Kind::Fixed
@@ -306,6 +319,30 @@ impl Snapshot {
                 body.moved(b, parameters.num_solver_iterations, parameters.dt);
             }
         }
+    }
+
+    /// Copies of bodies and colliders as they were at the start of the step.
+    pub fn world_at_start(
+        &self,
+        bodies: &RigidBodySet,
+        colliders: &ColliderSet,
+    ) -> (RigidBodySet, ColliderSet) {
+        let (mut bodies, mut colliders) = (bodies.clone(), colliders.clone());
+        for body in &self.bodies {
+            if let Some(b) = body.handle.and_then(|h| bodies.get_mut(h)) {
+                b.set_position(body.start, false);
+                b.set_linvel(body.velocity_before[0], false);
+                b.set_angvel(body.velocity_before[1], false);
+            }
+        }
+        for part in &self.parts {
+            if let Some(collider) = colliders.get_mut(part.handle)
+                && part.body != 0
+            {
+                collider.set_position(self.bodies[part.body].start * part.offset);
+            }
+        }
+        (bodies, colliders)
     }
 
     /// Motion of a collider from `time` on.

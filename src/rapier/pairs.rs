@@ -2,11 +2,12 @@
 
 use super::motion::{Body, Kind, Snapshot};
 use super::sweep::meeting;
+use super::verdicts::Verdicts;
 use crate::math::Real;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::{ImpulseJointSet, MultibodyJointSet, RigidBodySet, RigidBodyType};
 use rapier3d::geometry::{ColliderSet, SolverFlags};
-use rapier3d::pipeline::{ActiveHooks, PairFilterContext, PhysicsHooks};
+use rapier3d::pipeline::ActiveHooks;
 
 /// What decides whether two colliders respond to each other (`narrow_phase/pair_update.rs` of rapier
 /// 0.36, in its order).
@@ -21,7 +22,7 @@ pub struct Rules<'a> {
     /// Multibodies, likewise.
     pub multibody_joints: &'a MultibodyJointSet,
     /// Filters of the user.
-    pub hooks: &'a dyn PhysicsHooks,
+    pub verdicts: &'a Verdicts<'a>,
 }
 
 impl Rules<'_> {
@@ -71,15 +72,8 @@ impl Rules<'_> {
         if !active.contains(ActiveHooks::FILTER_CONTACT_PAIRS) {
             return true;
         }
-        let context = PairFilterContext {
-            bodies: self.bodies,
-            colliders: self.colliders,
-            collider1: h1,
-            collider2: h2,
-            rigid_body1: c1.parent(),
-            rigid_body2: c2.parent(),
-        };
-        let flags = self.hooks.filter_contact_pair(&context);
+        let world = (self.bodies, self.colliders);
+        let flags = self.verdicts.of_pair(snapshot, world, [h1, h2]);
         flags.is_some_and(|f| f.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
     }
 }

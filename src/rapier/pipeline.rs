@@ -1,7 +1,7 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
 use super::effects::{Effect, Effects, Wanted};
-use super::emit::{Once, Told};
+use super::emit::{Once, Scene, Told};
 use super::first_contact::{Asker, Work};
 use super::items::{self, Sets};
 use super::motion::{Body, Snapshot};
@@ -10,6 +10,7 @@ use super::recycled::Recycled;
 use super::report::StepReport;
 use super::speculative::Speculators;
 use super::tuning::Tuning;
+use super::verdicts::Verdicts;
 use super::{candidates, hanging, muting};
 use crate::batch::{Backend, Batch};
 use crate::math::{Real, Vector};
@@ -192,6 +193,8 @@ impl MedialPipeline {
         let mut rest = *parameters;
         let mut report = StepReport::default();
         // Links and particles cannot be set back to where they were at a stop.
+        let answers = Arc::clone(&self.answers);
+        let verdicts = Verdicts::new(hooks, &answers);
         let can_stop = multibody_joints.multibodies().next().is_none() && soft_bodies.is_empty();
         loop {
             let may_stop = can_stop && report.stops < self.tuning.max_stops;
@@ -208,7 +211,7 @@ impl MedialPipeline {
                 multibody_joints,
                 soft_bodies,
                 ccd_solver,
-                hooks,
+                &verdicts,
                 events,
                 may_stop,
             );
@@ -261,14 +264,14 @@ impl MedialPipeline {
         multibody_joints: &mut MultibodyJointSet,
         soft_bodies: &mut SoftBodySet,
         ccd_solver: &mut CCDSolver,
-        hooks: &dyn PhysicsHooks,
+        verdicts: &Verdicts,
         events: &dyn EventHandler,
         may_stop: bool,
     ) -> (StepReport, Option<Real>) {
         let mut report = StepReport::default();
         let before = self.batch.report().clone();
         let clock = Instant::now();
-        report.medial_colliders = items::make_unique(colliders);
+        report.medial_colliders = items::make_unique(bodies, colliders);
         self.effects.clean(colliders);
         let asker = Asker {
             effects: &self.effects,
@@ -283,12 +286,14 @@ impl MedialPipeline {
         } else {
             Snapshot::take(gravity, parameters.dt, bodies, colliders, multibody_joints)
         };
+        // Filters are asked before rapier has moved colliders to where the user put their bodies.
+        bodies.propagate_modified_body_positions_to_colliders(colliders);
         let rules = Rules {
             bodies,
             colliders,
             impulse_joints,
             multibody_joints,
-            hooks,
+            verdicts,
         };
         let prediction = parameters.prediction_distance();
         let muted = muting::muted(&snapshot, &asker, &rules, prediction, &mut work);
@@ -352,12 +357,13 @@ impl MedialPipeline {
             multibody_joints,
             soft_bodies,
             ccd_solver,
-            hooks,
+            verdicts,
             &once,
         );
         report.step_seconds = clock.elapsed().as_secs_f64();
         self.answers.mute(HashSet::new());
         self.answers.sweep_elsewhere(false);
+        self.answers.let_none_pass();
         speculators.restore(bodies);
 
         let clock = Instant::now();
@@ -367,7 +373,7 @@ impl MedialPipeline {
             colliders,
             impulse_joints,
             multibody_joints,
-            hooks,
+            verdicts,
         };
         let outcome = super::events::resolve(
             &mut snapshot,
@@ -383,15 +389,13 @@ impl MedialPipeline {
         if !outcome.changed.is_empty() {
             bodies.propagate_modified_body_positions_to_colliders(colliders);
         }
-        let (told, impulses) = (&mut self.told, &outcome.impulses);
-        once.finish(
-            told,
-            impulses,
-            parameters.dt,
+        let scene = Scene {
+            dt: parameters.dt,
             bodies,
             colliders,
             narrow_phase,
-        );
+        };
+        once.finish(&mut self.told, &outcome.impulses, scene);
         report.continuous_jobs = outcome.jobs;
         report.events = outcome.events;
         report.frozen = outcome.frozen;

@@ -2,6 +2,7 @@
 //! third body does to it, and the solver hands a push on from contact to contact. Of what joints hand on
 //! no bound is known.
 
+use super::enabled::enabled;
 use super::items::Sets;
 use super::motion::velocities;
 use crate::math::Real;
@@ -33,9 +34,7 @@ pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Real)> + 'a {
         let margin = sets.parameters.prediction_distance() + collider.contact_skin();
         (speed > 0.0).then(|| (aabb.loosened(margin), speed))
     };
-    sets.colliders
-        .iter_enabled()
-        .filter_map(move |(_, c)| moving(c))
+    enabled(sets.bodies, sets.colliders).filter_map(move |(_, c)| moving(c))
 }
 
 /// Whether a body is held by joints, which hand on what is not near.

@@ -36,12 +36,41 @@ pub struct Course {
     pub struck: bool,
 }
 
+/// Cosine from which the blows of a pair count as one (10°), as points of one manifold.
+const SAME_NORMAL: Real = 0.985;
+
+/// An impulse between two colliders, as an event tells it.
+#[derive(Clone, Copy, Debug)]
+pub struct Blow {
+    /// Contact point in the frame of each collider.
+    pub points: [Vector; 2],
+    /// Unit normal from the first to the second: in the world, and in the frame of each.
+    pub normals: [Vector; 3],
+    /// Distance of the surfaces, < 0 where they overlap.
+    pub distance: Real,
+    /// Impulse along the normal.
+    pub impulse: Real,
+}
+
+impl Blow {
+    fn new(snapshot: &Snapshot, pair: Pair, hit: &Hit, impulse: Real) -> Self {
+        let poses = pair.map(|k| snapshot.motion(k, hit.time).start);
+        let [n1, n2] = poses.map(|pose| pose.rotation.inverse() * hit.normal);
+        Self {
+            points: poses.map(|pose| pose.inverse_transform_point(hit.point)),
+            normals: [hit.normal, n1, -n2],
+            distance: -hit.depth,
+            impulse,
+        }
+    }
+}
+
 /// What the impacts of a step did so far.
 pub struct Response {
     /// Of each body.
     pub courses: Vec<Course>,
-    /// Between two colliders, summed.
-    pub impulses: BTreeMap<Pair, Real>,
+    /// Between two colliders, those of one normal summed.
+    pub impulses: BTreeMap<Pair, Vec<Blow>>,
     met: Meetings,
 }
 
@@ -220,7 +249,7 @@ impl Response {
         let sunk = hit.depth - (tuning.push_from * thickness - asker.least_gap());
         let out = tuning.push * sunk.max(0.0) / asker.dt;
         if let Some(j) = impact.impulse(velocities, 0.0) {
-            *self.impulses.entry(pair).or_insert(0.0) += j.length();
+            self.note(Blow::new(snapshot, pair, hit, j.dot(hit.normal)), pair);
             for k in 0..2 {
                 let sign = [-1.0, 1.0][k];
                 let [dv, dw] = impact.inertias[k].change(impact.arms[k], j * sign);
@@ -243,6 +272,15 @@ impl Response {
                 motion.linvel += dv;
                 motion.angvel += dw;
             }
+        }
+    }
+
+    fn note(&mut self, blow: Blow, pair: Pair) {
+        let blows = self.impulses.entry(pair).or_default();
+        let same = |b: &&mut Blow| b.normals[0].dot(blow.normals[0]) >= SAME_NORMAL;
+        match blows.iter_mut().find(same) {
+            Some(same) => same.impulse += blow.impulse,
+            None => blows.push(blow),
         }
     }
 

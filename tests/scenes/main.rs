@@ -9,8 +9,11 @@ mod drawing;
 mod driven;
 mod effects;
 mod endurance;
+mod energy;
 mod fast_pairs;
 mod fixed_partners;
+mod filters;
+mod force_events;
 #[cfg_attr(
     not(feature = "enhanced-determinism"),
     allow(dead_code, reason = "the golden holds with that feature only")
@@ -30,6 +33,7 @@ mod resting;
 #[allow(dead_code)]
 #[path = "../common/ccd/rng.rs"]
 mod rng;
+mod rolling;
 #[cfg(feature = "serde-serialize")]
 mod saving;
 mod walls;

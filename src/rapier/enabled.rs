@@ -1,0 +1,25 @@
+//! Which colliders take part in a step. rapier hands on whether a body is enabled to its colliders only in the
+//! step, so that they do not know yet of what the user changed since the last one.
+
+use rapier3d::dynamics::RigidBodySet;
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
+
+/// Colliders that will be enabled in the next step.
+pub fn enabled<'a>(
+    bodies: &'a RigidBodySet,
+    colliders: &'a ColliderSet,
+) -> impl Iterator<Item = (ColliderHandle, &'a Collider)> + 'a {
+    let takes_part = |c: &Collider| match c.parent().and_then(|h| bodies.get(h)) {
+        Some(body) => body.is_enabled() && (c.is_enabled() || !is_disabled_by_user(c)),
+        None => c.is_enabled(),
+    };
+    colliders.iter().filter(move |(_, c)| takes_part(c))
+}
+
+/// Whether the user disabled it, and not its body. rapier tells no difference, but only what the user disabled can
+/// be enabled again.
+fn is_disabled_by_user(collider: &Collider) -> bool {
+    let mut tried = collider.clone();
+    tried.set_enabled(true);
+    !collider.is_enabled() && tried.is_enabled()
+}

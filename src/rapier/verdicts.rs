@@ -1,0 +1,135 @@
+//! What the user's hooks say of a pair, one verdict per pair and step.
+//!
+//! rapier asks `filter_contact_pair` in its narrow phase and again in its sweeps; muting asks before both and
+//! the event loop after them, when bodies are elsewhere. A filter that goes by positions or velocities (a
+//! one-way platform by height) would then say yes to one and no to the other, and nobody would resolve the
+//! pair. So the first answer, given with the bodies as they are at the start of the step, holds for all.
+//!
+//! rapier's sweeps stop a body at contacts that the user turned off for the solver: an empty set of solver
+//! flags, or solver contacts cleared in `modify_solver_contacts`. Of convex shapes it stops them once, since
+//! it drops hits of what overlaps at the start; of medial meshes it would hear of a deeper contact in every
+//! step. So those pairs are noted here, and the dispatcher lets them pass.
+
+use super::motion::Snapshot;
+use crate::math::fast_hash::FastMap;
+use crate::parry::Answers;
+use crate::parry::answers::Key;
+use rapier3d::dynamics::RigidBodySet;
+use rapier3d::geometry::{ColliderHandle, ColliderSet, SolverFlags};
+use rapier3d::pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+
+/// The user's hooks in one step, seen by rapier and by the event loop.
+pub struct Verdicts<'a> {
+    hooks: &'a dyn PhysicsHooks,
+    answers: &'a Answers,
+    /// Verdict of the filter, by both colliders in the order of their handles.
+    filtered: Mutex<FastMap<[ColliderHandle; 2], Option<SolverFlags>>>,
+    /// The world at the start of the step, for pairs that nobody asked about then.
+    start: OnceLock<Box<(RigidBodySet, ColliderSet)>>,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Both keys under which a pair may be swept: either collider may be the fast one.
+fn keys(colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<[Key; 2]> {
+    let [a, b] = pair.map(|h| colliders.get(h));
+    let (a, b) = (a?, b?);
+    let key = |a: &rapier3d::geometry::Collider, b: &rapier3d::geometry::Collider| {
+        Key::new(a.shape(), b.shape(), &a.position().inv_mul(b.position()))
+    };
+    Some([key(a, b), key(b, a)])
+}
+
+impl<'a> Verdicts<'a> {
+    /// No verdict is known yet; what may pass in rapier's sweeps is told to `answers`.
+    pub fn new(hooks: &'a dyn PhysicsHooks, answers: &'a Answers) -> Self {
+        Self {
+            hooks,
+            answers,
+            filtered: Mutex::default(),
+            start: OnceLock::new(),
+        }
+    }
+
+    /// The verdict of the filter on two colliders, which is asked with the bodies at the start of the step:
+    /// `bodies` and `colliders`, set back to where `snapshot` had them if they moved since.
+    pub fn of_pair(
+        &self,
+        snapshot: &Snapshot,
+        (bodies, colliders): (&RigidBodySet, &ColliderSet),
+        [collider1, collider2]: [ColliderHandle; 2],
+    ) -> Option<SolverFlags> {
+        if let Some(known) = self.known([collider1, collider2]) {
+            return known;
+        }
+        let (bodies, colliders) = if snapshot.followed {
+            let start = || Box::new(snapshot.world_at_start(bodies, colliders));
+            let start = self.start.get_or_init(start);
+            (&start.0, &start.1)
+        } else {
+            (bodies, colliders)
+        };
+        let parent = |h| colliders.get(h).and_then(|c| c.parent());
+        self.filter_contact_pair(&PairFilterContext {
+            bodies,
+            colliders,
+            collider1,
+            collider2,
+            rigid_body1: parent(collider1),
+            rigid_body2: parent(collider2),
+        })
+    }
+
+    fn known(&self, [a, b]: [ColliderHandle; 2]) -> Option<Option<SolverFlags>> {
+        locked(&self.filtered).get(&sorted(a, b)).copied()
+    }
+}
+
+/// In the order of their handles.
+pub fn sorted(a: ColliderHandle, b: ColliderHandle) -> [ColliderHandle; 2] {
+    if a.into_raw_parts() <= b.into_raw_parts() {
+        [a, b]
+    } else {
+        [b, a]
+    }
+}
+
+impl PhysicsHooks for Verdicts<'_> {
+    fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
+        let pair = [context.collider1, context.collider2];
+        if let Some(known) = self.known(pair) {
+            return known;
+        }
+        let flags = self.hooks.filter_contact_pair(context);
+        let solved = |f: SolverFlags| f.contains(SolverFlags::COMPUTE_RIGID_IMPULSES);
+        if flags.is_some_and(|f| !solved(f))
+            && let Some(keys) = keys(context.colliders, pair)
+        {
+            self.answers.let_pass(keys, true);
+        }
+        let [a, b] = pair;
+        locked(&self.filtered).insert(sorted(a, b), flags);
+        flags
+    }
+
+    fn filter_intersection_pair(&self, context: &PairFilterContext) -> bool {
+        self.hooks.filter_intersection_pair(context)
+    }
+
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let contacts = |c: &ContactModificationContext| {
+            let rigid = c.rigid();
+            rigid.map_or(0, |m| m.solver_contacts.len())
+        };
+        let before = contacts(context);
+        self.hooks.modify_solver_contacts(context);
+        if before > 0
+            && let Some(keys) = keys(context.colliders, [context.collider1, context.collider2])
+        {
+            self.answers.let_pass(keys, contacts(context) == 0);
+        }
+    }
+}
