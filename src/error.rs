@@ -108,7 +108,7 @@ pub enum MeshError {
 #[non_exhaustive]
 pub enum AssetError {
     /// Some other file.
-    #[error("not a baked medial mesh: it starts with {start:?}")]
+    #[error("not a baked medial mesh: it starts with \"{}\"", start.escape_ascii())]
     NotAnAsset {
         /// Its first bytes, at most 8.
         start: Vec<u8>,

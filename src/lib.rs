@@ -14,7 +14,7 @@
 //! # let (vertices, indices) = Cuboid::new(Vector::new(0.5, 0.2, 0.3)).to_trimesh();
 //! let options = BuildOptions { primitives: Some(50), ..Default::default() };
 //! let (mesh, report) = MedialMesh::from_trimesh(&vertices, &indices, &options)?;
-//! println!("off by at most {} m", report.hausdorff.surface_to_envelope);
+//! println!("off by at most {} m", report.hausdorff.error() + report.hausdorff.sampling);
 //!
 //! let mut world = PhysicsWorld::new();
 //! let mut pipeline = MedialPipeline::new(MedialOptions::default());

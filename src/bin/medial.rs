@@ -9,18 +9,21 @@
 mod calibrate;
 #[path = "medial/describe.rs"]
 mod describe;
+#[path = "medial/failure.rs"]
+mod failure;
 #[path = "medial/jobs.rs"]
 mod jobs;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use describe::{Description, Errors, describe, relative};
+use failure::{Failed, Failure};
 use indicatif::{ProgressBar, ProgressStyle};
-use jobs::{Job, PlanError, plan};
+use jobs::{Job, plan};
 use rapier3d_medial::build::hausdorff;
-use rapier3d_medial::build::mesh_file::{self, TriangleMesh};
+use rapier3d_medial::build::mesh_file::{self, MeshFormat, TriangleMesh};
 use rapier3d_medial::math::Vector;
 use rapier3d_medial::medial::asset;
-use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, MeshError, Quality};
+use rapier3d_medial::{BuildError, BuildOptions, MedialMesh, Quality};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::fs::File;
@@ -156,22 +159,12 @@ struct BuildSummary {
     seconds: Vec<(&'static str, f64)>,
 }
 
-/// Why the program ends with exit code 1.
-#[derive(Debug, thiserror::Error)]
-enum Failure {
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    #[cfg(feature = "gpu")]
-    #[error(transparent)]
-    Calibrate(#[from] calibrate::Failure),
-    #[error("{failed} of {all} meshes failed")]
-    SomeFailed { failed: usize, all: usize },
-    #[error("standard output: {0}")]
-    Output(#[from] io::Error),
+/// One mesh of several.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Built {
+    Done(Box<BuildSummary>),
+    Failed(Failed),
 }
 
 fn main() -> ExitCode {
@@ -181,7 +174,6 @@ fn main() -> ExitCode {
         Command::Info(arguments) => info(&arguments),
         #[cfg(feature = "gpu")]
         Command::Calibrate(arguments) => load(&arguments.mesh)
-            .map_err(Failure::from)
             .and_then(|mesh| Ok(calibrate::calibrate(&arguments, &mesh)?))
             .and_then(|text| Ok(write!(io::stdout(), "{text}")?)),
     };
@@ -197,11 +189,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// One line, whatever the message holds.
 fn say(failure: &Failure) {
-    let message = failure.to_string();
-    let line: Vec<&str> = message.split_whitespace().collect();
-    eprintln!("medial: {}", line.join(" "));
+    eprintln!("medial: {}", failure.line());
 }
 
 fn positive(text: &str) -> Result<f32, String> {
@@ -225,7 +214,7 @@ fn build(arguments: &BuildArguments) -> Result<(), Failure> {
         bar.set_style(style);
     }
     let mut summaries = Vec::new();
-    let mut failures = Vec::new();
+    let mut failed = 0;
     for (index, job) in jobs.iter().enumerate() {
         let start = BAR_STEPS * index as u64;
         let name = match jobs.len() {
@@ -237,25 +226,31 @@ fn build(arguments: &BuildArguments) -> Result<(), Failure> {
             bar.set_position(start + (fraction * BAR_STEPS as f32) as u64);
         };
         match build_one(job, arguments, show) {
-            Ok(summary) if arguments.json => summaries.push(summary),
+            Ok(summary) if arguments.json => summaries.push(Built::Done(Box::new(summary))),
             Ok(summary) => bar.suspend(|| print(false, &summary, || summary.text()))?,
             Err(failure) if jobs.len() == 1 || STOP.load(Ordering::Relaxed) => {
                 bar.finish_and_clear();
-                return Err(failure);
+                return Err(failure.of(&job.input));
             }
             Err(failure) => {
+                let failure = failure.of(&job.input);
                 bar.suspend(|| say(&failure));
-                failures.push(failure);
+                failed += 1;
+                summaries.push(Built::Failed(Failed {
+                    input: job.input.clone(),
+                    error: failure.line(),
+                }));
             }
         }
     }
     bar.finish_and_clear();
     match summaries.as_slice() {
+        _ if !arguments.json => {}
         [] => {}
         [only] if jobs.len() == 1 => print(true, only, String::new)?,
         several => print(true, &several, String::new)?,
     }
-    match failures.len() {
+    match failed {
         0 => Ok(()),
         failed => Err(Failure::SomeFailed {
             failed,
@@ -318,14 +313,16 @@ fn build_one(
 
 /// Reads a baked mesh or a `.ma` file, by its first bytes. What cannot be opened is left to the reader to
 /// report.
-fn load(path: &Path) -> Result<MedialMesh, MeshError> {
+fn load(path: &Path) -> Result<MedialMesh, Failure> {
     let mut start = [0; asset::MAGIC.len()];
     let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
     if read.is_ok() && start == asset::MAGIC {
-        MedialMesh::load_asset(path)
-    } else {
-        MedialMesh::load_ma(path)
+        return Ok(MedialMesh::load_asset(path)?);
     }
+    if path.is_file() && MeshFormat::of(path).is_some() {
+        return Err(Failure::TriangleMesh(path.to_owned()));
+    }
+    Ok(MedialMesh::load_ma(path)?)
 }
 
 fn bake(arguments: &BakeArguments) -> Result<(), Failure> {

@@ -1,7 +1,8 @@
 //! The impulse of one impact: Newton's restitution, Coulomb's friction, exact lever arms.
 //!
-//! With the relative velocity `v = (v2 + ω2 × r2) − (v1 + ω1 × r1)` at the contact and the effective
-//! inverse mass `k(u) = u · (m1⁻¹ + m2⁻¹) u + u · ((I1⁻¹ (r1 × u)) × r1) + u · ((I2⁻¹ (r2 × u)) × r2)`,
+//! With the relative velocity `v = (v2 + ω2 × r2) − (v1 + ω1 × r1)` at the contact, what an impulse adds to it, `K j`,
+//! and the effective inverse mass `k(u) = u · K u`; of two bodies without joints
+//! `K u = (m1⁻¹ + m2⁻¹) u + (I1⁻¹ (r1 × u)) × r1 + (I2⁻¹ (r2 × u)) × r2`;
 //! the normal impulse that takes `v·n` to `v'` is `j = (v' − v·n) / k(n)`; friction takes the sliding
 //! velocity to 0 with at most `μ j`, and with no more than leaves the impact without a gain of energy.
 
@@ -81,13 +82,14 @@ impl Inertia {
         }
     }
 
-    fn along(&self, arm: Vector, u: Vector) -> Real {
-        (self.mass * u).dot(u) + (self.angular * arm.cross(u)).cross(arm).dot(u)
+    /// Change of linear and angular velocity by an impulse and an impulsive torque at the centre of mass.
+    pub fn apply(&self, [impulse, torque]: [Vector; 2]) -> [Vector; 2] {
+        [self.mass * impulse, self.angular * torque]
     }
 
-    /// Change of the two velocities by an impulse at `arm` from the centre of mass.
-    pub fn change(&self, arm: Vector, impulse: Vector) -> [Vector; 2] {
-        [self.mass * impulse, self.angular * arm.cross(impulse)]
+    /// Whether nothing moves it.
+    pub fn is_infinite(&self) -> bool {
+        self.mass == Vector::ZERO && self.angular == Self::INFINITE.angular
     }
 }
 
@@ -96,10 +98,9 @@ impl Inertia {
 pub struct Impact {
     /// Unit normal from the first to the second.
     pub normal: Vector,
-    /// From the centres of mass to the contact point.
-    pub arms: [Vector; 2],
-    /// What resists.
-    pub inertias: [Inertia; 2],
+    /// What unit impulses along the world's axes on the second body, and their negatives on the first, add to the
+    /// relative velocity at the contact.
+    pub response: [Vector; 3],
     /// Restitution and friction.
     pub material: Material,
 }
@@ -107,13 +108,11 @@ pub struct Impact {
 impl Impact {
     /// The impulse on the second body (the first gets its negative) after which the bodies part with
     /// `least` or faster. `None` if they do so already, or nothing can move.
-    pub fn impulse(&self, velocities: [[Vector; 2]; 2], least: Real) -> Option<Vector> {
-        let at = |k: usize| velocities[k][0] + velocities[k][1].cross(self.arms[k]);
-        let v = at(1) - at(0);
+    ///
+    /// `v`: relative velocity at the contact, of the second body against the first.
+    pub fn impulse(&self, v: Vector, least: Real) -> Option<Vector> {
         let normal_speed = v.dot(self.normal);
-        let k = |u: Vector| {
-            self.inertias[0].along(self.arms[0], u) + self.inertias[1].along(self.arms[1], u)
-        };
+        let k = |u: Vector| u.dot(self.effect(u));
         let resistance = k(self.normal);
         if normal_speed >= least || resistance <= Real::MIN_POSITIVE {
             return None;
@@ -134,11 +133,8 @@ impl Impact {
 
     /// What an impulse adds to the relative velocity at the contact.
     fn effect(&self, impulse: Vector) -> Vector {
-        let of = |k: usize| {
-            let [dv, dw] = self.inertias[k].change(self.arms[k], impulse);
-            dv + dw.cross(self.arms[k])
-        };
-        of(0) + of(1)
+        let [x, y, z] = self.response;
+        x * impulse.x + y * impulse.y + z * impulse.z
     }
 
     /// The largest share of the friction with which the impact gains no energy. With restitution by

@@ -31,6 +31,12 @@ pub struct Sets<'a> {
     pub narrow_phase: &'a NarrowPhase,
 }
 
+/// How many medial colliders are enabled.
+pub fn count(colliders: &ColliderSet) -> usize {
+    let medial = |c: &Collider| c.shape().as_shape::<MedialMesh>().is_some();
+    colliders.iter_enabled().filter(|(_, c)| medial(c)).count()
+}
+
 /// Gives every medial collider an instance id of its own; colliders that share a shape would share
 /// answers. Returns how many medial colliders there are.
 pub fn make_unique(bodies: &RigidBodySet, colliders: &mut ColliderSet) -> usize {

@@ -14,6 +14,8 @@ mod hanging;
 mod impulse;
 mod inquiry;
 mod items;
+mod joints;
+mod links;
 mod meetings;
 mod motion;
 mod muting;

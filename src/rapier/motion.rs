@@ -3,6 +3,7 @@
 //! what counts is where the body is, and the turns it made on the way.
 
 use super::enabled::enabled;
+use super::links;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::medial::MedialMesh;
@@ -10,8 +11,8 @@ use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::mass_properties::MassProperties;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
-    IntegrationParameters, LockedAxes, MultibodyJointSet, RigidBody, RigidBodyHandle, RigidBodySet,
-    RigidBodyType,
+    ImpulseJointSet, IntegrationParameters, LockedAxes, MultibodyJointSet, RigidBody,
+    RigidBodyHandle, RigidBodySet, RigidBodyType,
 };
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, SharedShape};
 use std::f32::consts::TAU;
@@ -27,8 +28,8 @@ const SMALL_TURN: Real = 0.5;
 pub enum Kind {
     /// Never moves.
     Fixed,
-    /// Moves, and nothing stops it: kinematic bodies, and links of multibodies, whose joints would
-    /// not survive being moved one by one.
+    /// Moves, and nothing stops it: kinematic bodies, and links of multibodies of which a joint is kinematic or
+    /// coupled to another.
     Driven,
     /// Dynamic.
     Free,
@@ -52,7 +53,9 @@ pub struct Body {
     /// Linear and angular velocity that the solver works with, per second. The angular velocity turns with
     /// the body: where the step turns it about another axis, one fixed in the world would change its energy.
     pub velocity: [Vector; 2],
-    /// The same before rapier's step.
+    /// What joints add to them in a second: they turn velocities.
+    bend: [Vector; 2],
+    /// The velocities before rapier's step.
     velocity_before: [Vector; 2],
     /// Largest distance of a point of its colliders from the centre of mass, a length.
     pub reach: Real,
@@ -67,8 +70,8 @@ pub struct Body {
 }
 
 impl Body {
-    fn new(handle: RigidBodyHandle, body: &RigidBody, is_link: bool) -> Self {
-        let kind = match (body.is_fixed(), body.is_dynamic() && !is_link) {
+    fn new(handle: RigidBodyHandle, body: &RigidBody, is_free: bool) -> Self {
+        let kind = match (body.is_fixed(), body.is_dynamic() && is_free) {
             (true, _) => Kind::Fixed,
             (false, true) => Kind::Free,
             (false, false) => Kind::Driven,
@@ -85,6 +88,7 @@ impl Body {
             time: 0.0,
             start: *body.position(),
             velocity: [body.linvel(), body.angvel()],
+            bend: [Vector::ZERO; 2],
             velocity_before: [body.linvel(), body.angvel()],
             reach: 0.0,
             mass: properties.local_mprops,
@@ -103,6 +107,7 @@ impl Body {
             time: 0.0,
             start: Pose::IDENTITY,
             velocity: [Vector::ZERO; 2],
+            bend: [Vector::ZERO; 2],
             velocity_before: [Vector::ZERO; 2],
             reach: 0.0,
             mass: MassProperties::default(),
@@ -160,12 +165,30 @@ impl Body {
         }
     }
 
+    /// Gives it the motion that takes it to a pose in some seconds, with the whole turns that it makes; by then its
+    /// velocities have gained so much.
+    pub fn aim(&mut self, end: Pose, gained: [Vector; 2], seconds: Real) {
+        let start = self.motion.start;
+        let com = self.mass.local_com;
+        let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
+        let turn = unwrapped(turn, self.motion.angvel * seconds, Real::MAX.sqrt());
+        self.motion.local_center = com;
+        self.motion.linvel = (end * com - start * com) / seconds;
+        self.motion.angvel = turn / seconds;
+        let carried = end.rotation * (start.rotation.inverse() * self.velocity[1]);
+        let spin = self.velocity[1] + gained[1] - carried;
+        self.bend = [gained[0] / seconds, spin / seconds];
+    }
+
     /// Moves it to where it is at `time`.
     pub fn advance(&mut self, time: Real) {
         let before = self.motion.start.rotation;
         self.motion = self.motion_from(time);
         self.motion.start.rotation = self.motion.start.rotation.normalize();
         self.velocity[1] = self.motion.start.rotation * (before.inverse() * self.velocity[1]);
+        for (velocity, bend) in self.velocity.iter_mut().zip(self.bend) {
+            *velocity += bend * (time - self.time);
+        }
         self.time = time;
     }
 }
@@ -182,7 +205,8 @@ pub fn velocities(body: &RigidBody, dt: Real) -> [Vector; 2] {
     [*end * com - *start * com, turn.to_scaled_axis()].map(|moved| moved / dt)
 }
 
-fn shortest(q: Rotation) -> Rotation {
+/// The same rotation, by no more than half a turn.
+pub fn shortest(q: Rotation) -> Rotation {
     if q.w < 0.0 { -q } else { q }
 }
 
@@ -241,6 +265,8 @@ pub struct Snapshot {
     pub parts: Vec<Part>,
     /// Whether the motions are those that rapier's step made.
     pub followed: bool,
+    /// Place of each body in `bodies`.
+    pub index: FastMap<RigidBodyHandle, usize>,
 }
 
 impl Snapshot {
@@ -250,29 +276,39 @@ impl Snapshot {
         dt: Real,
         bodies: &RigidBodySet,
         colliders: &ColliderSet,
-        multibodies: &MultibodyJointSet,
+        (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
     ) -> Self {
         let mut snapshot = Self {
             bodies: vec![Body::ground()],
             parts: Vec::new(),
             followed: false,
+            index: FastMap::default(),
         };
-        let mut indices = FastMap::default();
+        let add = |snapshot: &mut Self, h: RigidBodyHandle| {
+            let body = bodies.get(h)?;
+            if let Some(known) = snapshot.index.get(&h) {
+                return Some(*known);
+            }
+            let link = multibodies.rigid_body_link(h);
+            let multibody = link.and_then(|l| multibodies.get_multibody(l.multibody));
+            let mut new = Body::new(h, body, multibody.is_none_or(links::is_free));
+            new.predict(body, gravity, dt);
+            snapshot.bodies.push(new);
+            snapshot.index.insert(h, snapshot.bodies.len() - 1);
+            Some(snapshot.bodies.len() - 1)
+        };
         for (handle, collider) in enabled(bodies, colliders) {
             if collider.is_sensor() {
                 continue;
             }
-            let parent = collider.parent().and_then(|h| Some((h, bodies.get(h)?)));
-            let index = parent.map_or(0, |(h, body)| {
-                *indices.entry(h).or_insert_with(|| {
-                    let is_link = multibodies.rigid_body_link(h).is_some();
-                    let mut new = Body::new(h, body, is_link);
-                    new.predict(body, gravity, dt);
-                    snapshot.bodies.push(new);
-                    snapshot.bodies.len() - 1
-                })
-            });
-            snapshot.add_part(handle, collider, index);
+            let index = collider.parent().and_then(|h| add(&mut snapshot, h));
+            snapshot.add_part(handle, collider, index.unwrap_or(0));
+        }
+        // Joints hand impulses on to bodies without colliders too.
+        let tied = joints.iter().flat_map(|(_, j)| [j.body1(), j.body2()]);
+        let links = multibodies.multibodies().flat_map(|m| m.links());
+        for handle in tied.chain(links.map(|l| l.rigid_body_handle())) {
+            add(&mut snapshot, handle);
         }
         snapshot
     }
@@ -309,9 +345,16 @@ impl Snapshot {
         });
     }
 
-    /// Replaces the announced motions by those that rapier's step made.
-    pub fn follow(&mut self, parameters: &IntegrationParameters, bodies: &RigidBodySet) {
+    /// Replaces the announced motions by those that rapier's step made, of colliders that were in it.
+    pub fn follow(
+        &mut self,
+        parameters: &IntegrationParameters,
+        bodies: &RigidBodySet,
+        colliders: &ColliderSet,
+    ) {
         self.followed = true;
+        let enabled = |p: &Part| colliders.get(p.handle).is_some_and(Collider::is_enabled);
+        self.parts.retain(enabled);
         for body in &mut self.bodies {
             if let Some(b) = body.handle.and_then(|h| bodies.get(h))
                 && body.kind != Kind::Fixed

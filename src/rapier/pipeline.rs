@@ -11,7 +11,7 @@ use super::report::StepReport;
 use super::speculative::Speculators;
 use super::tuning::Tuning;
 use super::verdicts::Verdicts;
-use super::{candidates, hanging, muting};
+use super::{candidates, hanging, links, muting};
 use crate::batch::{Backend, Batch};
 use crate::math::{Real, Vector};
 use crate::parry::{Answers, MedialDispatcher};
@@ -271,7 +271,7 @@ impl MedialPipeline {
         let mut report = StepReport::default();
         let before = self.batch.report().clone();
         let clock = Instant::now();
-        report.medial_colliders = items::make_unique(bodies, colliders);
+        let medial = items::make_unique(bodies, colliders);
         self.effects.clean(colliders);
         let asker = Asker {
             effects: &self.effects,
@@ -281,10 +281,16 @@ impl MedialPipeline {
             may_stop,
         };
         let mut work = Work::default();
-        let mut snapshot = if report.medial_colliders == 0 || self.effects.none() {
+        let mut snapshot = if medial == 0 || self.effects.none() {
             Snapshot::default()
         } else {
-            Snapshot::take(gravity, parameters.dt, bodies, colliders, multibody_joints)
+            Snapshot::take(
+                gravity,
+                parameters.dt,
+                bodies,
+                colliders,
+                (impulse_joints, multibody_joints),
+            )
         };
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         bodies.propagate_modified_body_positions_to_colliders(colliders);
@@ -367,7 +373,7 @@ impl MedialPipeline {
         speculators.restore(bodies);
 
         let clock = Instant::now();
-        snapshot.follow(parameters, bodies);
+        snapshot.follow(parameters, bodies, colliders);
         let rules = Rules {
             bodies,
             colliders,
@@ -387,6 +393,7 @@ impl MedialPipeline {
             write_back(&snapshot.bodies[index], struck, bodies);
         }
         if !outcome.changed.is_empty() {
+            links::write_back(&snapshot, &outcome.changed, bodies, multibody_joints);
             bodies.propagate_modified_body_positions_to_colliders(colliders);
         }
         let scene = Scene {
@@ -396,6 +403,7 @@ impl MedialPipeline {
             narrow_phase,
         };
         once.finish(&mut self.told, &outcome.impulses, scene);
+        report.medial_colliders = items::count(colliders);
         report.continuous_jobs = outcome.jobs;
         report.events = outcome.events;
         report.frozen = outcome.frozen;

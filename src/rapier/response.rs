@@ -10,6 +10,7 @@
 
 use super::first_contact::{Asker, Hit};
 use super::impulse::{Impact, Inertia, Material};
+use super::joints::{Joints, System, Twist};
 use super::meetings::Meetings;
 use super::motion::{Kind, Snapshot};
 use super::pairs::Rules;
@@ -72,6 +73,8 @@ pub struct Response {
     /// Between two colliders, those of one normal summed.
     pub impulses: BTreeMap<Pair, Vec<Blow>>,
     met: Meetings,
+    /// Joints, once something was struck.
+    joints: Option<Joints>,
 }
 
 fn bodies(snapshot: &Snapshot, pair: Pair) -> [usize; 2] {
@@ -85,6 +88,7 @@ impl Response {
             courses: vec![Course::default(); bodies],
             impulses: BTreeMap::new(),
             met: Meetings::default(),
+            joints: None,
         }
     }
 
@@ -117,19 +121,20 @@ impl Response {
                 self.courses[b].events += 1;
             }
         }
+        let mut changed = bodies.to_vec();
         if hit.normal == Vector::ZERO {
             for b in bodies {
                 let events = &mut self.courses[b].events;
                 *events = (*events).max(asker.tuning.max_events + 1);
             }
         } else {
-            self.push(snapshot, asker, rules, pair, &hit);
+            changed = self.push(snapshot, asker, rules, pair, &hit);
         }
         for both in [bodies, [bodies[1], bodies[0]]] {
             self.freeze(snapshot, &asker.tuning, both, hit.time);
         }
-        let mut changed = bodies.to_vec();
         self.pass_on(snapshot, asker, rules, hit.time, &mut changed);
+        self.close_joints(snapshot, asker, hit.time, &mut changed);
         changed
     }
 
@@ -161,18 +166,16 @@ impl Response {
                 let Some(hit) = self.closing(snapshot, asker, pair, time) else {
                     continue;
                 };
-                for b in bodies(snapshot, pair) {
+                for b in self.push(snapshot, asker, rules, pair, &hit) {
                     if self.courses[b].frozen {
                         continue;
                     }
-                    self.advance(snapshot, b, time);
                     for list in [&mut next, &mut *changed] {
                         if !list.contains(&b) {
                             list.push(b);
                         }
                     }
                 }
-                self.push(snapshot, asker, rules, pair, &hit);
             }
             if next.is_empty() {
                 break;
@@ -208,7 +211,8 @@ impl Response {
         (approach > opened.max(0.0) + sinks).then_some(hit)
     }
 
-    /// Gives both bodies the impulses of a contact.
+    /// Gives both bodies the impulses of a contact, and what joints tie to them what they hand on; returns all of
+    /// these.
     fn push(
         &mut self,
         snapshot: &mut Snapshot,
@@ -216,63 +220,126 @@ impl Response {
         rules: &Rules,
         pair: Pair,
         hit: &Hit,
-    ) {
-        let bodies = bodies(snapshot, pair);
+    ) -> Vec<usize> {
+        let both = bodies(snapshot, pair);
+        let joints = self
+            .joints
+            .take()
+            .unwrap_or_else(|| Joints::new(snapshot, rules.impulse_joints, rules.multibody_joints));
         let [c1, c2] = pair.map(|k| &rules.colliders[snapshot.parts[k].handle]);
-        let [a, b] = bodies.map(|b| &snapshot.bodies[b]);
-        let inertia = |k: usize| {
-            let (own, other) = [(a, b), (b, a)][k];
-            if own.kind == Kind::Free && own.dominance <= other.dominance {
-                Inertia::of(own)
+        let material = Material::of(c1, c2);
+        let dominated = |b: usize| {
+            let other = both[usize::from(b == both[0])];
+            both.contains(&b) && snapshot.bodies[b].dominance > snapshot.bodies[other].dominance
+        };
+        let strong = both.map(dominated);
+        for b in joints
+            .system(snapshot, &both, hit.time, |_| Inertia::INFINITE)
+            .bodies
+        {
+            self.advance(snapshot, b, hit.time);
+        }
+        // A frozen body keeps its motion, and takes impulses for the next step.
+        let inertia = |snapshot: &Snapshot, b: usize, frozen: bool| {
+            let body = &snapshot.bodies[b];
+            let strong = (0..2).any(|k| both[k] == b && strong[k]);
+            if body.kind == Kind::Free && !strong && !frozen {
+                Inertia::of(body)
             } else {
                 Inertia::INFINITE
             }
         };
-        let now = [a, b].map(|x| x.motion_from(hit.time));
-        let centers = [0, 1].map(|k| now[k].start * [a, b][k].mass.local_com);
-        let mut impact = Impact {
-            normal: hit.normal,
-            arms: centers.map(|c| hit.point - c),
-            inertias: [inertia(0), inertia(1)],
-            material: Material::of(c1, c2),
+        let system = joints.system(snapshot, &both, hit.time, |b| inertia(snapshot, b, false));
+        let free = system.bodies.iter().all(|b| !self.courses[*b].frozen);
+        let moving = (!free).then(|| {
+            let frozen = |b: usize| self.courses[b].frozen;
+            joints.system(snapshot, &both, hit.time, |b| {
+                inertia(snapshot, b, frozen(b))
+            })
+        });
+        let now = both.map(|b| snapshot.bodies[b].motion_from(hit.time));
+        let centers = [0, 1].map(|k| now[k].start * snapshot.bodies[both[k]].mass.local_com);
+        let arms = centers.map(|c| hit.point - c);
+        let at = |[linear, angular]: Twist, k: usize| linear + angular.cross(arms[k]);
+        let wrenches = |j: Vector| {
+            let on = |k: usize, j: Vector| (both[k], [j, arms[k].cross(j)]);
+            [on(0, -j), on(1, j)]
         };
-        let velocities = [a, b].map(|x| x.velocity);
+        let impact = |system: &System| Impact {
+            normal: hit.normal,
+            material,
+            response: Vector::AXES.map(|axis| {
+                let change = system.change(&wrenches(axis));
+                at(change[1], 1) - at(change[0], 0)
+            }),
+        };
+        let [v1, v2] = [0, 1].map(|k| at(snapshot.bodies[both[k]].velocity, k));
+        let own = impact(&system);
+        if let Some(j) = own.impulse(v2 - v1, 0.0) {
+            self.note(Blow::new(snapshot, pair, hit, j.dot(hit.normal)), pair);
+            let change = system.change(&wrenches(j));
+            for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
+                let body = &mut snapshot.bodies[b];
+                body.velocity[0] += dv;
+                body.velocity[1] += dw;
+                self.courses[b].struck |= body.kind == Kind::Free;
+            }
+        }
         // A carried body turns about its carrier's centre, not its own.
-        let motions = [0, 1].map(|k| {
+        let velocity = |k: usize| {
             let m = &now[k];
             let arm = centers[k] - m.start * m.local_center;
-            [m.linvel + m.angvel.cross(arm), m.angvel]
-        });
+            at([m.linvel + m.angvel.cross(arm), m.angvel], k)
+        };
         let tuning = &asker.tuning;
         // Thin parts are kept as far from each other as the least gap.
         let thickness = snapshot.thickness_at(pair, hit.primitives);
         let sunk = hit.depth - (tuning.push_from * thickness - asker.least_gap());
         let out = tuning.push * sunk.max(0.0) / asker.dt;
-        if let Some(j) = impact.impulse(velocities, 0.0) {
-            self.note(Blow::new(snapshot, pair, hit, j.dot(hit.normal)), pair);
-            for k in 0..2 {
-                let sign = [-1.0, 1.0][k];
-                let [dv, dw] = impact.inertias[k].change(impact.arms[k], j * sign);
-                let body = &mut snapshot.bodies[bodies[k]];
-                body.velocity[0] += dv;
-                body.velocity[1] += dw;
-                self.courses[bodies[k]].struck |= body.kind == Kind::Free;
-            }
-        }
-        for (k, body) in bodies.iter().enumerate() {
-            if self.courses[*body].frozen {
-                impact.inertias[k] = Inertia::INFINITE;
-            }
-        }
-        if let Some(j) = impact.impulse(motions, out) {
-            for k in 0..2 {
-                let sign = [-1.0, 1.0][k];
-                let [dv, dw] = impact.inertias[k].change(impact.arms[k], j * sign);
-                let motion = &mut snapshot.bodies[bodies[k]].motion;
+        let impact = moving.as_ref().map_or(own, impact);
+        let system = moving.unwrap_or(system);
+        if let Some(j) = impact.impulse(velocity(1) - velocity(0), out) {
+            let change = system.change(&wrenches(j));
+            for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
+                let motion = &mut snapshot.bodies[b].motion;
                 motion.linvel += dv;
                 motion.angvel += dw;
             }
         }
+        let moved = system.bodies;
+        self.joints = Some(joints);
+        moved
+    }
+
+    /// Closes the joints of bodies that were struck at `time`, by the end of the step; adds the bodies that move
+    /// otherwise for it.
+    fn close_joints(
+        &mut self,
+        snapshot: &mut Snapshot,
+        asker: &Asker,
+        time: Real,
+        changed: &mut Vec<usize>,
+    ) {
+        let Some(joints) = self.joints.take() else {
+            return;
+        };
+        let courses = &self.courses;
+        let inertia = |snapshot: &Snapshot, b: usize| {
+            let body = &snapshot.bodies[b];
+            if body.kind == Kind::Free && !courses[b].frozen {
+                Inertia::of(body)
+            } else {
+                Inertia::INFINITE
+            }
+        };
+        for b in joints.close(snapshot, changed, [time, asker.dt], inertia) {
+            self.courses[b].moved = true;
+            snapshot.bodies[b].awake = true;
+            if !changed.contains(&b) {
+                changed.push(b);
+            }
+        }
+        self.joints = Some(joints);
     }
 
     fn note(&mut self, blow: Blow, pair: Pair) {

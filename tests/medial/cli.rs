@@ -117,6 +117,9 @@ fn failures_are_one_line_and_exit_code_1() {
     assert_fails(&build("flat.obj", "out.ma"), "no triangles");
     assert_fails(&build("flat.obj", "no/such/out.ma"), "no/such");
     assert_fails(&build("flat.obj", "./flat.obj"), "is the input");
+    assert_fails(&build("flat.obj", "out.obj"), "ends in .ma or .medial");
+    let of_mesh = medial(&directory, &["info", "flat.obj"]);
+    assert_fails(&of_mesh, "flat.obj is a triangle mesh");
     assert!(!directory.join("out.ma").exists());
     let unharmed = fs::read_to_string(directory.join("flat.obj")).unwrap();
     assert_eq!(unharmed.lines().count(), 3);
@@ -256,6 +259,22 @@ fn several_meshes_are_built_into_a_folder() {
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(message.contains("broken.obj, line 2"), "{message}");
     assert!(message.contains("1 of 3 meshes failed"), "{message}");
+    // A mesh without triangles is refused without its name by what builds it.
+    fs::write(directory.join("flat.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\n").unwrap();
+    let run = ["build", "flat.obj", "in", "-o", "out", "-p", "20", "--json"];
+    let output = medial(&directory, &run);
+    assert!(
+        text(&output.stderr).contains("medial: flat.obj: "),
+        "{}",
+        text(&output.stderr)
+    );
+    let built: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(built.as_array().unwrap().len(), 3);
+    assert_eq!(built[0]["input"], "flat.obj");
+    assert!(
+        built[0]["error"].as_str().unwrap().contains("no triangles"),
+        "{built}"
+    );
     assert_eq!(names(), ["first.ma", "second.v2.ma"]);
     MedialMesh::load_ma(directory.join("out/first.ma")).unwrap();
 

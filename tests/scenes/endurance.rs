@@ -216,10 +216,10 @@ impl Life {
                 self.poisoned.remove(&h);
             }
         }
+        let report = self.pipeline.step(&mut self.world);
         let enabled = self.world.colliders.iter_enabled();
         let medial = enabled.filter(|(_, c)| c.shape().as_shape::<MedialMesh>().is_some());
         let medial = medial.count();
-        let report = self.pipeline.step(&mut self.world);
         for (h, b) in self.world.bodies.iter() {
             let sound =
                 b.position().is_finite() && b.linvel().is_finite() && b.angvel().is_finite();

@@ -11,8 +11,9 @@ mod effects;
 mod endurance;
 mod energy;
 mod fast_pairs;
-mod fixed_partners;
+mod features;
 mod filters;
+mod fixed_partners;
 mod force_events;
 #[cfg_attr(
     not(feature = "enhanced-determinism"),
@@ -26,6 +27,7 @@ mod held;
 mod impacts;
 mod knots;
 mod local_thickness;
+mod multibodies;
 mod oracle;
 mod partners;
 mod random;

@@ -20,6 +20,8 @@ pub struct Job {
 pub enum PlanError {
     #[error("{0} is the input: the output would replace it")]
     OverInput(PathBuf),
+    #[error("{0}: the output is a medial mesh, in a file that ends in .ma or .medial")]
+    MeshOutput(PathBuf),
     #[error("{0}: no such directory")]
     NoDirectory(PathBuf),
     #[error("{0}: no triangle mesh in it (obj, stl, ply, off)")]
@@ -103,6 +105,10 @@ pub fn check_output(input: &Path, output: &Path) -> Result<(), PlanError> {
     check_parent(output)?;
     if is_same_file(output, input) {
         return Err(PlanError::OverInput(output.to_owned()));
+    }
+    // Others would take it for a triangle mesh.
+    if MeshFormat::of(output).is_some() {
+        return Err(PlanError::MeshOutput(output.to_owned()));
     }
     Ok(())
 }

@@ -1,0 +1,276 @@
+//! Chains and ragdolls of medial links, struck within a step: against rapier's capsules of the same sizes in
+//! sub-steps of 1/2,000 s, where rapier's own contacts and joints are nearly exact.
+
+use crate::bodies::attached;
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+
+/// Radius of links and rod, metres.
+const RADIUS: Real = 0.05;
+
+/// A link's half length between the centres of its ends, metres.
+const HALF: Real = 0.2;
+
+/// What is struck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Struck {
+    /// A bar on a hinge.
+    Hinge,
+    /// Four bars on ball joints, the first on a fixed body.
+    Chain,
+    /// A trunk with two arms and two legs of two bars each, free.
+    Ragdoll,
+}
+
+/// How its joints are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum By {
+    Multibody,
+    ImpulseJoints,
+}
+
+/// A capsule along an axis, medial or rapier's own.
+fn bar(medial: bool, axis: Vector, half: Real) -> ColliderBuilder {
+    let end = axis * half;
+    let collider = if medial {
+        let ends = [-end, end].map(|c| MedialSphere::new(c, RADIUS));
+        let mesh = MedialMesh::new(ends.to_vec(), vec![[0, 1]], vec![]).expect("a bar");
+        ColliderBuilder::medial_mesh(mesh)
+    } else {
+        ColliderBuilder::capsule_from_endpoints(-end, end, RADIUS)
+    };
+    collider.friction(0.0).density(1000.0)
+}
+
+struct Scene {
+    world: PhysicsWorld,
+    links: Vec<RigidBodyHandle>,
+    rod: RigidBodyHandle,
+    /// Bodies and anchors of each joint.
+    joints: Vec<([RigidBodyHandle; 2], [Vector; 2])>,
+}
+
+impl Scene {
+    fn new(struck: Struck, by: By, medial: bool, speed: Real, phase: Real) -> Self {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        // The rod comes along Z, across what it strikes.
+        let (at, rod) = match struck {
+            Struck::Hinge => (0.3, Vector::Y),
+            Struck::Chain => (2.3 * 2.0 * HALF, Vector::Y),
+            Struck::Ragdoll => (2.0 * HALF + 0.25, Vector::Y),
+        };
+        let start = -2.0 * RADIUS - speed / 60.0 * (1.0 + phase);
+        let height = if struck == Struck::Ragdoll { HALF } else { 0.0 };
+        let body = RigidBodyBuilder::dynamic()
+            .translation(Vector::new(at, height, start))
+            .linvel(Vector::Z * speed);
+        let groups =
+            InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And);
+        let (rod, _) = world.insert(body, bar(medial, rod, HALF).collision_groups(groups));
+        world.bodies[rod].set_allow_fast_rotation(true);
+        let mut scene = Self {
+            world,
+            links: Vec::new(),
+            rod,
+            joints: Vec::new(),
+        };
+        let x = Vector::X * HALF;
+        let y = Vector::Y * HALF;
+        match struck {
+            Struck::Hinge => {
+                let root = scene.world.bodies.insert(RigidBodyBuilder::fixed());
+                let link = scene.link(medial, x, Vector::X);
+                scene.join(by, [root, link], [Vector::ZERO, -x], true);
+            }
+            Struck::Chain => {
+                let mut last = scene.world.bodies.insert(RigidBodyBuilder::fixed());
+                for i in 0..4 {
+                    let link = scene.link(medial, x * (2.0 * i as Real + 1.0), Vector::X);
+                    let end = if i == 0 { Vector::ZERO } else { x };
+                    scene.join(by, [last, link], [end, -x], false);
+                    last = link;
+                }
+            }
+            Struck::Ragdoll => {
+                let trunk = scene.link(medial, Vector::ZERO, Vector::Y);
+                for (up, side) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+                    let (shoulder, out) = (y * up, x * side);
+                    let upper = scene.link(medial, shoulder + out, Vector::X);
+                    scene.join(by, [trunk, upper], [shoulder, -out], false);
+                    let lower = scene.link(medial, shoulder + out * 3.0, Vector::X);
+                    scene.join(by, [upper, lower], [out, -out], up > 0.0);
+                }
+            }
+        }
+        scene
+    }
+
+    fn link(&mut self, medial: bool, at: Vector, axis: Vector) -> RigidBodyHandle {
+        let body = RigidBodyBuilder::dynamic().translation(at);
+        // Links meet the rod only.
+        let groups =
+            InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And);
+        let collider = bar(medial, axis, HALF).collision_groups(groups);
+        let link = self.world.insert(body, collider).0;
+        self.world.bodies[link].set_allow_fast_rotation(true);
+        self.links.push(link);
+        link
+    }
+
+    fn join(&mut self, by: By, bodies: [RigidBodyHandle; 2], anchors: [Vector; 2], hinge: bool) {
+        let joint: GenericJoint = if hinge {
+            let joint = RevoluteJointBuilder::new(Vector::Y).contacts_enabled(false);
+            joint
+                .local_anchor1(anchors[0])
+                .local_anchor2(anchors[1])
+                .into()
+        } else {
+            let joint = SphericalJointBuilder::new().contacts_enabled(false);
+            joint
+                .local_anchor1(anchors[0])
+                .local_anchor2(anchors[1])
+                .into()
+        };
+        match by {
+            By::Multibody => {
+                let inserted = self
+                    .world
+                    .insert_multibody_joint(bodies[0], bodies[1], joint);
+                assert!(inserted.is_some());
+            }
+            By::ImpulseJoints => {
+                self.world.insert_impulse_joint(bodies[0], bodies[1], joint);
+            }
+        }
+        self.joints.push((bodies, anchors));
+    }
+
+    fn widest(&self) -> Real {
+        let opening = |(bodies, anchors): &([RigidBodyHandle; 2], [Vector; 2])| {
+            let [a, b] = [0, 1].map(|k| self.world.bodies[bodies[k]].position() * anchors[k]);
+            (a - b).length()
+        };
+        self.joints.iter().map(opening).fold(0.0, Real::max)
+    }
+
+    fn momentum(&self) -> Vector {
+        let bodies = self.links.iter().chain([&self.rod]);
+        let of =
+            |h: &RigidBodyHandle| self.world.bodies[*h].linvel() * self.world.bodies[*h].mass();
+        bodies.map(of).sum()
+    }
+
+    /// Steps of the given lengths.
+    fn run(mut self, hooked: bool, steps: &[Real]) -> End {
+        let mut pipeline = attached(&mut self.world);
+        let mut end = End::default();
+        for &dt in steps {
+            self.world.integration_parameters.dt = dt;
+            let impact = if hooked {
+                pipeline.step(&mut self.world).events > 0
+            } else {
+                self.world.step();
+                false
+            };
+            let widest = &mut end.widest[usize::from(impact)];
+            *widest = widest.max(self.widest());
+            let turning = |h: &RigidBodyHandle| self.world.bodies[*h].angvel().length();
+            let fastest = self.links.iter().map(turning).fold(0.0, Real::max);
+            end.turned += fastest * dt;
+            if impact {
+                end.struck = self.momentum().z;
+            }
+        }
+        let turn = |h: &RigidBodyHandle| *self.world.bodies[*h].rotation();
+        end.turns = self.links.iter().map(turn).collect();
+        end.rod = self.world.bodies[self.rod].linvel().z;
+        end.momentum = self.momentum().z;
+        end
+    }
+}
+
+/// How a scene ends.
+#[derive(Default)]
+struct End {
+    /// Widest opening of a joint: after steps without impacts, and with them.
+    widest: [Real; 2],
+    turns: Vec<Rotation>,
+    /// How far the fastest link turned.
+    turned: Real,
+    /// Its velocity.
+    rod: Real,
+    /// Of all bodies: in the end, and after the last step with an impact.
+    momentum: Real,
+    struck: Real,
+}
+
+impl End {
+    /// The largest angle between a link's rotation and another's, in units of how far the fastest turned there.
+    fn off(&self, other: &Self) -> Real {
+        let off = |(a, b): (&Rotation, &Rotation)| a.angle_between(*b);
+        self.turns
+            .iter()
+            .zip(&other.turns)
+            .map(off)
+            .fold(0.0, Real::max)
+            / other.turned
+    }
+}
+
+/// Steps of a 60th of a second, of a 2,000th, and of a 2,000th until the impact's step ends and a 60th from there: what
+/// rapier makes of the same motion in its own steps.
+fn steps() -> [Vec<Real>; 3] {
+    let fine = |n: usize| vec![1.0 / 1980.0; n];
+    let coarse = |n: usize| vec![1.0 / 60.0; n];
+    [coarse(4), fine(132), [fine(66), coarse(2)].concat()]
+}
+
+#[test]
+fn what_joints_hold_is_struck_as_a_whole() {
+    let [coarse, fine, both] = steps();
+    for struck in [Struck::Hinge, Struck::Chain, Struck::Ragdoll] {
+        for by in [By::Multibody, By::ImpulseJoints] {
+            for speed in [1.0, 5.0, 20.0, 60.0] {
+                let scene = |medial: bool| Scene::new(struck, by, medial, speed, 0.37);
+                let mass = scene(true);
+                let mass = mass.world.bodies[mass.rod].mass();
+                let ours = scene(true).run(true, &coarse);
+                let [fine, own] = [&fine, &both].map(|steps| scene(false).run(false, steps));
+                let rod = (ours.rod - fine.rod).abs() / speed;
+                println!(
+                    "{struck:?} by {by:?}, {speed} m/s: turns off by {:.3} of {:.2} rad, rapier's own {:.3}; \
+                     rod off by {rod:.3}, rapier's own {:.3}; opens {:.4} and {:.4} m, rapier's own {:.4}; \
+                     momentum {:.4} of {:.4}",
+                    ours.off(&fine),
+                    fine.turned,
+                    own.off(&fine),
+                    (own.rod - fine.rod).abs() / speed,
+                    ours.widest[1],
+                    ours.widest[0],
+                    own.widest[0],
+                    ours.struck,
+                    mass * speed,
+                );
+                let name = format!("{struck:?} by {by:?}, {speed} m/s");
+                // Between two ends of a step bodies go straight: a link that turns by a radian in the rest of the step
+                // bulges towards what struck it and may meet it again.
+                let turns_far = struck != Struck::Ragdoll && speed > 5.0;
+                let limit = own.off(&fine) + if turns_far { 0.2 } else { 0.05 };
+                assert!(
+                    ours.off(&fine) < limit,
+                    "{name}: turns off by {}",
+                    ours.off(&fine)
+                );
+                let limit = (own.rod - fine.rod).abs() / speed + 0.05;
+                assert!(rod < limit, "{name}: rod off by {rod}");
+                let widest = ours.widest[0].max(ours.widest[1]);
+                assert!(widest < own.widest[0] + 2.0e-3, "{name}: opens {widest} m");
+                if struck == Struck::Ragdoll && ours.struck != 0.0 {
+                    let lost = 1.0 - ours.struck / (mass * speed);
+                    assert!(lost.abs() < 0.01, "{name}: momentum lost {lost}");
+                }
+            }
+        }
+    }
+}
