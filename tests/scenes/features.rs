@@ -116,7 +116,7 @@ impl EventHandler for Told {
     fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
 }
 
-/// A rod flies through a sensor and lands on the ground: both are told in the same steps.
+/// A rod flies through a sensor and lands on the ground: the sensor is told in rapier's steps, the landing in the step of the touch.
 #[test]
 fn sensors_and_contacts_are_told_when_rapiers_are() {
     let told = |medial: bool, medial_sensor: bool| {
@@ -139,10 +139,13 @@ fn sensors_and_contacts_are_told_when_rapiers_are() {
     let rapiers = told(false, false);
     assert_eq!(rapiers.len(), 3, "{rapiers:?}");
     for (medial, sensor) in [(true, false), (false, true), (true, true)] {
-        assert_eq!(
-            told(medial, sensor),
-            rapiers,
-            "rod {medial}, sensor {sensor}"
+        let told = told(medial, sensor);
+        assert_eq!(told[..2], rapiers[..2], "rod {medial}, sensor {sensor}");
+        // A touch within the step is told in that step; rapier finds it at the start of the next.
+        let [(ours, _), (theirs, _)] = [&told, &rapiers].map(|t| t[2]);
+        assert!(
+            told.len() == 3 && (ours == theirs || ours + 1 == theirs),
+            "rod {medial}, sensor {sensor}: {told:?}"
         );
     }
 }
