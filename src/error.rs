@@ -9,7 +9,7 @@ pub enum MeshError {
     /// No sphere at all.
     #[error("a medial mesh needs at least one sphere")]
     Empty,
-    /// A coordinate or radius is NaN or infinite, or so large that the sphere ends beyond all numbers.
+    /// A coordinate or radius is NaN or infinite.
     #[error("sphere {index} is not finite: center {center:?}, radius {radius}")]
     NotFinite {
         /// Index of the sphere.
@@ -18,6 +18,18 @@ pub enum MeshError {
         center: [f32; 3],
         /// Its radius.
         radius: f32,
+    },
+    /// A sphere ends so far from the origin that squares of lengths would be infinite.
+    #[error("sphere {index} reaches beyond {most:e}: center {center:?}, radius {radius}")]
+    TooFar {
+        /// Index of the sphere.
+        index: usize,
+        /// Its centre.
+        center: [f32; 3],
+        /// Its radius.
+        radius: f32,
+        /// Largest coordinate that a sphere may reach.
+        most: f32,
     },
     /// A radius below zero.
     #[error("sphere {index} has negative radius {radius}")]

@@ -3,9 +3,14 @@
 use super::primitive::MedialSphere;
 use super::simplex::Simplex;
 use crate::error::{AssetError, MeshError};
+use crate::math::Real;
 
-/// Fails on the first item that is not finite, reaches beyond what is, is negative, out of range or
-/// degenerate.
+/// Farthest that a sphere may reach from its body's origin along an axis, in the user's unit. Two points
+/// are then at most 3.5e18 apart, whose square is a number in `f32`: ten times farther, and lengths,
+/// bounding spheres and the thickness are infinite or wrong.
+const LARGEST_REACH: Real = 1.0e18;
+
+/// Fails on the first item that is not finite, too far away, negative, out of range or degenerate.
 pub fn check(
     spheres: &[MedialSphere],
     edges: &[[u32; 2]],
@@ -15,13 +20,19 @@ pub fn check(
         return Err(MeshError::Empty);
     }
     for (index, s) in spheres.iter().enumerate() {
-        // As far as the sphere reaches: a box and a tree without infinities.
-        let reach = s.center.abs().max_element() + s.radius.abs();
-        if !(s.center.is_finite() && reach.is_finite()) {
+        if !(s.center.is_finite() && s.radius.is_finite()) {
             return Err(MeshError::NotFinite {
                 index,
                 center: s.center.into(),
                 radius: s.radius,
+            });
+        }
+        if s.center.abs().max_element() + s.radius.abs() > LARGEST_REACH {
+            return Err(MeshError::TooFar {
+                index,
+                center: s.center.into(),
+                radius: s.radius,
+                most: LARGEST_REACH,
             });
         }
         if s.radius < 0.0 {

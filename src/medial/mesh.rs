@@ -62,8 +62,8 @@ impl MedialMesh {
     /// frame; an edge or face names spheres by index. Edges of faces may be listed or not: missing
     /// ones are derived; doubles are dropped.
     ///
-    /// Fails on the first item that is not finite, negative, out of range or degenerate, and names
-    /// it.
+    /// Fails on the first item that is not finite, farther than 1e18 from the origin, negative, out of
+    /// range or degenerate, and names it.
     pub fn new(
         spheres: Vec<MedialSphere>,
         edges: Vec<[u32; 2]>,
