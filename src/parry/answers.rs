@@ -1,7 +1,7 @@
 //! Results of the batch, looked up by exact key when rapier's narrow phase asks for them.
 //!
-//! The key is both instance ids and every bit of the relative pose: an answer is either exactly the
-//! one asked for, or not there and computed on the spot.
+//! The key is both shapes and every bit of the relative pose: an answer is either exactly the one asked
+//! for, or not there and computed on the spot.
 
 use crate::batch::{Job, PairJob, PairResult};
 use crate::math::{Pose, Real};
@@ -12,21 +12,37 @@ use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-/// Two shapes at one relative pose, to the bit.
+/// Two shapes at one relative pose, to the bit. Holds as long as both shapes live.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
-    /// Instance ids; 0 for a shape that is not medial.
-    ids: [u64; 2],
+    shapes: [Id; 2],
     pose: [u32; 7],
+}
+
+/// Which shape it is, among those alive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Id {
+    /// Instance id of a medial mesh: one collider's.
+    Medial(u64),
+    /// Address of another shape: clones of a `SharedShape`, which are the same shape, have the same.
+    Other(usize),
+}
+
+impl Id {
+    fn new(shape: &dyn Shape) -> Self {
+        match shape.as_shape::<MedialMesh>() {
+            Some(mesh) => Self::Medial(mesh.instance_id()),
+            None => Self::Other(std::ptr::from_ref(shape).addr()),
+        }
+    }
 }
 
 impl Key {
     /// Of two shapes, of which one at least is medial.
     pub fn new(shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> Self {
         let (t, r) = (pos12.translation, pos12.rotation);
-        let id = |s: &dyn Shape| s.as_shape::<MedialMesh>().map_or(0, |m| m.instance_id());
         Self {
-            ids: [id(shape1), id(shape2)],
+            shapes: [shape1, shape2].map(Id::new),
             pose: [t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(Real::to_bits),
         }
     }
