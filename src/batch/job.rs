@@ -128,7 +128,9 @@ impl Job for ToiJob {
             && options.paths == Paths::Exact;
         let target = match options.initial_contact {
             InitialContact::Stop => options.target_distance.max(0.0),
-            InitialContact::Deepen { .. } => options.target_distance,
+            InitialContact::Deepen { .. } | InitialContact::Approach { .. } => {
+                options.target_distance
+            }
         };
         let finite = options.target_distance.is_finite();
         (sure && finite).then(|| Sweep {

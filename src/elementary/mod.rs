@@ -164,6 +164,14 @@ pub enum InitialContact {
         /// by half of what is left to them.
         by: Real,
     },
+    /// They are the answer, contact at time 0, if they come nearer in the step than they are at the start,
+    /// before others meet. Those that part or slide go on to its end. For straight motion, in which the
+    /// distance of two primitives, convex in time, grows for ever once it does; if bodies turn, what parts
+    /// first and comes nearer later is an answer at time 0 too.
+    Approach {
+        /// By how much nearer, a length, > 0: what rounding of poses and velocities makes of sliding.
+        by: Real,
+    },
 }
 
 impl Default for ToiOptions {

@@ -7,11 +7,12 @@ use super::queue::Candidate;
 use super::search::Search;
 use super::volumes::Volumes;
 use crate::elementary::bracket::{Bracket, Limits, witness};
-use crate::elementary::distance::nearest_in_test;
+use crate::elementary::distance::{nearest_in_test, signed_distance};
 use crate::elementary::path::RigidPath;
 use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
-use crate::elementary::{Loss, ToiStatus};
+use crate::elementary::{InitialContact, Loss, ToiStatus};
 use crate::math::lane::Vec3;
+use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
 use crate::medial::tree::Below;
 
@@ -122,22 +123,51 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         ]
     }
 
+    /// Spheres of two primitives at the start.
+    pub(super) fn at_start(&self, pair: [u32; 2]) -> (Spheres, Spheres) {
+        let [(a, _), (b, _)] = self.spheres(pair);
+        let [first, second] = &self.motions;
+        (placed(first, a, 0.0), placed(second, b, 0.0))
+    }
+
+    /// Signed distance of two primitives at the start; of the convex parts that they bound, where it is
+    /// these that approach.
+    pub(super) fn distance_at_start(&self, [p, q]: [u32; 2]) -> f64 {
+        let distance = |pair: [u32; 2]| {
+            let [(_, share_a), (_, share_b)] = self.spheres(pair);
+            let (a, b) = self.at_start(pair);
+            signed_distance(&a[..share_a.spheres], &b[..share_b.spheres])
+        };
+        if !matches!(self.initial_contact, InitialContact::Approach { .. }) {
+            return distance([p, q]);
+        }
+        let (of_a, of_b) = (
+            self.sides.0.body.convex_part(p),
+            self.sides.1.body.convex_part(q),
+        );
+        let pairs = of_a.flat_map(|p| of_b.clone().map(move |q| [p, q]));
+        pairs.map(distance).fold(f64::INFINITY, f64::min)
+    }
+
     /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness:
     /// a test that is proven free until then may be nearer than the one that was found.
     pub(super) fn settle(&mut self) {
-        let Some((_, _, pair)) = self.earliest.found else {
+        let Some((.., pair)) = self.earliest.found else {
             return;
         };
         let reported = self.spheres(pair);
+        if matches!(self.initial_contact, InitialContact::Approach { .. })
+            && self.earliest.status == ToiStatus::Contact
+            && self.distance_at_start(pair) <= self.target + self.earliest.limits.tolerance
+        {
+            (self.earliest.lower, self.earliest.upper) = (0.0, 0.0);
+        }
         let Some((test, bracket, _)) = &mut self.earliest.found else {
             return;
         };
         let lower = self.earliest.lower;
         let [(a, share_a), (b, share_b)] = reported;
-        let then = |side: usize, spheres: Spheres| {
-            let turned = self.motions[side].sin_cos(lower);
-            spheres.map(|(c, r)| (self.motions[side].point(c).at(lower, turned).position, r))
-        };
+        let then = |side: usize, spheres: Spheres| placed(&self.motions[side], spheres, lower);
         let (pa, pb) = (then(0, a), then(1, b));
         let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
         let mut least = f64::INFINITY;
@@ -154,6 +184,12 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         bracket.lower = lower;
         (bracket.nearest, bracket.normal) = witness(&path, test.domain, lower);
     }
+}
+
+/// Spheres of a body at a time.
+fn placed(motion: &RigidMotion<f64>, spheres: Spheres, time: f64) -> Spheres {
+    let turned = motion.sin_cos(time);
+    spheres.map(|(c, r)| (motion.point(c).at(time, turned).position, r))
 }
 
 /// A primitive below a node.

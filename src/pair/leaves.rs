@@ -52,12 +52,19 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                     threshold = Threshold::deepened(distance, thinnest, by.into(), tolerance, axes);
                 }
             }
+            InitialContact::Approach { by } => {
+                let distance = self.distance_at_start(pair);
+                if distance <= target + tolerance {
+                    threshold = Threshold::new(distance - f64::from(by) - tolerance, tolerance);
+                }
+            }
             // Proven free until later, they cannot cross at the start.
             InitialContact::Stop if time == 0.0 => {
-                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
+                let (pa, pb) = self.at_start(pair);
+                let (pa, pb) = (&pa[..share_a.spheres], &pb[..share_b.spheres]);
                 let crossings = [
-                    crossing(&pa, share_a.edges, &pb),
-                    crossing(&pb, share_b.edges, &pa),
+                    crossing(pa, share_a.edges, pb),
+                    crossing(pb, share_b.edges, pa),
                 ];
                 if crossings.iter().flatten().any(|c| -c.radius <= target) {
                     self.earliest.overlap_at_start();
@@ -67,8 +74,10 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             }
             InitialContact::Stop => {}
         }
-        // A target of the pair's own leaves no test to a neighbour, whose target is another.
-        let shares = if threshold.target == self.target {
+        // A target of the pair's own leaves no test to a neighbour, whose target is another; where the two
+        // targets may be far from each other, no neighbour leaves one to it either.
+        let own = matches!(self.initial_contact, InitialContact::Approach { .. });
+        let shares = if threshold.target == self.target && !own {
             [share_a, share_b]
         } else {
             [share_a, share_b].map(|s| Share::whole(s.spheres))

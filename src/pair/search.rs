@@ -101,7 +101,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             target,
             reach: match options.initial_contact {
                 InitialContact::Stop => target.max(0.0),
-                InitialContact::Deepen { .. } => target,
+                InitialContact::Deepen { .. } | InitialContact::Approach { .. } => target,
             },
             initial_contact: options.initial_contact,
             cores: options.cores,

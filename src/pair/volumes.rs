@@ -8,6 +8,7 @@ use crate::medial::mesh::Simplex;
 use crate::medial::shell::Shell;
 use crate::medial::tree::Below;
 use crate::medial::{MedialMesh, MedialSphere};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A body made of primitives, in its own frame.
@@ -24,6 +25,10 @@ pub trait Volumes {
     /// solids whose inside is not in play.
     fn thickness(&self, _primitive: u32) -> Real {
         Real::INFINITY
+    }
+    /// The primitives that bound one convex body, this one among them; itself where it is one.
+    fn convex_part(&self, index: u32) -> Range<u32> {
+        index..index + 1
     }
     /// A few balls that hold the body, if it has such.
     fn shell(&self) -> Option<&Arc<Shell>> {
@@ -65,6 +70,8 @@ impl Volumes for MedialMesh {
 pub struct Soup {
     primitives: Vec<([MedialSphere; 3], usize)>,
     bounds: Vec<(Vector, Real)>,
+    /// Of each primitive of a part that has ended, the part's first and the one behind its last.
+    parts: Vec<[u32; 2]>,
 }
 
 impl Soup {
@@ -88,6 +95,12 @@ impl Soup {
         self.primitives.push((all, spheres.len().min(3)));
         self.bounds
             .push((center, reach + 8.0 * Real::EPSILON * size));
+    }
+
+    /// Ends a part: what was added since the last call bounds one convex body.
+    pub fn end_part(&mut self) {
+        let part = [self.parts.len() as u32, self.primitives.len() as u32];
+        self.parts.resize(self.primitives.len(), part);
     }
 
     /// How many primitives there are.
@@ -114,5 +127,9 @@ impl Volumes for Soup {
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share) {
         let (spheres, n) = self.primitives[index as usize];
         (spheres, Share::whole(n))
+    }
+    fn convex_part(&self, index: u32) -> Range<u32> {
+        let part = self.parts.get(index as usize);
+        part.map_or(index..index + 1, |&[first, end]| first..end)
     }
 }

@@ -234,16 +234,24 @@ impl Search<'_> {
             tolerance: self.tolerance,
             steps: SLICE.min(cap - entry.spent),
         };
-        if let InitialContact::Deepen { by } = self.options.initial_contact {
+        let (by, at_once) = match self.options.initial_contact {
+            InitialContact::Stop => (None, false),
+            InitialContact::Deepen { by } => (Some(by), false),
+            InitialContact::Approach { by } => (Some(by), true),
+        };
+        let mut touching = None;
+        if let Some(by) = by {
             let at_start = Limits {
                 start: 0.0,
                 steps: 1,
                 ..limits
             };
-            let start = self.advance(body, &all[..len], &at_start).near.distance();
-            let touching = limits.target + limits.tolerance;
-            if start <= touching {
-                let depth = (start - touching) / f64::from(thinner.max(Real::MIN_POSITIVE));
+            let starting = self.advance(body, &all[..len], &at_start);
+            let start = starting.near.distance();
+            let within = limits.target + limits.tolerance;
+            if start <= within {
+                touching = Some(starting);
+                let depth = (start - within) / f64::from(thinner.max(Real::MIN_POSITIVE));
                 self.deepest = self.deepest.min(depth);
                 limits.start = if entry.spent == 0 { 0.0 } else { entry.time };
                 let thinnest = all.iter().map(|b| b.1).fold(f64::INFINITY, f64::min);
@@ -256,9 +264,17 @@ impl Search<'_> {
                 limits.tolerance = threshold.tolerance;
             }
         }
-        let advance = self.advance(body, &all[..len], &limits);
+        let mut advance = self.advance(body, &all[..len], &limits);
         if advance.separated {
             return;
+        }
+        if let Some(Advance { near, place, .. }) = touching.filter(|_| at_once && advance.met) {
+            advance = Advance {
+                lower: 0.0,
+                near,
+                place,
+                ..advance
+            };
         }
         let spent = entry.spent + advance.steps;
         if !advance.met && advance.steps == SLICE && spent < cap {

@@ -4,6 +4,8 @@
 use super::advance;
 use super::foreign::{self, Parts};
 use super::inside;
+use super::near;
+use super::touching::Touching;
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Pose, Real, Vector};
@@ -15,14 +17,6 @@ use crate::pair::{Volumes, nearest_spheres};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
 use parry3d::shape::Shape;
-
-/// How deep bodies that touch at the start may sink into each other, in units of the mesh's thickness,
-/// when contact at the start is not the answer: half way to the medial axis. It holds for all their
-/// primitives: a body that slides meets one facet after the other, and none of them may stop it.
-const CORE: Real = 0.5;
-
-/// How much deeper what is deeper than that already may sink in one cast, in units of that depth.
-const FURTHER: Real = 0.1;
 
 /// First contact of a medial mesh with another shape, both moving rigidly, from `start` to `end`
 /// seconds.
@@ -89,16 +83,31 @@ impl Cast<'_> {
             mut counts,
             ..
         } = found;
-        let approach = (motion2.linvel - motion1.linvel).dot(toi.normal);
-        let stop = self.stop_at_penetration || self.stop_approach && approach < 0.0;
-        if toi.upper <= 0.0 && !stop {
-            let core = (CORE * self.mesh.thickness()).max(Real::MIN_POSITIVE);
-            let deeper = ToiOptions {
-                target_distance: self.target_distance - core,
-                initial_contact: InitialContact::Deepen { by: FURTHER * core },
-                ..options
+        if toi.upper <= 0.0 && !self.stop_at_penetration {
+            let touching = self.touching([&motion1, &motion2], &toi)?;
+            let further = if !self.stop_approach {
+                touching.sinking(self.mesh.thickness(), seconds, &options)
+            } else if !touching.approaches(seconds) {
+                touching.unless_nearer(seconds, &options)
+            } else {
+                let Touching {
+                    normal,
+                    points,
+                    primitives,
+                    ..
+                } = touching;
+                toi = Toi {
+                    normal,
+                    points,
+                    primitives,
+                    ..toi
+                };
+                return Ok((
+                    Some(self.hit(&toi, [&motion1, &motion2], [start, 0.0])),
+                    counts,
+                ));
             };
-            let further = self.query(&motion1, &motion2, seconds, &deeper, None)?;
+            let further = self.query(&motion1, &motion2, seconds, &further, None)?;
             toi = further.toi;
             counts.nodes += further.counts.nodes;
             counts.tests += further.counts.tests;
@@ -106,22 +115,60 @@ impl Cast<'_> {
         if toi.status == ToiStatus::Separated {
             return Ok((None, counts));
         }
-        let time = toi.lower * seconds;
-        let (pose1, pose2) = (
-            motion1.position_at_time(time),
-            motion2.position_at_time(time),
-        );
-        let hit = ShapeCastHit {
+        let times = [start, toi.lower * seconds];
+        Ok((Some(self.hit(&toi, [&motion1, &motion2], times)), counts))
+    }
+
+    /// The hit of an answer, from the start of the motions, in seconds, and the time since then.
+    fn hit(
+        &self,
+        toi: &Toi,
+        motions: [&NonlinearRigidMotion; 2],
+        [start, time]: [Real; 2],
+    ) -> ShapeCastHit {
+        let [pose1, pose2] = motions.map(|m| m.position_at_time(time));
+        ShapeCastHit {
             time_of_impact: start + time,
             witness1: pose1.inverse_transform_point(toi.points[0]),
             witness2: pose2.inverse_transform_point(toi.points[1]),
             normal1: pose1.rotation.inverse() * toi.normal,
             normal2: pose2.rotation.inverse() * -toi.normal,
-            status: status(&toi),
+            status: status(toi),
             subshape1: toi.primitives[0],
             subshape2: toi.primitives[1],
+        }
+    }
+
+    /// How they touch at the start, of which the first contact there is known.
+    fn touching(
+        &self,
+        motions: [&NonlinearRigidMotion; 2],
+        toi: &Toi,
+    ) -> Result<Touching, Unsweepable> {
+        let [start1, start2] = motions.map(|m| m.start);
+        let pos12 = start1.inverse() * start2;
+        let (nearest, _) = near::nearest(self.mesh, self.other, &pos12, self.target_distance)?;
+        let (gap, normal, points, primitives) = match nearest {
+            Some(c) => {
+                let points = [start1 * c.points[0], start2 * c.points[1]];
+                (c.distance, start1.rotation * c.normal, points, c.primitives)
+            }
+            // Farther off, by no more than the tolerance.
+            None => (self.target_distance, toi.normal, toi.points, toi.primitives),
         };
-        Ok((Some(hit), counts))
+        let velocity = |k: usize| {
+            let m = motions[k];
+            m.linvel + m.angvel.cross(points[k] - m.start * m.local_center)
+        };
+        let sizes = [start1.translation, start2.translation, points[0], points[1]];
+        Ok(Touching {
+            gap,
+            normal,
+            points,
+            primitives,
+            slip: velocity(0) - velocity(1),
+            size: sizes.into_iter().map(|p| p.abs().max_element()).sum(),
+        })
     }
 
     /// First contact in `seconds` of motions that start now; times are fractions of it.

@@ -45,8 +45,9 @@ impl Parts {
         of.copied().unwrap_or(0)
     }
 
-    /// Names the subshape of what was added since the last call.
+    /// Names the subshape of what was added since the last call: one convex part.
     fn name(&mut self, subshape: u32) {
+        self.soup.end_part();
         self.soup_subshapes.resize(self.soup.len(), subshape);
         self.turned_subshapes.resize(self.turned.len(), subshape);
     }

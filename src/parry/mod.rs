@@ -14,6 +14,7 @@ pub mod manifolds;
 pub mod near;
 pub mod parts;
 pub mod shape;
+mod touching;
 pub mod turned;
 
 pub use answers::Answers;

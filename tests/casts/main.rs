@@ -16,3 +16,4 @@ mod solid;
 mod table;
 mod turns;
 mod way_out;
+mod within;

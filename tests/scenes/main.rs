@@ -1,6 +1,7 @@
 //! Whole rapier scenes: what rests, what hangs, what must never pass; saving, drawing, repeating.
 
 mod bodies;
+mod characters;
 mod controls;
 mod crowds;
 mod determinism;

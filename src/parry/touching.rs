@@ -1,0 +1,84 @@
+//! Bodies that touch at the start of a cast, or are within its target distance then: what of it counts as
+//! an answer, and how near others may come.
+//!
+//! - In straight motion the distance of two primitives is convex in time: what does not come nearer at
+//!   once never does. So each pair that comes nearer is an answer at time 0, each other one none, and
+//!   pairs that start farther off have the target itself, as parry has it for the parts of a compound.
+//! - In turning motion bodies that touch go on with what they are in: as deep as they are, and as they get
+//!   by the speed at which their deepest contact closes. No other place may get deeper than that, so that
+//!   the next facet of a floor stops nobody and a wall stops everybody; and none deeper than a core.
+
+use crate::elementary::{InitialContact, ToiOptions};
+use crate::math::{Real, Vector};
+
+/// How deep bodies that touch at the start may sink into each other at most, in units of the mesh's
+/// thickness: half way to the medial axis.
+const CORE: Real = 0.5;
+
+/// How much deeper what is deeper than that already may sink in one cast, in units of that depth.
+const FURTHER: Real = 0.1;
+
+/// What rounding makes of sliding, in units of the lengths in play. Poses, vertices and velocities are good
+/// to half an ulp each, so that a facet of a plane, seen from the body, is off by up to four of them, and so
+/// is the way along it. Smaller, and the next facet of a floor may stop what slides on it; larger, and what
+/// slides comes nearer by more in each cast.
+const SLIDE: Real = 4.0 * Real::EPSILON;
+
+/// The deepest contact at the start, world frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Touching {
+    /// Signed distance there, a length.
+    pub gap: Real,
+    /// Unit normal from the first body to the second.
+    pub normal: Vector,
+    /// Nearest points of both bodies.
+    pub points: [Vector; 2],
+    /// Primitive of the first and subshape of the second.
+    pub primitives: [u32; 2],
+    /// Velocity of the first body's point less that of the second's.
+    pub slip: Vector,
+    /// Coordinates from which its place was computed, summed.
+    pub size: Real,
+}
+
+impl Touching {
+    /// How much nearer the two come in `seconds` at the speed that they have.
+    fn closing(&self, seconds: Real) -> Real {
+        (self.slip.dot(self.normal) * seconds).clamp(0.0, Real::MAX)
+    }
+
+    /// By how much sliding seems to come nearer in `seconds`.
+    fn slide(&self, seconds: Real) -> Real {
+        let lengths = self.size + self.slip.length() * seconds;
+        (SLIDE * lengths).clamp(Real::MIN_POSITIVE, Real::MAX)
+    }
+
+    /// Whether the deepest contact comes nearer.
+    pub fn approaches(&self, seconds: Real) -> bool {
+        self.closing(seconds) > self.slide(seconds)
+    }
+
+    /// Options of a straight cast in which the deepest contact does not come nearer.
+    pub fn unless_nearer(&self, seconds: Real, options: &ToiOptions) -> ToiOptions {
+        let by = self.slide(seconds);
+        ToiOptions {
+            // A query may pass over what is within its tolerance and not at its target.
+            tolerance: options.tolerance.min(by),
+            initial_contact: InitialContact::Approach { by },
+            ..*options
+        }
+    }
+
+    /// Options of a cast in which they may go on touching, of bodies of which the first is as thick as this.
+    pub fn sinking(&self, thickness: Real, seconds: Real, options: &ToiOptions) -> ToiOptions {
+        let core = (CORE * thickness).max(Real::MIN_POSITIVE);
+        let depth = (options.target_distance - self.gap).max(0.0) + self.closing(seconds);
+        // What is found within the tolerance of the target is as deep as it is allowed to get.
+        let sinks = depth + self.slide(seconds) + options.tolerance;
+        ToiOptions {
+            target_distance: options.target_distance - sinks.min(core),
+            initial_contact: InitialContact::Deepen { by: FURTHER * core },
+            ..*options
+        }
+    }
+}
