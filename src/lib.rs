@@ -1,8 +1,10 @@
-//! Drop-in concave colliders for the [rapier](https://rapier.rs) physics engine that never tunnel.
+//! Drop-in concave colliders for the [rapier](https://rapier.rs) physics engine, with certified
+//! continuous collision detection.
 //!
 //! A triangle mesh of a concave body that moves (ring, chain link, hook, gripper, creature) becomes
 //! a [`MedialMesh`]: spheres joined by medial cones and slabs, a simplified medial axis transform.
-//! It is a solid, keeps its holes, and answers continuous collision queries with a certificate.
+//! It is a solid, keeps its holes, and answers continuous collision queries with a certificate: what they
+//! call free is free, for the inputs and by the bounds of `docs/guarantee.md`.
 //! Source of the method: "Continuous Collision Detection with Medial Axis Transform for Rigid Body
 //! Simulation"; where this crate departs from the paper, the file that does says so.
 //!
