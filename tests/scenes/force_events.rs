@@ -83,7 +83,7 @@ fn every_meeting_tells_its_impulse() {
     let mut random = Random(2104);
     let (mut lost, mut worst, mut bare) = (0, 0.0, 0);
     for _ in 0..count {
-        let speed = 0.3 * (200.0 / 0.3 as Real).powf(random.unit());
+        let speed = 0.3 * Real::powf(200.0 / 0.3, random.unit());
         let (share, starts) = meet(true, speed, &mut random);
         lost += usize::from(share == 0.0 || share.is_nan() || starts.is_empty());
         bare += starts.iter().filter(|whole| !**whole).count();
