@@ -8,12 +8,13 @@
 //!
 //! # Certificate
 //! Balls, cones and slabs are convex. A triangle whose three corners lie in one primitive therefore
-//! lies in it whole. Other triangles are halved; a piece of the smallest size that no primitive
+//! lies in it whole. Other triangles are cut where a slab touches their plane (`outline.rs`), or halved; a piece of the smallest size that no primitive
 //! contains makes the one that needs least grow by its worst corner. The certificate is complete
 //! when a pass over all triangles finds no such piece; it holds up to rounding.
 
 use super::bounds::Point;
 use super::draft::{Draft, Signed};
+use super::outline::{Cut, cut_along_outline};
 use super::primitive_tree::PrimitiveTree;
 use super::random::Random;
 use super::samples::{even_samples, vertex_samples};
@@ -179,15 +180,37 @@ impl Prover<'_> {
             if worst.distance <= 0.0 {
                 continue;
             }
+            if let Some(cut) = self.cut(&piece, primitive) {
+                for part in cut.inner {
+                    let worst = self.worst_corner(primitive, &part);
+                    proven &= self.is_covered(primitive, &worst, growth);
+                }
+                pieces.extend(cut.outer);
+                continue;
+            }
             if longest_edge_sq(&piece) > self.finest_sq {
                 pieces.extend(halve(piece));
                 continue;
             }
-            proven = false;
-            self.worst = self.worst.max(worst.distance);
-            growth.ask(self.tree.primitives()[primitive as usize], &worst);
+            proven &= self.is_covered(primitive, &worst, growth);
         }
         proven
+    }
+
+    /// Whether a primitive covers a piece whose worst corner is given; else asks for its growth.
+    fn is_covered(&mut self, primitive: u32, worst: &Signed, growth: &mut Growth) -> bool {
+        if worst.distance > 0.0 {
+            self.worst = self.worst.max(worst.distance);
+            growth.ask(self.tree.primitives()[primitive as usize], worst);
+        }
+        worst.distance <= 0.0
+    }
+
+    /// Cuts a piece where a slab touches the piece's plane.
+    fn cut(&self, piece: &[Point; 3], primitive: u32) -> Option<Cut> {
+        let corners = self.tree.primitives()[primitive as usize];
+        let is_slab = corners[1] != corners[2];
+        is_slab.then(|| cut_along_outline(piece, self.tree.balls(corners)))?
     }
 
     /// Among the primitives nearest to the middle and the corners, the one whose worst corner is

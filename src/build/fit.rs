@@ -4,11 +4,12 @@
 //! A start with fewer primitives than wanted is refitted and grown where it is worst: that finds
 //! tips and thin parts that a collapse gave up. Small counts scatter, so several starts are tried.
 
+use super::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use super::draft::Draft;
 use super::random::Random;
 use super::refit::{Target, refit};
 use super::samples::{even_samples, vertex_samples};
-use super::simplify::{BOUNDARY_WEIGHT_SOLID, Simplifier};
+use super::simplify::Simplifier;
 use super::surface::Surface;
 use super::swaps::{Scored, Swaps, grow, remove, swap};
 use super::triangle_tree::TriangleTree;

@@ -24,14 +24,14 @@ use crate::error::BuildError;
 const VOTE: f64 = 0.3;
 
 /// Inside is where the surface winds more than this often: half of a closed surface.
-const INSIDE: f64 = 0.5;
+pub const INSIDE: f64 = 0.5;
 
 /// Random shift of each sample (longest side 1). Samples of boxes and tori are cospherical by the
 /// dozen, and exact predicates then cost twenty times more; the shift is far below any error.
-const JITTER: f64 = 1e-7;
+pub const JITTER: f64 = 1e-7;
 
 /// The samples' points, each shifted a little; the same in every call.
-fn shifted(samples: &[Sample]) -> Vec<Point> {
+pub fn shifted(samples: &[Sample]) -> Vec<Point> {
     let mut random = Random::new(4);
     let mut shift = || JITTER * (random.unit() - 0.5);
     samples
@@ -113,7 +113,7 @@ pub fn inner_balls(
 
 /// Samples all around which the tetrahedra are inside: the faces around such a one close a void where
 /// the surface was not resolved, and one of them must go.
-fn buried(samples: usize, delaunay: &Delaunay, ball_of: &[u32]) -> Vec<bool> {
+pub fn buried(samples: usize, delaunay: &Delaunay, ball_of: &[u32]) -> Vec<bool> {
     let mut buried = vec![true; samples];
     for (t, corners) in delaunay.tetrahedra.iter().enumerate() {
         for (&v, &beyond) in corners.iter().zip(&delaunay.neighbors[t]) {
@@ -134,7 +134,7 @@ fn buried(samples: usize, delaunay: &Delaunay, ball_of: &[u32]) -> Vec<bool> {
 /// With `u, v, w` from the first point, the centre `x` relative to it satisfies
 /// `2 u·x = u²`, `2 v·x = v²`, `2 w·x = w²`, so
 /// `x = (u² v×w + v² w×u + w² u×v) / (2 u·(v×w))`.
-fn circumsphere([a, b, c, d]: [Point; 4]) -> Option<Ball> {
+pub fn circumsphere([a, b, c, d]: [Point; 4]) -> Option<Ball> {
     let (u, v, w) = (b - a, c - a, d - a);
     let (uv, vw, wu) = (u.cross(v), v.cross(w), w.cross(u));
     let x = vw * u.length_sq() + wu * v.length_sq() + uv * w.length_sq();
@@ -146,7 +146,7 @@ fn circumsphere([a, b, c, d]: [Point; 4]) -> Option<Ball> {
 }
 
 /// Whether the ball is inside, as its samples' normals say if they agree.
-fn vote(ball: &Ball, corners: [Sample; 4]) -> Option<bool> {
+pub fn vote(ball: &Ball, corners: [Sample; 4]) -> Option<bool> {
     let (mut inside, mut outside) = (0, 0);
     for sample in corners {
         let cosine = (ball.center - sample.point).dot(sample.normal) / ball.radius;

@@ -284,7 +284,7 @@ impl Inserter<'_> {
 }
 
 /// The largest ball inside the surface that touches `p`, where the inward normal is `n`.
-fn shrink(tree: &TriangleTree, p: Point, n: Point) -> Ball {
+pub fn shrink(tree: &TriangleTree, p: Point, n: Point) -> Ball {
     let mut radius = LARGEST_BALL;
     // Thirty steps end all but those that creep, which are near enough by then.
     for _ in 0..30 {

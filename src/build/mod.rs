@@ -1,8 +1,13 @@
 //! L2: triangle mesh → [`MedialMesh`]. The entry; `pipeline.rs` calls the stages in order.
 
+mod ball_quadrics;
 mod bounds;
 mod chunks;
+mod clip;
 mod complex;
+mod crease_cost;
+mod crease_samples;
+mod creases;
 pub mod delaunay;
 mod draft;
 mod edges;
@@ -23,9 +28,11 @@ mod nearest_triangle;
 mod openings;
 mod options;
 mod orient;
+mod outline;
 mod parts;
 mod patches;
 mod pipeline;
+mod polyhedron;
 mod prepared;
 mod primitive_tree;
 mod quadric;
@@ -41,6 +48,7 @@ mod start;
 mod subdivide;
 mod surface;
 mod swaps;
+mod tangent;
 mod triangle;
 mod triangle_tree;
 mod voids;
@@ -48,7 +56,7 @@ mod watch;
 mod weld;
 
 pub use findings::{Findings, MassSource};
-pub use options::{BuildOptions, BuildReport, Hausdorff, Progress, Quality};
+pub use options::{BuildOptions, BuildReport, Creases, Hausdorff, Progress, Quality};
 
 use crate::error::BuildError;
 use crate::math::{Real, Vector};

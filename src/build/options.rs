@@ -19,6 +19,35 @@ pub enum Quality {
     Best,
 }
 
+/// Which sharp convex edges of the source are kept, by spheres of radius 0 on them.
+///
+/// They are kept of closed meshes with flat faces and without reflex edges: boxes, pegs, convex hulls.
+/// Where the limit on the count allows it and their medial axis is found whole, they become it, which is
+/// exact; `BuildReport::notes` says so. The edges of all other meshes are rounded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Creases {
+    /// Those above 1°.
+    #[default]
+    Auto,
+    /// Those at which the faces' normals differ by more than this angle (rad).
+    Keep(Real),
+    /// None: spheres of radius 0 are avoided.
+    None,
+}
+
+impl Creases {
+    /// The angle (rad) above which an edge is sharp; `None` where none is kept.
+    pub(super) fn angle(self) -> Option<f64> {
+        /// 1°: far above what the rounding of vertices bends a flat face by.
+        const SHARP: f64 = 0.0175;
+        match self {
+            Self::Auto => Some(SHARP),
+            Self::Keep(angle) => Some(angle.into()),
+            Self::None => None,
+        }
+    }
+}
+
 /// What to build.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuildOptions {
@@ -34,6 +63,8 @@ pub struct BuildOptions {
     /// How far the source surface may stick out of the enclosed solid, as a fraction of the longest
     /// side of the bounding box. Enclosure then proves this instead: bloat falls by up to as much.
     pub allow_uncovered: Real,
+    /// Which sharp edges to keep.
+    pub creases: Creases,
 }
 
 impl Default for BuildOptions {
@@ -44,6 +75,7 @@ impl Default for BuildOptions {
             quality: Quality::default(),
             enclose: true,
             allow_uncovered: 0.0,
+            creases: Creases::Auto,
         }
     }
 }
@@ -116,6 +148,7 @@ pub(super) struct Limits {
     pub quality: Quality,
     pub enclose: bool,
     pub allow_uncovered: f64,
+    pub creases: Creases,
 }
 
 impl Limits {
@@ -143,6 +176,15 @@ impl Limits {
                 must: "at least 0 and finite",
             });
         }
+        if let Creases::Keep(angle) = options.creases
+            && !(angle > 0.0 && angle.is_finite())
+        {
+            return Err(BuildError::Option {
+                option: "creases",
+                value: angle.into(),
+                must: "an angle above 0 and finite",
+            });
+        }
         let unlimited = options.primitives.is_none() && max_error.is_none();
         let default = BuildOptions::default().primitives;
         Ok(Self {
@@ -155,6 +197,7 @@ impl Limits {
             quality: options.quality,
             enclose: options.enclose,
             allow_uncovered,
+            creases: options.creases,
         })
     }
 

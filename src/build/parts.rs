@@ -3,8 +3,9 @@
 //! One collapse over both would not do: errors are sums over the faces that were merged, of which
 //! a dense solid has thousands and a card two, so that cards would go first.
 
+use super::ball_quadrics::{BOUNDARY_WEIGHT_SHEET, BOUNDARY_WEIGHT_SOLID};
 use super::draft::Draft;
-use super::simplify::{BOUNDARY_WEIGHT_SHEET, BOUNDARY_WEIGHT_SOLID, Simplifier};
+use super::simplify::Simplifier;
 use super::start::Start;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;

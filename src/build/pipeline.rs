@@ -7,6 +7,7 @@ use super::hausdorff::measure;
 use super::largest::Effort;
 use super::options::{Hausdorff, Limits, Quality};
 use super::parts::Parts;
+use super::polyhedron::{EXACT, polyhedron};
 use super::simplify::Simplifier;
 use super::start::{Start, start};
 use super::surface::Surface;
@@ -60,11 +61,41 @@ pub struct Source {
 impl Source {
     /// Balls inside where the surface bounds matter, slabs where it is a sheet.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        if let Some(exact) = self.polyhedron(watch)? {
+            return Ok(exact);
+        }
         let count = self.limits.samples(self.surface.area);
         let mut findings = std::mem::take(&mut self.surface.findings);
         let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
         self.surface.findings = findings;
         self.candidate(start, watch)
+    }
+
+    /// The medial axis of a convex polyhedron itself, if that is within the limit on the count.
+    fn polyhedron(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+        let most = self.limits.primitives.unwrap_or(usize::MAX);
+        let Some(angle) = self.limits.creases.angle() else {
+            return Ok(None);
+        };
+        let Some(draft) = polyhedron(&self.surface, &self.tree, angle, most, watch)? else {
+            return Ok(None);
+        };
+        // Where balls cover all of the surface without growing, no part of the axis is missing.
+        let mut covering = draft.clone();
+        enclose(&mut covering, &self.surface, 0.0, watch)?;
+        let mut balls = covering.balls.iter().zip(&draft.balls);
+        if balls.any(|(grown, ball)| grown.radius - ball.radius > EXACT) {
+            return Ok(None);
+        }
+        let mut candidate = self.finish(draft, watch)?;
+        if candidate.error() > EXACT {
+            return Ok(None);
+        }
+        let count = candidate.draft.primitives().len();
+        candidate.notes.push(format!(
+            "a convex polyhedron: its own medial axis has {count} primitives, and is exact"
+        ));
+        Ok(Some(candidate))
     }
 
     /// Simplifies and fits to the limits, encloses and measures.

@@ -10,7 +10,7 @@ use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
 
 /// Candidates per sample wanted. Fewer leave gaps, more cost time for a few samples.
-const CANDIDATES: usize = 6;
+pub const CANDIDATES: usize = 6;
 
 /// Distance between samples over √(area / samples). Random darts fill 0.547 of the plane with
 /// discs (Rényi's parking problem in the plane), so the limit is √(4 · 0.547 / π) = 0.83; with
@@ -39,7 +39,7 @@ pub fn blue_noise(
     random.shuffle(&mut corners);
     let mut inner = even_samples(surface, CANDIDATES * count, &mut random);
     random.shuffle(&mut inner);
-    let distance = SPACING * (surface.area / count as f64).sqrt();
+    let distance = spacing(surface, count);
     let mut grid = Grid::new(distance);
     let total = corners.len() + inner.len();
     let mut kept = Vec::with_capacity(count);
@@ -47,11 +47,17 @@ pub fn blue_noise(
         if i % 4096 == 0 {
             watch.at(i as f64 / total as f64)?;
         }
-        if grid.insert(sample.point) {
+        if !grid.is_near(sample.point, distance) {
+            grid.add(sample.point);
             kept.push(sample);
         }
     }
     Ok(kept)
+}
+
+/// Distance between about `count` blue-noise samples.
+pub fn spacing(surface: &Surface, count: usize) -> f64 {
+    SPACING * (surface.area / count as f64).sqrt()
 }
 
 /// Points spread by area: one at random in each of `count` equal shares of it.
@@ -80,6 +86,11 @@ pub fn even_samples(surface: &Surface, count: usize, random: &mut Random) -> Vec
 /// One sample at each vertex, with the angle-weighted normal (Baerentzen and Aanaes 2005), whose
 /// sign tells inside from outside.
 pub fn vertex_samples(surface: &Surface) -> Vec<Sample> {
+    vertex_samples_where(surface, |_| true)
+}
+
+/// [`vertex_samples`] at the vertices, by index, that `wanted` says.
+pub fn vertex_samples_where(surface: &Surface, wanted: impl Fn(usize) -> bool) -> Vec<Sample> {
     let mut normals = vec![(Point::zero(), 0); surface.vertices.len()];
     for (t, (vertices, &normal)) in surface.triangles.iter().zip(&surface.normals).enumerate() {
         let corners = surface.corners(t);
@@ -92,12 +103,10 @@ pub fn vertex_samples(surface: &Surface) -> Vec<Sample> {
         }
     }
     let used = |n: &Point| n.length_sq() > 0.0;
-    surface
-        .vertices
-        .iter()
-        .zip(normals)
-        .filter(|(_, (n, _))| used(n))
-        .map(|(&point, (n, triangle))| Sample {
+    let vertices = surface.vertices.iter().zip(normals).enumerate();
+    vertices
+        .filter(|&(v, (_, (n, _)))| used(&n) && wanted(v))
+        .map(|(_, (&point, (n, triangle)))| Sample {
             point,
             normal: direction(n),
             triangle,
@@ -105,9 +114,8 @@ pub fn vertex_samples(surface: &Surface) -> Vec<Sample> {
         .collect()
 }
 
-/// Points at least `distance` apart, in cubic cells.
-struct Grid {
-    distance: f64,
+/// Points in cubic cells, to find those near another.
+pub struct Grid {
     cell: f64,
     last: FastMap<[i32; 3], u32>,
     /// Each point, and the one before it in its cell.
@@ -115,9 +123,9 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(distance: f64) -> Self {
+    /// An empty grid for points about `distance` apart.
+    pub fn new(distance: f64) -> Self {
         Self {
-            distance,
             // Three distances: a point's reach then meets 4.6 cells on average, and a cell holds
             // about ten points of a surface. One distance means 27 cells.
             cell: 3.0 * distance,
@@ -126,27 +134,35 @@ impl Grid {
         }
     }
 
-    /// Takes `p` unless a point is too near.
-    fn insert(&mut self, p: Point) -> bool {
-        let key = |p: Point| [0, 1, 2].map(|k| (coordinate(p, k) / self.cell).floor() as i32);
-        let reach = Point::new(self.distance, self.distance, self.distance);
-        let (lo, hi) = (key(p - reach), key(p + reach));
+    fn key(&self, p: Point) -> [i32; 3] {
+        [0, 1, 2].map(|k| (coordinate(p, k) / self.cell).floor() as i32)
+    }
+
+    /// Whether a point is nearer to `p` than `distance`.
+    pub fn is_near(&self, p: Point, distance: f64) -> bool {
+        let reach = Point::new(distance, distance, distance);
+        let (lo, hi) = (self.key(p - reach), self.key(p + reach));
         for x in lo[0]..=hi[0] {
             for y in lo[1]..=hi[1] {
                 for z in lo[2]..=hi[2] {
                     let mut at = self.last.get(&[x, y, z]).copied();
                     while let Some(&(q, before)) = at.and_then(|i| self.points.get(i as usize)) {
-                        if (q - p).length_sq() < self.distance * self.distance {
-                            return false;
+                        if (q - p).length_sq() < distance * distance {
+                            return true;
                         }
                         at = Some(before);
                     }
                 }
             }
         }
+        false
+    }
+
+    /// Adds a point.
+    pub fn add(&mut self, p: Point) {
         let new = self.points.len() as u32;
-        let before = self.last.insert(key(p), new).unwrap_or(u32::MAX);
+        let key = self.key(p);
+        let before = self.last.insert(key, new).unwrap_or(u32::MAX);
         self.points.push((p, before));
-        true
     }
 }

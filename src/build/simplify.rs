@@ -8,10 +8,12 @@
 //!   solid has no hole there. When nothing else is left the count wins over the topology.
 //! - Lone balls, which no collapse can remove, are dropped by the same order of cost.
 
-use super::bounds::{Point, direction};
+use super::ball_quadrics::{creased_quadrics, quadrics, stability};
+use super::clip::CreasedMesh;
 use super::complex::Complex;
+use super::crease_cost::{all_touch, fold_cost};
 use super::draft::{Ball, Draft};
-use super::quadric::{Quadric, cone_normals, slab_normals};
+use super::quadric::Quadric;
 use super::queue::{Candidate, Queue};
 use super::triangle_tree::TriangleTree;
 use super::voids::open_voids;
@@ -21,6 +23,21 @@ use crate::error::BuildError;
 /// Added to the error before the stability ratio scales it (Q-MAT's `k`, in units of the longest
 /// side): orders the collapses that cost nothing by their stability.
 const FLAT_COST: f64 = 1e-5;
+
+/// The same in a medial mesh with creases, whose faces' planes are exact: [`FLAT_COST`] hides errors of
+/// up to .003.
+const EXACT_FLAT_COST: f64 = 1e-9;
+
+/// A merged ball of a smaller radius (longest side 1) is on a crease, and has none; one that would have less
+/// than the second overshot it by more than rounding and the quadric's pull.
+const ON_CREASE: f64 = 1e-7;
+const BEHIND_CREASE: f64 = -1e-3;
+
+/// Sum of squared distances to planes below which a collapse is exact, and the rounding of the sum for each
+/// of them; and how far the balls between may be from touching the surface (longest side 1).
+const FREE: f64 = 1e-13;
+const FREE_PER_PLANE: f64 = 2.5e-13;
+const FREE_GAP: f64 = 5e-7;
 
 /// Floor under the stability ratio. Measured: 0 to 0.2 loses fins and ears (error .015 for .006 at
 /// 2000 primitives); 0.2 to 0.5 is alike.
@@ -32,15 +49,6 @@ const REACH: f64 = 3.0;
 
 /// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
 const BULGE: f64 = 0.2;
-
-/// Cosine of the angle between two faces at an edge below which one lies on the other.
-const FOLDED: f64 = 0.99;
-
-/// Weight of the planes that hold the medial mesh's boundary, for a solid and for thin sheets,
-/// whose boundary is the surface's own.
-pub const BOUNDARY_WEIGHT_SOLID: f64 = 0.1;
-/// See [`BOUNDARY_WEIGHT_SOLID`].
-pub const BOUNDARY_WEIGHT_SHEET: f64 = 1.0;
 
 /// A medial mesh on its way to fewer primitives.
 pub struct Simplifier<'a> {
@@ -56,6 +64,8 @@ pub struct Simplifier<'a> {
     /// Whether anything was collapsed since the blocked edges were last tried.
     progressed: bool,
     keep_topology: bool,
+    /// Whether balls of radius 0 stay on creases.
+    creased: bool,
     tree: &'a TriangleTree,
 }
 
@@ -68,12 +78,36 @@ impl<'a> Simplifier<'a> {
         watch: &mut Watch,
     ) -> Result<Self, BuildError> {
         let complex = Complex::new(draft);
+        let quadrics = quadrics(&complex, boundary_weight, watch)?;
+        Self::with_quadrics(complex, quadrics, tree, watch)
+    }
+
+    /// As [`Self::new`] of a medial mesh with creases, which knows the planes that its balls touch; `flat` says
+    /// that all faces are.
+    pub fn creased(
+        mesh: CreasedMesh,
+        flat: bool,
+        tree: &'a TriangleTree,
+        watch: &mut Watch,
+    ) -> Result<Self, BuildError> {
+        let complex = Complex::new(mesh.draft);
+        let quadrics = creased_quadrics(&complex, &mesh.planes, flat, watch)?;
+        Self::with_quadrics(complex, quadrics, tree, watch)
+    }
+
+    fn with_quadrics(
+        complex: Complex,
+        quadrics: Vec<Quadric>,
+        tree: &'a TriangleTree,
+        watch: &mut Watch,
+    ) -> Result<Self, BuildError> {
         let n = complex.balls.len();
         let mut simplifier = Self {
-            quadrics: quadrics(&complex, boundary_weight, watch)?,
+            quadrics,
             versions: vec![0; n],
             queue: Queue::default(),
             clear: vec![0.0; n],
+            creased: complex.balls.iter().any(|b| b.radius == 0.0),
             complex,
             blocked: Vec::new(),
             progressed: false,
@@ -160,12 +194,72 @@ impl<'a> Simplifier<'a> {
         }
         let (_, mut ball) = self.merge(a, b);
         // On round bodies all planes agree on many balls, of which some reach far out of the solid.
-        if !self.is_clear(a, b, &ball) {
+        if !self.is_on_crease(a, b) && !self.is_clear(a, b, &ball) {
             (_, ball) = self.cheapest(a, b);
         }
         self.collapse(a, b, ball);
         self.progressed = true;
         self.push_around(a, |_| true);
+    }
+
+    /// Collapses the edges that cost nothing, in a medial mesh with creases: what is left of a convex
+    /// polyhedron's is its own medial axis.
+    pub fn reduce_exactly(&mut self, watch: &mut Watch) -> Result<(), BuildError> {
+        let mut dear = Vec::new();
+        let mut steps = 0usize;
+        self.progressed = false;
+        loop {
+            let (versions, queue) = (&self.versions, &mut self.queue);
+            let current = |c: &Candidate| [c.a, c.b].map(|v| versions[v as usize]) == c.versions;
+            let Some(candidate) = queue.pop(current) else {
+                // What was held back by its surroundings may be exact since they changed.
+                let waiting = self.blocked.drain(..).chain(dear.drain(..));
+                waiting.for_each(|candidate| self.queue.push(candidate));
+                if !std::mem::take(&mut self.progressed) {
+                    return Ok(());
+                }
+                continue;
+            };
+            if steps.is_multiple_of(512) {
+                watch.again()?;
+            }
+            steps += 1;
+            let Candidate { a, b, .. } = candidate;
+            match self.exact(a, b) {
+                Some(_) if !self.may_collapse(a, b) => self.blocked.push(candidate),
+                Some(ball) => {
+                    self.collapse(a, b, ball);
+                    self.progressed = true;
+                    self.push_around(a, |_| true);
+                }
+                None => dear.push(candidate),
+            }
+        }
+    }
+
+    /// The ball that two may be merged into without a change of the solid.
+    fn exact(&self, a: u32, b: u32) -> Option<Ball> {
+        if a == b || !self.complex.is_alive(a) || !self.complex.is_alive(b) {
+            return None;
+        }
+        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
+        let most = FREE + FREE_PER_PLANE * quadric.weight();
+        let keeps = |ball: &Ball| {
+            quadric.error(ball) <= most
+                && fold_cost(&self.complex, [a, b], ball) == 0.0
+                && all_touch(&self.complex, self.tree, [a, b], ball, FREE_GAP)
+        };
+        // Balls that stay where they are gather no rounding, by which thin slabs would fold.
+        let ends = [a, b].map(|v| self.complex.balls[v as usize]);
+        let end = ends.into_iter().find(keeps);
+        end.or_else(|| Some(self.merge(a, b).1).filter(keeps))
+    }
+
+    /// Whether one of two balls lies on a crease.
+    fn is_on_crease(&self, a: u32, b: u32) -> bool {
+        [a, b]
+            .iter()
+            .any(|&v| self.complex.balls[v as usize].radius == 0.0)
     }
 
     /// Whether the ball that `a` and `b` are merged into sticks out of the solid by no more than
@@ -246,7 +340,7 @@ impl<'a> Simplifier<'a> {
             // Each plane that it touched is then off by up to its diameter.
             let diameter = 2.0 * self.complex.balls[v as usize].radius;
             let planes = self.quadrics[v as usize].weight().max(1.0);
-            self.push(v, v, planes * diameter * diameter + FLAT_COST);
+            self.push(v, v, planes * diameter * diameter + self.flat_cost());
         }
     }
 
@@ -260,6 +354,14 @@ impl<'a> Simplifier<'a> {
         });
     }
 
+    fn flat_cost(&self) -> f64 {
+        if self.creased {
+            EXACT_FLAT_COST
+        } else {
+            FLAT_COST
+        }
+    }
+
     /// Cost of merging two balls, and the ball that they become.
     pub(super) fn merge(&self, a: u32, b: u32) -> (f64, Ball) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
@@ -267,35 +369,56 @@ impl<'a> Simplifier<'a> {
         let middle = middle(&ball_a, &ball_b);
         let length = (ball_b.center - ball_a.center).length();
         let near = |m: &Ball| (m.center - middle.center).length() <= REACH * length;
-        let minimiser = quadric.minimiser(&middle);
-        let Some(minimiser) = minimiser.filter(|m| m.radius > 0.0 && near(m)) else {
-            return cheapest_of(&quadric, [ball_a, ball_b, middle]);
-        };
-        let cost = cost(quadric.error(&minimiser), &ball_a, &ball_b);
-        (cost, minimiser)
+        let minimiser = quadric.minimiser(&middle).filter(near);
+        if self.is_on_crease(a, b) {
+            let snapped = minimiser
+                .filter(|m| m.radius > BEHIND_CREASE)
+                .map(|m| Ball {
+                    radius: if m.radius < ON_CREASE { 0.0 } else { m.radius },
+                    ..m
+                });
+            return self.cheapest_of(a, b, [Some(ball_a), Some(ball_b), snapped]);
+        }
+        match minimiser.filter(|m| m.radius > 0.0) {
+            Some(ball) if self.creased => {
+                self.cheapest_of(a, b, [Some(ball_a), Some(ball_b), Some(ball)])
+            }
+            Some(ball) => (self.cost(a, b, &quadric, &ball), ball),
+            None => self.cheapest_of(a, b, [Some(ball_a), Some(ball_b), Some(middle)]),
+        }
     }
 
     /// The cheapest of two balls and their middle to merge the two into.
     fn cheapest(&self, a: u32, b: u32) -> (f64, Ball) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
-        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        cheapest_of(&quadric, [ball_a, ball_b, middle(&ball_a, &ball_b)])
+        let middle = middle(&ball_a, &ball_b);
+        self.cheapest_of(a, b, [ball_a, ball_b, middle].map(Some))
     }
-}
 
-/// The cheapest of two balls and their middle to merge the two into, and its cost.
-fn cheapest_of(quadric: &Quadric, balls: [Ball; 3]) -> (f64, Ball) {
-    let [a, b, _] = balls;
-    let tried = balls.into_iter().map(|ball| (quadric.error(&ball), ball));
-    let best = tried.min_by(|x, y| x.0.total_cmp(&y.0));
-    let (error, ball) = best.unwrap_or((0.0, a));
-    (cost(error, &a, &b), ball)
-}
+    /// The cheapest of balls to merge two into, and its cost.
+    fn cheapest_of(&self, a: u32, b: u32, balls: [Option<Ball>; 3]) -> (f64, Ball) {
+        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
+        let tried = balls.into_iter().flatten();
+        let tried = tried.map(|ball| (quadric.error(&ball) + self.folds(a, b, &ball), ball));
+        let best = tried.min_by(|x, y| x.0.total_cmp(&y.0));
+        let ball = best.map_or(self.complex.balls[a as usize], |(_, ball)| ball);
+        (self.cost(a, b, &quadric, &ball), ball)
+    }
 
-/// Cost of merging two balls into one that is off by `error`.
-fn cost(error: f64, a: &Ball, b: &Ball) -> f64 {
-    let stability = stability(a, b).max(STABILITY_FLOOR);
-    (error + FLAT_COST) * stability * stability
+    fn folds(&self, a: u32, b: u32, ball: &Ball) -> f64 {
+        match self.creased {
+            true => fold_cost(&self.complex, [a, b], ball),
+            false => 0.0,
+        }
+    }
+
+    /// Cost of merging two balls into `ball`.
+    fn cost(&self, a: u32, b: u32, quadric: &Quadric, ball: &Ball) -> f64 {
+        let [ball_a, ball_b] = [a, b].map(|v| &self.complex.balls[v as usize]);
+        let stability = stability(ball_a, ball_b).max(STABILITY_FLOOR);
+        let error = quadric.error(ball) + self.flat_cost();
+        error * stability * stability + self.folds(a, b, ball)
+    }
 }
 
 /// The ball halfway between two.
@@ -303,100 +426,5 @@ fn middle(a: &Ball, b: &Ball) -> Ball {
     Ball {
         center: (a.center + b.center) * 0.5,
         radius: 0.5 * (a.radius + b.radius),
-    }
-}
-
-/// Stability ratio ρ = max(0, d − |r1 − r2|)/d: 0 where one ball contains the other.
-fn stability(a: &Ball, b: &Ball) -> f64 {
-    let d = (b.center - a.center).length();
-    if d > 0.0 {
-        ((d - (b.radius - a.radius).abs()) / d).max(0.0)
-    } else {
-        0.0
-    }
-}
-
-/// Planes that each ball should go on touching: those of its slabs, and where the medial mesh ends,
-/// planes that hold its boundary.
-fn quadrics(
-    complex: &Complex,
-    boundary_weight: f64,
-    watch: &mut Watch,
-) -> Result<Vec<Quadric>, BuildError> {
-    let balls = &complex.balls;
-    let mut quadrics = vec![Quadric::default(); balls.len()];
-    for face in complex.faces() {
-        let corners = face.map(|v| balls[v as usize]);
-        for n in slab_normals(corners).into_iter().flatten() {
-            for (&v, ball) in face.iter().zip(&corners) {
-                quadrics[v as usize].add_plane(n, ball, 1.0);
-            }
-        }
-    }
-    for a in 0..balls.len() as u32 {
-        if a % 512 == 0 {
-            watch.at(0.0)?;
-        }
-        for &b in complex.neighbors(a).iter().filter(|&&b| b > a) {
-            let mut opposite = complex.opposite(a, b);
-            match (opposite.next(), opposite.next()) {
-                (None, _) => add_dangling(complex, [a, b], boundary_weight, &mut quadrics),
-                (Some(c), None) => add_boundary(balls, [a, b, c], boundary_weight, &mut quadrics),
-                // The two sides of something flat meet at its outline. Slabs of a solid's medial
-                // mesh fold by chance only.
-                (Some(c), Some(d))
-                    if boundary_weight >= BOUNDARY_WEIGHT_SHEET && folds(balls, [a, b], [c, d]) =>
-                {
-                    add_boundary(balls, [a, b, c], boundary_weight, &mut quadrics);
-                }
-                _ => {}
-            }
-        }
-    }
-    Ok(quadrics)
-}
-
-/// Whether the faces `abc` and `abd` lie on each other, within a few degrees.
-fn folds(balls: &[Ball], ab: [u32; 2], cd: [u32; 2]) -> bool {
-    let at = |v: u32| balls[v as usize].center;
-    let [a, b] = ab.map(at);
-    let along = direction(b - a);
-    let inward = |v: u32| {
-        let from_a = at(v) - a;
-        direction(from_a - along * from_a.dot(along))
-    };
-    inward(cd[0]).dot(inward(cd[1])) > FOLDED
-}
-
-/// Boundary edge `ab` of the face `abc`: a plane across the face, facing away from `c`.
-fn add_boundary(balls: &[Ball], abc: [u32; 3], weight: f64, quadrics: &mut [Quadric]) {
-    let [a, b, c] = abc.map(|v| balls[v as usize]);
-    let along = direction(b.center - a.center);
-    let from_c = a.center - c.center;
-    let outward = direction(from_c - along * from_c.dot(along));
-    if outward.length_sq() > 0.0 {
-        let weight = weight * stability(&a, &b).powi(2);
-        quadrics[abc[0] as usize].add_plane(outward, &a, weight);
-        quadrics[abc[1] as usize].add_plane(outward, &b, weight);
-    }
-}
-
-/// Edge `ab` without a face: four planes of its cone, and one across the axis at an end that is
-/// joined to nothing else.
-fn add_dangling(complex: &Complex, ab: [u32; 2], weight: f64, quadrics: &mut [Quadric]) {
-    let [a, b] = ab.map(|v| complex.balls[v as usize]);
-    let Some(normals) = cone_normals(&a, &b) else {
-        return;
-    };
-    for n in normals {
-        quadrics[ab[0] as usize].add_plane(n, &a, 1.0);
-        quadrics[ab[1] as usize].add_plane(n, &b, 1.0);
-    }
-    let axis: Point = direction(b.center - a.center);
-    let weight = weight * stability(&a, &b).powi(2);
-    for (v, ball, outward) in [(ab[0], a, -axis), (ab[1], b, axis)] {
-        if complex.neighbors(v).len() == 1 {
-            quadrics[v as usize].add_plane(outward, &ball, weight);
-        }
     }
 }

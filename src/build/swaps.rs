@@ -5,12 +5,13 @@
 //! search: no bound on the result, but never a worse score. The cheapest are so by measured cost
 //! (`measured.rs`); among many primitives by the quadrics', which is as good there and far quicker.
 
+use super::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use super::draft::Draft;
 use super::fit::LARGE;
 use super::insert::insert;
 use super::measured::reduce_measured;
 use super::refit::{Target, refit};
-use super::simplify::{BOUNDARY_WEIGHT_SOLID, Simplifier};
+use super::simplify::Simplifier;
 use super::watch::Watch;
 use crate::error::BuildError;
 

@@ -83,6 +83,11 @@ impl TriangleTree {
         Ok(tree)
     }
 
+    /// Place, among the triangles that the tree was built of, of one that it gave.
+    pub fn given(&self, triangle: u32) -> u32 {
+        self.given[triangle as usize]
+    }
+
     /// Bytes of its arrays.
     pub fn bytes(&self) -> usize {
         let of_each = bytes_of(&self.given) + bytes_of(&self.counts);

@@ -40,7 +40,7 @@ fn every_source_point_is_covered() {
             .hausdorff_before_enclosure
             .expect("enclosure was asked for");
         assert!(
-            before.uncovered > 100.0 * rounding,
+            before.uncovered > 100.0 * rounding || before.error() < 1e-6 * side,
             "{name}: nothing to enclose: {before:?}"
         );
     }

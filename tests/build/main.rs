@@ -4,6 +4,7 @@ mod bad_input;
 mod broken;
 mod combined;
 mod corpus;
+mod creases;
 mod delaunay;
 mod distance;
 mod enclosure;

@@ -1,0 +1,102 @@
+//! What the planes that balls touch do not tell about a collapse in a medial mesh with creases.
+//!
+//! All planes of a flat sheet agree on every ball of it, and cost nothing: so a sheet could fold over its
+//! own outline. Between balls of radius 0 a slab may span a notch, and touch all its planes.
+
+use super::bounds::Point;
+use super::complex::Complex;
+use super::draft::Ball;
+use super::triangle_tree::TriangleTree;
+
+/// Cosine of the turn of a face beyond which it counts as turned over.
+const TURNED: f64 = 0.2;
+
+/// Cost of turned faces over their area (twice it; longest side 1): a sheet folds before it is off by more
+/// than a tenth.
+const FOLD_COST: f64 = 10.0;
+
+/// Faces smaller than this (twice their area) have no direction that counts.
+const NO_AREA: f64 = 1e-8;
+
+/// A ball that moves by less (longest side 1) stays where it is.
+const STILL: f64 = 1e-9;
+
+/// Cost of the faces at either end of an edge that turn over when both become `ball`.
+pub fn fold_cost(complex: &Complex, [a, b]: [u32; 2], ball: &Ball) -> f64 {
+    let at = |v: u32| complex.balls[v as usize].center;
+    let normal = |p: [Point; 3]| (p[1] - p[0]).cross(p[2] - p[0]);
+    let mut sum = 0.0;
+    for (moved, other) in [(a, b), (b, a)] {
+        if stays(&complex.balls[moved as usize], ball) {
+            continue;
+        }
+        for face in complex.faces_at(moved).filter(|f| !f.contains(&other)) {
+            let before = normal(face.map(at));
+            let after = normal(face.map(|v| if v == moved { ball.center } else { at(v) }));
+            let (long_before, long_after) = (before.length(), after.length());
+            let turned = before.dot(after) < TURNED * long_before * long_after;
+            if turned && long_after > NO_AREA {
+                sum += long_after.min(long_before.max(1e-3 * long_after));
+            }
+        }
+    }
+    FOLD_COST * sum
+}
+
+/// Whether all of these balls touch the surface, within `tolerance`, if their centres are inside.
+pub fn all_touch(
+    complex: &Complex,
+    tree: &TriangleTree,
+    ab: [u32; 2],
+    ball: &Ball,
+    tolerance: f64,
+) -> bool {
+    let touches = |b: &Ball| {
+        let nearest = tree.closest_within(b.center, b.radius + tolerance);
+        nearest.is_some_and(|p| (p - b.center).length() >= b.radius - tolerance)
+    };
+    // What does not move is as good as it was.
+    let moved = ab
+        .into_iter()
+        .filter(|&v| !stays(&complex.balls[v as usize], ball));
+    touches(ball)
+        && moved
+            .flat_map(|v| middles(complex, ab, v, ball))
+            .all(|b| touches(&b))
+}
+
+/// Whether a ball that becomes another stays where it is.
+fn stays(ball: &Ball, becomes: &Ball) -> bool {
+    let way = (ball.center - becomes.center).length();
+    way + (ball.radius - becomes.radius).abs() <= STILL
+}
+
+/// The middles of the edges and faces that one end of the edge `ab` brings along when both become `ball`.
+fn middles<'a>(
+    complex: &'a Complex,
+    [a, b]: [u32; 2],
+    moved: u32,
+    ball: &'a Ball,
+) -> impl Iterator<Item = Ball> + 'a {
+    let other = a + b - moved;
+    let ends = complex
+        .neighbors(moved)
+        .iter()
+        .filter(move |&&v| v != other);
+    let edges = ends.map(move |&v| {
+        let end = complex.balls[v as usize];
+        Ball::interpolate([*ball, end, end], [0.5, 0.5, 0.0])
+    });
+    let faces = complex.faces_at(moved).filter(move |f| !f.contains(&other));
+    let slabs = faces.map(move |face| {
+        let of = |v: u32| {
+            if v == moved {
+                *ball
+            } else {
+                complex.balls[v as usize]
+            }
+        };
+        Ball::interpolate(face.map(of), [1.0 / 3.0; 3])
+    });
+    slabs.chain(edges)
+}

@@ -1,0 +1,91 @@
+//! Where a slab touches a plane: the triangle of the points at which its three balls do. A piece of a flat
+//! face is cut along that triangle's sides, so that each part lies in one slab: halving alone never gets
+//! rid of pieces that cross from one slab to the next.
+
+use super::bounds::{Point, direction};
+use super::draft::Ball;
+use super::quadric::slab_normals;
+
+/// A slab touches a face when its points of contact are within this of the face's plane (longest side 1).
+const TOUCHES: f64 = 1e-6;
+
+/// Cuts that part off less than this share of a piece's area are not made: they are of rounding.
+const LEAST_SHARE: f64 = 1e-6;
+
+/// Parts of a piece: those in a slab's triangle of contact, and the others.
+pub struct Cut {
+    /// Parts that the slab covers, up to rounding and its distance from the plane.
+    pub inner: Vec<[Point; 3]>,
+    /// The rest.
+    pub outer: Vec<[Point; 3]>,
+}
+
+/// Cuts a piece of a face along the outline of what a slab touches of its plane; `None` where that is nothing
+/// of the piece, or all.
+pub fn cut_along_outline(piece: &[Point; 3], slab: [Ball; 3]) -> Option<Cut> {
+    let normal = direction(normal_of(piece));
+    let touching = slab_normals(slab)?;
+    let [one, other] = touching;
+    let outward = if one.dot(normal) > other.dot(normal) {
+        one
+    } else {
+        other
+    };
+    let contact = slab.map(|ball| ball.center + outward * ball.radius);
+    if contact
+        .iter()
+        .any(|p| (*p - piece[0]).dot(normal).abs() > TOUCHES)
+    {
+        return None;
+    }
+    let turn = match normal_of(&contact).dot(normal) > 0.0 {
+        true => normal,
+        false => -normal,
+    };
+    let mut inside = piece.to_vec();
+    let mut outer = Vec::new();
+    let least = LEAST_SHARE * area(piece);
+    for k in 0..3 {
+        let (from, to) = (contact[k], contact[(k + 1) % 3]);
+        let inward = direction(turn.cross(to - from));
+        let height = |p: &Point| (*p - from).dot(inward);
+        let beyond = clip(&inside, |p| -height(p));
+        if fan(&beyond).map(|t| area(&t)).sum::<f64>() > least {
+            outer.extend(fan(&beyond));
+            inside = clip(&inside, height);
+        }
+    }
+    let inner: Vec<[Point; 3]> = fan(&inside).collect();
+    let covered: f64 = inner.iter().map(area).sum();
+    (covered > least && !outer.is_empty()).then_some(Cut { inner, outer })
+}
+
+/// The part of a convex polygon where `height`, which is linear, is not negative.
+fn clip(polygon: &[Point], height: impl Fn(&Point) -> f64) -> Vec<Point> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (k, p) in polygon.iter().enumerate() {
+        let q = &polygon[(k + 1) % polygon.len()];
+        let (at_p, at_q) = (height(p), height(q));
+        if at_p >= 0.0 {
+            kept.push(*p);
+        }
+        if (at_p > 0.0 && at_q < 0.0) || (at_p < 0.0 && at_q > 0.0) {
+            kept.push(*p + (*q - *p) * (at_p / (at_p - at_q)));
+        }
+    }
+    kept
+}
+
+/// The triangles of a convex polygon, from its first corner.
+fn fan(polygon: &[Point]) -> impl Iterator<Item = [Point; 3]> + '_ {
+    let pairs = polygon.get(1..).unwrap_or(&[]).windows(2);
+    pairs.map(|pair| [polygon[0], pair[0], pair[1]])
+}
+
+fn normal_of([a, b, c]: &[Point; 3]) -> Point {
+    (*b - *a).cross(*c - *a)
+}
+
+fn area(triangle: &[Point; 3]) -> f64 {
+    0.5 * normal_of(triangle).length()
+}
