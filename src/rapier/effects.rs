@@ -1,6 +1,7 @@
 //! What a scene, or a collider, calls for; what is off costs nothing. `docs/effects.md` has the
 //! inequality by which each is decided.
 
+use crate::batch::Backend;
 use crate::medial::MedialMesh;
 use crate::parry::answers::OnePoint;
 use rapier3d::geometry::{ColliderHandle, ColliderSet};
@@ -46,6 +47,16 @@ pub struct Effects {
     /// never; each stop costs a step. Off: an impulse between the two bodies, the others go on. After
     /// eight stops in a step, and in worlds with multibodies or soft bodies, as if off.
     pub stop: Effect,
+}
+
+/// How a pipeline works.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MedialOptions {
+    /// What the scene calls for.
+    pub effects: Effects,
+    /// Where batches are computed; the world is the same on each, bit by bit.
+    pub backend: Backend,
 }
 
 impl Effects {

@@ -10,10 +10,11 @@
 
 use super::first_contact::{Asker, Hit, Work};
 use super::inquiry::{Inquiry, Known, Meshes};
-use super::motion::{Kind, Snapshot};
+use super::motion::Kind;
 use super::outlines::Outlines;
 use super::pairs::{Rules, concerned, in_order, sweep};
 use super::response::{Blow, Response};
+use super::snapshot::Snapshot;
 use super::waiting::Waiting;
 use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::Real;

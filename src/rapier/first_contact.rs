@@ -10,7 +10,7 @@
 //! where thinner parts of them are near each other ([`Thin`]).
 
 use super::effects::{Effect, Effects, Wanted};
-use super::motion::Snapshot;
+use super::snapshot::Snapshot;
 use super::thin_parts::Thin;
 use super::tuning::Tuning;
 use crate::batch::ToiJob;

@@ -2,7 +2,7 @@
 //! further than to the time of the next impact, which gives one of the two another motion.
 
 use super::first_contact::{Asker, Hit, Question, Work};
-use super::motion::Snapshot;
+use super::snapshot::Snapshot;
 use crate::elementary::ToiOptions;
 use crate::math::Real;
 use crate::medial::MedialMesh;

@@ -11,7 +11,8 @@
 //! soft are left to it.
 
 use super::impulse::Inertia;
-use super::motion::{Kind, Snapshot, shortest};
+use super::motion::{Kind, shortest};
+use super::snapshot::Snapshot;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Rotation, Vector};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};

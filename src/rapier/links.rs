@@ -1,7 +1,8 @@
 //! Hands poses and velocities that the event loop gave links on to their multibodies: as coordinates of joints,
 //! from which rapier then computes the poses.
 
-use super::motion::{Snapshot, shortest};
+use super::motion::shortest;
+use super::snapshot::Snapshot;
 use crate::math::{Pose, Real, Vector};
 use rapier3d::dynamics::{
     Multibody, MultibodyJointSet, MultibodyLink, RigidBodyHandle, RigidBodySet,
@@ -13,13 +14,6 @@ struct State {
     pose: Pose,
     center: Vector,
     velocity: [Vector; 2],
-}
-
-/// Whether impacts move the links of a multibody: rapier tells the order of the coordinates only where none is
-/// driven by the user, and couplings between joints are not known here.
-pub fn is_free(multibody: &Multibody) -> bool {
-    let driven = |link: &MultibodyLink| link.joint.kinematic;
-    multibody.couplings().is_empty() && !multibody.links().any(driven)
 }
 
 /// Sets all multibodies of which a link changed: `changed` has indices in the snapshot, and whether the velocity did.

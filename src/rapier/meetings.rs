@@ -2,7 +2,7 @@
 //! again; how far they have opened since follows from the poses.
 
 use super::first_contact::Hit;
-use super::motion::Snapshot;
+use super::snapshot::Snapshot;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 

@@ -28,6 +28,7 @@ pub mod report;
 mod response;
 #[cfg(feature = "serde-serialize")]
 pub mod saved_world;
+mod snapshot;
 mod speculative;
 mod sweep;
 mod thin_parts;
@@ -38,8 +39,9 @@ mod waiting;
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]
 pub use debug_draw::MedialDebugRender;
-pub use effects::{Effect, Effects};
-pub use pipeline::{MedialOptions, MedialPipeline};
+pub use effects::{Effect, Effects, MedialOptions};
+pub use pipeline::MedialPipeline;
+pub use recycled::RECYCLE_DISTANCE;
 pub use report::StepReport;
 #[cfg(feature = "serde-serialize")]
 pub use saved_world::{SavedWorld, SavedWorldError, load_world, save_world};

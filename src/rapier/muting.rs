@@ -3,8 +3,8 @@
 //! from the poses at the start: too late, or at a place where the bodies never meet.
 
 use super::first_contact::{Asker, Work};
-use super::motion::Snapshot;
 use super::pairs::{Rules, sweep};
+use super::snapshot::Snapshot;
 use crate::math::Real;
 use crate::parry::answers::Key;
 use std::collections::HashSet;

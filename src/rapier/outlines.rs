@@ -1,7 +1,7 @@
 //! Which pairs need not be searched yet, or not at all: spheres round both, and then directions
 //! ([`crate::pair::outline`]), keep them apart.
 
-use super::motion::Snapshot;
+use super::snapshot::Snapshot;
 use crate::math::Real;
 use crate::math::approach::first_touch;
 use crate::math::lane::Vec3;

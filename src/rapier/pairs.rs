@@ -1,6 +1,7 @@
 //! Which colliders may meet: rapier's own rules, and swept boxes.
 
-use super::motion::{Body, Kind, Snapshot};
+use super::motion::{Body, Kind};
+use super::snapshot::Snapshot;
 use super::sweep::meeting;
 use super::verdicts::Verdicts;
 use crate::math::Real;

@@ -1,47 +1,30 @@
 //! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
 
-use super::effects::{Effect, Effects, Wanted};
+use super::effects::{Effect, Effects, MedialOptions, Wanted};
 use super::emit::{Once, Scene, Told};
 use super::first_contact::{Asker, Work};
 use super::items::{self, Sets};
-use super::motion::{Body, Snapshot};
 use super::pairs::Rules;
-use super::recycled::Recycled;
+use super::recycled::{RECYCLE_DISTANCE, Recycled};
 use super::report::StepReport;
+use super::snapshot::Snapshot;
 use super::speculative::Speculators;
 use super::tuning::Tuning;
 use super::verdicts::Verdicts;
 use super::{candidates, hanging, links, muting};
-use crate::batch::{Backend, Batch};
+use crate::batch::Batch;
 use crate::math::{Real, Vector};
 use crate::parry::{Answers, MedialDispatcher};
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
-    RigidBodySet, RigidBodyType, SoftBodySet,
+    RigidBodySet, SoftBodySet,
 };
 use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, PhysicsWorld};
 use std::collections::HashSet;
 use std::sync::Arc;
 use web_time::Instant;
-
-/// Contact recycle distance that [`MedialPipeline::attach`] sets, in units of rapier's length unit
-/// (rapier's own default is 0.05). Contacts that a pair can close before it has moved by this
-/// distance, and in the step after, are computed and solved; so a smaller distance takes more contact
-/// computations of fewer contacts. Contacts in which a body hangs are computed anew much sooner, whatever it is: rapier is
-/// made to by bit 31 of the collider's hooks, which stays until the next step and calls no hook.
-pub const RECYCLE_DISTANCE: Real = 0.004;
-
-/// How a pipeline works.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct MedialOptions {
-    /// What the scene calls for.
-    pub effects: Effects,
-    /// Where batches are computed; the world is the same on each, bit by bit.
-    pub backend: Backend,
-}
 
 /// Steps a world whose medial colliders meet each other: finds their near pairs, computes all
 /// contacts in one batch, and hands them to rapier's narrow phase as it asks for them. After rapier's
@@ -242,10 +225,7 @@ impl MedialPipeline {
         let before = self.batch.report().clone();
         let next = candidates::expect(sets, &self.recycled);
         self.batch.submit(&next);
-        let after = self.batch.report();
-        report.submissions += after.submissions - before.submissions;
-        report.maps += after.maps - before.maps;
-        report.fallbacks += after.fallbacks - before.fallbacks;
+        report.add_sent(&before, self.batch.report());
     }
 
     /// A step, or what of it comes before the world stops; the second result is when.
@@ -327,9 +307,7 @@ impl MedialPipeline {
         for ((job, ahead), result) in jobs.clone().zip(&mut results) {
             ahead.bring_back(result);
             self.recycled.set_touching(job, !result.contacts.is_empty());
-            report.contacts += result.contacts.len();
-            report.culled_nodes += u64::from(result.counts.nodes);
-            report.elementary_tests += u64::from(result.counts.tests);
+            report.add_contacts(result);
         }
         let keys = jobs.map(|(job, ahead)| ahead.key(job));
         let answers = keys.zip(results);
@@ -390,7 +368,7 @@ impl MedialPipeline {
             &mut work,
         );
         for &(index, struck) in &outcome.changed {
-            write_back(&snapshot.bodies[index], struck, bodies);
+            snapshot.bodies[index].write_back(struck, bodies);
         }
         if !outcome.changed.is_empty() {
             links::write_back(&snapshot, &outcome.changed, bodies, multibody_joints);
@@ -411,43 +389,9 @@ impl MedialPipeline {
         for ids in self.answers.take_missed() {
             self.recycled.forget(ids);
         }
-        let counted = self.answers.take_counts();
-        report.cache_hits = counted.hits;
-        report.cache_misses = counted.misses;
-        report.manifolds = counted.manifolds;
-        report.intersections = counted.intersections;
-        report.continuous_queries = counted.casts + work.queries;
-        report.rotating_queries = work.rotating;
-        report.culled_nodes += counted.nodes + work.nodes;
-        report.elementary_tests += counted.tests + work.tests;
-        let after = self.batch.report();
-        report.settled_by_gpu = after.settled_by_gpu - before.settled_by_gpu;
-        report.unfit = after.unfit - before.unfit;
-        report.submissions = after.submissions - before.submissions;
-        report.maps = after.maps - before.maps;
-        report.sent_early = after.sent_early - before.sent_early;
-        report.given_up = after.given_up - before.given_up;
-        report.fallbacks = after.fallbacks - before.fallbacks;
+        report.add_answered(&self.answers.take_counts());
+        report.add_searched(&work);
+        report.add_sent(&before, self.batch.report());
         (report, outcome.stopped)
-    }
-}
-
-/// Gives a body the pose and velocities at the end of the event loop.
-fn write_back(moved: &Body, struck: bool, bodies: &mut RigidBodySet) {
-    let Some(body) = moved.handle.and_then(|h| bodies.get_mut(h)) else {
-        return;
-    };
-    if !moved.motion.start.is_finite() {
-        return;
-    }
-    let end = *body.position();
-    body.set_position(moved.motion.start, struck);
-    if body.body_type() == RigidBodyType::KinematicPositionBased {
-        // Where it was going, it still is.
-        body.set_next_kinematic_position(end);
-    }
-    if struck {
-        body.set_linvel(moved.velocity[0], true);
-        body.set_angvel(moved.velocity[1], true);
     }
 }

@@ -1,5 +1,9 @@
 //! What a step did, counted and timed.
 
+use super::first_contact::Work;
+use crate::batch::{BatchReport, PairResult};
+use crate::parry::answers::Counted;
+
 /// Counters and timings of one [`crate::MedialPipeline`] step. Counters cover medial colliders only.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -72,6 +76,43 @@ pub struct StepReport {
 }
 
 impl StepReport {
+    /// Adds the contacts of a job of the batch.
+    pub(super) fn add_contacts(&mut self, result: &PairResult) {
+        self.contacts += result.contacts.len();
+        self.culled_nodes += u64::from(result.counts.nodes);
+        self.elementary_tests += u64::from(result.counts.tests);
+    }
+
+    /// Adds what the narrow phase asked for besides the batch.
+    pub(super) fn add_answered(&mut self, counted: &Counted) {
+        self.cache_hits += counted.hits;
+        self.cache_misses += counted.misses;
+        self.manifolds += counted.manifolds;
+        self.intersections += counted.intersections;
+        self.continuous_queries += counted.casts;
+        self.culled_nodes += counted.nodes;
+        self.elementary_tests += counted.tests;
+    }
+
+    /// Adds what the searches for first contacts took.
+    pub(super) fn add_searched(&mut self, work: &Work) {
+        self.continuous_queries += work.queries;
+        self.rotating_queries += work.rotating;
+        self.culled_nodes += work.nodes;
+        self.elementary_tests += work.tests;
+    }
+
+    /// Adds what the backend did between two of its reports.
+    pub(super) fn add_sent(&mut self, before: &BatchReport, after: &BatchReport) {
+        self.settled_by_gpu += after.settled_by_gpu - before.settled_by_gpu;
+        self.unfit += after.unfit - before.unfit;
+        self.submissions += after.submissions - before.submissions;
+        self.maps += after.maps - before.maps;
+        self.sent_early += after.sent_early - before.sent_early;
+        self.given_up += after.given_up - before.given_up;
+        self.fallbacks += after.fallbacks - before.fallbacks;
+    }
+
     /// Adds what another part of the same step did.
     pub(super) fn add(&mut self, part: &Self) {
         self.medial_colliders = part.medial_colliders;

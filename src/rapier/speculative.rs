@@ -2,7 +2,8 @@
 //! predict contacts as far as they may get ([`crate::Effects::speculative`]).
 
 use super::effects::{Effect, Wanted};
-use super::motion::{Kind, Snapshot};
+use super::motion::Kind;
+use super::snapshot::Snapshot;
 use crate::math::Real;
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
 

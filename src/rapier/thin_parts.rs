@@ -2,7 +2,7 @@
 //! collider is typically thicker than what it travels, so this is asked of few pairs, and mostly ends at
 //! the root of both trees.
 
-use super::motion::{Part, Snapshot};
+use super::snapshot::{Part, Snapshot};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::tree::Below;

@@ -10,7 +10,7 @@
 //! it drops hits of what overlaps at the start; of medial meshes it would hear of a deeper contact in every
 //! step. So those pairs are noted here, and the dispatcher lets them pass.
 
-use super::motion::Snapshot;
+use super::snapshot::Snapshot;
 use crate::math::fast_hash::FastMap;
 use crate::parry::Answers;
 use crate::parry::answers::Key;
