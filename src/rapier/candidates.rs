@@ -98,6 +98,9 @@ impl<'a> Scene<'a> {
         for (start, pushed) in all.iter_mut().zip(pushed) {
             start.pushed = pushed;
         }
+        for (start, hangs) in all.iter_mut().zip(hanging::hang(&sets, &items)) {
+            start.hangs = hangs;
+        }
         let medial = met
             .into_iter()
             .filter(|pair| pair.iter().all(|k| *k < items.all.len()));

@@ -78,6 +78,33 @@ pub fn depth(pair: &ContactPair) -> Real {
     points.map(|p| -p.dist).fold(0.0, Real::max)
 }
 
+/// Which medial colliders touch another so that the contact pulls their body away from its centre of mass,
+/// however little. Known from the world alone, as in [`find`].
+pub fn hang(sets: &Sets, items: &Items) -> Vec<bool> {
+    let mut hangs = vec![false; items.all.len()];
+    for pair in sets.narrow_phase.contact_pairs() {
+        let places = [pair.collider1, pair.collider2].map(|h| items.place(h));
+        let [Some(i), Some(j)] = places else {
+            continue;
+        };
+        let gap = items.all[i].skin + items.all[j].skin + TOUCHING * sets.parameters.length_unit;
+        for m in pair.manifolds() {
+            for p in m.points.iter().filter(|p| p.dist < gap) {
+                let sides = [
+                    (i, p.local_p1, -m.data.normal),
+                    (j, p.local_p2, m.data.normal),
+                ];
+                for (place, point, force) in sides {
+                    let item = &items.all[place];
+                    let arm = item.moving.map(|(_, center)| item.pose * point - center);
+                    hangs[place] |= arm.is_some_and(|arm| arm.dot(force) > 0.0);
+                }
+            }
+        }
+    }
+    hangs
+}
+
 /// Whether one of a pair hangs in contacts which have moved, in a world of this length unit.
 fn hanging(pair: &ContactPair, sides: [&Item; 2], skins: Real, unit: Real) -> bool {
     let centers = sides.map(|s| s.moving.map(|(_, center)| center));
