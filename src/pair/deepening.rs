@@ -14,7 +14,11 @@
 /// of the poses decides.
 const CROSSED: f64 = 1.0e-2;
 
-/// Share of the way that is left which the tolerance takes of it.
+/// Share of what is left between the axes that one query may take: however often a pair meets, something is left.
+/// Larger, and a few meetings bring the axes to rounding; smaller, and pairs that are pressed meet more often.
+const GIVEN: f64 = 0.0625;
+
+/// Share of the way that a query may take which is its tolerance.
 const TAKEN: f64 = 0.25;
 
 /// What counts as contact of two primitives.
@@ -57,16 +61,17 @@ impl Threshold {
         if axes <= CROSSED * tolerance {
             return plain;
         }
-        let (scale, left) = if distance > 0.0 {
-            (1.0, distance)
+        let by = by.min(GIVEN * axes);
+        let tolerance = tolerance.min(TAKEN * by);
+        let (scale, target) = if distance > 0.0 {
+            (1.0, (distance - by).max(0.0))
         } else {
-            let by = by.min(0.5 * axes);
-            ((axes - by) / (axes - distance), by)
+            ((axes - by) / (axes - distance), 0.0)
         };
         Self {
             scale,
-            target: 0.0,
-            tolerance: tolerance.min(TAKEN * left),
+            target,
+            tolerance,
         }
     }
 }
