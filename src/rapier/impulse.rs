@@ -87,6 +87,16 @@ impl Inertia {
         [self.mass * impulse, self.angular * torque]
     }
 
+    /// Kinetic energy at these velocities, of what can move; of turning none where an axis is locked.
+    pub fn energy(&self, [linear, angular]: [Vector; 2]) -> f64 {
+        let per = |v: Real, inverse: Real| if inverse > 0.0 { v * v / inverse } else { 0.0 };
+        let m = self.mass;
+        let slide = per(linear.x, m.x) + per(linear.y, m.y) + per(linear.z, m.z);
+        let spin = angular.dot(self.angular.inverse_unchecked() * angular);
+        let spin = if spin.is_finite() { spin } else { 0.0 };
+        0.5 * f64::from(slide + spin)
+    }
+
     /// Whether nothing moves it.
     pub fn is_infinite(&self) -> bool {
         self.mass == Vector::ZERO && self.angular == Self::INFINITE.angular
@@ -106,6 +116,11 @@ pub struct Impact {
 }
 
 impl Impact {
+    /// Relative speed along the normal that a unit impulse along it gives.
+    pub fn resistance(&self) -> Real {
+        self.normal.dot(self.effect(self.normal))
+    }
+
     /// The impulse on the second body (the first gets its negative) after which the bodies part with
     /// `least` or faster. `None` if they do so already, or nothing can move.
     ///
@@ -113,7 +128,7 @@ impl Impact {
     pub fn impulse(&self, v: Vector, least: Real) -> Option<Vector> {
         let normal_speed = v.dot(self.normal);
         let k = |u: Vector| u.dot(self.effect(u));
-        let resistance = k(self.normal);
+        let resistance = self.resistance();
         if normal_speed >= least || resistance <= Real::MIN_POSITIVE {
             return None;
         }

@@ -23,7 +23,7 @@ use rapier3d::dynamics::{
 
 /// Joints that hand an impulse on, the nearest to what is struck. The factorisation takes the cube of them: 24 take
 /// a third of a millisecond.
-const MOST_JOINTS: usize = 24;
+pub const MOST_JOINTS: usize = 24;
 
 /// Relative addition to the diagonal of `G W Gᵀ`, which is singular where joints close a loop: above the rounding of
 /// the Jacobians in single precision.
@@ -38,6 +38,10 @@ const CLOSING_STEPS: usize = 8;
 
 /// Opening that is left, a length or an angle in radians.
 const CLOSED: f64 = 1.0e-5;
+
+/// Opening, a length or an angle, from which joints count as not closed: what is this far off says nothing of where
+/// bodies go, which then go straight, and rapier's next step closes the joints.
+const UNCLOSED: f64 = 1.0e-2;
 
 /// Linear and angular velocity, or force and torque, at a body's centre of mass.
 pub type Twist = [Vector; 2];
@@ -145,8 +149,8 @@ impl Joints {
     }
 
     /// Gives bodies that joints tie to some bodies the motions from `time` to the end of the step, `dt`, that joints
-    /// let them make, and lets their velocities follow. `inertia`: of each body, infinite where nothing moves it.
-    /// Returns the bodies whose motion that changes.
+    /// let them make, and lets their velocities follow, which together gain no energy. `inertia`: of each body,
+    /// infinite where nothing moves it. Returns the bodies whose motion that changes.
     pub fn close(
         &self,
         snapshot: &mut Snapshot,
@@ -164,14 +168,43 @@ impl Joints {
             [m.linvel, m.angvel]
         };
         let before: Vec<Twist> = system.bodies.iter().map(motion).collect();
+        let start = system.poses.clone();
         let after = system.integrate(&before, dt - time);
+        if !system.openings().iter().all(|o| o.abs() <= UNCLOSED) {
+            return Vec::new();
+        }
+        for &b in &system.bodies {
+            if snapshot.bodies[b].kind == Kind::Free {
+                snapshot.bodies[b].advance(time);
+            }
+        }
+        let own: Vec<Twist> = system
+            .bodies
+            .iter()
+            .map(|b| snapshot.bodies[*b].velocity)
+            .collect();
+        let mut end: Vec<Twist> = own.clone();
+        for (k, twist) in end.iter_mut().enumerate() {
+            add(twist, after[k], 1.0);
+            add(twist, before[k], -1.0);
+        }
+        // Joints that are closed in a short time give their bodies the speed that it takes.
+        let inertias = &system.inertias;
+        let energy = |twists: &[Twist], poses: &[Pose]| -> f64 {
+            let of = |(k, inertia): (usize, &Inertia)| {
+                // Its inertia is that of the start.
+                let back = start[k].rotation * poses[k].rotation.inverse();
+                inertia.energy([twists[k][0], back * twists[k][1]])
+            };
+            inertias.iter().enumerate().map(of).sum()
+        };
+        let (had, has) = (energy(&own, &start), energy(&end, &system.poses));
+        let share = if has > had { (had / has).sqrt() } else { 1.0 };
         let mut moved = Vec::new();
         for (k, &b) in system.bodies.iter().enumerate() {
             if !system.inertias[k].is_infinite() {
-                let body = &mut snapshot.bodies[b];
-                body.advance(time);
-                let gained = [0, 1].map(|i| after[k][i] - before[k][i]);
-                body.aim(system.poses[k], gained, dt - time);
+                let gained = [0, 1].map(|i| end[k][i] * share as Real - own[k][i]);
+                snapshot.bodies[b].aim(system.poses[k], gained, dt - time);
                 moved.push(b);
             }
         }
@@ -316,7 +349,7 @@ impl System<'_> {
             let before = self.poses.clone();
             self.displace(&twists, h);
             for _ in 0..CLOSING_STEPS {
-                let openings: Vec<f64> = self.openings();
+                let openings = self.openings();
                 if openings.iter().all(|o| o.abs() <= CLOSED) {
                     break;
                 }

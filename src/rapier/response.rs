@@ -41,6 +41,10 @@ pub struct Course {
 /// Cosine from which the blows of a pair count as one (10°), as points of one manifold.
 const SAME_NORMAL: Real = 0.985;
 
+/// Share of the speed that an impulse gives two bodies which joints leave of it, below which joints hold the contact
+/// itself, as between neighbours in a chain: there is nothing to push, and the impulse would have no bound.
+const HELD: Real = 0.02;
+
 /// An impulse between two colliders, as an event tells it.
 #[derive(Clone, Copy, Debug)]
 pub struct Blow {
@@ -276,6 +280,16 @@ impl Response {
         };
         let [v1, v2] = [0, 1].map(|k| at(snapshot.bodies[both[k]].velocity, k));
         let own = impact(&system);
+        // What the two would do without their joints.
+        let alone = |k: usize| {
+            let wrench = [hit.normal, arms[k].cross(hit.normal)];
+            at(inertia(snapshot, both[k], false).apply(wrench), k).dot(hit.normal)
+        };
+        if own.resistance() < HELD * (alone(0) + alone(1)) {
+            let moved = system.bodies;
+            self.joints = Some(joints);
+            return moved;
+        }
         if let Some(j) = own.impulse(v2 - v1, 0.0) {
             self.note(Blow::new(snapshot, pair, hit, j.dot(hit.normal)), pair);
             let change = system.change(&wrenches(j));
