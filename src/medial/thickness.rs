@@ -16,7 +16,7 @@ use crate::math::{Real, Vector};
 const BLUNT: Real = 4.0;
 
 /// Thickness of a primitive of one to three spheres, a length: the least radius `ρ` such that what is thinner
-/// than `ρ` reaches further than [`BLUNT`]` ρ`, and the largest radius where there is none. 0 for what has
+/// than `ρ` reaches further than `4 ρ`, and the largest radius where there is none. 0 for what has
 /// no thickness in some place that is not blunt: sheets, fins, needles.
 pub fn of_primitive(spheres: &[MedialSphere]) -> Real {
     let radii = spheres.iter().map(|s| s.radius);
