@@ -52,7 +52,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Build medial meshes (.ma, or baked as .medial) from triangle meshes (obj, stl, ply, off).
+    /// Build medial meshes (.ma, or baked as .medial) from triangle meshes (obj, stl, ply, off, glb, gltf).
     Build(BuildArguments),
     /// Bake a medial mesh (.ma) with its trees and mass properties, to load in no time.
     Bake(BakeArguments),
@@ -65,7 +65,7 @@ enum Command {
 
 #[derive(Args)]
 struct BuildArguments {
-    /// Triangle meshes: obj, stl, ply or off, or folders of them.
+    /// Triangle meshes: obj, stl, ply, off, glb or gltf, or folders of them.
     #[arg(required = true)]
     inputs: Vec<PathBuf>,
     /// Where to write the medial mesh: baked, with the mass properties of the triangle mesh, if it ends

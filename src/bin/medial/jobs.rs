@@ -24,7 +24,7 @@ pub enum PlanError {
     MeshOutput(PathBuf),
     #[error("{0}: no such directory")]
     NoDirectory(PathBuf),
-    #[error("{0}: no triangle mesh in it (obj, stl, ply, off)")]
+    #[error("{0}: no triangle mesh in it (obj, stl, ply, off, glb, gltf)")]
     NoMeshes(PathBuf),
     #[error("{output}: both {first} and {second} would go there")]
     SameOutput {
