@@ -241,9 +241,7 @@ pub enum BuildError {
         stage: &'static str,
     },
     /// The file's ending names no known format.
-    #[error(
-        "{path}: unknown mesh format {extension:?} (known: obj, stl, ply, off; glb and gltf with feature `gltf`)"
-    )]
+    #[error("{path}: unknown mesh format {extension:?} (known: obj, stl, ply, off)")]
     UnknownFormat {
         /// The file.
         path: PathBuf,

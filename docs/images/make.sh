@@ -2,7 +2,6 @@
 # Makes the README's pictures again: bash docs/images/make.sh
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-cargo run --release --example falling_rings -- --out docs/images --animate
-for name in compare convex_hull_comparison chain nut_and_bolt; do
+for name in falling_rings convex_hull_comparison chain nut_and_bolt; do
   cargo run --release --example "$name" -- --out docs/images
 done

@@ -29,6 +29,7 @@ mod elementary;
 mod outcome;
 mod page;
 mod paper;
+mod peer_error;
 mod plot;
 mod random;
 mod report;

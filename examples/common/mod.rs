@@ -2,7 +2,6 @@
 //! Each example uses a part of it.
 #![allow(dead_code)]
 
-pub mod animation;
 pub mod arguments;
 pub mod audit;
 pub mod build;
@@ -21,7 +20,6 @@ pub mod scene;
 pub mod scene_strip;
 pub mod scene_table;
 pub mod screw;
-pub mod shape_error;
 pub mod skeleton;
 pub mod skin;
 pub mod strip;

@@ -18,6 +18,9 @@ const FOLD_COST: f64 = 10.0;
 /// Faces smaller than this (twice their area) have no direction that counts.
 const NO_AREA: f64 = 1e-8;
 
+/// First guess of a distance (longest side 1); only time depends on it.
+const GUESS: f64 = 0.004;
+
 /// A ball that moves by less (longest side 1) stays where it is.
 const STILL: f64 = 1e-9;
 
@@ -63,6 +66,14 @@ pub fn all_touch(
         && moved
             .flat_map(|v| middles(complex, ab, v, ball))
             .all(|b| touches(&b))
+}
+
+/// How far the ball that both ends of an edge become, and the middles of what is around it, stick out of the
+/// solid; 0 where none does.
+pub fn stick_out(complex: &Complex, tree: &TriangleTree, ab: [u32; 2], ball: &Ball) -> f64 {
+    let middles = ab.into_iter().flat_map(|v| middles(complex, ab, v, ball));
+    let out = |b: Ball| b.radius + tree.signed_distance(b.center, 1.2 * b.radius.max(GUESS));
+    middles.chain([*ball]).map(out).fold(0.0, f64::max)
 }
 
 /// Whether a ball that becomes another stays where it is.

@@ -149,9 +149,15 @@ impl Creases {
         self.reflex.is_empty() && self.group.iter().enumerate().all(flat)
     }
 
-    /// Number of corners.
-    pub fn corners(&self) -> usize {
-        self.corner_groups.len()
+    /// Number of corners at which a single crease ends.
+    pub fn ends_alone(&self) -> usize {
+        let at_corners = self.creases_at.values();
+        at_corners.filter(|creases| creases.len() == 1).count()
+    }
+
+    /// Number of pairs of groups that share a convex crease.
+    pub fn pairs(&self) -> usize {
+        self.between.len()
     }
 
     /// Whether creases end, branch or turn at a vertex.

@@ -8,11 +8,12 @@
 //!
 //! # Certificate
 //! Balls, cones and slabs are convex. A triangle whose three corners lie in one primitive therefore
-//! lies in it whole. Other triangles are cut where a slab touches their plane (`outline.rs`), or halved; a piece of the smallest size that no primitive
-//! contains makes the one that needs least grow by its worst corner. The certificate is complete
-//! when a pass over all triangles finds no such piece; it holds up to rounding.
+//! lies in it whole. Other triangles are cut where a slab touches their plane (`outline.rs`), or halved; a
+//! piece of the smallest size that no primitive contains makes the one that needs least grow by its worst
+//! corner. The certificate is complete when a pass over all triangles finds no such piece; it holds up to
+//! rounding.
 
-use super::bounds::Point;
+use super::bounds::{Point, direction};
 use super::draft::{Draft, Signed};
 use super::outline::{Cut, cut_along_outline};
 use super::primitive_tree::PrimitiveTree;
@@ -37,11 +38,27 @@ const DILATION_PASSES: usize = 8;
 const FINEST: f64 = 0.003;
 const FINEST_UP_TO: f64 = 500.0;
 
+/// The same where pieces are cut at whatever size: what is left of one there may be off by a thousandth of it.
+const FINEST_EXACTLY: f64 = 3e-4;
+
+/// And so many of them at most in a pass: half a second. A needle of 1:1000 would take millions.
+const MOST_EXACTLY: usize = 300_000;
+
 /// Passes of the certificate before all balls grow alike. Measured: 2 to 5 are needed.
 const CERTIFICATE_PASSES: usize = 12;
 
 /// Growth beyond what a piece needs (longest side 1), so that rounding does not ask again.
 const MARGIN: f64 = 1e-9;
+
+/// As [`enclose`], and cuts pieces of flat faces along the outlines of slabs however small they are: for medial meshes
+/// that cover all of the surface but for rounding. False where that takes too many pieces.
+pub fn enclose_exactly(
+    draft: &mut Draft,
+    surface: &Surface,
+    watch: &mut Watch,
+) -> Result<bool, BuildError> {
+    raise(draft, surface, 0.0, true, watch)
+}
 
 /// Raises radii until every triangle of the surface is proven to stick out of the solid by at most
 /// `allowed`: to lie in the solid whose radii are all larger by that.
@@ -51,18 +68,29 @@ pub fn enclose(
     allowed: f64,
     watch: &mut Watch,
 ) -> Result<(), BuildError> {
+    raise(draft, surface, allowed, false, watch)?;
+    Ok(())
+}
+
+fn raise(
+    draft: &mut Draft,
+    surface: &Surface,
+    allowed: f64,
+    exactly: bool,
+    watch: &mut Watch,
+) -> Result<bool, BuildError> {
     let before: Vec<f64> = draft.balls.iter().map(|b| b.radius).collect();
     // The certificate is about welded vertices; the source's own are this near.
     let slack = (allowed - surface.welded).max(0.0);
     let welded = (surface.welded - allowed).max(0.0);
     draft.balls.iter_mut().for_each(|b| b.radius += slack);
     dilate(draft, surface, watch)?;
-    certify(draft, surface, watch)?;
+    let certain = certify(draft, surface, exactly, watch)?;
     for (ball, before) in draft.balls.iter_mut().zip(before) {
         // Taking the slack back must not shrink, by rounding, what never grew.
         ball.radius = (ball.radius - slack).max(before) + welded;
     }
-    Ok(())
+    Ok(certain)
 }
 
 /// What each ball must grow by.
@@ -121,7 +149,12 @@ fn dilate(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(),
     Ok(())
 }
 
-fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(), BuildError> {
+fn certify(
+    draft: &mut Draft,
+    surface: &Surface,
+    exactly: bool,
+    watch: &mut Watch,
+) -> Result<bool, BuildError> {
     let triangles = surface.all_corners().chain(surface.needle_corners());
     let mut open: Vec<[Point; 3]> = triangles.collect();
     let crowd = (draft.primitives().len() as f64 / FINEST_UP_TO).max(1.0);
@@ -132,7 +165,12 @@ fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<()
             tree: &tree,
             hint: 0,
             worst: 0.0,
-            finest_sq: FINEST * FINEST / crowd,
+            finest_sq: match exactly {
+                true => FINEST_EXACTLY * FINEST_EXACTLY,
+                false => FINEST * FINEST / crowd,
+            },
+            exactly,
+            examined: 0,
         };
         let mut left = Vec::new();
         for (i, &triangle) in open.iter().enumerate() {
@@ -145,9 +183,12 @@ fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<()
             }
         }
         let worst = prover.worst;
+        if prover.gives_up() {
+            return Ok(false);
+        }
         drop(tree);
         if left.is_empty() {
-            return Ok(());
+            return Ok(true);
         }
         if pass + 1 == CERTIFICATE_PASSES {
             // Each piece's primitive then holds its worst corner: its ball, whatever its weights,
@@ -157,7 +198,7 @@ fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<()
         growth.apply(draft);
         open = left;
     }
-    Ok(())
+    Ok(true)
 }
 
 struct Prover<'a> {
@@ -168,33 +209,51 @@ struct Prover<'a> {
     worst: f64,
     /// Squared length of the longest edge of the smallest pieces.
     finest_sq: f64,
+    /// Whether smaller ones are cut, too.
+    exactly: bool,
+    /// Pieces looked at.
+    examined: usize,
 }
 
 impl Prover<'_> {
     /// Whether the triangle is covered; asks for growth where it is not.
     fn prove(&mut self, triangle: [Point; 3], growth: &mut Growth) -> bool {
         let mut proven = true;
+        let [a, b, c] = triangle;
+        let normal = direction((b - a).cross(c - a));
         let mut pieces = vec![triangle];
         while let Some(piece) = pieces.pop() {
-            let (primitive, worst) = self.tightest(&piece);
+            self.examined += 1;
+            if self.gives_up() {
+                return false;
+            }
+            let (primitive, worst, at_middle) = self.tightest(&piece);
             if worst.distance <= 0.0 {
                 continue;
             }
-            if let Some(cut) = self.cut(&piece, primitive) {
+            let large = longest_edge_sq(&piece) > self.finest_sq;
+            let cut = |by: u32| Some((by, self.cut(&piece, normal, by)?));
+            if (large || self.exactly)
+                && let Some((by, cut)) = cut(primitive).or_else(|| cut(at_middle))
+            {
                 for part in cut.inner {
-                    let worst = self.worst_corner(primitive, &part);
-                    proven &= self.is_covered(primitive, &worst, growth);
+                    let worst = self.worst_corner(by, &part);
+                    proven &= self.is_covered(by, &worst, growth);
                 }
                 pieces.extend(cut.outer);
                 continue;
             }
-            if longest_edge_sq(&piece) > self.finest_sq {
+            if large {
                 pieces.extend(halve(piece));
                 continue;
             }
             proven &= self.is_covered(primitive, &worst, growth);
         }
         proven
+    }
+
+    fn gives_up(&self) -> bool {
+        self.exactly && self.examined > MOST_EXACTLY
     }
 
     /// Whether a primitive covers a piece whose worst corner is given; else asks for its growth.
@@ -207,29 +266,32 @@ impl Prover<'_> {
     }
 
     /// Cuts a piece where a slab touches the piece's plane.
-    fn cut(&self, piece: &[Point; 3], primitive: u32) -> Option<Cut> {
+    fn cut(&self, piece: &[Point; 3], normal: Point, primitive: u32) -> Option<Cut> {
         let corners = self.tree.primitives()[primitive as usize];
         let is_slab = corners[1] != corners[2];
-        is_slab.then(|| cut_along_outline(piece, self.tree.balls(corners)))?
+        is_slab.then(|| cut_along_outline(piece, normal, self.tree.balls(corners)))?
     }
 
     /// Among the primitives nearest to the middle and the corners, the one whose worst corner is
-    /// best, and that corner's distance; the first that holds all three ends the search.
-    fn tightest(&mut self, piece: &[Point; 3]) -> (u32, Signed) {
+    /// best, and that corner's distance; the first that holds all three ends the search. And the one
+    /// nearest to the middle, if the search came to it.
+    fn tightest(&mut self, piece: &[Point; 3]) -> (u32, Signed, u32) {
         let [a, b, c] = *piece;
+        let mut at_middle = None;
         let mut best = (self.hint, self.worst_corner(self.hint, piece));
         for p in [(a + b + c) * (1.0 / 3.0), a, b, c] {
             if best.1.distance <= 0.0 {
                 break;
             }
             let nearest = self.tree.nearest(p, self.hint);
+            at_middle = at_middle.or(Some(nearest.primitive));
             let worst = self.worst_corner(nearest.primitive, piece);
             if worst.distance < best.1.distance {
                 best = (nearest.primitive, worst);
             }
         }
         self.hint = best.0;
-        best
+        (best.0, best.1, at_middle.unwrap_or(best.0))
     }
 
     fn worst_corner(&self, primitive: u32, piece: &[Point; 3]) -> Signed {

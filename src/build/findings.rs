@@ -20,6 +20,8 @@ pub struct Findings {
     pub triangles_without_area: usize,
     /// Triangles turned round.
     pub triangles_turned: usize,
+    /// Slivers without area that close seams, where a triangle's edge meets several of others.
+    pub slivers: usize,
     /// Edges of one triangle.
     pub edges_open: usize,
     /// Edges of more than two triangles.
@@ -79,6 +81,10 @@ impl Findings {
             (
                 self.triangles_without_area,
                 "triangles without area: kept as seams only",
+            ),
+            (
+                self.slivers,
+                "slivers added along seams where one edge meets several",
             ),
             (self.edges_open, "open edges (edges of one triangle)"),
             (

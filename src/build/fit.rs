@@ -49,6 +49,7 @@ pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> Tar
         tree,
         samples,
         spacing: ENVELOPE_SPACING[over_small + over_large],
+        creases: &[],
     }
 }
 

@@ -29,6 +29,9 @@ const MIDDLE_OF_SLAB: f64 = 0.15;
 const LARGEST_BALL: f64 = 0.5;
 const SMALLEST_BALL: f64 = 1e-3;
 
+/// Between balls on creases radii are smaller than this (longest side 1).
+const ON_CREASE: f64 = 1e-9;
+
 /// Balls nearest to a tip that its cone may be joined to.
 const ENDS: usize = 9;
 
@@ -64,6 +67,7 @@ pub fn insert(
         touched: vec![false; draft.balls.len()],
         draft,
         places: Vec::new(),
+        creases: target.creases,
         left: budget,
     };
     for (k, i) in order.into_iter().enumerate() {
@@ -126,6 +130,7 @@ struct Inserter<'a> {
     /// Balls whose cone, edge or slab was split.
     touched: Vec<bool>,
     places: Vec<(Point, f64)>,
+    creases: &'a [[Point; 2]],
     left: usize,
 }
 
@@ -169,6 +174,9 @@ impl Inserter<'_> {
     /// mesh there, else the largest in the surface about the primitive's own.
     fn splitting_ball(&self, row: &Row, touching: Option<Ball>) -> Option<Ball> {
         let own = Ball::interpolate(self.draft.balls_of(row.corners), row.weights);
+        if own.radius < ON_CREASE {
+            return self.on_crease(own.center);
+        }
         let near =
             |ball: &Ball| (ball.center - own.center).length() < 1.5 * own.radius.max(ball.radius);
         touching.filter(near).or_else(|| {
@@ -177,6 +185,20 @@ impl Inserter<'_> {
                 center: own.center,
                 radius: (-signed).max(SMALLEST_BALL),
             })
+        })
+    }
+
+    /// The ball of radius 0 on the nearest crease.
+    fn on_crease(&self, p: Point) -> Option<Ball> {
+        let nearest = self.creases.iter().map(|[a, b]| {
+            let way = *b - *a;
+            let t = ((p - *a).dot(way) / way.length_sq()).clamp(0.0, 1.0);
+            *a + way * t
+        });
+        let nearer = |x: &Point, y: &Point| (*x - p).length_sq().total_cmp(&(*y - p).length_sq());
+        nearest.min_by(nearer).map(|center| Ball {
+            center,
+            radius: 0.0,
         })
     }
 

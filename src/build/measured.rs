@@ -9,7 +9,9 @@
 
 use super::bounds::Point;
 use super::draft::{Ball, Corners, Signed};
+use super::merged::Merged;
 use super::prepared::Prepared;
+use super::residuals::GUESS;
 use super::simplify::Simplifier;
 use super::solid::Solid;
 use super::triangle_tree::TriangleTree;
@@ -203,7 +205,7 @@ impl<'a> Measure<'a> {
         let [ball_a, ball_b] = [a, b].map(|v| s.complex().balls[v as usize]);
         let (_, by_quadric) = s.merge(a, b);
         let middle = Ball::interpolate([ball_a, ball_b, ball_b], [0.5, 0.5, 0.0]);
-        let after = After::new(s, [a, b]);
+        let after = Merged::new(s, [a, b]);
         let mut best = (f64::INFINITY, by_quadric);
         for (k, ball) in [by_quadric, ball_a, ball_b, middle].into_iter().enumerate() {
             if k > 0 && (best.0 < 1.2 * accepted || !self.few) {
@@ -218,7 +220,7 @@ impl<'a> Measure<'a> {
     }
 
     /// Measured cost of a collapse; anything above `enough` once it exceeds that.
-    fn cost(&self, s: &Simplifier, after: &After, ball: &Ball, accepted: f64, enough: f64) -> f64 {
+    fn cost(&self, s: &Simplifier, after: &Merged, ball: &Ball, accepted: f64, enough: f64) -> f64 {
         let balls = &s.complex().balls;
         let [a, b] = after.edge;
         let of = |v: u32| if v == a { *ball } else { balls[v as usize] };
@@ -259,6 +261,22 @@ impl<'a> Measure<'a> {
                 [1.0 / 3.0; 3]
             };
             let middle = Ball::interpolate(corners.map(of), weights);
+            let on_crease = |v: &&u32| of(**v).radius == 0.0;
+            if corners.iter().any(|v| on_crease(&v)) {
+                worst = worst.max(self.leaves(&middle));
+                // Between two balls of radius 0 there may be no matter at all.
+                for [u, v] in [[0, 1], [1, 2], [2, 0]].map(|k| k.map(|i: usize| corners[i])) {
+                    if u != v && [u, v].iter().all(|v| on_crease(&v)) {
+                        let [p, q] = [of(u), of(v)];
+                        let chord = Ball::interpolate([p, q, q], [0.5, 0.5, 0.0]);
+                        worst = worst.max(self.leaves(&chord));
+                    }
+                }
+                if worst > enough {
+                    return worst;
+                }
+                continue;
+            }
             // Only what bulges by more than that counts; from near the medial axis the rest is dear.
             let within = middle.radius - worst.max(BULGE);
             if within <= 0.0 {
@@ -272,6 +290,15 @@ impl<'a> Measure<'a> {
             }
         }
         worst + RMS * (squares / count.max(1) as f64).sqrt()
+    }
+
+    /// How far a ball next to a crease sticks out of the surface; 0 where that is nothing that matters.
+    fn leaves(&self, ball: &Ball) -> f64 {
+        let out = ball.radius
+            + self
+                .tree
+                .signed_distance(ball.center, 1.2 * ball.radius.max(GUESS));
+        if out > BULGE { out } else { 0.0 }
     }
 
     /// Samples that a collapse of the edge may give another primitive; they are no ball's then.
@@ -326,51 +353,4 @@ impl<'a> Measure<'a> {
 fn heaviest(corners: Corners, weights: [f64; 3]) -> u32 {
     let heavier = |k: usize, j: usize| if weights[j] > weights[k] { j } else { k };
     corners[(1..3).fold(0, heavier)]
-}
-
-/// What lies around an edge once it is merged; its first ball stands for the new one.
-struct After {
-    edge: [u32; 2],
-    /// Balls joined to either end.
-    neighbors: Vec<u32>,
-    /// Primitives of the new ball.
-    primitives: Vec<Corners>,
-}
-
-impl After {
-    fn new(s: &Simplifier, [a, b]: [u32; 2]) -> Self {
-        let complex = s.complex();
-        let both = complex.neighbors(a).iter().chain(complex.neighbors(b));
-        let mut neighbors: Vec<u32> = both.copied().filter(|&v| v != a && v != b).collect();
-        neighbors.sort_unstable();
-        neighbors.dedup();
-        let of_a = complex.faces_at(a).filter(|f| !f.contains(&b));
-        let of_b = complex.faces_at(b).filter(|f| !f.contains(&a));
-        let moved = of_b.map(|f| f.map(|v| if v == b { a } else { v }));
-        let mut primitives: Vec<Corners> = of_a.chain(moved).collect();
-        let faces = primitives.len();
-        for &v in &neighbors {
-            if !primitives[..faces].iter().any(|f| f.contains(&v)) {
-                primitives.push([a, v, v]);
-            }
-        }
-        if neighbors.is_empty() {
-            primitives.push([a; 3]);
-        }
-        Self {
-            edge: [a, b],
-            neighbors,
-            primitives,
-        }
-    }
-
-    /// Primitives at the neighbours that stay as they are.
-    fn around(&self, s: &Simplifier) -> Vec<Prepared> {
-        let kept = |c: &Corners| !self.edge.iter().any(|v| c.contains(v));
-        let complex = s.complex();
-        let at = |&v: &u32| complex.primitives_at(v).filter(kept);
-        let balls = |c: Corners| c.map(|v| complex.balls[v as usize]);
-        let all = self.neighbors.iter().flat_map(at);
-        all.map(|c| Prepared::new(c, balls(c))).collect()
-    }
 }

@@ -2,11 +2,16 @@
 
 mod ball_quadrics;
 mod bounds;
+mod candidate;
 mod chunks;
 mod clip;
+mod coarsest;
 mod complex;
+mod counts;
 mod crease_cost;
+mod crease_ends;
 mod crease_samples;
+mod creased;
 mod creases;
 pub mod delaunay;
 mod draft;
@@ -23,6 +28,8 @@ mod largest;
 mod least_squares;
 mod mass;
 mod measured;
+mod merge;
+mod merged;
 pub mod mesh_file;
 mod nearest_triangle;
 mod openings;
@@ -38,12 +45,15 @@ mod primitive_tree;
 mod quadric;
 mod queue;
 mod random;
+mod refine;
 mod refit;
 mod residuals;
 mod samples;
+mod seams;
 mod sheets;
 mod simplify;
 mod solid;
+mod solid_boundary;
 mod start;
 mod subdivide;
 mod surface;
@@ -70,28 +80,7 @@ use surface::Surface;
 use watch::Watch;
 
 impl MedialMesh {
-    /// Builds a medial mesh from a triangle mesh: its solid where triangles enclose one, sheets where they
-    /// do not. `indices` are counter-clockwise seen from outside; triangles that are not are turned round.
-    /// The result is in the same unit and frame, and has the mass of the solid. It takes a second to half a
-    /// minute with optimisation (`docs/medial-mesh-error.md` has a table), and many times that without:
-    /// build once and save it ([`MedialMesh::save_asset`]).
-    ///
-    /// # Errors
-    /// [`BuildError`] names what is wrong: an option out of its range, no triangles, coordinates that are
-    /// not finite or too large, an index beyond the vertices, or triangles without any extent. What can be
-    /// repaired is, and [`BuildReport::findings`] counts it.
-    ///
-    /// ```
-    /// use rapier3d::prelude::*;
-    /// use rapier3d_medial::prelude::*;
-    ///
-    /// let (vertices, indices) = Cuboid::new(Vector::new(0.5, 0.2, 0.3)).to_trimesh();
-    /// let options = BuildOptions { primitives: Some(50), ..Default::default() };
-    /// let (mesh, report) = MedialMesh::from_trimesh(&vertices, &indices, &options)?;
-    /// assert!(mesh.primitive_count() <= 50 && report.target_reached);
-    /// assert!((mesh.mass_properties(1.0).mass() - 0.24).abs() < 1.0e-5);
-    /// # Ok::<(), rapier3d_medial::BuildError>(())
-    /// ```
+    /// Builds a medial mesh from a triangle mesh.
     pub fn from_trimesh(
         vertices: &[Vector],
         indices: &[[u32; 3]],
@@ -118,6 +107,7 @@ impl MedialMesh {
             surface,
             tree,
             limits,
+            boundary: None,
         };
         let candidate = source.best_candidate(&mut watch)?;
         let target_reached = candidate.keeps(source.limits.max_error);

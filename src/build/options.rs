@@ -19,14 +19,16 @@ pub enum Quality {
     Best,
 }
 
-/// Which sharp convex edges of the source are kept, by spheres of radius 0 on them.
+/// Which sharp convex edges of the source may be kept, by spheres of radius 0 on them.
 ///
-/// They are kept of closed meshes with flat faces and without reflex edges: boxes, pegs, convex hulls.
-/// Where the limit on the count allows it and their medial axis is found whole, they become it, which is
-/// exact; `BuildReport::notes` says so. The edges of all other meshes are rounded.
+/// Boxes, pegs, convex hulls and other convex bodies with flat faces become their own medial axis, which is exact,
+/// where the limit on the count allows it and it is found whole. Other closed bodies keep what makes the error
+/// smallest: all medial meshes are measured, those with spheres of radius 0 and one without
+/// ([`Quality::Fast`] and [`BuildOptions::max_error`]: that one only). `BuildReport::notes` says what came out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Creases {
-    /// Those above 1°.
+    /// Those above 25°, unless most of them end within a face, as those of a coarse organic mesh do; between
+    /// flat faces of a convex body those above 1°.
     #[default]
     Auto,
     /// Those at which the faces' normals differ by more than this angle (rad).
@@ -38,10 +40,21 @@ pub enum Creases {
 impl Creases {
     /// The angle (rad) above which an edge is sharp; `None` where none is kept.
     pub(super) fn angle(self) -> Option<f64> {
+        /// 25°: above what facets bend a curved face by.
+        const SHARP: f64 = 0.4363;
+        self.angle_or(SHARP)
+    }
+
+    /// The same between flat faces.
+    pub(super) fn angle_of_flat(self) -> Option<f64> {
         /// 1°: far above what the rounding of vertices bends a flat face by.
         const SHARP: f64 = 0.0175;
+        self.angle_or(SHARP)
+    }
+
+    fn angle_or(self, sharp: f64) -> Option<f64> {
         match self {
-            Self::Auto => Some(SHARP),
+            Self::Auto => Some(sharp),
             Self::Keep(angle) => Some(angle.into()),
             Self::None => None,
         }

@@ -9,7 +9,11 @@ use super::quadric::slab_normals;
 /// A slab touches a face when its points of contact are within this of the face's plane (longest side 1).
 const TOUCHES: f64 = 1e-6;
 
-/// Cuts that part off less than this share of a piece's area are not made: they are of rounding.
+/// A part that is beyond an outline by less than this (longest side 1) is not cut off: it is of rounding. By as
+/// much the slab grows there. A share of the area says less: a millionth of it may be a thousandth long.
+const LEAST_HEIGHT: f64 = 1e-9;
+
+/// A cut that leaves the slab less than this share of a piece gets nowhere.
 const LEAST_SHARE: f64 = 1e-6;
 
 /// Parts of a piece: those in a slab's triangle of contact, and the others.
@@ -20,10 +24,9 @@ pub struct Cut {
     pub outer: Vec<[Point; 3]>,
 }
 
-/// Cuts a piece of a face along the outline of what a slab touches of its plane; `None` where that is nothing
-/// of the piece, or all.
-pub fn cut_along_outline(piece: &[Point; 3], slab: [Ball; 3]) -> Option<Cut> {
-    let normal = direction(normal_of(piece));
+/// Cuts a piece of a face of unit normal `normal` along the outline of what a slab touches of its plane; `None`
+/// where that is nothing of the piece, or all. The normal is the whole face's: a needle's own is of rounding.
+pub fn cut_along_outline(piece: &[Point; 3], normal: Point, slab: [Ball; 3]) -> Option<Cut> {
     let touching = slab_normals(slab)?;
     let [one, other] = touching;
     let outward = if one.dot(normal) > other.dot(normal) {
@@ -44,20 +47,18 @@ pub fn cut_along_outline(piece: &[Point; 3], slab: [Ball; 3]) -> Option<Cut> {
     };
     let mut inside = piece.to_vec();
     let mut outer = Vec::new();
-    let least = LEAST_SHARE * area(piece);
     for k in 0..3 {
         let (from, to) = (contact[k], contact[(k + 1) % 3]);
         let inward = direction(turn.cross(to - from));
         let height = |p: &Point| (*p - from).dot(inward);
-        let beyond = clip(&inside, |p| -height(p));
-        if fan(&beyond).map(|t| area(&t)).sum::<f64>() > least {
-            outer.extend(fan(&beyond));
+        if inside.iter().any(|p| height(p) < -LEAST_HEIGHT) {
+            outer.extend(fan(&clip(&inside, |p| -height(p))));
             inside = clip(&inside, height);
         }
     }
     let inner: Vec<[Point; 3]> = fan(&inside).collect();
     let covered: f64 = inner.iter().map(area).sum();
-    (covered > least && !outer.is_empty()).then_some(Cut { inner, outer })
+    (covered > LEAST_SHARE * area(piece) && !outer.is_empty()).then_some(Cut { inner, outer })
 }
 
 /// The part of a convex polygon where `height`, which is linear, is not negative.

@@ -43,6 +43,7 @@ const COARSE: f64 = 1.4;
 const LEAST_RADIUS: f64 = 1e-4;
 
 /// The samples that a draft is fitted to.
+#[derive(Clone)]
 pub struct Target<'a> {
     /// The surface.
     pub tree: &'a TriangleTree,
@@ -50,6 +51,8 @@ pub struct Target<'a> {
     pub samples: Vec<Sample>,
     /// Spacing of the envelope's samples (longest side 1).
     pub spacing: f64,
+    /// Convex creases of it that are kept.
+    pub creases: &'a [[Point; 2]],
 }
 
 impl Target<'_> {
@@ -222,6 +225,10 @@ fn step(draft: &mut Draft, found: Residuals, damping: &[f64]) {
         let length = moved.length();
         let shortened = if length > limit { limit / length } else { 1.0 };
         ball.center = ball.center + moved * (STEP * shortened);
+        if ball.radius == 0.0 {
+            // It is on a crease, and stays there.
+            continue;
+        }
         let grown = STEP * change[3].clamp(-limit, limit);
         ball.radius = (ball.radius + grown).max(LEAST_RADIUS);
     }

@@ -8,7 +8,7 @@
 //!   solid has no hole there. When nothing else is left the count wins over the topology.
 //! - Lone balls, which no collapse can remove, are dropped by the same order of cost.
 
-use super::ball_quadrics::{creased_quadrics, quadrics, stability};
+use super::ball_quadrics::{creased_quadrics, quadrics};
 use super::clip::CreasedMesh;
 use super::complex::Complex;
 use super::crease_cost::{all_touch, fold_cost};
@@ -20,40 +20,31 @@ use super::voids::open_voids;
 use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
 
-/// Added to the error before the stability ratio scales it (Q-MAT's `k`, in units of the longest
-/// side): orders the collapses that cost nothing by their stability.
-const FLAT_COST: f64 = 1e-5;
-
-/// The same in a medial mesh with creases, whose faces' planes are exact: [`FLAT_COST`] hides errors of
-/// up to .003.
-const EXACT_FLAT_COST: f64 = 1e-9;
-
-/// A merged ball of a smaller radius (longest side 1) is on a crease, and has none; one that would have less
-/// than the second overshot it by more than rounding and the quadric's pull.
-const ON_CREASE: f64 = 1e-7;
-const BEHIND_CREASE: f64 = -1e-3;
-
 /// Sum of squared distances to planes below which a collapse is exact, and the rounding of the sum for each
 /// of them; and how far the balls between may be from touching the surface (longest side 1).
 const FREE: f64 = 1e-13;
 const FREE_PER_PLANE: f64 = 2.5e-13;
 const FREE_GAP: f64 = 5e-7;
 
-/// Floor under the stability ratio. Measured: 0 to 0.2 loses fins and ears (error .015 for .006 at
-/// 2000 primitives); 0.2 to 0.5 is alike.
-const STABILITY_FLOOR: f64 = 0.3;
-
-/// A minimiser may lie this many edge lengths from the edge's middle: farther, the quadric is
-/// nearly singular there and says nothing.
-const REACH: f64 = 3.0;
-
 /// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
 const BULGE: f64 = 0.2;
 
+/// Costs of bent sheets are measured below this many primitives: from the first collapse on that takes ten
+/// seconds, and gains nothing.
+const MEASURED: usize = 10_000;
+
+/// A collapse waits where its measured cost is above the one in the queue by this share, and more than rounding.
+const STALE: f64 = 1.05;
+const NO_COST: f64 = 1e-10;
+
+/// Neighbours that a step of the collapse to what is exact looks at on average, at most: 15 in boxes and pegs,
+/// 1,300 in a needle of 1:1000, which would take minutes.
+const MOST_AROUND: usize = 100;
+
 /// A medial mesh on its way to fewer primitives.
 pub struct Simplifier<'a> {
-    complex: Complex,
-    quadrics: Vec<Quadric>,
+    pub(super) complex: Complex,
+    pub(super) quadrics: Vec<Quadric>,
     versions: Vec<u32>,
     queue: Queue,
     /// Each ball's centre lies inside the solid, and no triangle is nearer to it than this; 0 where
@@ -65,8 +56,10 @@ pub struct Simplifier<'a> {
     progressed: bool,
     keep_topology: bool,
     /// Whether balls of radius 0 stay on creases.
-    creased: bool,
-    tree: &'a TriangleTree,
+    pub(super) creased: bool,
+    /// Whether sheets may bend, so that costs are measured, too.
+    measures: bool,
+    pub(super) tree: &'a TriangleTree,
 }
 
 impl<'a> Simplifier<'a> {
@@ -92,7 +85,9 @@ impl<'a> Simplifier<'a> {
     ) -> Result<Self, BuildError> {
         let complex = Complex::new(mesh.draft);
         let quadrics = creased_quadrics(&complex, &mesh.planes, flat, watch)?;
-        Self::with_quadrics(complex, quadrics, tree, watch)
+        let mut simplifier = Self::with_quadrics(complex, quadrics, tree, watch)?;
+        simplifier.measures = !flat;
+        Ok(simplifier)
     }
 
     fn with_quadrics(
@@ -108,6 +103,7 @@ impl<'a> Simplifier<'a> {
             queue: Queue::default(),
             clear: vec![0.0; n],
             creased: complex.balls.iter().any(|b| b.radius == 0.0),
+            measures: false,
             complex,
             blocked: Vec::new(),
             progressed: false,
@@ -193,6 +189,13 @@ impl<'a> Simplifier<'a> {
             return;
         }
         let (_, mut ball) = self.merge(a, b);
+        if self.measures && self.primitives() < MEASURED {
+            let cost = self.measured_cost(a, b, &ball);
+            if cost > STALE * candidate.cost + NO_COST {
+                self.queue.push(Candidate { cost, ..candidate });
+                return;
+            }
+        }
         // On round bodies all planes agree on many balls, of which some reach far out of the solid.
         if !self.is_on_crease(a, b) && !self.is_clear(a, b, &ball) {
             (_, ball) = self.cheapest(a, b);
@@ -203,9 +206,10 @@ impl<'a> Simplifier<'a> {
     }
 
     /// Collapses the edges that cost nothing, in a medial mesh with creases: what is left of a convex
-    /// polyhedron's is its own medial axis.
-    pub fn reduce_exactly(&mut self, watch: &mut Watch) -> Result<(), BuildError> {
+    /// polyhedron's is its own medial axis. False where that is too much work.
+    pub fn reduce_exactly(&mut self, watch: &mut Watch) -> Result<bool, BuildError> {
         let mut dear = Vec::new();
+        let mut work = 0usize;
         let mut steps = 0usize;
         self.progressed = false;
         loop {
@@ -216,7 +220,7 @@ impl<'a> Simplifier<'a> {
                 let waiting = self.blocked.drain(..).chain(dear.drain(..));
                 waiting.for_each(|candidate| self.queue.push(candidate));
                 if !std::mem::take(&mut self.progressed) {
-                    return Ok(());
+                    return Ok(true);
                 }
                 continue;
             };
@@ -225,6 +229,14 @@ impl<'a> Simplifier<'a> {
             }
             steps += 1;
             let Candidate { a, b, .. } = candidate;
+            // Where thousands of balls are joined to one, each step looks at them all.
+            work += [a, b]
+                .map(|v| self.complex.neighbors(v).len())
+                .iter()
+                .sum::<usize>();
+            if work > MOST_AROUND * (steps + 1_000) {
+                return Ok(false);
+            }
             match self.exact(a, b) {
                 Some(_) if !self.may_collapse(a, b) => self.blocked.push(candidate),
                 Some(ball) => {
@@ -253,13 +265,6 @@ impl<'a> Simplifier<'a> {
         let ends = [a, b].map(|v| self.complex.balls[v as usize]);
         let end = ends.into_iter().find(keeps);
         end.or_else(|| Some(self.merge(a, b).1).filter(keeps))
-    }
-
-    /// Whether one of two balls lies on a crease.
-    fn is_on_crease(&self, a: u32, b: u32) -> bool {
-        [a, b]
-            .iter()
-            .any(|&v| self.complex.balls[v as usize].radius == 0.0)
     }
 
     /// Whether the ball that `a` and `b` are merged into sticks out of the solid by no more than
@@ -352,79 +357,5 @@ impl<'a> Simplifier<'a> {
             b,
             versions,
         });
-    }
-
-    fn flat_cost(&self) -> f64 {
-        if self.creased {
-            EXACT_FLAT_COST
-        } else {
-            FLAT_COST
-        }
-    }
-
-    /// Cost of merging two balls, and the ball that they become.
-    pub(super) fn merge(&self, a: u32, b: u32) -> (f64, Ball) {
-        let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
-        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let middle = middle(&ball_a, &ball_b);
-        let length = (ball_b.center - ball_a.center).length();
-        let near = |m: &Ball| (m.center - middle.center).length() <= REACH * length;
-        let minimiser = quadric.minimiser(&middle).filter(near);
-        if self.is_on_crease(a, b) {
-            let snapped = minimiser
-                .filter(|m| m.radius > BEHIND_CREASE)
-                .map(|m| Ball {
-                    radius: if m.radius < ON_CREASE { 0.0 } else { m.radius },
-                    ..m
-                });
-            return self.cheapest_of(a, b, [Some(ball_a), Some(ball_b), snapped]);
-        }
-        match minimiser.filter(|m| m.radius > 0.0) {
-            Some(ball) if self.creased => {
-                self.cheapest_of(a, b, [Some(ball_a), Some(ball_b), Some(ball)])
-            }
-            Some(ball) => (self.cost(a, b, &quadric, &ball), ball),
-            None => self.cheapest_of(a, b, [Some(ball_a), Some(ball_b), Some(middle)]),
-        }
-    }
-
-    /// The cheapest of two balls and their middle to merge the two into.
-    fn cheapest(&self, a: u32, b: u32) -> (f64, Ball) {
-        let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
-        let middle = middle(&ball_a, &ball_b);
-        self.cheapest_of(a, b, [ball_a, ball_b, middle].map(Some))
-    }
-
-    /// The cheapest of balls to merge two into, and its cost.
-    fn cheapest_of(&self, a: u32, b: u32, balls: [Option<Ball>; 3]) -> (f64, Ball) {
-        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let tried = balls.into_iter().flatten();
-        let tried = tried.map(|ball| (quadric.error(&ball) + self.folds(a, b, &ball), ball));
-        let best = tried.min_by(|x, y| x.0.total_cmp(&y.0));
-        let ball = best.map_or(self.complex.balls[a as usize], |(_, ball)| ball);
-        (self.cost(a, b, &quadric, &ball), ball)
-    }
-
-    fn folds(&self, a: u32, b: u32, ball: &Ball) -> f64 {
-        match self.creased {
-            true => fold_cost(&self.complex, [a, b], ball),
-            false => 0.0,
-        }
-    }
-
-    /// Cost of merging two balls into `ball`.
-    fn cost(&self, a: u32, b: u32, quadric: &Quadric, ball: &Ball) -> f64 {
-        let [ball_a, ball_b] = [a, b].map(|v| &self.complex.balls[v as usize]);
-        let stability = stability(ball_a, ball_b).max(STABILITY_FLOOR);
-        let error = quadric.error(ball) + self.flat_cost();
-        error * stability * stability + self.folds(a, b, ball)
-    }
-}
-
-/// The ball halfway between two.
-fn middle(a: &Ball, b: &Ball) -> Ball {
-    Ball {
-        center: (a.center + b.center) * 0.5,
-        radius: 0.5 * (a.radius + b.radius),
     }
 }

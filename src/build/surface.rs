@@ -5,10 +5,12 @@ use super::bounds::{Bounds, Point, direction};
 use super::findings::Findings;
 use super::orient::{Patches, orient};
 use super::patches::{Kind, judge};
+use super::seams::seam_slivers;
 use super::triangle_tree::TriangleTree;
 use super::watch::{Watch, bytes_of};
 use super::weld::{Welded, weld};
 use crate::error::BuildError;
+use crate::math::fast_hash::FastMap;
 use crate::math::{Real, Vector};
 
 /// A triangle lower than this over its longest edge has no usable normal and no area that matters
@@ -80,12 +82,19 @@ impl Surface {
             moved,
         } = weld(&entered, indices, &mut findings, watch)?;
         drop(entered);
+        let slivers = seam_slivers(&vertices, &triangles, watch)?;
+        findings.slivers = slivers.len();
+        let given = triangles.len();
+        triangles.extend(slivers);
         let mut patches = orient(&vertices, &mut triangles, &mut findings, watch)?;
+        let slivers = triangles.split_off(given);
+        patches.of.truncate(given);
         let area_of = |t: &[u32; 3]| height(corners(&vertices, t)) >= NEEDLE;
         let mut keep = triangles.iter().map(area_of);
         patches.of.retain(|_| keep.next().unwrap_or(false));
         let (triangles, mut needles): (Vec<_>, Vec<_>) = triangles.into_iter().partition(area_of);
         findings.triangles_without_area = needles.len();
+        needles.extend(slivers);
         needles.extend(collapsed);
         if triangles.is_empty() {
             let side = frame.scale;
@@ -185,6 +194,40 @@ impl Surface {
             sheet: chosen.iter().map(|&i| self.sheet[i]).collect(),
             patch_of: chosen.iter().map(|&i| self.patch_of[i]).collect(),
             simple: self.simple,
+            findings: self.findings.clone(),
+        }
+    }
+
+    /// Pieces of triangles, each with its triangle, as a surface of their own that bounds matter everywhere.
+    pub fn of_pieces(&self, pieces: &[([Point; 3], usize)]) -> Self {
+        let mut index_of: FastMap<[u64; 3], u32> = FastMap::default();
+        let mut vertices = Vec::new();
+        let mut index = |p: Point| {
+            *index_of
+                .entry([p.x, p.y, p.z].map(f64::to_bits))
+                .or_insert_with(|| {
+                    vertices.push(p);
+                    vertices.len() as u32 - 1
+                })
+        };
+        let triangles: Vec<[u32; 3]> = pieces
+            .iter()
+            .map(|(piece, _)| piece.map(&mut index))
+            .collect();
+        Self {
+            vertices,
+            triangles,
+            needles: Vec::new(),
+            normals: pieces.iter().map(|&(_, t)| self.normals[t]).collect(),
+            area: pieces
+                .iter()
+                .map(|(piece, _)| 0.5 * cross(*piece).length())
+                .sum(),
+            sheet: vec![false; pieces.len()],
+            patch_of: vec![0; pieces.len()],
+            simple: true,
+            welded: self.welded,
+            frame: self.frame,
             findings: self.findings.clone(),
         }
     }

@@ -5,7 +5,6 @@ use super::motion::{Body, Kind};
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::parry::foreign;
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
@@ -121,7 +120,8 @@ impl Snapshot {
         body.reach = body.reach.max(arm.length() + bound.radius());
         let [thickness, least] = match shape.as_shape::<MedialMesh>() {
             Some(mesh) => [mesh.thickness(), mesh.thicknesses().least()],
-            None => [foreign::thickness(&*shape); 2],
+            None if shape.ccd_thickness() > 0.0 => [shape.ccd_thickness(); 2],
+            None => [Real::INFINITY; 2],
         };
         self.parts.push(Part {
             handle,

@@ -3,6 +3,7 @@
 mod bad_input;
 mod broken;
 mod combined;
+mod concave;
 mod corpus;
 mod creases;
 mod delaunay;
@@ -15,6 +16,7 @@ mod options;
 #[allow(dead_code)] // Shared with `tests/medial`, which uses all of it.
 mod oracle;
 mod planted;
+mod polyhedra;
 mod scale;
 mod shapes;
 mod topology;

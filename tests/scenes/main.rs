@@ -22,7 +22,6 @@ mod force_events;
 )]
 #[path = "../common/golden.rs"]
 mod golden;
-mod grasps;
 mod hanging;
 mod heaps;
 mod held;
@@ -38,7 +37,6 @@ mod resting;
 #[path = "../common/ccd/rng.rs"]
 mod rng;
 mod rolling;
-mod ropes;
 #[cfg(feature = "serde-serialize")]
 mod saving;
 mod walls;
