@@ -5,8 +5,10 @@
 //! cargo run --release --example falling_rings
 //! cargo run --release --example falling_rings -- --mesh my.obj
 //! ```
-//! Options: `--mesh FILE` (drops 15 of your own instead, scaled to the rings' size), `--steps N` (at most; default 1500), `--out DIR` (where the pictures go; default
-//! target/falling_rings), `--backend cpu|auto|gpu` (where batches are computed; feature `gpu`), `--quick` (5 rings, small pictures).
+//! Options: `--mesh FILE` (drops 15 of your own instead, scaled to the rings' size), `--steps N`
+//! (at most; default 1500), `--out DIR` (where the pictures go; default target/falling_rings),
+//! `--backend cpu|auto|gpu` (where batches are computed; feature `gpu`), `--quick` (5 rings,
+//! small pictures), `--animate` (a moving picture besides, which takes a minute).
 //!
 //! Exits with 1 when a check fails: all rings stay above the ground, none passes through another or
 //! the creature, all sleep in the end. The checks work on the formulas and triangles that the
@@ -14,6 +16,7 @@
 
 mod common;
 
+use common::animation::save_animation;
 use common::arguments::{Arguments, example, verdict};
 use common::build::{build, model};
 use common::creature::creature;
@@ -37,6 +40,7 @@ struct Options {
     out: PathBuf,
     backend: Backend,
     quick: bool,
+    animate: bool,
 }
 
 fn main() -> ExitCode {
@@ -54,6 +58,7 @@ fn main() -> ExitCode {
                 Some(other) => return Err(format!("--backend cannot be `{other}`")),
             },
             quick: arguments.flag("--quick"),
+            animate: arguments.flag("--animate"),
         })
     };
     example(options, falling_rings)
@@ -87,6 +92,15 @@ fn falling_rings(options: Options) -> Result<(), String> {
     let strip = view.strip(&scene, &[&medial, &hulls]);
     let path = options.out.join("falling_rings.png");
     strip.save(&path)?;
+    if options.animate {
+        let steps: Vec<usize> = (30..270).step_by(6).collect();
+        let frames = View {
+            steps: &steps,
+            ..view
+        }
+        .frames(&scene, &[&medial, &hulls]);
+        save_animation(&frames, 10, &options.out.join("falling_rings_moving.png"))?;
+    }
     println!("{}\n\n{}", path.display(), table(&[&medial, &hulls]));
     verdict(medial.failures())
 }

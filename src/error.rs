@@ -241,7 +241,9 @@ pub enum BuildError {
         stage: &'static str,
     },
     /// The file's ending names no known format.
-    #[error("{path}: unknown mesh format {extension:?} (known: obj, stl, ply, off)")]
+    #[error(
+        "{path}: unknown mesh format {extension:?} (known: obj, stl, ply, off; glb and gltf with feature `gltf`)"
+    )]
     UnknownFormat {
         /// The file.
         path: PathBuf,

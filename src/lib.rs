@@ -84,6 +84,11 @@ pub mod prelude {
 #[doc = include_str!("../README.md")]
 pub struct Readme;
 
+/// The guide's examples, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/guide.md")]
+pub struct Guide;
+
 /// The migration page's example, as a test.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/migration.md")]

@@ -164,35 +164,3 @@ fn rapier_gains_energy_from_a_fast_spin() {
     let most = most.fold(0.0, Real::max);
     assert!(most > 1.2, "{most}");
 }
-
-/// A ring of cones that rolls on a plate which is free itself gains speed: contacts of two bodies that move are
-/// those of the step's end, and feed what tips over its support (`docs/decisions/0013-contacts-ahead.md`). On a
-/// fixed plate it gains nothing.
-#[test]
-fn a_ring_gains_speed_on_a_free_plate() {
-    use std::f32::consts::FRAC_PI_2;
-    let ring = MedialMesh::torus(0.3, 0.1, 48).expect("a ring");
-    let plate = MedialMesh::round_plate(8.0, 2.0, 0.1).expect("a plate");
-    let mut world = PhysicsWorld::new();
-    let ground = ColliderBuilder::cuboid(30.0, 1.0, 30.0);
-    world.insert_collider(ground.translation(Vector::NEG_Y * 1.1), None);
-    let plate = ColliderBuilder::medial_mesh(plate).density(200.0);
-    world.insert(RigidBodyBuilder::dynamic(), plate);
-    let body = RigidBodyBuilder::dynamic()
-        .pose(Pose::new(
-            Vector::new(-5.0, 0.5, 0.0),
-            Vector::X * FRAC_PI_2,
-        ))
-        .enabled_rotations(false, false, true)
-        .linvel(Vector::X * 0.5)
-        .angvel(Vector::NEG_Z * 0.5 / 0.4);
-    let (ring, _) = world.insert(body, ColliderBuilder::medial_mesh(ring));
-    let mut pipeline = MedialPipeline::new(MedialOptions::default());
-    pipeline.attach(&mut world);
-    for _ in 0..300 {
-        pipeline.step(&mut world);
-    }
-    let end = world.bodies[ring].linvel().x;
-    println!("0.5 to {end} m/s");
-    assert!(end > 0.6, "0.5 to {end} m/s now");
-}

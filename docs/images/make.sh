@@ -2,6 +2,7 @@
 # Makes the README's pictures again: bash docs/images/make.sh
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-for name in falling_rings convex_hull_comparison chain nut_and_bolt; do
+cargo run --release --example falling_rings -- --out docs/images --animate
+for name in compare convex_hull_comparison chain nut_and_bolt; do
   cargo run --release --example "$name" -- --out docs/images
 done

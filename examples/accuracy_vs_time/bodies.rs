@@ -3,9 +3,9 @@
 use crate::MEMORY;
 use crate::common::decimate::decimated;
 use crate::common::mesh::Mesh;
+use crate::common::shape_error::shape_error;
 use crate::common::surface_error::surface_error;
 use crate::crash::WIDTH;
-use crate::peer_error::shape_error;
 use rapier3d::parry::query::{NonlinearRigidMotion, cast_shapes_nonlinear};
 use rapier3d::parry::shape::{Compound, Shape, SharedShape};
 use rapier3d::parry::transformation::vhacd::VHACDParameters;

@@ -29,7 +29,6 @@ mod elementary;
 mod outcome;
 mod page;
 mod paper;
-mod peer_error;
 mod plot;
 mod random;
 mod report;

@@ -2,6 +2,7 @@
 //! Each example uses a part of it.
 #![allow(dead_code)]
 
+pub mod animation;
 pub mod arguments;
 pub mod audit;
 pub mod build;
@@ -20,6 +21,7 @@ pub mod scene;
 pub mod scene_strip;
 pub mod scene_table;
 pub mod screw;
+pub mod shape_error;
 pub mod skeleton;
 pub mod skin;
 pub mod strip;

@@ -59,6 +59,24 @@ impl View<'_> {
         tile(&self.steps.chunks(columns).map(row).collect::<Vec<_>>())
     }
 
+    /// Draws the runs side by side, a frame for each moment.
+    pub fn frames(&self, scene: &Scene, runs: &[&Run]) -> Vec<Image> {
+        let bar = bar("render", self.steps.len());
+        let frame = |step: &usize| {
+            let image = thread::scope(|scope| {
+                let draw = |run| scope.spawn(move || self.picture(scene, run, *step));
+                let drawn: Vec<_> = runs.iter().map(|run| draw(run)).collect();
+                let row = drawn.into_iter().map(|t| t.join().expect("a drawn tile"));
+                tile(&[row.collect()])
+            });
+            bar.inc(1);
+            image
+        };
+        let frames = self.steps.iter().map(frame).collect();
+        bar.finish();
+        frames
+    }
+
     fn picture(&self, scene: &Scene, run: &Run, step: usize) -> Image {
         let step = step.min(run.milliseconds.len());
         let mut seen = seen(scene, run.poses_after(step));

@@ -1,7 +1,7 @@
-//! Triangle meshes from files: Wavefront OBJ, STL, PLY, OFF.
+//! Triangle meshes from files: Wavefront OBJ, STL, PLY, OFF, and glTF with feature `gltf`.
 //!
-//! PLY is read by `ply-rs-bw`, behind a check of the counts it is asked to believe. The other
-//! three are read here: the line formats are smaller than the guards that the crates for them
+//! PLY is read by `ply-rs-bw` and glTF by `gltf`, behind a check of the counts they are asked to believe.
+//! The other three are read here: the line formats are smaller than the guards that the crates for them
 //! would need. `tobj` 4.0 names no line, stops at a comment that is not UTF-8 and overflows on a
 //! texture index below its range; `stl_io` 0.11 names no line either and takes a binary file
 //! whose header begins with `solid` for text.
@@ -9,6 +9,8 @@
 //! Every reader ends in `Polygons::finish`: indices are checked, polygons are cut into triangles,
 //! and vertices at exactly the same place become one.
 
+#[cfg(feature = "gltf")]
+mod gltf;
 mod obj;
 mod off;
 mod ply;
@@ -41,6 +43,9 @@ pub enum MeshFormat {
     Ply,
     /// Object File Format, text.
     Off,
+    /// glTF 2.0, JSON or binary: all triangles of its scene, moved by their nodes.
+    #[cfg(feature = "gltf")]
+    Gltf,
 }
 
 impl MeshFormat {
@@ -52,6 +57,8 @@ impl MeshFormat {
             "stl" => Some(Self::Stl),
             "ply" => Some(Self::Ply),
             "off" => Some(Self::Off),
+            #[cfg(feature = "gltf")]
+            "gltf" | "glb" => Some(Self::Gltf),
             _ => None,
         }
     }
@@ -80,7 +87,8 @@ pub fn read(path: impl AsRef<Path>) -> Result<TriangleMesh, BuildError> {
     read_bytes(&bytes, format, path)
 }
 
-/// As [`read`], from memory; `name` stands for the path in errors.
+/// As [`read`], from memory; `name` stands for the path in errors. Buffers of a glTF file that are files of
+/// their own are read from beside it.
 ///
 /// Fails with [`BuildError::Syntax`] (line, or byte offset of a binary file) on content that
 /// breaks off or breaks the format, with [`BuildError::NotFinite`] or
@@ -105,6 +113,8 @@ pub fn read_bytes(
         MeshFormat::Stl => stl::read(&source),
         MeshFormat::Ply => ply::read(&source),
         MeshFormat::Off => off::read(&source),
+        #[cfg(feature = "gltf")]
+        MeshFormat::Gltf => gltf::read(&source),
     }?;
     polygons.finish(&source)
 }

@@ -80,7 +80,28 @@ use surface::Surface;
 use watch::Watch;
 
 impl MedialMesh {
-    /// Builds a medial mesh from a triangle mesh.
+    /// Builds a medial mesh from a triangle mesh: its solid where triangles enclose one, sheets where they
+    /// do not. `indices` are counter-clockwise seen from outside; triangles that are not are turned round.
+    /// The result is in the same unit and frame, and has the mass of the solid. It takes a second to half a
+    /// minute with optimisation (`docs/medial-mesh-error.md` has a table), and many times that without:
+    /// build once and save it ([`MedialMesh::save_asset`]).
+    ///
+    /// # Errors
+    /// [`BuildError`] names what is wrong: an option out of its range, no triangles, coordinates that are
+    /// not finite or too large, an index beyond the vertices, or triangles without any extent. What can be
+    /// repaired is, and [`BuildReport::findings`] counts it.
+    ///
+    /// ```
+    /// use rapier3d::prelude::*;
+    /// use rapier3d_medial::prelude::*;
+    ///
+    /// let (vertices, indices) = Cuboid::new(Vector::new(0.5, 0.2, 0.3)).to_trimesh();
+    /// let options = BuildOptions { primitives: Some(50), ..Default::default() };
+    /// let (mesh, report) = MedialMesh::from_trimesh(&vertices, &indices, &options)?;
+    /// assert!(mesh.primitive_count() <= 50 && report.target_reached);
+    /// assert!((mesh.mass_properties(1.0).mass() - 0.24).abs() < 1.0e-5);
+    /// # Ok::<(), rapier3d_medial::BuildError>(())
+    /// ```
     pub fn from_trimesh(
         vertices: &[Vector],
         indices: &[[u32; 3]],

@@ -86,7 +86,7 @@ impl Cast<'_> {
         if toi.upper <= 0.0 && !self.stop_at_penetration {
             let touching = self.touching([&motion1, &motion2], &toi)?;
             let further = if !self.stop_approach {
-                touching.sinking(self.mesh.thickness(), seconds, &options)
+                touching.sinking(self.foreign_thickness(), seconds, &options)
             } else if !touching.approaches(seconds) {
                 touching.unless_nearer(seconds, &options)
             } else {
@@ -136,6 +136,14 @@ impl Cast<'_> {
             status: status(toi),
             subshape1: toi.primitives[0],
             subshape2: toi.primitives[1],
+        }
+    }
+
+    /// Thickness of the other shape where it is not medial, infinite where it is: a mesh knows its own.
+    fn foreign_thickness(&self) -> Real {
+        match self.other.as_shape::<MedialMesh>() {
+            Some(_) => Real::INFINITY,
+            None => foreign::thickness(self.other),
         }
     }
 

@@ -53,6 +53,16 @@ impl Parts {
     }
 }
 
+/// Thickness of a shape that is not medial, a length: infinite of a surface, which has no inside to give.
+pub fn thickness(shape: &dyn Shape) -> Real {
+    let thickness = shape.ccd_thickness();
+    if thickness > 0.0 {
+        thickness
+    } else {
+        Real::INFINITY
+    }
+}
+
 /// Adds the surface of `shape`, placed at `pose` in the parts' frame, as far as it meets `region`
 /// (in the parts' frame). Returns `false` for a shape that has no such surface: a custom one.
 pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {

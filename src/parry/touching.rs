@@ -6,16 +6,18 @@
 //!   pairs that start farther off have the target itself, as parry has it for the parts of a compound.
 //! - In turning motion bodies that touch go on with what they are in: as deep as they are, and as they get
 //!   by the speed at which their deepest contact closes. No other place may get deeper than that, so that
-//!   the next facet of a floor stops nobody and a wall stops everybody; and none deeper than a core.
+//!   the next facet of a floor stops nobody and a wall stops everybody; and none deeper than half way to
+//!   the medial axes there: a thin part of a thick body may sink as deep as it is thin.
 
-use crate::elementary::{InitialContact, ToiOptions};
+use crate::elementary::{Cores, InitialContact, ToiOptions};
 use crate::math::{Real, Vector};
 
-/// How deep bodies that touch at the start may sink into each other at most, in units of the mesh's
-/// thickness: half way to the medial axis.
+/// How deep bodies that touch at the start may sink into each other at most, in units of the thickness of
+/// the thinner of the two primitives that meet: half way to the medial axis.
 const CORE: Real = 0.5;
 
-/// How much deeper what is deeper than that already may sink in one cast, in units of that depth.
+/// How much deeper what is deeper than that already may sink in one cast, in units of how deep the deepest
+/// contact may get; never to the medial axes.
 const FURTHER: Real = 0.1;
 
 /// What rounding makes of sliding, in units of the lengths in play. Poses, vertices and velocities are good
@@ -69,15 +71,21 @@ impl Touching {
         }
     }
 
-    /// Options of a cast in which they may go on touching, of bodies of which the first is as thick as this.
+    /// Options of a cast in which they may go on touching: with `d` the depth that the deepest contact may
+    /// get, two primitives of which the thinner is `t` thick may be `min(d, CORE t)` deep. `thickness` is
+    /// that of a partner that is not medial, infinite if there is none.
     pub fn sinking(&self, thickness: Real, seconds: Real, options: &ToiOptions) -> ToiOptions {
-        let core = (CORE * thickness).max(Real::MIN_POSITIVE);
         let depth = (options.target_distance - self.gap).max(0.0) + self.closing(seconds);
         // What is found within the tolerance of the target is as deep as it is allowed to get.
         let sinks = depth + self.slide(seconds) + options.tolerance;
         ToiOptions {
-            target_distance: options.target_distance - sinks.min(core),
-            initial_contact: InitialContact::Deepen { by: FURTHER * core },
+            initial_contact: InitialContact::Deepen {
+                by: FURTHER * sinks,
+            },
+            cores: Some(Cores {
+                share: CORE,
+                at_most: thickness.min(sinks / CORE),
+            }),
             ..*options
         }
     }

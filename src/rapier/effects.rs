@@ -20,6 +20,13 @@ pub enum Effect {
 }
 
 /// What a pair of colliders calls for.
+///
+/// ```
+/// use rapier3d_medial::prelude::*;
+///
+/// let debris = Effects::default().continuous(Effect::Off).guard(Effect::Off);
+/// let options = MedialOptions::default().effects(debris);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct Effects {
@@ -70,9 +77,59 @@ impl Effects {
         stop: Effect::Off,
     };
 
+    /// The same, with [`Self::continuous`] set.
+    pub const fn continuous(mut self, effect: Effect) -> Self {
+        self.continuous = effect;
+        self
+    }
+
+    /// The same, with [`Self::guard`] set.
+    pub const fn guard(mut self, effect: Effect) -> Self {
+        self.guard = effect;
+        self
+    }
+
+    /// The same, with [`Self::exact_rotation`] set.
+    pub const fn exact_rotation(mut self, effect: Effect) -> Self {
+        self.exact_rotation = effect;
+        self
+    }
+
+    /// The same, with [`Self::full_manifolds`] set.
+    pub const fn full_manifolds(mut self, effect: Effect) -> Self {
+        self.full_manifolds = effect;
+        self
+    }
+
+    /// The same, with [`Self::speculative`] set.
+    pub const fn speculative(mut self, effect: Effect) -> Self {
+        self.speculative = effect;
+        self
+    }
+
+    /// The same, with [`Self::stop`] set.
+    pub const fn stop(mut self, effect: Effect) -> Self {
+        self.stop = effect;
+        self
+    }
+
     /// Whether nothing needs to know how bodies move in the step.
     fn leaves_all_to_rapier(&self) -> bool {
         [self.continuous, self.guard] == [Effect::Off; 2] && self.speculative != Effect::On
+    }
+}
+
+impl MedialOptions {
+    /// The same, with the scene's effects set.
+    pub const fn effects(mut self, effects: Effects) -> Self {
+        self.effects = effects;
+        self
+    }
+
+    /// The same, with the place set where batches are computed.
+    pub const fn backend(mut self, backend: Backend) -> Self {
+        self.backend = backend;
+        self
     }
 }
 

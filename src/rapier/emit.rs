@@ -1,8 +1,8 @@
 //! Collision and contact-force events of impacts within a step: emitted once, with a contact pair like
 //! rapier's, and not a second time when rapier finds the same contact in a later step.
 
+use super::blow::Blow;
 use super::events::Impulse;
-use super::response::Blow;
 use super::verdicts::sorted;
 use crate::math::Real;
 use crate::medial::MedialMesh;

@@ -8,12 +8,13 @@
 //! for the rest of the step, or is carried along by what pushes it. No hit is ever dropped, at the
 //! current time neither; so no medial axis crosses another on the motion executed.
 
+use super::blow::Blow;
 use super::first_contact::{Asker, Hit, Work};
 use super::inquiry::{Inquiry, Known, Meshes};
 use super::motion::Kind;
 use super::outlines::Outlines;
 use super::pairs::{Rules, concerned, in_order, sweep};
-use super::response::{Blow, Response};
+use super::response::Response;
 use super::snapshot::Snapshot;
 use super::waiting::Waiting;
 use crate::batch::{Batch, ToiJob, ToiResult};
@@ -56,6 +57,14 @@ pub struct Outcome {
     pub changed: Vec<(usize, bool)>,
     /// Seconds into the step at which the world stopped, all bodies with it.
     pub stopped: Option<Real>,
+}
+
+/// What comes next.
+enum Next {
+    /// Two colliders meet.
+    Impact([usize; 2], Hit),
+    /// A piece of the motion of bodies that joints hold ends.
+    Piece(Real),
 }
 
 /// What a pair waits for.
@@ -127,7 +136,14 @@ pub fn resolve(
     for pair in pairs {
         events.ask(pair, 0.0, known.remove(&pair), work);
     }
-    while let Some((pair, hit)) = events.earliest(work) {
+    while let Some(next) = events.earliest(work) {
+        let (pair, hit) = match next {
+            Next::Impact(pair, hit) => (pair, hit),
+            Next::Piece(time) => {
+                events.begin_piece(time, work);
+                continue;
+            }
+        };
         if events.stops_at(pair, hit.time) {
             return events.stop(hit.time, narrow_phase);
         }
@@ -167,16 +183,21 @@ fn deep(
 }
 
 impl Loop<'_> {
-    /// Looks for the earliest impact: always where the next may be, and no further than to where another
-    /// may come first.
-    fn earliest(&mut self, work: &mut Work) -> Option<([usize; 2], Hit)> {
+    /// Looks for the earliest impact, or end of a piece: always where the next may be, and no further than to where
+    /// another may come first.
+    fn earliest(&mut self, work: &mut Work) -> Option<Next> {
         loop {
+            let piece = self.response.next_piece();
+            let waits = self.waiting.first_time();
+            if let Some(time) = piece.filter(|time| waits.is_none_or(|first| *time <= first)) {
+                return Some(Next::Piece(time));
+            }
             let (pair, first, next) = self.waiting.first()?;
             let inquiry = match first {
-                Awaited::Hit(hit) => return Some((pair, *hit)),
+                Awaited::Hit(hit) => return Some(Next::Impact(pair, *hit)),
                 Awaited::Answer(inquiry) => inquiry,
             };
-            let until = next.unwrap_or(self.asker.dt);
+            let until = next.into_iter().chain(piece).fold(self.asker.dt, Real::min);
             let shapes = self.shapes;
             let meshes: Meshes = pair.map(|k| shapes[k].as_shape::<MedialMesh>());
             match inquiry.pursue(&self.asker, self.snapshot, pair, meshes, until, work) {
@@ -247,14 +268,24 @@ impl Loop<'_> {
         }
     }
 
-    /// Lets two colliders meet, and asks for all pairs of the bodies whose motion that changed.
+    /// Lets two colliders meet.
     fn impact(&mut self, pair: [usize; 2], hit: Hit, work: &mut Work) {
         self.events += 1;
         let (asker, rules) = (self.asker, self.rules);
         let bodies = self
             .response
             .impact(self.snapshot, &asker, &rules, pair, hit);
-        let time = hit.time;
+        self.ask_again(&bodies, hit.time, work);
+    }
+
+    fn begin_piece(&mut self, time: Real, work: &mut Work) {
+        let asker = self.asker;
+        let bodies = self.response.begin_piece(self.snapshot, &asker, time);
+        self.ask_again(&bodies, time, work);
+    }
+
+    /// Asks from `time` on for all pairs of bodies that have another motion.
+    fn ask_again(&mut self, bodies: &[usize], time: Real, work: &mut Work) {
         let changed: Vec<usize> = (0..self.snapshot.parts.len())
             .filter(|&k| {
                 let body = self.snapshot.parts[k].body;

@@ -87,6 +87,12 @@ impl Inertia {
         [self.mass * impulse, self.angular * torque]
     }
 
+    /// Mass along the world's axes; 0 where nothing moves it.
+    pub fn masses(&self) -> Vector {
+        let mass = |inverse: Real| if inverse > 0.0 { 1.0 / inverse } else { 0.0 };
+        Vector::new(mass(self.mass.x), mass(self.mass.y), mass(self.mass.z))
+    }
+
     /// Kinetic energy at these velocities, of what can move; of turning none where an axis is locked.
     pub fn energy(&self, [linear, angular]: [Vector; 2]) -> f64 {
         let per = |v: Real, inverse: Real| if inverse > 0.0 { v * v / inverse } else { 0.0 };

@@ -1,6 +1,7 @@
 //! L6: the hook round rapier's step, and what a rapier user calls.
 
 mod ahead;
+mod blow;
 pub mod candidates;
 pub mod collider;
 #[cfg(feature = "debug-render")]
@@ -28,10 +29,12 @@ pub mod report;
 mod response;
 #[cfg(feature = "serde-serialize")]
 pub mod saved_world;
+mod skyline;
 mod snapshot;
 mod speculative;
 mod sweep;
 mod thin_parts;
+mod tied;
 mod tuning;
 mod verdicts;
 mod waiting;

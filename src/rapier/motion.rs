@@ -38,11 +38,15 @@ pub struct Body {
     pub time: Real,
     /// Pose at the start of the step.
     pub start: Pose,
+    /// Pose at the end of rapier's step.
+    pub end: Pose,
     /// Linear and angular velocity that the solver works with, per second. The angular velocity turns with
     /// the body: where the step turns it about another axis, one fixed in the world would change its energy.
     pub velocity: [Vector; 2],
     /// What joints add to them in a second: they turn velocities.
     bend: [Vector; 2],
+    /// Seconds into the step until which they do.
+    bends_until: Real,
     /// The velocities before rapier's step.
     pub velocity_before: [Vector; 2],
     /// Largest distance of a point of its colliders from the centre of mass, a length.
@@ -76,8 +80,10 @@ impl Body {
             },
             time: 0.0,
             start: *body.position(),
+            end: *body.position(),
             velocity: [body.linvel(), body.angvel()],
             bend: [Vector::ZERO; 2],
+            bends_until: 0.0,
             velocity_before: [body.linvel(), body.angvel()],
             reach: 0.0,
             mass: properties.local_mprops,
@@ -96,8 +102,10 @@ impl Body {
             motion: NonlinearRigidMotion::identity(),
             time: 0.0,
             start: Pose::IDENTITY,
+            end: Pose::IDENTITY,
             velocity: [Vector::ZERO; 2],
             bend: [Vector::ZERO; 2],
+            bends_until: 0.0,
             velocity_before: [Vector::ZERO; 2],
             reach: 0.0,
             mass: MassProperties::default(),
@@ -131,6 +139,7 @@ impl Body {
         self.dominance = body.effective_dominance_group();
         self.motion.local_center = com;
         let (start, end) = (self.motion.start, *body.position());
+        self.end = end;
         let spin = start.rotation * (end.rotation.inverse() * body.angvel());
         self.velocity = [body.linvel(), spin];
         let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
@@ -155,19 +164,25 @@ impl Body {
         }
     }
 
-    /// Gives it the motion that takes it to a pose in some seconds, with the whole turns that it makes; by then its
-    /// velocities have gained so much.
-    pub fn aim(&mut self, end: Pose, gained: [Vector; 2], seconds: Real) {
-        let start = self.motion.start;
-        let com = self.mass.local_com;
-        let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
-        let turn = unwrapped(turn, self.motion.angvel * seconds, Real::MAX.sqrt());
-        self.motion.local_center = com;
-        self.motion.linvel = (end * com - start * com) / seconds;
-        self.motion.angvel = turn / seconds;
-        let carried = end.rotation * (start.rotation.inverse() * self.velocity[1]);
-        let spin = self.velocity[1] + gained[1] - carried;
+    /// Linear velocity of its centre of mass at `time`, and angular velocity, of its motion.
+    pub fn twist(&self, time: Real) -> [Vector; 2] {
+        let m = self.motion_from(time);
+        // A body that is carried along turns about another's centre.
+        let arm = m.start.rotation * (self.mass.local_com - m.local_center);
+        [m.linvel + m.angvel.cross(arm), m.angvel]
+    }
+
+    /// Gives it the motion that moves its centre of mass by a way and turns it, in some seconds, with the whole turns
+    /// that it makes; by then its velocities have gained so much.
+    pub fn aim(&mut self, (way, turn): (Vector, Rotation), gained: [Vector; 2], seconds: Real) {
+        let turned = shortest(turn).to_scaled_axis();
+        let turned = unwrapped(turned, self.motion.angvel * seconds, Real::MAX.sqrt());
+        self.motion.local_center = self.mass.local_com;
+        self.motion.linvel = way / seconds;
+        self.motion.angvel = turned / seconds;
+        let spin = self.velocity[1] + gained[1] - turn * self.velocity[1];
         self.bend = [gained[0] / seconds, spin / seconds];
+        self.bends_until = self.time + seconds;
     }
 
     /// Moves it to where it is at `time`.
@@ -176,8 +191,9 @@ impl Body {
         self.motion = self.motion_from(time);
         self.motion.start.rotation = self.motion.start.rotation.normalize();
         self.velocity[1] = self.motion.start.rotation * (before.inverse() * self.velocity[1]);
+        let bent = (time.min(self.bends_until) - self.time).max(0.0);
         for (velocity, bend) in self.velocity.iter_mut().zip(self.bend) {
-            *velocity += bend * (time - self.time);
+            *velocity += bend * bent;
         }
         self.time = time;
     }

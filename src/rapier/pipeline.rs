@@ -102,9 +102,10 @@ impl MedialPipeline {
         self.tuning = tuning;
     }
 
-    /// Makes the world's narrow phase ask this pipeline first, and lowers the contact recycle
-    /// distance to [`RECYCLE_DISTANCE`] if it is above. Call once, and again after the narrow phase
-    /// was replaced (a world restored from a snapshot).
+    /// Prepares a world to be stepped: its narrow phase asks this pipeline for contacts first, and
+    /// `normalized_contact_recycle_distance` is lowered to [`RECYCLE_DISTANCE`] if it is above, for all bodies.
+    /// Nothing else of the world changes. Call it once, and again after the narrow phase was replaced (a
+    /// world that was loaded).
     pub fn attach(&mut self, world: &mut PhysicsWorld) {
         self.attach_sets(&mut world.integration_parameters, &mut world.narrow_phase);
     }
@@ -121,7 +122,8 @@ impl MedialPipeline {
         *distance = distance.min(RECYCLE_DISTANCE);
     }
 
-    /// Steps the world.
+    /// Steps the world: call it in place of `world.step()`. The report counts what was done;
+    /// [`StepReport::events`], [`StepReport::continuous_queries`] and [`StepReport::frozen`] tell most.
     pub fn step(&mut self, world: &mut PhysicsWorld) -> StepReport {
         self.step_with_events(world, &(), &())
     }

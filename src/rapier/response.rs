@@ -8,13 +8,15 @@
 //! rounds between two of them would not end, and their friction would hold what they press out. No contact
 //! is taken for granted: all pairs of the bodies that changed are searched again.
 
+use super::blow::Blow;
 use super::first_contact::{Asker, Hit};
 use super::impulse::{Impact, Inertia, Material};
-use super::joints::{Joints, System, Twist};
+use super::joints::Joints;
 use super::meetings::Meetings;
 use super::motion::Kind;
 use super::pairs::Rules;
 use super::snapshot::Snapshot;
+use super::tied::{System, Twist};
 use super::tuning::Tuning;
 use crate::math::{Real, Vector};
 use parry3d::query::NonlinearRigidMotion;
@@ -38,38 +40,9 @@ pub struct Course {
     pub struck: bool,
 }
 
-/// Cosine from which the blows of a pair count as one (10°), as points of one manifold.
-const SAME_NORMAL: Real = 0.985;
-
 /// Share of the speed that an impulse gives two bodies which joints leave of it, below which joints hold the contact
 /// itself, as between neighbours in a chain: there is nothing to push, and the impulse would have no bound.
 const HELD: Real = 0.02;
-
-/// An impulse between two colliders, as an event tells it.
-#[derive(Clone, Copy, Debug)]
-pub struct Blow {
-    /// Contact point in the frame of each collider.
-    pub points: [Vector; 2],
-    /// Unit normal from the first to the second: in the world, and in the frame of each.
-    pub normals: [Vector; 3],
-    /// Distance of the surfaces, < 0 where they overlap.
-    pub distance: Real,
-    /// Impulse along the normal.
-    pub impulse: Real,
-}
-
-impl Blow {
-    fn new(snapshot: &Snapshot, pair: Pair, hit: &Hit, impulse: Real) -> Self {
-        let poses = pair.map(|k| snapshot.motion(k, hit.time).start);
-        let [n1, n2] = poses.map(|pose| pose.rotation.inverse() * hit.normal);
-        Self {
-            points: poses.map(|pose| pose.inverse_transform_point(hit.point)),
-            normals: [hit.normal, n1, -n2],
-            distance: -hit.depth,
-            impulse,
-        }
-    }
-}
 
 /// What the impacts of a step did so far.
 pub struct Response {
@@ -80,6 +53,8 @@ pub struct Response {
     met: Meetings,
     /// Joints, once something was struck.
     joints: Option<Joints>,
+    /// When pieces of motions end, and of which bodies.
+    pieces: Vec<(Real, Vec<usize>)>,
 }
 
 fn bodies(snapshot: &Snapshot, pair: Pair) -> [usize; 2] {
@@ -94,6 +69,7 @@ impl Response {
             impulses: BTreeMap::new(),
             met: Meetings::default(),
             joints: None,
+            pieces: Vec::new(),
         }
     }
 
@@ -139,8 +115,34 @@ impl Response {
             self.freeze(snapshot, &asker.tuning, both, hit.time);
         }
         self.pass_on(snapshot, asker, rules, hit.time, &mut changed);
-        self.close_joints(snapshot, asker, hit.time, &mut changed);
+        for b in self.close_joints(snapshot, asker, hit.time, &changed, false) {
+            if !changed.contains(&b) {
+                changed.push(b);
+            }
+        }
         changed
+    }
+
+    /// Seconds into the step at which the first piece of a motion ends that joints give ([`super::joints`]).
+    pub fn next_piece(&self) -> Option<Real> {
+        self.pieces
+            .iter()
+            .map(|(until, _)| *until)
+            .min_by(Real::total_cmp)
+    }
+
+    /// Gives bodies whose piece ends at `time` the next one; returns them.
+    pub fn begin_piece(
+        &mut self,
+        snapshot: &mut Snapshot,
+        asker: &Asker,
+        time: Real,
+    ) -> Vec<usize> {
+        let Some(ended) = self.pieces.iter().position(|(until, _)| *until <= time) else {
+            return Vec::new();
+        };
+        let (_, bodies) = self.pieces.swap_remove(ended);
+        self.close_joints(snapshot, asker, time, &bodies, true)
     }
 
     /// Moves a free body to where it is at `time`; returns whether it is one.
@@ -238,10 +240,7 @@ impl Response {
             both.contains(&b) && snapshot.bodies[b].dominance > snapshot.bodies[other].dominance
         };
         let strong = both.map(dominated);
-        for b in joints
-            .system(snapshot, &both, hit.time, |_| Inertia::INFINITE)
-            .bodies
-        {
+        for b in joints.tied_to(snapshot, &both) {
             self.advance(snapshot, b, hit.time);
         }
         // A frozen body keeps its motion, and takes impulses for the next step.
@@ -291,7 +290,8 @@ impl Response {
             return moved;
         }
         if let Some(j) = own.impulse(v2 - v1, 0.0) {
-            self.note(Blow::new(snapshot, pair, hit, j.dot(hit.normal)), pair);
+            let blow = Blow::new(snapshot, pair, hit, j.dot(hit.normal));
+            blow.add_to(self.impulses.entry(pair).or_default());
             let change = system.change(&wrenches(j));
             for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
                 let body = &mut snapshot.bodies[b];
@@ -326,17 +326,18 @@ impl Response {
         moved
     }
 
-    /// Closes the joints of bodies that were struck at `time`, by the end of the step; adds the bodies that move
-    /// otherwise for it.
+    /// Lets bodies go on from `time` as their joints let them, and what is tied to them; returns those whose motion
+    /// that changes.
     fn close_joints(
         &mut self,
         snapshot: &mut Snapshot,
         asker: &Asker,
         time: Real,
-        changed: &mut Vec<usize>,
-    ) {
+        from: &[usize],
+        goes_on: bool,
+    ) -> Vec<usize> {
         let Some(joints) = self.joints.take() else {
-            return;
+            return Vec::new();
         };
         let courses = &self.courses;
         let inertia = |snapshot: &Snapshot, b: usize| {
@@ -347,23 +348,24 @@ impl Response {
                 Inertia::INFINITE
             }
         };
-        for b in joints.close(snapshot, changed, [time, asker.dt], inertia) {
+        let mut moved: Vec<usize> = Vec::new();
+        for &body in from {
+            if moved.contains(&body) {
+                continue;
+            }
+            let piece = joints.close(snapshot, body, [time, asker.dt], goes_on, inertia);
+            let begun = |bodies: &[usize]| bodies.iter().any(|b| piece.moved.contains(b));
+            self.pieces.retain(|(_, bodies)| !begun(bodies));
+            moved.extend(&piece.moved);
+            self.pieces
+                .extend(piece.until.map(|until| (until, piece.moved)));
+        }
+        for &b in &moved {
             self.courses[b].moved = true;
             snapshot.bodies[b].awake = true;
-            if !changed.contains(&b) {
-                changed.push(b);
-            }
         }
         self.joints = Some(joints);
-    }
-
-    fn note(&mut self, blow: Blow, pair: Pair) {
-        let blows = self.impulses.entry(pair).or_default();
-        let same = |b: &&mut Blow| b.normals[0].dot(blow.normals[0]) >= SAME_NORMAL;
-        match blows.iter_mut().find(same) {
-            Some(same) => same.impulse += blow.impulse,
-            None => blows.push(blow),
-        }
+        moved
     }
 
     /// Stops a body that had too many impacts, or lets what pushes it carry it along.

@@ -5,6 +5,7 @@ use super::motion::{Body, Kind};
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
+use crate::parry::foreign;
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
@@ -120,8 +121,7 @@ impl Snapshot {
         body.reach = body.reach.max(arm.length() + bound.radius());
         let [thickness, least] = match shape.as_shape::<MedialMesh>() {
             Some(mesh) => [mesh.thickness(), mesh.thicknesses().least()],
-            None if shape.ccd_thickness() > 0.0 => [shape.ccd_thickness(); 2],
-            None => [Real::INFINITY; 2],
+            None => [foreign::thickness(&*shape); 2],
         };
         self.parts.push(Part {
             handle,

@@ -53,6 +53,11 @@ impl<T> Waiting<T> {
         }
     }
 
+    /// The time of the first pair, in seconds.
+    pub fn first_time(&self) -> Option<Real> {
+        self.order.first().map(|(time, ..)| Real::from_bits(*time))
+    }
+
     /// The first pair, what waits for it, and the time of the second one in seconds.
     pub fn first(&mut self) -> Option<(Pair, &mut T, Option<Real>)> {
         let mut order = self.order.iter();

@@ -1,7 +1,8 @@
 //! The batch of elementary tests, judged by the oracle: nothing that the device calls free meets.
 
-use crate::ccd::contact::{first_contact, passage};
+use crate::ccd::contact::first_contact;
 use crate::ccd::families::Family;
+use crate::ccd::judge::Truth;
 use crate::ccd::motion::{Paths, Query};
 use crate::ccd::rng::Rng;
 use crate::scene;
@@ -57,7 +58,7 @@ fn what_the_device_calls_free_is_free() {
             assert_eq!(free.len(), paths.len());
             for (query, &free) in drawn.iter().zip(&free) {
                 let exact = Paths::new(query);
-                let contact = passage(&exact).or(first_contact(&exact, 0.0).contact_at);
+                let contact = Truth::new(query, 0.0).contact.contact_at;
                 assert!(!free || contact.is_none(), "{family:?}\n{query:?}");
                 if Family::EXTREME.contains(&family) {
                     continue;

@@ -59,6 +59,12 @@ fn info_describes_a_mesh() {
     let volume = json["volume"].as_f64().unwrap();
     assert!((volume - f64::from(torus.volume())).abs() < 1e-6);
     assert_eq!(json["box_max"][0], 1.25);
+    assert_eq!(json["euler"], 0);
+    let inertia = torus.mass_properties(1.0).principal_inertia();
+    let told = json["principal_inertia"].as_array().unwrap();
+    for (told, inertia) in told.iter().zip(inertia.to_array()) {
+        assert!((told.as_f64().unwrap() / f64::from(inertia) - 1.0).abs() < 1e-6);
+    }
 }
 
 #[test]
@@ -128,7 +134,7 @@ fn failures_are_one_line_and_exit_code_1() {
 #[test]
 fn bad_arguments_exit_with_2() {
     let directory = scratch("arguments");
-    let cases: [&[&str]; 8] = [
+    let cases: [&[&str]; 10] = [
         &[],
         &["paint"],
         &["info"],
@@ -137,6 +143,8 @@ fn bad_arguments_exit_with_2() {
         &["build", "in.obj", "-o", "out.ma", "--primitives", "many"],
         &["build", "in.obj", "-o", "out.ma", "--max-error", "nan"],
         &["build", "in.obj", "-o", "out.ma", "--max-error", "0"],
+        &["build", "in.obj", "-o", "out.ma", "--scale", "-1"],
+        &["build", "in.obj", "-o", "out.ma", "--quiet", "--json"],
     ];
     for arguments in cases {
         let output = medial(&directory, arguments);
@@ -286,6 +294,30 @@ fn several_meshes_are_built_into_a_folder() {
         &medial(&directory, &["build", "empty", "-o", "out"]),
         "no triangle mesh",
     );
+}
+
+/// Millimetres with z up become metres with y up, baked, without a word.
+#[test]
+fn meshes_are_scaled_turned_and_baked() {
+    let directory = scratch("turned");
+    let plate = "v 0 0 0\nv 1000 0 0\nv 1000 2000 0\nv 0 2000 0\n\
+                 v 0 0 3000\nv 1000 0 3000\nv 1000 2000 3000\nv 0 2000 3000\n\
+                 f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    fs::create_dir(directory.join("in")).unwrap();
+    fs::write(directory.join("in/box.obj"), plate).unwrap();
+    let run = [
+        "build", "in", "-o", "out", "-p", "30", "--bake", "--scale", "0.001", "--up", "z",
+        "--quiet",
+    ];
+    let output = medial(&directory, &run);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(output.stdout.is_empty() && output.stderr.is_empty());
+    let mesh = MedialMesh::load_asset(directory.join("out/box.medial")).unwrap();
+    let size = mesh.aabb().extents();
+    for (size, is) in size.to_array().into_iter().zip([1.0, 3.0, 2.0]) {
+        assert!((size - is).abs() < 1e-4, "{size} for {is}");
+    }
+    assert!((mesh.mass_properties(1.0).mass() - 6.0).abs() < 1e-4);
 }
 
 /// Ctrl-C ends the build soon and in order: nothing is left, not even an unfinished file.

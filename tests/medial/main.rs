@@ -6,6 +6,8 @@ mod broken_file;
 mod cli;
 mod envelope;
 mod fuzz;
+#[cfg(feature = "gltf")]
+mod gltf;
 mod ma_file;
 mod mass;
 mod mesh;

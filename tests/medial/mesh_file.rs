@@ -9,7 +9,7 @@ pub fn load(bytes: &[u8], format: MeshFormat) -> Result<TriangleMesh, BuildError
 }
 
 /// A box of 1 × 2 × 3 as six quads, counter-clockwise from outside.
-const CORNERS: [[f32; 3]; 8] = [
+pub const CORNERS: [[f32; 3]; 8] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.0],
     [1.0, 2.0, 0.0],
@@ -19,7 +19,7 @@ const CORNERS: [[f32; 3]; 8] = [
     [1.0, 2.0, 3.0],
     [0.0, 2.0, 3.0],
 ];
-const QUADS: [[usize; 4]; 6] = [
+pub const QUADS: [[usize; 4]; 6] = [
     [0, 3, 2, 1],
     [4, 5, 6, 7],
     [0, 1, 5, 4],
@@ -131,11 +131,13 @@ pub fn good_files() -> Vec<(&'static str, Vec<u8>, MeshFormat)> {
         ("ply text", ply_text(), MeshFormat::Ply),
         ("ply little", ply_binary(false), MeshFormat::Ply),
         ("ply big", ply_binary(true), MeshFormat::Ply),
+        #[cfg(feature = "gltf")]
+        ("glb", crate::gltf::box_file(), MeshFormat::Gltf),
     ]
 }
 
 /// Volume inside a closed mesh: positive if its triangles face outwards.
-fn volume(mesh: &TriangleMesh) -> f32 {
+pub fn volume(mesh: &TriangleMesh) -> f32 {
     let at = |i: u32| mesh.vertices[i as usize];
     let six = |&[a, b, c]: &[u32; 3]| at(a).dot(at(b).cross(at(c)));
     mesh.indices.iter().map(six).sum::<f32>() / 6.0
@@ -230,8 +232,8 @@ fn variants_in_the_wild_are_read() {
 fn endings_name_the_format() {
     let missing = read("/nowhere/mesh.obj").unwrap_err();
     assert!(matches!(missing, BuildError::File { .. }), "{missing}");
-    let unknown = read("/nowhere/mesh.gltf").unwrap_err();
-    assert!(unknown.to_string().contains("\"gltf\""), "{unknown}");
+    let unknown = read("/nowhere/mesh.fbx").unwrap_err();
+    assert!(unknown.to_string().contains("\"fbx\""), "{unknown}");
     assert!(matches!(
         read("mesh").unwrap_err(),
         BuildError::UnknownFormat { .. }

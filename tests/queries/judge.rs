@@ -98,3 +98,67 @@ fn wrong_answers_are_caught() {
             .missed
     );
 }
+
+/// Corners of a body without thickness that moves straight.
+fn thin(corners: &[[f64; 3]], displacement: [f64; 3]) -> Vec<Ball> {
+    let ball = |c: &[f64; 3]| Ball {
+        center: Vector3::from(*c),
+        radius: 0.0,
+        displacement: Vector3::from(displacement),
+    };
+    corners.iter().map(ball).collect()
+}
+
+/// Bodies without thickness are in contact for a moment, or where one is in the other. They meet, or pass each other
+/// at a distance, at a planted time; a hit is told after it by no more than rounding makes of it.
+#[test]
+fn bodies_without_thickness_meet_when_they_do() {
+    let triangle = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [0.2, 0.0, 1.5]];
+    let across = [[-1.0, 0.0, 0.3], [1.0, 0.0, 0.1]];
+    let along = [[0.1, 0.0, -2.0], [0.1, 0.0, 2.0]];
+    let point = [[0.1, 0.0, 0.1]];
+    let hanging = [[0.1, 0.0, 0.1], [0.1, -3.0, 0.1]];
+    let leaning = [[0.1, 0.0, 0.1], [0.1, 3.0, 0.1], [2.0, 2.0, 0.1]];
+    let cases: [(&[[f64; 3]], &[[f64; 3]]); 5] = [
+        (&across, &along),
+        (&triangle, &point),
+        (&point, &triangle),
+        (&triangle, &hanging),
+        (&leaning, &triangle),
+    ];
+    for (a, b) in cases {
+        for speed in [1.0e-3, 1.0, 100.0] {
+            for beside in [0.0, 10.0] {
+                let at = |c: [f64; 3]| [c[0] + beside, c[1] + 0.4 * speed, c[2]];
+                let a = thin(
+                    &a.iter().copied().map(at).collect::<Vec<_>>(),
+                    [0.0, -speed, 0.0],
+                );
+                let balls = [a, thin(b, [0.0; 3])];
+                let motion = Motion::Straight;
+                let truth = Truth::new(&Query { balls, motion }, 0.0);
+                let contact = truth.contact.contact_at;
+                if beside > 0.0 {
+                    assert_eq!(contact, None, "speed {speed}");
+                    continue;
+                }
+                let contact = contact.expect("they meet");
+                assert!(
+                    contact >= 0.4 && contact < 0.4 + 1.0e-11 * (1.0 + speed) / speed,
+                    "{contact}, {speed}"
+                );
+            }
+        }
+    }
+    // Crossed from the start, and never.
+    for shift in [0.0, 0.5] {
+        let a = [
+            [0.1, -1.0 + 4.0 * shift, 0.1],
+            [0.1, 1.0 + 4.0 * shift, 0.1],
+        ];
+        let balls = [thin(&a, [0.0, 1.0e-3, 0.0]), thin(&triangle, [0.0; 3])];
+        let motion = Motion::Straight;
+        let truth = Truth::new(&Query { balls, motion }, 0.0);
+        assert_eq!(truth.contact.contact_at, (shift == 0.0).then_some(0.0));
+    }
+}

@@ -22,6 +22,7 @@ mod force_events;
 )]
 #[path = "../common/golden.rs"]
 mod golden;
+mod grasps;
 mod hanging;
 mod heaps;
 mod held;
@@ -37,6 +38,7 @@ mod resting;
 #[path = "../common/ccd/rng.rs"]
 mod rng;
 mod rolling;
+mod ropes;
 #[cfg(feature = "serde-serialize")]
 mod saving;
 mod walls;

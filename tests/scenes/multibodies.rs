@@ -253,10 +253,7 @@ fn what_joints_hold_is_struck_as_a_whole() {
                     mass * speed,
                 );
                 let name = format!("{struck:?} by {by:?}, {speed} m/s");
-                // Between two ends of a step bodies go straight: a link that turns by a radian in the rest of the step
-                // bulges towards what struck it and may meet it again.
-                let turns_far = struck != Struck::Ragdoll && speed > 5.0;
-                let limit = own.off(&fine) + if turns_far { 0.2 } else { 0.05 };
+                let limit = own.off(&fine) + 0.05;
                 assert!(
                     ours.off(&fine) < limit,
                     "{name}: turns off by {}",

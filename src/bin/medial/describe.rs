@@ -24,13 +24,21 @@ pub struct Description {
     box_min: [f32; 3],
     box_max: [f32; 3],
     thickness: f32,
+    /// Spheres less edges plus faces: 1 for a ball, 0 for a ring, −1 for a pair of glasses.
+    euler: i64,
+    /// At density 1, in the file's unit; of the source mesh where the file has it.
+    mass: f32,
+    center_of_mass: [f32; 3],
+    principal_inertia: [f32; 3],
 }
 
 pub fn describe(mesh: &MedialMesh) -> Description {
     let count = |kind: fn(&MedialPrimitive) -> bool| mesh.primitives().filter(kind).count();
     let aabb = mesh.aabb();
+    let mass = mesh.mass_properties(1.0);
+    let [spheres, edges, faces] = [mesh.spheres().len(), mesh.edges().len(), mesh.faces().len()];
     Description {
-        spheres: mesh.spheres().len(),
+        spheres,
         primitives: mesh.primitive_count(),
         slabs: count(|p| matches!(p, MedialPrimitive::Slab(_))),
         cones: count(|p| matches!(p, MedialPrimitive::Cone(_))),
@@ -38,6 +46,10 @@ pub fn describe(mesh: &MedialMesh) -> Description {
         box_min: aabb.mins.to_array(),
         box_max: aabb.maxs.to_array(),
         thickness: mesh.thickness(),
+        euler: spheres as i64 - edges as i64 + faces as i64,
+        mass: mass.mass(),
+        center_of_mass: mass.local_com.to_array(),
+        principal_inertia: mass.principal_inertia().to_array(),
     }
 }
 
@@ -52,16 +64,22 @@ pub fn relative(hausdorff: &Hausdorff, longest_side: f32) -> Errors {
 
 impl Description {
     pub fn text(&self) -> String {
-        let [lo, hi] = [self.box_min, self.box_max].map(|[x, y, z]| format!("({x}, {y}, {z})"));
+        let point = |[x, y, z]: [f32; 3]| format!("({x}, {y}, {z})");
+        let [lo, hi] = [self.box_min, self.box_max].map(point);
         format!(
             "spheres     {}\nprimitives  {}: slabs {}, cones {}, lone spheres {}\n\
-             box         {lo} to {hi}\nthickness   {}\n",
+             box         {lo} to {hi}\nthickness   {}\nEuler       {}\n\
+             mass        {} at density 1, centre {}, principal inertia {}\n",
             self.spheres,
             self.primitives,
             self.slabs,
             self.cones,
             self.lone_spheres,
             self.thickness,
+            self.euler,
+            self.mass,
+            point(self.center_of_mass),
+            point(self.principal_inertia),
         )
     }
 }

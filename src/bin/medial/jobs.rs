@@ -24,7 +24,7 @@ pub enum PlanError {
     MeshOutput(PathBuf),
     #[error("{0}: no such directory")]
     NoDirectory(PathBuf),
-    #[error("{0}: no triangle mesh in it (obj, stl, ply, off)")]
+    #[error("{0}: no triangle mesh in it (obj, stl, ply, off, glb, gltf)")]
     NoMeshes(PathBuf),
     #[error("{output}: both {first} and {second} would go there")]
     SameOutput {
@@ -38,7 +38,9 @@ pub enum PlanError {
 
 /// One job per mesh; a folder stands for all meshes in it. Several meshes go into the folder
 /// `output`, which is made if it is not there; a single one goes to the file, or into the folder.
-pub fn plan(inputs: &[PathBuf], output: &Path) -> Result<Vec<Job>, PlanError> {
+///
+/// What goes into a folder is baked if `bake` says so.
+pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, PlanError> {
     let mut meshes = Vec::new();
     for input in inputs {
         if input.is_dir() {
@@ -62,7 +64,7 @@ pub fn plan(inputs: &[PathBuf], output: &Path) -> Result<Vec<Job>, PlanError> {
         let output = if into_folder {
             // A stem may have dots of its own, which `with_extension` would take for an ending.
             let mut name = input.file_stem().unwrap_or_default().to_owned();
-            name.push(".ma");
+            name.push(if bake { ".medial" } else { ".ma" });
             output.join(name)
         } else {
             output.to_owned()

@@ -55,38 +55,6 @@ pub fn distance_at(paths: &Paths, time: f64) -> (f64, f64) {
     (found.lower - rounding, found.upper + rounding)
 }
 
-/// When a segment passes through another, or a point through a triangle, of no thickness: the moment
-/// between two samples at which the sign of the volume that they span changes, if they touch then as far as
-/// rounding tells. In contact for a moment only, they are apart at all others.
-pub fn passage(paths: &Paths) -> Option<f64> {
-    if !paths.is_thin() || !matches!(paths.counts(), [2, 2] | [1, 3] | [3, 1]) {
-        return None;
-    }
-    let volume = |time: f64| {
-        let corners = paths.at(time);
-        let z = corners.centers();
-        z[0].dot(&(z[1] - z[0]).cross(&(z[2] - z[0])))
-    };
-    let samples = 64;
-    let at = |k: usize| k as f64 / samples as f64;
-    (0..samples).find_map(|k| {
-        let (mut low, mut high) = (at(k), at(k + 1));
-        let before = volume(low) < 0.0;
-        if before == (volume(high) < 0.0) {
-            return None;
-        }
-        while low.max(f64::MIN_POSITIVE).next_up() < high {
-            let middle = low + 0.5 * (high - low);
-            if (volume(middle) < 0.0) == before {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        (distance_at(paths, high).1 <= 8.0 * paths.rounding()).then_some(high)
-    })
-}
-
 struct Search<'a> {
     paths: &'a Paths,
     threshold: f64,

@@ -3,15 +3,11 @@
 //! A verdict of missed, late or false is a proof of guilt: it holds with all rounding of the oracle
 //! taken in favour of the answer.
 
-use super::contact::{FirstContact, distance_at, first_contact, passage};
+use super::contact::{FirstContact, distance_at, first_contact};
 use super::motion::{Paths, Query};
+use super::passage::met_by;
 use rapier3d_medial::elementary::ToiStatus;
 use std::time::Duration;
-
-/// By how much bodies without thickness may be deemed in contact too soon, as a fraction of the
-/// step: two roundings, of 1e-13 at the positions drawn, at a closing speed of 2e-4 sizes per step.
-/// Slower ones, one in ten thousand, could be called late unjustly.
-const THIN_SOONER: f64 = 1.0e-9;
 
 /// An answer, its numbers exactly as given.
 #[derive(Clone, Copy, Debug)]
@@ -34,37 +30,32 @@ pub struct Answer {
 pub struct Truth {
     paths: Paths,
     target: f64,
-    /// First contact.
+    /// First contact. That of bodies without any thickness is told where they have surely met.
     pub contact: FirstContact,
-    /// By how much the true contact may come after it.
-    sooner: f64,
 }
 
 impl Truth {
     /// Asks the oracle when the signed distance first is at most `target`.
     pub fn new(query: &Query, target: f64) -> Self {
         let paths = Paths::new(query);
-        // Bodies without any thickness touch at a distance of 0 and never below, which rounding
-        // cannot tell from apart. They are deemed in contact at the smallest distance that it can,
-        // which is sooner than they are.
-        let (least, sooner) = if paths.is_thin() {
-            let rounding = paths.rounding();
-            (2.0 * rounding, THIN_SOONER * (rounding / 1.0e-13).max(1.0))
+        let rounding = paths.rounding();
+        let contact = if paths.is_thin() && target < 2.0 * rounding {
+            // They touch at a distance of 0 and never below, which rounding cannot tell from apart.
+            let near = first_contact(&paths, 2.0 * rounding);
+            let at = near.contact_at.unwrap_or(near.free_until);
+            FirstContact {
+                contact_at: Some(at)
+                    .filter(|at| *at < 1.0)
+                    .and_then(|at| met_by(&paths, at)),
+                ..near
+            }
         } else {
-            (f64::NEG_INFINITY, 0.0)
-        };
-        let contact = match passage(&paths) {
-            Some(time) => FirstContact {
-                free_until: 0.0,
-                contact_at: Some(time),
-            },
-            None => first_contact(&paths, target.max(least)),
+            first_contact(&paths, target)
         };
         Self {
             paths,
             target,
             contact,
-            sooner,
         }
     }
 
@@ -115,7 +106,7 @@ impl Truth {
         }
         if answer.status != ToiStatus::Separated {
             let contact = self.contact.contact_at.unwrap_or(1.0);
-            verdict.late = (answer.lower - contact - self.sooner).max(0.0);
+            verdict.late = (answer.lower - contact).max(0.0);
         }
         verdict
     }

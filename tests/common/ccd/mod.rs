@@ -7,6 +7,7 @@ pub mod extremes;
 pub mod families;
 pub mod judge;
 pub mod motion;
+pub mod passage;
 pub mod rng;
 pub mod shapes;
 pub mod subject;

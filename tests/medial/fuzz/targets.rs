@@ -16,6 +16,8 @@ pub const TARGETS: &[Target] = &[
     ("stl", |rng| mesh_file(rng, MeshFormat::Stl)),
     ("ply", |rng| mesh_file(rng, MeshFormat::Ply)),
     ("off", |rng| mesh_file(rng, MeshFormat::Off)),
+    #[cfg(feature = "gltf")]
+    ("glb", |rng| mesh_file(rng, MeshFormat::Gltf)),
     ("ma", ma),
     ("asset", asset),
     ("new", queries::new),

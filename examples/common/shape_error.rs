@@ -1,8 +1,8 @@
-//! How far a shape of parry's is from the mesh that it was made of, at sampled points: what the
+//! How far a shape of parry is from the mesh that it was made of, at sampled points: what the
 //! builder says of its medial meshes, for the peers.
 
-use crate::common::mesh::Mesh;
-use crate::common::surface_error::spread_points;
+use super::mesh::Mesh;
+use super::surface_error::spread_points;
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::{Compound, Shape};
 use rapier3d::prelude::{Pose, TriMesh, Vector};

@@ -1,0 +1,270 @@
+//! `medial build`: medial meshes from triangle meshes, with a progress bar and a report.
+
+use crate::describe::{Description, Errors, describe, relative};
+use crate::failure::{Failed, Failure};
+use crate::jobs::{Job, plan};
+use crate::output::{print, say};
+use crate::{INTERRUPTED, STOP};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use rapier3d_medial::build::mesh_file;
+use rapier3d_medial::math::Vector;
+use rapier3d_medial::{BuildOptions, MedialMesh, Quality};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+/// Steps of the progress bar (a count) for each mesh: one per mille.
+const BAR_STEPS: u64 = 1000;
+
+#[derive(Args)]
+pub struct BuildArguments {
+    /// Triangle meshes: obj, stl, ply, off, glb or gltf, or folders of them.
+    #[arg(required = true)]
+    inputs: Vec<PathBuf>,
+    /// Where to write the medial mesh: baked, with the mass properties of the triangle mesh, if it ends
+    /// in .medial, else in the .ma format, which has none; of several, the folder to write them into.
+    #[arg(short, long, value_name = "OUT.ma")]
+    output: PathBuf,
+    /// Largest number of primitives: slabs, cones that belong to no slab, lone spheres
+    /// [default: 500, or what --max-error needs].
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    primitives: Option<u32>,
+    /// Largest two-sided Hausdorff error, as a fraction of the longest side of the mesh's box.
+    #[arg(short = 'e', long, value_name = "E", value_parser = positive)]
+    max_error: Option<f32>,
+    /// How much work to spend on a small error.
+    #[arg(short, long, value_enum, default_value_t)]
+    quality: QualityArgument,
+    /// Fit the surface on both sides instead of enclosing it.
+    #[arg(long)]
+    no_enclose: bool,
+    /// Of several meshes: write them baked (.medial), not as .ma.
+    #[arg(long)]
+    bake: bool,
+    /// Multiply all lengths first: 0.001 takes millimetres to metres.
+    #[arg(long, value_name = "S", value_parser = positive)]
+    scale: Option<f32>,
+    /// Which axis points up in the files; z is turned to rapier's usual y.
+    #[arg(long, value_enum, default_value_t)]
+    up: Up,
+    /// Say nothing unless something fails.
+    #[arg(long, conflicts_with = "json")]
+    quiet: bool,
+    /// Print the report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The axis that points up.
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum Up {
+    /// As in rapier's examples and glTF.
+    #[default]
+    Y,
+    /// As in CAD programs and Blender.
+    Z,
+}
+
+/// [`Quality`], as an argument.
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum QualityArgument {
+    /// Edge collapse alone.
+    Fast,
+    /// Then a fit to the surface.
+    #[default]
+    Balanced,
+    /// Then several starts and swaps.
+    Best,
+}
+
+impl From<QualityArgument> for Quality {
+    fn from(argument: QualityArgument) -> Self {
+        match argument {
+            QualityArgument::Fast => Self::Fast,
+            QualityArgument::Balanced => Self::Balanced,
+            QualityArgument::Best => Self::Best,
+        }
+    }
+}
+
+/// What a build did.
+#[derive(Serialize)]
+struct BuildSummary {
+    output: PathBuf,
+    vertices: usize,
+    triangles: usize,
+    mesh: Description,
+    errors: Errors,
+    errors_before_enclosure: Option<Errors>,
+    longest_side: f32,
+    target_reached: bool,
+    notes: Vec<String>,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+/// One mesh of several.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Built {
+    Done(Box<BuildSummary>),
+    Failed(Failed),
+}
+
+fn positive(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("must be a positive number".into()),
+    }
+}
+
+/// Builds and writes all meshes; one that fails is told, the others are built.
+pub fn build(arguments: &BuildArguments) -> Result<(), Failure> {
+    let jobs = plan(&arguments.inputs, &arguments.output, arguments.bake)?;
+    // The first Ctrl-C ends the build in order, which takes less than a second; the next at once.
+    // Without a handler it ends at once, too.
+    let _ = ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    });
+    let bar = match arguments.quiet {
+        true => ProgressBar::hidden(),
+        false => ProgressBar::new(BAR_STEPS * jobs.len() as u64),
+    };
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg} {elapsed}") {
+        bar.set_style(style);
+    }
+    let mut summaries = Vec::new();
+    let mut failed = 0;
+    for (index, job) in jobs.iter().enumerate() {
+        let start = BAR_STEPS * index as u64;
+        let name = match jobs.len() {
+            1 => String::new(),
+            all => format!("{} of {all}, {}: ", index + 1, job.input.display()),
+        };
+        let show = |stage: &str, fraction: f32| {
+            bar.set_message(format!("{name}{stage}"));
+            bar.set_position(start + (fraction * BAR_STEPS as f32) as u64);
+        };
+        match build_one(job, arguments, show) {
+            Ok(summary) if arguments.json => summaries.push(Built::Done(Box::new(summary))),
+            Ok(_) if arguments.quiet => {}
+            Ok(summary) => bar.suspend(|| print(false, &summary, || summary.text()))?,
+            Err(failure) if jobs.len() == 1 || STOP.load(Ordering::Relaxed) => {
+                bar.finish_and_clear();
+                return Err(failure.of(&job.input));
+            }
+            Err(failure) => {
+                let failure = failure.of(&job.input);
+                bar.suspend(|| say(&failure));
+                failed += 1;
+                summaries.push(Built::Failed(Failed {
+                    input: job.input.clone(),
+                    error: failure.line(),
+                }));
+            }
+        }
+    }
+    bar.finish_and_clear();
+    match summaries.as_slice() {
+        _ if !arguments.json => {}
+        [] => {}
+        [only] if jobs.len() == 1 => print(true, only, String::new)?,
+        several => print(true, &several, String::new)?,
+    }
+    match failed {
+        0 => Ok(()),
+        failed => Err(Failure::SomeFailed {
+            failed,
+            all: jobs.len(),
+        }),
+    }
+}
+
+/// Builds and writes one mesh; `show` is told the stage and the part done.
+fn build_one(
+    job: &Job,
+    arguments: &BuildArguments,
+    show: impl Fn(&str, f32),
+) -> Result<BuildSummary, Failure> {
+    show("reading", 0.0);
+    let mut source = mesh_file::read(&job.input)?;
+    let scale = arguments.scale.unwrap_or(1.0);
+    for v in &mut source.vertices {
+        *v = scale
+            * match arguments.up {
+                Up::Y => *v,
+                Up::Z => Vector::new(v.x, v.z, -v.y),
+            };
+    }
+    let mut options = BuildOptions {
+        enclose: !arguments.no_enclose,
+        max_error: arguments.max_error,
+        quality: arguments.quality.into(),
+        ..Default::default()
+    };
+    if arguments.primitives.is_some() || arguments.max_error.is_some() {
+        options.primitives = arguments.primitives.map(|n| n as usize);
+    }
+    let (mesh, report) = MedialMesh::from_trimesh_with_progress(
+        &source.vertices,
+        &source.indices,
+        &options,
+        &mut |progress| {
+            show(progress.stage, progress.fraction);
+            match STOP.load(Ordering::Relaxed) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        },
+    )?;
+    if job.output.extension().is_some_and(|e| e == "medial") {
+        mesh.save_asset(&job.output)?;
+    } else {
+        mesh.save_ma(&job.output)?;
+    }
+    let side = report.longest_side;
+    Ok(BuildSummary {
+        output: job.output.clone(),
+        vertices: source.vertices.len(),
+        triangles: source.indices.len(),
+        mesh: describe(&mesh),
+        errors: relative(&report.hausdorff, side),
+        errors_before_enclosure: report
+            .hausdorff_before_enclosure
+            .map(|h| relative(&h, side)),
+        longest_side: side,
+        target_reached: report.target_reached,
+        notes: report.notes,
+        seconds: report.seconds,
+    })
+}
+
+impl BuildSummary {
+    fn text(&self) -> String {
+        let mut text = format!(
+            "{} from {} vertices, {} triangles\n{}{}",
+            self.output.display(),
+            self.vertices,
+            self.triangles,
+            self.mesh.text(),
+            self.errors.text("errors"),
+        );
+        if let Some(before) = &self.errors_before_enclosure {
+            text += &before.text("errors before the enclosure");
+        }
+        for note in &self.notes {
+            text += &format!("note: {note}\n");
+        }
+        let total: f64 = self.seconds.iter().map(|(_, s)| s).sum();
+        // Writing to a string does not fail.
+        let _ = write!(text, "seconds     {total:.2}");
+        for (stage, seconds) in &self.seconds {
+            let _ = write!(text, ", {stage} {seconds:.2}");
+        }
+        text + "\n"
+    }
+}

@@ -1,0 +1,96 @@
+//! `medial info` and `medial bake`: what a medial mesh is, and the same in a file that loads at once.
+
+use crate::describe::{Description, Errors, describe, relative};
+use crate::failure::Failure;
+use crate::jobs;
+use crate::output::print;
+use clap::Args;
+use rapier3d_medial::build::hausdorff;
+use rapier3d_medial::build::mesh_file::{self, MeshFormat, TriangleMesh};
+use rapier3d_medial::math::Vector;
+use rapier3d_medial::medial::asset;
+use rapier3d_medial::{BuildError, MedialMesh};
+use serde::Serialize;
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+#[derive(Args)]
+pub struct BakeArguments {
+    /// Medial mesh in the .ma format, or baked.
+    input: PathBuf,
+    /// Where to write the baked mesh.
+    #[arg(short, long, value_name = "OUT.medial")]
+    output: PathBuf,
+}
+
+#[derive(Args)]
+pub struct InfoArguments {
+    /// Medial mesh in the .ma format, or baked.
+    mesh: PathBuf,
+    /// Measure both Hausdorff distances to the triangle mesh that it was built from.
+    #[arg(long, value_name = "IN")]
+    against: Option<PathBuf>,
+    /// Print as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `info` found.
+#[derive(Serialize)]
+struct InfoSummary {
+    #[serde(flatten)]
+    mesh: Description,
+    volume: f32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    errors: Option<Errors>,
+}
+
+/// Reads a baked mesh or a `.ma` file, by its first bytes. What cannot be opened is left to the reader to
+/// report.
+pub fn load(path: &Path) -> Result<MedialMesh, Failure> {
+    let mut start = [0; asset::MAGIC.len()];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    if read.is_ok() && start == asset::MAGIC {
+        return Ok(MedialMesh::load_asset(path)?);
+    }
+    if path.is_file() && MeshFormat::of(path).is_some() {
+        return Err(Failure::TriangleMesh(path.to_owned()));
+    }
+    Ok(MedialMesh::load_ma(path)?)
+}
+
+/// Writes a medial mesh baked.
+pub fn bake(arguments: &BakeArguments) -> Result<(), Failure> {
+    jobs::check_output(&arguments.input, &arguments.output)?;
+    Ok(load(&arguments.input)?.save_asset(&arguments.output)?)
+}
+
+/// Describes a mesh, and measures it against its source where one is given.
+pub fn info(arguments: &InfoArguments) -> Result<(), Failure> {
+    let mesh = load(&arguments.mesh)?;
+    let errors = match &arguments.against {
+        Some(path) => Some(measure(&mesh, &mesh_file::read(path)?)?),
+        None => None,
+    };
+    let summary = InfoSummary {
+        mesh: describe(&mesh),
+        volume: mesh.volume(),
+        errors,
+    };
+    print(arguments.json, &summary, || {
+        let errors = summary.errors.as_ref();
+        let volume = format!("volume      {}\n", summary.volume);
+        summary.mesh.text() + &volume + &errors.map_or(String::new(), |e| e.text("errors"))
+    })
+}
+
+fn measure(mesh: &MedialMesh, source: &TriangleMesh) -> Result<Errors, BuildError> {
+    let measured = hausdorff::hausdorff(mesh, &source.vertices, &source.indices)?;
+    let corners = source.indices.iter().flatten();
+    let points = corners.map(|&v| source.vertices[v as usize]);
+    let (lo, hi) = points.fold((Vector::MAX, Vector::MIN), |(lo, hi), p| {
+        (lo.min(p), hi.max(p))
+    });
+    Ok(relative(&measured, (hi - lo).max_element()))
+}

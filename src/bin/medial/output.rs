@@ -1,0 +1,28 @@
+//! What the program prints.
+
+use crate::failure::Failure;
+use serde::Serialize;
+use std::io::{self, ErrorKind, Write as _};
+
+/// A failure, on standard error.
+pub fn say(failure: &Failure) {
+    eprintln!("medial: {}", failure.line());
+}
+
+/// Prints as JSON or as text.
+pub fn print(json: bool, value: &impl Serialize, text: impl Fn() -> String) -> Result<(), Failure> {
+    let printed = if json {
+        serde_json::to_string_pretty(value).map_err(io::Error::from)? + "\n"
+    } else {
+        text()
+    };
+    write(&printed)
+}
+
+/// To standard output. A reader that went away, as `head` does, is no failure.
+pub fn write(text: &str) -> Result<(), Failure> {
+    match io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,120 @@
+//! What rapier 0.36 does that this crate works round (docs/host.md). Each test is of rapier alone, or of rapier
+//! with a shape that it does not know: one that fails after an upgrade says that a workaround can go.
+
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+
+/// A ball that slides over a plate without friction by a millimetre a step. How many of `steps` steps
+/// change the first contact's point on the plate.
+fn contact_updates(hooks: ActiveHooks, steps: usize) -> usize {
+    let mut world = PhysicsWorld::new();
+    let plate = ColliderBuilder::cuboid(5.0, 0.5, 5.0).friction(0.0);
+    let plate = world.insert_collider(plate, None);
+    let body = RigidBodyBuilder::dynamic()
+        .translation(Vector::Y)
+        .linvel(Vector::X * 0.06)
+        .can_sleep(false);
+    let collider = ColliderBuilder::ball(0.5).friction(0.0).active_hooks(hooks);
+    let (_, sliding) = world.insert(body, collider);
+    let place = |world: &PhysicsWorld| {
+        let pair = world.narrow_phase.contact_pair(plate, sliding);
+        let manifold = pair.and_then(|pair| pair.manifolds().first());
+        let point = manifold.and_then(|manifold| manifold.points.first());
+        point.map(|point| [point.local_p1.x, point.local_p2.x])
+    };
+    (0..30).for_each(|_| world.step());
+    let mut before = place(&world);
+    let mut updates = 0;
+    for _ in 0..steps {
+        world.step();
+        let now = place(&world);
+        updates += usize::from(now != before);
+        before = now;
+    }
+    updates
+}
+
+#[test]
+fn contacts_are_kept_while_a_pair_moves_a_little() {
+    let updates = contact_updates(ActiveHooks::empty(), 40);
+    assert!(updates < 20, "{updates} of 40 steps computed contacts");
+}
+
+#[test]
+fn a_hook_bit_without_meaning_makes_rapier_compute_contacts_anew() {
+    let updates = contact_updates(ActiveHooks::from_bits_retain(1 << 31), 40);
+    assert_eq!(updates, 40);
+}
+
+#[test]
+fn fast_bodies_pass_each_other_though_both_are_bullets() {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let mut throw = |x: Real| {
+        let body = RigidBodyBuilder::dynamic()
+            .translation(Vector::X * x)
+            .linvel(Vector::X * (-60.0 * x.signum()))
+            .ccd_enabled(true);
+        world.insert(body, ColliderBuilder::ball(0.1)).0
+    };
+    let (left, right) = (throw(-1.25), throw(1.25));
+    (0..6).for_each(|_| world.step());
+    let x = |body: RigidBodyHandle| world.bodies[body].translation().x;
+    assert!(x(left) > x(right), "they bounced");
+}
+
+#[test]
+fn colliders_learn_in_the_step_that_their_body_is_disabled() {
+    let mut world = PhysicsWorld::new();
+    let (body, collider) = world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::ball(0.1));
+    world.step();
+    world.bodies[body].set_enabled(false);
+    assert!(world.colliders[collider].is_enabled());
+    world.step();
+    assert!(!world.colliders[collider].is_enabled());
+}
+
+#[test]
+fn bodies_moved_by_position_get_their_velocity_in_the_step() {
+    let mut world = PhysicsWorld::new();
+    let moved = RigidBodyBuilder::kinematic_position_based();
+    let (body, _) = world.insert(moved, ColliderBuilder::ball(0.1));
+    world.step();
+    world.bodies[body].set_next_kinematic_translation(Vector::X);
+    assert_eq!(world.bodies[body].linvel(), Vector::ZERO);
+    world.step();
+    assert!(world.bodies[body].linvel().x > 1.0);
+}
+
+#[cfg(feature = "serde-serialize")]
+#[test]
+fn worlds_with_shapes_of_ones_own_are_not_saved() {
+    let mut world = PhysicsWorld::new();
+    let mesh = MedialMesh::ball(0.1).expect("a ball");
+    world.insert_collider(ColliderBuilder::medial_mesh(mesh), None);
+    let saved = bincode::serialize(&world.colliders);
+    assert!(saved.is_err());
+}
+
+#[cfg(feature = "debug-render")]
+#[test]
+fn shapes_of_ones_own_are_not_drawn() {
+    struct Count(usize);
+    impl DebugRenderBackend for Count {
+        fn draw_line(&mut self, _: DebugRenderObject, _: Vector, _: Vector, _: DebugColor) {
+            self.0 += 1;
+        }
+    }
+    let lines = |collider: ColliderBuilder| {
+        let mut world = PhysicsWorld::new();
+        world.insert_collider(collider, None);
+        let mode = DebugRenderMode::COLLIDER_SHAPES;
+        let mut pipeline = DebugRenderPipeline::new(DebugRenderStyle::default(), mode);
+        let mut count = Count(0);
+        pipeline.render_colliders(&mut count, &world.bodies, &world.colliders);
+        count.0
+    };
+    let mesh = MedialMesh::ball(0.1).expect("a ball");
+    assert_eq!(lines(ColliderBuilder::medial_mesh(mesh)), 0);
+    assert!(lines(ColliderBuilder::ball(0.1)) > 0);
+}

@@ -1,0 +1,208 @@
+//! Two cuboid fingers on prismatic motors close on a medial body and lift it; beside them rapier's own shapes of the
+//! same sizes.
+
+use crate::bodies::attached;
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+
+#[derive(Clone, Copy, Debug)]
+enum Thing {
+    Ring,
+    Box,
+    Rod,
+}
+
+/// A thing of 0.2 to 0.5 m.
+fn thing(thing: Thing, medial: bool) -> ColliderBuilder {
+    let half_rod = Vector::Z * 0.2;
+    if medial {
+        let mesh = match thing {
+            Thing::Ring => MedialMesh::torus(0.15, 0.05, 24),
+            Thing::Box => MedialMesh::round_cuboid(Vector::splat(0.09), 0.01),
+            Thing::Rod => MedialMesh::capsule(-half_rod, half_rod, 0.05),
+        };
+        ColliderBuilder::medial_mesh(mesh.expect("a thing"))
+    } else {
+        match thing {
+            Thing::Ring => {
+                let at = |i: u32| {
+                    let (sin, cos) = (i as Real / 24.0 * std::f32::consts::TAU).sin_cos();
+                    Vector::new(cos, 0.0, sin) * 0.15
+                };
+                let capsule = |i: u32| SharedShape::capsule(at(i), at(i + 1), 0.05);
+                ColliderBuilder::compound((0..24).map(|i| (Pose::IDENTITY, capsule(i))).collect())
+            }
+            Thing::Box => ColliderBuilder::cuboid(0.1, 0.1, 0.1),
+            Thing::Rod => ColliderBuilder::capsule_from_endpoints(-half_rod, half_rod, 0.05),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Grasp {
+    /// Mass of the thing and of a finger, kg.
+    mass: Real,
+    finger: Real,
+    /// Half of its thickness, metres.
+    thick: Real,
+    /// Speed at which it closes, metres per second.
+    speed: Real,
+    friction: Real,
+    /// Whether motors go to a position, or at a speed.
+    to_position: bool,
+    /// With how much at most, newtons.
+    force: Real,
+}
+
+/// What became of a grasp.
+struct Lift {
+    /// How high the thing got while its fingers rose by 0.46 m, and how far aside.
+    up: Real,
+    aside: Real,
+    /// The largest change of a finger's vertical speed in a step of the rise, metres per second.
+    jump: Real,
+}
+
+impl Grasp {
+    fn holds(self, what: Thing, medial: bool) -> bool {
+        let Lift { up, aside, .. } = self.lift(what, medial);
+        up > 0.35 && aside < 0.2
+    }
+
+    fn lift(self, what: Thing, medial: bool) -> Lift {
+        let mut world = PhysicsWorld::new();
+        let mut pipeline = attached(&mut world);
+        let ground = ColliderBuilder::cuboid(3.0, 0.5, 3.0).translation(Vector::NEG_Y * 0.5);
+        world.insert_collider(ground.friction(self.friction), None);
+        let height = if matches!(what, Thing::Box) {
+            0.1
+        } else {
+            0.05
+        };
+        let body = RigidBodyBuilder::dynamic().translation(Vector::Y * height);
+        let collider = thing(what, medial).mass(self.mass).friction(self.friction);
+        let (object, _) = world.insert(body.can_sleep(false), collider);
+        let base = RigidBodyBuilder::kinematic_velocity_based().translation(Vector::Y * 0.5);
+        let base = world.bodies.insert(base);
+        let fingers = [-1.0, 1.0].map(|side: Real| {
+            let at = Vector::new(side * 0.35, 0.12, 0.0);
+            let body = RigidBodyBuilder::dynamic().translation(at).can_sleep(false);
+            let finger = ColliderBuilder::cuboid(self.thick, 0.1, 0.1);
+            let finger = finger.mass(self.finger).friction(self.friction);
+            let (finger, _) = world.insert(body, finger);
+            let joint = PrismaticJointBuilder::new(Vector::X)
+                .local_anchor1(at - Vector::Y * 0.5)
+                .motor_model(MotorModel::ForceBased)
+                .motor_max_force(self.force);
+            let joint = if self.to_position {
+                joint.motor_position(-side * 0.35, 100.0, 5.0)
+            } else {
+                joint.motor_velocity(-side * self.speed, 1.0e3)
+            };
+            world.insert_impulse_joint(base, finger, joint);
+            finger
+        });
+        let mut jump: Real = 0.0;
+        for step in 0..150 {
+            if step == 40 {
+                world.bodies[base].set_linvel(Vector::Y * 0.25, true);
+            }
+            let rises = |world: &PhysicsWorld| fingers.map(|f| world.bodies[f].linvel().y);
+            let before = rises(&world);
+            pipeline.step(&mut world);
+            if step > 41 {
+                let after = rises(&world);
+                jump = (0..2)
+                    .map(|k| (after[k] - before[k]).abs())
+                    .fold(jump, Real::max);
+            }
+        }
+        let end = world.bodies[object].translation();
+        Lift {
+            up: end.y - height,
+            aside: end.x.abs().max(end.z.abs()),
+            jump,
+        }
+    }
+}
+
+/// Symptom: fingers of 50 and 100 g that pressed with 10 N on a rod of 0.5 kg lost their speed within a step, and with
+/// it the rod. Cause: an impact a billionth of a second before the step's end; what joints were open by was closed in
+/// what was left of the step, and the speed that took, from poses in single precision, went to the bodies.
+#[test]
+fn fingers_rise_as_their_base_does() {
+    for finger in [0.05, 0.1] {
+        let grasp = Grasp {
+            mass: 0.5,
+            finger,
+            thick: 0.02,
+            speed: 1.0,
+            friction: 0.5,
+            to_position: false,
+            force: 10.0,
+        };
+        let [ours, rapiers] = [true, false].map(|medial| grasp.lift(Thing::Rod, medial).jump);
+        println!("fingers of {finger} kg jump by {ours} m/s in a step, rapier's own by {rapiers}");
+        assert!(
+            ours <= rapiers,
+            "{finger} kg: {ours} m/s, rapier's own {rapiers}"
+        );
+    }
+}
+
+/// Fingers of 50 and 100 g that press with 10 N: what is lifted of rapier's own shapes is lifted of medial ones.
+#[test]
+fn what_rapiers_fingers_lift_ours_do() {
+    let mut lifted = [0; 2];
+    for what in [Thing::Ring, Thing::Box, Thing::Rod] {
+        for finger in [0.05, 0.1] {
+            for thick in [0.01, 0.02, 0.05] {
+                for (speed, to_position) in [(0.3, false), (1.0, false), (3.0, false), (1.0, true)]
+                {
+                    for friction in [0.5, 1.0] {
+                        let grasp = Grasp {
+                            mass: 0.2,
+                            finger,
+                            thick,
+                            speed,
+                            friction,
+                            to_position,
+                            force: 10.0,
+                        };
+                        let held = [true, false].map(|medial| grasp.holds(what, medial));
+                        lifted = [0, 1].map(|k| lifted[k] + usize::from(held[k]));
+                        assert!(held[0] || !held[1], "{what:?} falls: {grasp:?}");
+                    }
+                }
+            }
+        }
+    }
+    println!("of 144 grasps {lifted:?} are lifted, medial ones and rapier's own");
+}
+
+/// Up to 2,500 m/s² of the fingers alone: rapier's solver presses them in by centimetres.
+#[test]
+#[ignore = "a minute; it counts, and judges nothing"]
+fn overloaded_grasps() {
+    for what in [Thing::Ring, Thing::Box, Thing::Rod] {
+        let mut lifted = [0; 2];
+        for finger in [0.02, 0.05, 0.1, 0.3, 1.0] {
+            for force in [5.0, 10.0, 20.0, 50.0] {
+                for mass in [0.05, 0.2, 0.5, 1.0] {
+                    let grasp = Grasp {
+                        mass,
+                        finger,
+                        thick: 0.02,
+                        speed: 1.0,
+                        friction: 0.5,
+                        to_position: false,
+                        force,
+                    };
+                    let held = [true, false].map(|medial| grasp.holds(what, medial));
+                    lifted = [0, 1].map(|k| lifted[k] + usize::from(held[k]));
+                }
+            }
+        }
+        println!("{what:?}: of 80 {lifted:?} are lifted, medial ones and rapier's own");
+    }
+}

@@ -1,0 +1,94 @@
+//! Ropes of bodies on ball joints, struck in their middle within a step: how wide their joints open, beside rapier's
+//! capsules in sub-steps of 1/1,980 s until the step of the impact ends, and rapier's steps of 1/60 s from there.
+
+use crate::bodies::attached;
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+
+/// Radius of links, and their half length between joints, metres.
+const RADIUS: Real = 0.05;
+const HALF: Real = 0.2;
+
+fn bar(medial: bool, axis: Vector, half: Real) -> ColliderBuilder {
+    let end = axis * half;
+    let collider = if medial {
+        let mesh = MedialMesh::capsule(-end, end, RADIUS).expect("a bar");
+        ColliderBuilder::medial_mesh(mesh)
+    } else {
+        ColliderBuilder::capsule_from_endpoints(-end, end, RADIUS)
+    };
+    collider.friction(0.0).density(1000.0)
+}
+
+/// The widest opening of a joint, metres, and the energy in the end over that of the start.
+fn struck(links: usize, speed: Real, medial: bool, steps: &[Real]) -> [Real; 2] {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let mut pipeline = attached(&mut world);
+    let only = |own, other| InteractionGroups::new(own, other, InteractionTestMode::And);
+    let [x, y] = [Vector::X, Vector::Y].map(|axis| axis * HALF);
+    let mut last = world.insert_body(RigidBodyBuilder::fixed());
+    let mut joints = Vec::new();
+    for i in 0..links {
+        let body = RigidBodyBuilder::dynamic().translation(x * (2 * i + 1) as Real);
+        let collider = bar(medial, Vector::X, HALF - RADIUS);
+        let (link, _) = world.insert(
+            body,
+            collider.collision_groups(only(Group::GROUP_1, Group::GROUP_2)),
+        );
+        let anchors = [if i == 0 { Vector::ZERO } else { x }, -x];
+        let joint = SphericalJointBuilder::new().local_anchor1(anchors[0]);
+        world.insert_impulse_joint(last, link, joint.local_anchor2(anchors[1]));
+        joints.push(([last, link], anchors));
+        last = link;
+    }
+    let start = Vector::new(links as Real * HALF, 0.0, -0.1 - speed / 60.0 * 1.37);
+    let body = RigidBodyBuilder::dynamic()
+        .translation(start)
+        .linvel(Vector::Z * speed);
+    let rod = bar(medial, y.normalize(), HALF);
+    world.insert(
+        body,
+        rod.collision_groups(only(Group::GROUP_2, Group::GROUP_1)),
+    );
+    let energy = |world: &PhysicsWorld| -> Real {
+        let bodies = world.bodies.iter();
+        bodies.map(|(_, b)| b.kinetic_energy()).sum()
+    };
+    let before = energy(&world);
+    let mut widest: Real = 0.0;
+    for &dt in steps {
+        world.integration_parameters.dt = dt;
+        if medial {
+            pipeline.step(&mut world);
+        } else {
+            world.step();
+        }
+        for (bodies, anchors) in &joints {
+            let [a, b] = [0, 1].map(|k| world.bodies[bodies[k]].position() * anchors[k]);
+            widest = widest.max(a.distance(b));
+        }
+    }
+    [widest, energy(&world) / before]
+}
+
+/// Symptom: a rope of 30 links opened by 17 mm at 20 m/s, rapier's own by 10. Cause: an impulse went through the
+/// nearest 24 joints only, and velocities after it were those that joints held at its start.
+#[test]
+fn a_rope_struck_opens_no_wider_than_rapiers() {
+    let coarse = |n: usize| vec![1.0 / 60.0; n];
+    let fine = [vec![1.0 / 1980.0; 66], coarse(2)].concat();
+    for links in [4, 8, 30] {
+        for speed in [20.0, 60.0, 120.0] {
+            let [ours, energy] = struck(links, speed, true, &coarse(4));
+            let [own, _] = struck(links, speed, false, &fine);
+            println!(
+                "{links} links, {speed} m/s: {ours} m, rapier's own {own} m, {energy} of the energy"
+            );
+            assert!(energy <= 1.001, "{links} links, {speed} m/s: {energy}");
+            if speed == 20.0 {
+                assert!(ours < own + 2.0e-3, "{links} links: {ours} m, {own} m");
+            }
+        }
+    }
+}
