@@ -21,7 +21,8 @@ type Pair = [ColliderHandle; 2];
 /// Pairs whose start was told here, and not yet by rapier.
 #[derive(Default)]
 pub struct Told {
-    started: Vec<Pair>,
+    /// In the order of their handles.
+    pub started: Vec<Pair>,
 }
 
 /// The user's handler, seen by rapier: starts already told are not told again, and forces between colliders that

@@ -40,7 +40,7 @@ pub struct MedialPipeline {
     recycled: Recycled,
     effects: Wanted,
     tuning: Tuning,
-    told: Told,
+    pub(super) told: Told,
 }
 
 impl MedialPipeline {

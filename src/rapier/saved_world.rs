@@ -8,7 +8,7 @@
 
 use crate::medial::MedialMesh;
 use crate::medial::asset::checksum;
-use crate::rapier::MedialSharedShape;
+use crate::rapier::{MedialPipeline, MedialSharedShape};
 use rapier3d::geometry::{
     BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, NarrowPhase, SharedShape,
 };
@@ -84,6 +84,20 @@ pub struct SavedWorld {
     shapes: Vec<(ColliderHandle, u32)>,
     changes: Changes,
     world: PhysicsWorld,
+}
+
+impl MedialPipeline {
+    /// Pairs whose start was told by impacts of the last step, and which rapier has not found yet. Save them beside
+    /// the world, which does not have them, where somebody listens to collision events.
+    pub fn told_starts(&self) -> &[[ColliderHandle; 2]] {
+        &self.told.started
+    }
+
+    /// Goes on from what [`Self::told_starts`] was when the world was saved: these are not told again, and their ends
+    /// are.
+    pub fn resume_told_starts(&mut self, starts: Vec<[ColliderHandle; 2]>) {
+        self.told.started = starts;
+    }
 }
 
 /// Which colliders the next step has to look at anew.

@@ -299,3 +299,70 @@ fn mutated_worlds_are_refused() {
     }
     assert!(refused > 40, "{refused} of 400 are refused");
 }
+
+/// Starts and stops, in their order.
+#[derive(Default)]
+struct Told(std::sync::Mutex<Vec<bool>>);
+
+impl EventHandler for Told {
+    fn handle_collision_event(
+        &self,
+        _: &RigidBodySet,
+        _: &ColliderSet,
+        event: CollisionEvent,
+        _: Option<&ContactPair>,
+    ) {
+        let mut told = self.0.lock().expect("not poisoned");
+        told.push(event.started());
+    }
+
+    fn handle_contact_force_event(
+        &self,
+        _: Real,
+        _: &RigidBodySet,
+        _: &ColliderSet,
+        _: &ContactPair,
+        _: Real,
+    ) {
+    }
+
+    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
+}
+
+/// A world saved right after an impact within a step: rapier has not found the contact yet, and the start that was
+/// told is neither lost nor told twice, whether the bodies bounce or stay.
+#[test]
+fn what_was_told_before_saving_is_not_told_again() {
+    for restitution in [0.0, 1.0] {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let mut pipeline = attached(&mut world);
+        let ball = MedialMesh::ball(0.1).expect("a ball");
+        for side in [-1.0, 1.0] {
+            let body = RigidBodyBuilder::dynamic()
+                .translation(Vector::X * side * 2.2)
+                .linvel(Vector::NEG_X * side * 60.0);
+            let collider = ColliderBuilder::medial_mesh(ball.clone()).restitution(restitution);
+            world.insert(body, collider.active_events(ActiveEvents::COLLISION_EVENTS));
+        }
+        let record = Told::default();
+        let hit = (0..10).any(|_| pipeline.step_with_events(&mut world, &(), &record).events > 0);
+        assert!(hit && pipeline.told_starts().len() == 1, "{restitution}");
+        let bytes = save_world(&world).expect("saved");
+        let mut loaded = load_world(&bytes).expect("loaded");
+        let mut resumed = attached(&mut loaded);
+        resumed.resume_told_starts(pipeline.told_starts().to_vec());
+        let after =
+            [(&mut world, &mut pipeline), (&mut loaded, &mut resumed)].map(|(world, pipeline)| {
+                let record = Told::default();
+                for _ in 0..5 {
+                    pipeline.step_with_events(world, &(), &record);
+                }
+                record.0.into_inner().expect("not poisoned")
+            });
+        println!("restitution {restitution}: {:?}", after[0]);
+        assert_eq!(after[0], after[1], "restitution {restitution}");
+        let again = after[0].contains(&true);
+        assert!(!again, "restitution {restitution}: told again");
+    }
+}
