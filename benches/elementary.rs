@@ -97,6 +97,17 @@ fn rounded(path: &LinearPath<f64>) -> LinearPath<f32> {
     }
 }
 
+/// The query that `f32` is asked, with all digits.
+fn widened(path: &LinearPath<f32>) -> LinearPath<f64> {
+    let vector = |v: Vec3<f32>| Vec3::new(v.x.into(), v.y.into(), v.z.into());
+    LinearPath {
+        start: path.start.map(vector),
+        rate: path.rate.map(vector),
+        radius: path.radius.map(f64::from),
+        size: 0.0,
+    }
+}
+
 fn limits<S: Scalar>(tolerance: f64) -> Limits<S> {
     Limits {
         tolerance: S::splat(tolerance),
@@ -107,11 +118,11 @@ fn limits<S: Scalar>(tolerance: f64) -> Limits<S> {
     }
 }
 
-/// What is kept of a query: no contact before, contact at, and whether there is one.
-type Answer = (f64, f64, bool);
+/// What is kept of a query: no contact before, contact at, whether there is one, and whether there is none.
+type Answer = (f64, f64, bool, bool);
 
 fn answer<S: Scalar>(b: &Bracket<S>) -> Answer {
-    (b.lower.to_f64(), b.upper.to_f64(), b.contact)
+    (b.lower.to_f64(), b.upper.to_f64(), b.contact, b.separated)
 }
 
 fn certified<S: Scalar>(paths: &[LinearPath<S>], domain: Domain, tolerance: f64) -> Vec<Answer> {
@@ -142,7 +153,7 @@ fn paper<S: Scalar>(paths: &[LinearPath<S>], domain: Domain, tolerance: f64) -> 
     let one = |path| {
         let found = iterate(black_box(path), domain, &limits).0;
         let time = found.map_or(1.0, S::to_f64);
-        (time, time, found.is_some())
+        (time, time, found.is_some(), found.is_none())
     };
     paths.iter().map(one).collect()
 }
@@ -181,7 +192,7 @@ fn race(rows: &mut [Row]) {
 
 fn hash(answers: &[Answer]) -> String {
     let mut hash = Hash::new();
-    for (lower, upper, contact) in answers {
+    for (lower, upper, contact, _) in answers {
         hash.add(lower.to_bits());
         hash.add(upper.to_bits());
         hash.add(u64::from(*contact));
@@ -191,7 +202,7 @@ fn hash(answers: &[Answer]) -> String {
 
 /// How often the bits of two rows differ.
 fn differing(a: &[Answer], b: &[Answer]) -> usize {
-    let bits = |(lower, upper, contact): &Answer| (lower.to_bits(), upper.to_bits(), *contact);
+    let bits = |a: &Answer| (a.0.to_bits(), a.1.to_bits(), a.2, a.3);
     a.iter().zip(b).filter(|(a, b)| bits(a) != bits(b)).count()
 }
 
@@ -239,6 +250,18 @@ fn side_by_side(name: &str, queries: &Queries) {
             hash(&row.answers)
         );
     }
+    // What `f32` does not tell: unresolved, or apart, of which some are once their numbers are rounded.
+    let open = |a: &Answer| !a.2 && !a.3;
+    let wide: Vec<_> = single.iter().map(widened).collect();
+    let exact = certified(&wide, domain, tolerance);
+    let not_told =
+        || (sure.iter().zip(&rows[1].answers).zip(&exact)).filter(|((a, b), _)| a.2 && !b.2);
+    println!(
+        "of the {} that f32 does not tell: {} unresolved, {} apart once rounded",
+        not_told().count(),
+        not_told().filter(|((_, b), _)| open(b)).count(),
+        not_told().filter(|((_, b), e)| !open(b) && !e.2).count(),
+    );
     let differ = [2, 3].map(|k| differing(&rows[1].answers, &rows[k].answers));
     println!("lanes that differ from scalar f32: {differ:?}");
     assert_eq!(differ, [0, 0], "lanes and scalar disagree");
