@@ -18,6 +18,14 @@ const CROSSED: f64 = 1.0e-2;
 /// Larger, and a few meetings bring the axes to rounding; smaller, and pairs that are pressed meet more often.
 const GIVEN: f64 = 0.0625;
 
+/// Distance of axes, in units of the asked tolerance, from which on that share is taken: in what is pressed on and
+/// on the axes come as near as that, and hardly nearer. Smaller, and rounding of poses puts sheets and wires of
+/// radius 0 past each other; larger, and what is thinner than that no longer sinks in at all.
+const CLOSEST: f64 = 0.25;
+
+/// Share of what is left between axes that are nearer than that which one query may take.
+const PRESSED: f64 = 1.0e-4;
+
 /// Share of the way that a query may take which is its tolerance.
 const TAKEN: f64 = 0.25;
 
@@ -54,14 +62,16 @@ impl Threshold {
     ) -> Self {
         let target = distance - by - tolerance;
         let plain = Self::new(target, tolerance);
-        if -target < thinnest {
+        // The least distance of the axes where that is met.
+        if thinnest + target >= by {
             return plain;
         }
         let axes = axes();
         if axes <= CROSSED * tolerance {
             return plain;
         }
-        let by = by.min(GIVEN * axes);
+        let given = GIVEN * (axes - CLOSEST * tolerance);
+        let by = by.min(given.max(PRESSED * axes));
         let tolerance = tolerance.min(TAKEN * by);
         let (scale, target) = if distance > 0.0 {
             (1.0, (distance - by).max(0.0))

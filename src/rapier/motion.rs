@@ -49,6 +49,8 @@ pub struct Body {
     bends_until: Real,
     /// The velocities before rapier's step.
     pub velocity_before: [Vector; 2],
+    /// Linear velocity that gravity and forces of the user give it in the whole step.
+    pull: Vector,
     /// Largest distance of a point of its colliders from the centre of mass, a length.
     pub reach: Real,
     /// Mass, centre and inertia in the body's frame.
@@ -85,6 +87,7 @@ impl Body {
             bend: [Vector::ZERO; 2],
             bends_until: 0.0,
             velocity_before: [body.linvel(), body.angvel()],
+            pull: Vector::ZERO,
             reach: 0.0,
             mass: properties.local_mprops,
             inverse_mass: properties.effective_inv_mass,
@@ -107,6 +110,7 @@ impl Body {
             bend: [Vector::ZERO; 2],
             bends_until: 0.0,
             velocity_before: [Vector::ZERO; 2],
+            pull: Vector::ZERO,
             reach: 0.0,
             mass: MassProperties::default(),
             inverse_mass: Vector::ZERO,
@@ -123,7 +127,8 @@ impl Body {
         [self.motion.linvel, self.motion.angvel] = velocities(body, dt);
         if body.is_dynamic() {
             let forces = gravity * body.gravity_scale() + body.user_force() * self.inverse_mass;
-            self.motion.linvel += forces * dt;
+            self.pull = forces * dt;
+            self.motion.linvel += self.pull;
         }
     }
 
@@ -154,6 +159,30 @@ impl Body {
         for (now, before) in self.velocity.iter_mut().zip(self.velocity_before) {
             *now += (before - *now) * share;
         }
+    }
+
+    /// Stops it for the last `share` of the step: it gains no speed by forces in a time in which it gets nowhere.
+    /// What contacts took of that already is not taken twice.
+    pub fn hold(&mut self, share: Real) {
+        let pull = self.pull * share;
+        let length = pull.length();
+        if length > 0.0 {
+            let along = pull / length;
+            let gained = self.velocity[0].dot(along).clamp(0.0, length);
+            self.velocity[0] -= along * gained;
+        }
+        self.motion = NonlinearRigidMotion::constant_position(self.motion.start);
+    }
+
+    /// Lets it be carried along by a motion, as if it were part of that body.
+    pub fn follow(&mut self, carrying: &NonlinearRigidMotion) {
+        let center = carrying.start * carrying.local_center;
+        self.motion = NonlinearRigidMotion {
+            local_center: self.motion.start.inverse_transform_point(center),
+            linvel: carrying.linvel,
+            angvel: carrying.angvel,
+            ..self.motion
+        };
     }
 
     /// Motion from `time` on.

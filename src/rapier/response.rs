@@ -17,9 +17,7 @@ use super::motion::Kind;
 use super::pairs::Rules;
 use super::snapshot::Snapshot;
 use super::tied::{System, Twist};
-use super::tuning::Tuning;
 use crate::math::{Real, Vector};
-use parry3d::query::NonlinearRigidMotion;
 use std::collections::BTreeMap;
 
 type Pair = [usize; 2];
@@ -112,7 +110,7 @@ impl Response {
             changed = self.push(snapshot, asker, rules, pair, &hit);
         }
         for both in [bodies, [bodies[1], bodies[0]]] {
-            self.freeze(snapshot, &asker.tuning, both, hit.time);
+            self.freeze(snapshot, asker, both, hit.time);
         }
         self.pass_on(snapshot, asker, rules, hit.time, &mut changed);
         for b in self.close_joints(snapshot, asker, hit.time, &changed, false) {
@@ -372,29 +370,27 @@ impl Response {
     fn freeze(
         &mut self,
         snapshot: &mut Snapshot,
-        tuning: &Tuning,
+        asker: &Asker,
         [body, other]: [usize; 2],
         time: Real,
     ) {
-        let events = self.courses[body].events;
-        if snapshot.bodies[body].kind != Kind::Free || events <= tuning.max_events {
+        let (tuning, course) = (&asker.tuning, self.courses[body]);
+        let often = course.events > tuning.max_events;
+        if !often || snapshot.bodies[body].kind != Kind::Free {
             return;
         }
         let carrier = &snapshot.bodies[other];
         let carries = carrier.kind == Kind::Driven || self.courses[other].frozen;
         let carrying = carrier.motion_from(time);
         self.courses[body].frozen = true;
-        let motion = &mut snapshot.bodies[body].motion;
-        *motion = if carries && events <= tuning.max_carried() {
-            let center = carrying.start * carrying.local_center;
-            NonlinearRigidMotion {
-                local_center: motion.start.inverse_transform_point(center),
-                linvel: carrying.linvel,
-                angvel: carrying.angvel,
-                ..*motion
-            }
+        let held = &mut snapshot.bodies[body];
+        if carries && course.events <= tuning.max_carried() {
+            held.follow(&carrying);
         } else {
-            NonlinearRigidMotion::constant_position(motion.start)
-        };
+            // What it lost of the step is told once.
+            let left = 1.0 - time / asker.dt;
+            held.hold(if course.frozen { 0.0 } else { left });
+            self.courses[body].struck = true;
+        }
     }
 }

@@ -140,7 +140,8 @@ fn cores_meet_at_their_share_of_the_local_thickness() {
     }
 }
 
-/// Sheets of radius 0 that start nearer to each other than the target distance.
+/// Sheets of radius 0 that start nearer to each other than the target distance: a contact, or a safe lower bound where
+/// what they may still come nearer is less than the kernel resolves.
 #[test]
 fn sheets_of_radius_0_never_cross_unseen() {
     let sheet = |y: Real| {
@@ -150,6 +151,7 @@ fn sheets_of_radius_0_never_cross_unseen() {
     };
     let still = NonlinearRigidMotion::identity();
     let mut rng = Rng::new(9);
+    let mut unresolved = 0;
     for case in 0..queries() / 4 {
         let gap = 10.0_f64.powf(rng.range(-6.0, -3.0)) as Real;
         let moving = NonlinearRigidMotion {
@@ -166,11 +168,13 @@ fn sheets_of_radius_0_never_cross_unseen() {
             ..ToiOptions::default()
         };
         let toi = first_contact(&sheet(0.0), &still, &sheet(gap), &moving, 1.0, &options);
-        let seen = toi.status == ToiStatus::Contact && toi.lower < gap;
+        let seen = toi.status != ToiStatus::Separated && toi.lower < gap;
+        unresolved += u32::from(toi.status == ToiStatus::Unresolved);
         assert!(
             seen,
             "case {case}: {:?} at {}, crossing at {gap}",
             toi.status, toi.lower
         );
     }
+    assert!(unresolved < queries() / 20, "{unresolved} unresolved");
 }

@@ -42,3 +42,4 @@ mod ropes;
 #[cfg(feature = "serde-serialize")]
 mod saving;
 mod walls;
+mod wires;
