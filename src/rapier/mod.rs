@@ -4,6 +4,7 @@ mod ahead;
 mod blow;
 pub mod candidates;
 pub mod collider;
+mod course;
 #[cfg(feature = "debug-render")]
 pub mod debug_draw;
 mod effects;

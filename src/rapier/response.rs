@@ -9,6 +9,7 @@
 //! is taken for granted: all pairs of the bodies that changed are searched again.
 
 use super::blow::Blow;
+use super::course::Course;
 use super::first_contact::{Asker, Hit};
 use super::impulse::{Impact, Inertia, Material};
 use super::joints::Joints;
@@ -25,18 +26,6 @@ type Pair = [usize; 2];
 /// Rounds in which an impact is passed on. In heaps of 48 links at 60 m/s 2 give a sixth more impacts,
 /// 4 a thirtieth.
 const ROUNDS: usize = 8;
-
-/// State of one body in the loop.
-#[derive(Clone, Copy, Default)]
-pub struct Course {
-    events: u32,
-    /// Stays where it is, or is carried.
-    pub frozen: bool,
-    /// Leaves the motion that rapier gave it.
-    pub moved: bool,
-    /// Has another velocity.
-    pub struck: bool,
-}
 
 /// Share of the speed that an impulse gives two bodies which joints leave of it, below which joints hold the contact
 /// itself, as between neighbours in a chain: there is nothing to push, and the impulse would have no bound.
@@ -95,8 +84,9 @@ impl Response {
     ) -> Vec<usize> {
         self.met.add(snapshot, pair, &hit);
         let bodies = bodies(snapshot, pair);
-        for b in bodies {
-            if self.advance(snapshot, b, hit.time) {
+        let leads = [bodies, [bodies[1], bodies[0]]].map(|both| self.leads(snapshot, asker, both));
+        for (b, leads) in bodies.into_iter().zip(leads) {
+            if self.advance(snapshot, b, hit.time) && !leads {
                 self.courses[b].events += 1;
             }
         }
@@ -109,8 +99,10 @@ impl Response {
         } else {
             changed = self.push(snapshot, asker, rules, pair, &hit);
         }
-        for both in [bodies, [bodies[1], bodies[0]]] {
-            self.freeze(snapshot, asker, both, hit.time);
+        for (both, leads) in [bodies, [bodies[1], bodies[0]]].into_iter().zip(leads) {
+            if !leads {
+                self.freeze(snapshot, asker, both, hit.time);
+            }
         }
         self.pass_on(snapshot, asker, rules, hit.time, &mut changed);
         for b in self.close_joints(snapshot, asker, hit.time, &changed, false) {
@@ -366,6 +358,14 @@ impl Response {
         moved
     }
 
+    /// Whether a body that a driven one carries goes on whatever it meets here: what is not carried yet will be, after
+    /// as many impacts as a body may have.
+    fn leads(&self, snapshot: &Snapshot, asker: &Asker, [body, other]: [usize; 2]) -> bool {
+        let [leader, led] = [self.courses[body], self.courses[other]];
+        let free = snapshot.bodies[other].kind == Kind::Free;
+        leader.driven && free && !led.driven && led.events <= asker.tuning.max_carried()
+    }
+
     /// Stops a body that had too many impacts, or lets what pushes it carry it along.
     fn freeze(
         &mut self,
@@ -380,12 +380,15 @@ impl Response {
             return;
         }
         let carrier = &snapshot.bodies[other];
-        let carries = carrier.kind == Kind::Driven || self.courses[other].frozen;
+        let carrier_driven = carrier.kind == Kind::Driven || self.courses[other].driven;
+        let carries = carrier_driven || self.courses[other].frozen;
         let carrying = carrier.motion_from(time);
         self.courses[body].frozen = true;
         let held = &mut snapshot.bodies[body];
+        self.courses[body].driven = false;
         if carries && course.events <= tuning.max_carried() {
             held.follow(&carrying);
+            self.courses[body].driven = carrier_driven;
         } else {
             // What it lost of the step is told once.
             let left = 1.0 - time / asker.dt;

@@ -105,9 +105,12 @@ fn assert_is(form: Form, mesh: &Mesh, medial: &MedialMesh, error: f64, name: &st
     f64::from(holds as u32) / f64::from(decided)
 }
 
+/// A body's name, its closed form and mesh, and two counts of primitives with the largest error allowed.
+type Case = (&'static str, Form, Mesh, [(usize, f64); 2]);
+
 #[test]
 fn sharp_edges_are_kept_where_they_pay() {
-    let cases: [(&str, Form, Mesh, [(usize, f64); 2]); 3] = [
+    let cases: [Case; 3] = [
         (
             "plate with a hole",
             plate,

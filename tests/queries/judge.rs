@@ -119,7 +119,8 @@ fn bodies_without_thickness_meet_when_they_do() {
     let point = [[0.1, 0.0, 0.1]];
     let hanging = [[0.1, 0.0, 0.1], [0.1, -3.0, 0.1]];
     let leaning = [[0.1, 0.0, 0.1], [0.1, 3.0, 0.1], [2.0, 2.0, 0.1]];
-    let cases: [(&[[f64; 3]], &[[f64; 3]]); 5] = [
+    type Corners<'a> = &'a [[f64; 3]];
+    let cases: [(Corners, Corners); 5] = [
         (&across, &along),
         (&triangle, &point),
         (&point, &triangle),

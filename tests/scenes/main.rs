@@ -8,6 +8,7 @@ mod determinism;
 #[cfg(feature = "debug-render")]
 mod drawing;
 mod driven;
+mod driven_crowds;
 mod effects;
 mod endurance;
 mod energy;

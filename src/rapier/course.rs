@@ -1,0 +1,16 @@
+//! What happened to a body in the impacts of a step.
+
+/// State of one body in the loop.
+#[derive(Clone, Copy, Default)]
+pub struct Course {
+    /// Impacts that it had.
+    pub events: u32,
+    /// Stays where it is, or is carried.
+    pub frozen: bool,
+    /// Leaves the motion that rapier gave it.
+    pub moved: bool,
+    /// Has another velocity.
+    pub struck: bool,
+    /// Is carried along by a driven body, or by what one carries.
+    pub driven: bool,
+}
