@@ -3,6 +3,7 @@
 mod bodies;
 mod characters;
 mod controls;
+mod creature_walks;
 mod crowds;
 mod determinism;
 #[cfg(feature = "debug-render")]
