@@ -14,7 +14,7 @@
 
 mod common;
 
-use common::arguments::{Arguments, example};
+use common::arguments::{MeshOptions, example_with_mesh};
 use common::build::build;
 use common::creature::creature;
 use common::light::{Facet, facets};
@@ -31,8 +31,6 @@ use common::surfaces::surface;
 use common::table::Table;
 use rapier3d::prelude::*;
 use rapier3d_medial::{MedialMesh, MedialPrimitive, MedialSphere};
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
@@ -47,26 +45,11 @@ const POINTS: usize = 20_000;
 const BODIES: usize = 12;
 const STEPS: usize = 240;
 
-struct Options {
-    file: Option<PathBuf>,
-    primitives: usize,
-    out: PathBuf,
-}
-
 fn main() -> ExitCode {
-    let options = |arguments: &mut Arguments| {
-        Ok(Options {
-            primitives: arguments
-                .value("--primitives")?
-                .map_or(60, NonZeroUsize::get),
-            out: arguments.value("--out")?.unwrap_or("target/compare".into()),
-            file: arguments.file(),
-        })
-    };
-    example(options, compare)
+    example_with_mesh(60, "target/compare", compare)
 }
 
-fn compare(options: Options) -> Result<(), String> {
+fn compare(options: MeshOptions) -> Result<(), String> {
     let mesh = match &options.file {
         Some(file) => Mesh::read(file)?,
         None => creature().0,

@@ -93,13 +93,15 @@ fn falling_rings(options: Options) -> Result<(), String> {
     let path = options.out.join("falling_rings.png");
     strip.save(&path)?;
     if options.animate {
-        let steps: Vec<usize> = (30..270).step_by(6).collect();
-        let frames = View {
+        let steps: Vec<usize> = (40..200).step_by(6).collect();
+        let small = View {
             steps: &steps,
+            tile: [216, 180],
             ..view
-        }
-        .frames(&scene, &[&medial, &hulls]);
-        save_animation(&frames, 10, &options.out.join("falling_rings_moving.png"))?;
+        };
+        let frames = small.frames(&scene, &[&medial, &hulls]);
+        let path = options.out.join("falling_rings_moving.png");
+        save_animation(&frames, 10, &path)?;
     }
     println!("{}\n\n{}", path.display(), table(&[&medial, &hulls]));
     verdict(medial.failures())

@@ -14,7 +14,7 @@
 
 mod common;
 
-use common::arguments::{Arguments, example, verdict};
+use common::arguments::{MeshOptions, example_with_mesh, verdict};
 use common::build::{build_with_report, print};
 use common::light::{Facet, facets};
 use common::mesh::{Mesh, knot};
@@ -26,8 +26,6 @@ use common::skeleton::Skeleton;
 use common::strip::tile;
 use rapier3d::prelude::*;
 use rapier3d_medial::MedialMesh;
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -36,28 +34,11 @@ const SIZE: Real = 1.0;
 /// Bodies that end deeper in the ground, in metres, have failed.
 const SUNK: Real = 0.005;
 
-struct Options {
-    file: Option<PathBuf>,
-    primitives: usize,
-    out: PathBuf,
-}
-
 fn main() -> ExitCode {
-    let options = |arguments: &mut Arguments| {
-        Ok(Options {
-            primitives: arguments
-                .value("--primitives")?
-                .map_or(200, NonZeroUsize::get),
-            out: arguments
-                .value("--out")?
-                .unwrap_or("target/own_mesh".into()),
-            file: arguments.file(),
-        })
-    };
-    example(options, own_mesh)
+    example_with_mesh(200, "target/own_mesh", own_mesh)
 }
 
-fn own_mesh(options: Options) -> Result<(), String> {
+fn own_mesh(options: MeshOptions) -> Result<(), String> {
     let mesh = match &options.file {
         Some(file) => Mesh::read(file)?,
         None => knot(),

@@ -1,5 +1,6 @@
 //! Command line options and exit code of an example, without a parser crate.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -73,6 +74,34 @@ pub fn example_with_out(folder: &str, work: impl FnOnce(&Path) -> Result<(), Str
     example(out, |out: Option<PathBuf>| {
         work(&out.unwrap_or(folder.into()))
     })
+}
+
+/// What an example of a mesh of the user's is told: `[FILE] [--primitives N] [--out DIR]`.
+pub struct MeshOptions {
+    /// The mesh's file; without one the example makes a mesh.
+    pub file: Option<PathBuf>,
+    /// The most primitives that the medial mesh may have.
+    pub primitives: usize,
+    /// Where the pictures go.
+    pub out: PathBuf,
+}
+
+/// Runs an example of a mesh of the user's, with `primitives` and `folder` where nothing else is told.
+pub fn example_with_mesh(
+    primitives: usize,
+    folder: &str,
+    work: impl FnOnce(MeshOptions) -> Result<(), String>,
+) -> ExitCode {
+    let options = |arguments: &mut Arguments| {
+        Ok(MeshOptions {
+            primitives: arguments
+                .value("--primitives")?
+                .map_or(primitives, NonZeroUsize::get),
+            out: arguments.value("--out")?.unwrap_or(folder.into()),
+            file: arguments.file(),
+        })
+    };
+    example(options, work)
 }
 
 /// Fails with all that failed.

@@ -77,7 +77,7 @@ fn auto_goes_by_it() {
 
 /// Slow: it is a measurement.
 #[test]
-#[ignore = "takes seconds; `medial calibrate` is the command"]
+#[ignore = "times a device, alone: `medial calibrate` is the command for it"]
 fn it_is_measured() {
     let Some(mut gpu) = scene::gpu(scene::options()) else {
         return;

@@ -96,7 +96,7 @@ fn an_impact_asks_few_of_its_neighbours() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes in release: 80 heaps, of which CI runs a few"]
 fn full_heaps() {
     for (name, shapes, grid) in kinds() {
         for speed in [5.0, 20.0, 60.0, 150.0] {
@@ -121,7 +121,7 @@ fn full_heaps() {
 
 /// Steps until all sleep, ours and those of rapier's compounds, six seeds each.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes in release: prints steps until sleep, for docs/rapier.md"]
 fn full_heaps_sleep() {
     for (name, shapes, grid) in kinds().into_iter().take(3) {
         let mut steps = [vec![], vec![]];
@@ -203,7 +203,7 @@ fn middle(values: &mut [f64]) -> &f64 {
 /// Milliseconds per step, and their ratios to rapier's compounds and to rapier's plain step, over nine heaps:
 /// the median of a ratio and between which it lies.
 #[test]
-#[ignore = "a measurement"]
+#[ignore = "times steps, alone and in release; judges nothing"]
 fn full_heaps_cost() {
     for kind in kinds().iter().take(2) {
         for (speed, steps) in [(60.0, 0..60), (5.0, 500..600)] {

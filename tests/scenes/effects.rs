@@ -2,7 +2,8 @@
 //! for it. `docs/effects.md` has the table of all on random scenes.
 
 use crate::bodies::*;
-use crate::impacts::{Record, ball_bar, crossed, passed};
+use crate::impacts::{ball_bar, crossed, passed};
+use crate::told::Record;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 

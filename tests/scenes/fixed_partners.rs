@@ -3,7 +3,7 @@
 //! at a fixed loop are never linked with it afterwards.
 
 use crate::bodies::*;
-use crate::heaps::{line, linking};
+use crate::linking::{line, linking};
 use crate::random::Random;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;

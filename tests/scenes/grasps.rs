@@ -182,7 +182,7 @@ fn what_rapiers_fingers_lift_ours_do() {
 
 /// Up to 2,500 m/s² of the fingers alone: rapier's solver presses them in by centimetres.
 #[test]
-#[ignore = "a minute; it counts, and judges nothing"]
+#[ignore = "a minute: it counts beyond what grasps promise, and judges nothing"]
 fn overloaded_grasps() {
     for what in [Thing::Ring, Thing::Box, Thing::Rod] {
         let mut lifted = [0; 2];

@@ -2,9 +2,9 @@
 
 use crate::bodies::*;
 use crate::random::Random;
+use crate::told::Record;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
-use std::sync::Mutex;
 
 pub fn ball_bar() -> MedialMesh {
     let ends = [-0.2, 0.2].map(|z| MedialSphere::new(Vector::new(0.0, 0.0, z), 0.05));
@@ -38,32 +38,6 @@ pub fn crossed(
 pub fn passed(world: &PhysicsWorld, handles: [RigidBodyHandle; 2]) -> bool {
     let [a, b] = handles.map(|h| world.bodies[h].translation().x);
     a < b
-}
-
-/// Collision starts and stops, in their order.
-#[derive(Default)]
-pub struct Record(pub Mutex<Vec<bool>>);
-
-impl EventHandler for Record {
-    fn handle_collision_event(
-        &self,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        event: CollisionEvent,
-        _: Option<&ContactPair>,
-    ) {
-        self.0.lock().expect("not poisoned").push(event.started());
-    }
-    fn handle_contact_force_event(
-        &self,
-        _: Real,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        _: &ContactPair,
-        _: Real,
-    ) {
-    }
-    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
 }
 
 #[test]

@@ -222,7 +222,7 @@ fn a_fin_of_radius_0_does_not_let_its_plate_through() {
 
 /// What a step costs where nothing is thin: printed, to compare versions.
 #[test]
-#[ignore = "prints counts"]
+#[ignore = "prints counts to compare by eye, and judges nothing"]
 fn what_rings_cost() {
     for (name, height) in [("resting", 0.101), ("falling", 1.5)] {
         let mut world = world_with_ground();

@@ -30,8 +30,10 @@ mod heaps;
 mod held;
 mod impacts;
 mod knots;
+mod linking;
 mod local_thickness;
 mod multibodies;
+mod neighbours;
 mod oracle;
 mod partners;
 mod random;
@@ -43,5 +45,7 @@ mod rolling;
 mod ropes;
 #[cfg(feature = "serde-serialize")]
 mod saving;
+mod told;
 mod walls;
+mod wire_heaps;
 mod wires;

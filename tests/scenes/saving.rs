@@ -2,6 +2,7 @@
 
 use crate::bodies::*;
 use crate::random::Random;
+use crate::told::Record;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 use rapier3d_medial::rapier::{SavedWorld, SavedWorldError, load_world, save_world};
@@ -300,35 +301,6 @@ fn mutated_worlds_are_refused() {
     assert!(refused > 40, "{refused} of 400 are refused");
 }
 
-/// Starts and stops, in their order.
-#[derive(Default)]
-struct Told(std::sync::Mutex<Vec<bool>>);
-
-impl EventHandler for Told {
-    fn handle_collision_event(
-        &self,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        event: CollisionEvent,
-        _: Option<&ContactPair>,
-    ) {
-        let mut told = self.0.lock().expect("not poisoned");
-        told.push(event.started());
-    }
-
-    fn handle_contact_force_event(
-        &self,
-        _: Real,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        _: &ContactPair,
-        _: Real,
-    ) {
-    }
-
-    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
-}
-
 /// A world saved right after an impact within a step: rapier has not found the contact yet, and the start that was
 /// told is neither lost nor told twice, whether the bodies bounce or stay.
 #[test]
@@ -345,7 +317,7 @@ fn what_was_told_before_saving_is_not_told_again() {
             let collider = ColliderBuilder::medial_mesh(ball.clone()).restitution(restitution);
             world.insert(body, collider.active_events(ActiveEvents::COLLISION_EVENTS));
         }
-        let record = Told::default();
+        let record = Record::default();
         let hit = (0..10).any(|_| pipeline.step_with_events(&mut world, &(), &record).events > 0);
         assert!(hit && pipeline.told_starts().len() == 1, "{restitution}");
         let bytes = save_world(&world).expect("saved");
@@ -354,7 +326,7 @@ fn what_was_told_before_saving_is_not_told_again() {
         resumed.resume_told_starts(pipeline.told_starts().to_vec());
         let after =
             [(&mut world, &mut pipeline), (&mut loaded, &mut resumed)].map(|(world, pipeline)| {
-                let record = Told::default();
+                let record = Record::default();
                 for _ in 0..5 {
                     pipeline.step_with_events(world, &(), &record);
                 }
