@@ -142,7 +142,8 @@ fn closing([a, b]: [&Start; 2]) -> Real {
 }
 
 /// Gap, without contact skins, that two colliders may close before their contacts are computed again: their
-/// [`way`], at most rapier's prediction distance.
+/// [`way`], at most rapier's prediction distance. Where the user writes into the contacts, all of that distance: a
+/// hook may bring nearer what could not be closed, or take from the solver what holds another back.
 pub fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
     parameters
         .prediction_distance()
@@ -150,12 +151,16 @@ pub fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
 }
 
 /// How far two colliders may move against each other before their contacts are computed again, by their
-/// velocities, gravity, forces and what is near them. Beside joints it has no bound.
+/// velocities, gravity, forces and what is near them. Beside joints, and where the user writes into their contacts, it
+/// has no bound.
 ///
 /// Either in this step, in which something may push them (rapier lets nothing bounce before the poses are
 /// final, so no push is faster than what pushes), or in those in which rapier keeps their contacts. A pair
 /// that is kept, and pushed then, gets further.
 fn way(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
+    if starts.iter().any(|s| s.modified) {
+        return Real::MAX;
+    }
     let dt = parameters.dt;
     let [a, b] = starts.map(|s| s.acceleration);
     // Either may be held by something.
@@ -248,13 +253,7 @@ impl Ahead {
             [a.start, b.start]
         };
         let reach = reach(starts, parameters);
-        // What holds another back may be taken from the solver by the user.
-        let held = starts.iter().all(|s| !s.modified);
-        let way = if held {
-            way(starts, parameters)
-        } else {
-            Real::MAX
-        };
+        let way = way(starts, parameters);
         let skins = job.prediction - prediction;
         let turn = |k: usize| motions[k].start.rotation.inverse() * poses[k].rotation;
         let ahead = Self {

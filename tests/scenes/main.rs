@@ -32,6 +32,7 @@ mod impacts;
 mod knots;
 mod linking;
 mod local_thickness;
+mod modified;
 mod multibodies;
 mod neighbours;
 mod oracle;
