@@ -12,11 +12,12 @@ use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-/// Two shapes at one relative pose, to the bit. Holds as long as both shapes live.
+/// Two shapes, at one relative pose to the bit or wherever they are. Holds as long as both shapes live.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
     shapes: [Id; 2],
-    pose: [u32; 7],
+    /// `None`: wherever they are.
+    pose: Option<[u32; 7]>,
 }
 
 /// Which shape it is, among those alive.
@@ -38,12 +39,20 @@ impl Id {
 }
 
 impl Key {
-    /// Of two shapes, of which one at least is medial.
+    /// Of two shapes at a relative pose, of which one at least is medial.
     pub fn new(shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> Self {
         let (t, r) = (pos12.translation, pos12.rotation);
         Self {
+            pose: Some([t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(Real::to_bits)),
+            ..Self::anywhere(shape1, shape2)
+        }
+    }
+
+    /// Of two shapes wherever they are: for those that no other collider has.
+    pub fn anywhere(shape1: &dyn Shape, shape2: &dyn Shape) -> Self {
+        Self {
             shapes: [shape1, shape2].map(Id::new),
-            pose: [t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(Real::to_bits),
+            pose: None,
         }
     }
 }
@@ -192,12 +201,12 @@ impl Answers {
         self.swept_elsewhere.load(Ordering::Relaxed)
     }
 
-    /// Notes whether the user turned contacts of a pair off, under both orders of its shapes. It passes in
-    /// sweeps of this step if all that is noted of it is off.
-    pub fn let_pass(&self, keys: [Key; 2], off: bool) {
+    /// Notes whether the user turned contacts of a pair off, under its keys. It passes in sweeps of this step if all
+    /// that is noted of it is off.
+    pub fn let_pass(&self, keys: &[Key], off: bool) {
         let mut passing = self.passing.write().unwrap_or_else(PoisonError::into_inner);
         for key in keys {
-            *passing.entry(key).or_insert(true) &= off;
+            *passing.entry(*key).or_insert(true) &= off;
         }
     }
 
@@ -210,7 +219,9 @@ impl Answers {
     /// Whether a pair passes in sweeps.
     pub fn passes(&self, shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> bool {
         let passing = self.passing.read().unwrap_or_else(PoisonError::into_inner);
-        !passing.is_empty() && passing.get(&Key::new(shape1, shape2, pos12)) == Some(&true)
+        let noted = |key| passing.get(&key) == Some(&true);
+        !passing.is_empty()
+            && (noted(Key::new(shape1, shape2, pos12)) || noted(Key::anywhere(shape1, shape2)))
     }
 
     /// From now on these pairs get their deepest contact only.

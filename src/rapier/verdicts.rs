@@ -11,11 +11,12 @@
 //! step. So those pairs are noted here, and the dispatcher lets them pass.
 
 use super::snapshot::Snapshot;
-use crate::math::fast_hash::FastMap;
+use crate::math::fast_hash::{FastMap, FastSet};
 use crate::parry::Answers;
 use crate::parry::answers::Key;
+use parry3d::shape::Shape;
 use rapier3d::dynamics::RigidBodySet;
-use rapier3d::geometry::{ColliderHandle, ColliderSet, SolverFlags};
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, SolverFlags};
 use rapier3d::pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
@@ -27,20 +28,17 @@ pub struct Verdicts<'a> {
     filtered: Mutex<FastMap<[ColliderHandle; 2], Option<SolverFlags>>>,
     /// The world at the start of the step, for pairs that nobody asked about then.
     start: OnceLock<Box<(RigidBodySet, ColliderSet)>>,
+    /// Where those shapes are that several colliders have.
+    shared: OnceLock<FastSet<usize>>,
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Both keys under which a pair may be swept: either collider may be the fast one.
-fn keys(colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<[Key; 2]> {
-    let [a, b] = pair.map(|h| colliders.get(h));
-    let (a, b) = (a?, b?);
-    let key = |a: &rapier3d::geometry::Collider, b: &rapier3d::geometry::Collider| {
-        Key::new(a.shape(), b.shape(), &a.position().inv_mul(b.position()))
-    };
-    Some([key(a, b), key(b, a)])
+/// Where a shape is in memory: clones of a `SharedShape` are in one place.
+fn place(shape: &dyn Shape) -> usize {
+    std::ptr::from_ref(shape).addr()
 }
 
 impl<'a> Verdicts<'a> {
@@ -51,6 +49,7 @@ impl<'a> Verdicts<'a> {
             answers,
             filtered: Mutex::default(),
             start: OnceLock::new(),
+            shared: OnceLock::new(),
         }
     }
 
@@ -83,6 +82,28 @@ impl<'a> Verdicts<'a> {
         })
     }
 
+    /// The keys under which a pair may be swept: either collider may be the fast one. What moves is met where the
+    /// step takes it, so the pair goes by its shapes wherever they are, if no other collider has them, else by where
+    /// they are at the start of the step, where all stay that do not move.
+    fn keys(&self, colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<[Key; 2]> {
+        let [a, b] = pair.map(|h| colliders.get(h));
+        let (a, b) = (a?, b?);
+        let shared = self.shared.get_or_init(|| {
+            let mut seen = FastSet::default();
+            let places = colliders.iter().map(|(_, c)| place(c.shape()));
+            places.filter(|at| !seen.insert(*at)).collect()
+        });
+        let alone = [a, b].iter().all(|c| !shared.contains(&place(c.shape())));
+        let key = |a: &Collider, b: &Collider| {
+            if alone {
+                Key::anywhere(a.shape(), b.shape())
+            } else {
+                Key::new(a.shape(), b.shape(), &a.position().inv_mul(b.position()))
+            }
+        };
+        Some([key(a, b), key(b, a)])
+    }
+
     fn known(&self, [a, b]: [ColliderHandle; 2]) -> Option<Option<SolverFlags>> {
         locked(&self.filtered).get(&sorted(a, b)).copied()
     }
@@ -106,9 +127,9 @@ impl PhysicsHooks for Verdicts<'_> {
         let flags = self.hooks.filter_contact_pair(context);
         let solved = |f: SolverFlags| f.contains(SolverFlags::COMPUTE_RIGID_IMPULSES);
         if flags.is_some_and(|f| !solved(f))
-            && let Some(keys) = keys(context.colliders, pair)
+            && let Some(keys) = self.keys(context.colliders, pair)
         {
-            self.answers.let_pass(keys, true);
+            self.answers.let_pass(&keys, true);
         }
         let [a, b] = pair;
         locked(&self.filtered).insert(sorted(a, b), flags);
@@ -127,9 +148,9 @@ impl PhysicsHooks for Verdicts<'_> {
         let before = contacts(context);
         self.hooks.modify_solver_contacts(context);
         if before > 0
-            && let Some(keys) = keys(context.colliders, [context.collider1, context.collider2])
+            && let Some(keys) = self.keys(context.colliders, [context.collider1, context.collider2])
         {
-            self.answers.let_pass(keys, contacts(context) == 0);
+            self.answers.let_pass(&keys, contacts(context) == 0);
         }
     }
 }
