@@ -9,6 +9,8 @@ mod build;
 #[cfg(feature = "gpu")]
 #[path = "medial/calibrate.rs"]
 mod calibrate;
+#[path = "medial/curve.rs"]
+mod curve;
 #[path = "medial/describe.rs"]
 mod describe;
 #[path = "medial/failure.rs"]
@@ -17,6 +19,8 @@ mod failure;
 mod info;
 #[path = "medial/jobs.rs"]
 mod jobs;
+#[path = "medial/lengths.rs"]
+mod lengths;
 #[path = "medial/output.rs"]
 mod output;
 
@@ -46,7 +50,7 @@ enum Command {
     Build(BuildArguments),
     /// Bake a medial mesh (.ma) with its trees and mass properties, to load in no time.
     Bake(BakeArguments),
-    /// Describe a medial mesh (.ma or baked).
+    /// Describe a medial mesh (.ma or baked), or the errors by count that a triangle mesh may be built with.
     Info(InfoArguments),
     /// Measure from which batch sizes on the GPU pays, for `Backend::Auto`.
     #[cfg(feature = "gpu")]

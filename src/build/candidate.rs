@@ -55,12 +55,6 @@ impl Source {
         }
     }
 
-    /// Encloses when asked to, and measures before and after.
-    pub fn finish(&self, draft: Draft, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let enclosed = self.enclosed(draft, self.effort(), watch)?;
-        self.reported(enclosed, watch)
-    }
-
     /// Encloses when asked to, and measures the result.
     pub fn enclosed(
         &self,

@@ -9,6 +9,7 @@ use super::draft::{Ball, Draft};
 use super::watch::bytes_of;
 
 /// Balls, edges and faces, with what lies around each ball.
+#[derive(Clone)]
 pub struct Complex {
     /// The balls; those merged into others stay, and are no longer alive.
     pub balls: Vec<Ball>,

@@ -4,9 +4,9 @@ use super::bounds::Point;
 use super::candidate::{Candidate, Enclosed};
 use super::fit::{self, Collapsed};
 use super::options::Quality;
+use super::parts::Parts;
 use super::pipeline::{GAVE_UP, Source};
 use super::refit::Target;
-use super::simplify::Simplifier;
 use super::watch::Watch;
 use crate::error::BuildError;
 
@@ -16,7 +16,7 @@ const CLEARLY_BETTER: f64 = 0.75;
 
 /// How much larger a plain collapse's error may be, before enclosure, than that of its fit after it:
 /// 1.3 on a ring, 2 on the bug, where all counts of primitives differ by more.
-const LARGEST_GAIN: f64 = 2.0;
+pub const LARGEST_GAIN: f64 = 2.0;
 
 /// A round body's counts ([`fit::round_from`]) are tried upwards until this many in turn fit no better.
 const FAILURES: usize = 2;
@@ -35,11 +35,6 @@ pub struct Collapses {
 }
 
 impl Collapses {
-    /// The count asked for, or all that there is.
-    pub fn most(&self) -> usize {
-        self.first.most
-    }
-
     /// How many creases it may keep.
     pub fn creases(&self) -> usize {
         self.creases.len()
@@ -50,12 +45,12 @@ impl Source {
     /// Collapses a medial mesh that keeps `creases`.
     pub fn collapses(
         &self,
-        simplifier: Simplifier,
+        parts: Parts,
         creases: Vec<[Point; 2]>,
         most: usize,
         watch: &mut Watch,
     ) -> Result<Collapses, BuildError> {
-        let (first, smaller, kept_topology) = fit::collapse(simplifier, most, watch)?;
+        let (first, smaller, kept_topology) = fit::collapse(parts, most, watch)?;
         let rough = self.rough_target();
         let error = rough.largest_below(&first.plain, f64::INFINITY, watch)?;
         Ok(Collapses {
@@ -168,12 +163,12 @@ impl Source {
     }
 
     /// The same, of few samples, to tell drafts that may serve from those that cannot.
-    fn rough_target(&self) -> Target<'_> {
+    pub fn rough_target(&self) -> Target<'_> {
         self.target(1)
     }
 
     /// The best of `best` and what each quality gives for a count.
-    fn fitted(
+    pub fn fitted(
         &self,
         collapsed: &Collapsed,
         creases: &[[Point; 2]],

@@ -6,6 +6,7 @@
 
 use super::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use super::draft::Draft;
+use super::parts::Parts;
 use super::random::Random;
 use super::refit::{Target, refit};
 use super::samples::{even_samples, vertex_samples};
@@ -78,13 +79,13 @@ impl Collapsed {
 }
 
 /// Primitives of a start; the rest is inserted.
-fn start_count(most: usize) -> usize {
+pub fn start_count(most: usize) -> usize {
     let share = if most > LARGE { 0.85 } else { 0.8 };
     ((most as f64 * share) as usize).max(8).min(most)
 }
 
 /// Primitives of what a start by measured cost is collapsed from.
-fn fine_count(most: usize) -> usize {
+pub fn fine_count(most: usize) -> usize {
     let start = start_count(most);
     (2 * start).max(start + 100)
 }
@@ -97,12 +98,12 @@ pub const ROUND: [usize; 12] = [
 /// Collapses to `most` primitives, and to the round counts below as long as the topology stays: the
 /// drafts for each, the largest count first and by itself, and whether that one kept the topology.
 pub fn collapse(
-    mut simplifier: Simplifier,
+    mut parts: Parts,
     most: usize,
     watch: &mut Watch,
 ) -> Result<(Collapsed, Vec<Collapsed>, bool), BuildError> {
     // More than there is would be copied again and again.
-    let most = most.min(simplifier.primitives()).max(1);
+    let most = most.min(parts.primitives()).max(1);
     let round = ROUND.into_iter().filter(|n| *n < most);
     let tried = std::iter::once(most).chain(round);
     let counts: BTreeSet<usize> = tried
@@ -113,15 +114,15 @@ pub fn collapse(
     let mut drafts = BTreeMap::new();
     let mut kept = true;
     for &count in counts.iter().rev() {
-        simplifier.reduce_to(count, watch)?;
-        let keeps = !simplifier.broke_topology();
+        parts.reduce_to(count, watch)?;
+        let keeps = !parts.broke_topology();
         if count < least && !keeps {
             break;
         }
         kept &= keeps;
-        drafts.insert(count, simplifier.draft());
+        drafts.insert(count, parts.draft());
     }
-    drop(simplifier);
+    drop(parts);
     let tried = tried.take_while(|n| drafts.contains_key(&start_count(*n)));
     let of = |count: usize| drafts[&count].clone();
     let collapsed = |most| Collapsed {

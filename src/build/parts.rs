@@ -12,9 +12,10 @@ use super::watch::Watch;
 use crate::error::BuildError;
 
 /// The two parts of a medial mesh on its way to fewer primitives.
+#[derive(Clone)]
 pub struct Parts<'a> {
     solid: Simplifier<'a>,
-    sheets: Simplifier<'a>,
+    sheets: Option<Simplifier<'a>>,
     /// Share of the primitives that sheets get: that of the area.
     share: f64,
     /// But this many, up to half of all: one for each patch.
@@ -30,21 +31,33 @@ impl<'a> Parts<'a> {
         tree: &'a TriangleTree,
         watch: &mut Watch,
     ) -> Result<Self, BuildError> {
+        let solid = Simplifier::new(start.solid, BOUNDARY_WEIGHT_SOLID, tree, watch)?;
+        let sheets = match start.sheets.balls.is_empty() {
+            true => None,
+            false => Some(Simplifier::new(
+                start.sheets,
+                BOUNDARY_WEIGHT_SHEET,
+                tree,
+                watch,
+            )?),
+        };
         Ok(Self {
-            solid: Simplifier::new(start.solid, BOUNDARY_WEIGHT_SOLID, tree, watch)?
-                .touching(start.spacing),
-            sheets: Simplifier::new(start.sheets, BOUNDARY_WEIGHT_SHEET, tree, watch)?,
+            solid: solid.touching(start.spacing),
+            sheets,
             share: start.share,
             least: start.sheet_patches,
             gave_up_sheets: false,
         })
     }
 
-    /// The solid part, if it is all there is.
-    pub fn into_only_solid(self) -> Result<Simplifier<'a>, Box<Self>> {
-        match self.sheets.primitives() {
-            0 => Ok(self.solid),
-            _ => Err(Box::new(self)),
+    /// A solid part alone.
+    pub fn solid(solid: Simplifier<'a>) -> Self {
+        Self {
+            solid,
+            sheets: None,
+            share: 0.0,
+            least: 0,
+            gave_up_sheets: false,
         }
     }
 
@@ -53,23 +66,25 @@ impl<'a> Parts<'a> {
         self.solid.primitives() + self.sheet_primitives()
     }
 
+    fn kept_sheets(&self) -> Option<&Simplifier<'a>> {
+        self.sheets.as_ref().filter(|_| !self.gave_up_sheets)
+    }
+
     fn sheet_primitives(&self) -> usize {
-        match self.gave_up_sheets {
-            true => 0,
-            false => self.sheets.primitives(),
-        }
+        self.kept_sheets().map_or(0, Simplifier::primitives)
     }
 
     /// Whether holes had to be closed, or parts joined, to reach a count.
     pub fn broke_topology(&self) -> bool {
-        self.gave_up_sheets || self.solid.broke_topology() || self.sheets.broke_topology()
+        let sheets = self.sheets.as_ref().is_some_and(Simplifier::broke_topology);
+        self.gave_up_sheets || self.solid.broke_topology() || sheets
     }
 
     /// The medial mesh as it is now.
     pub fn draft(&self) -> Draft {
-        match self.gave_up_sheets {
-            true => self.solid.draft(),
-            false => self.solid.draft().and(self.sheets.draft()),
+        match self.kept_sheets() {
+            None => self.solid.draft(),
+            Some(sheets) => self.solid.draft().and(sheets.draft()),
         }
     }
 
@@ -80,14 +95,16 @@ impl<'a> Parts<'a> {
         if solid + sheets <= target {
             return Ok(());
         }
-        self.gave_up_sheets |= target < 2 && solid > 0;
-        if sheets > 0 && !self.gave_up_sheets {
+        self.gave_up_sheets |= sheets > 0 && target < 2 && solid > 0;
+        if let Some(part) = self.sheets.as_mut().filter(|_| sheets > 0)
+            && !self.gave_up_sheets
+        {
             let fair = (target as f64 * self.share).round() as usize;
             let fair = fair.max(self.least.min(target / 2));
             let spare = target.saturating_sub(solid);
             let most = if solid > 0 { target - 1 } else { target };
             let for_sheets = fair.max(spare).clamp(1, most.max(1));
-            self.sheets.reduce_to(for_sheets, watch)?;
+            part.reduce_to(for_sheets, watch)?;
         }
         let left = target.saturating_sub(self.sheet_primitives());
         if solid > 0 {

@@ -4,16 +4,19 @@ use super::candidate::Candidate;
 use super::counts::Collapses;
 use super::creased::{Creased, creased};
 use super::enclose::enclose_exactly;
+use super::ladder::Ladder;
 use super::largest::Effort;
 use super::options::{Limits, Quality};
 use super::parts::Parts;
 use super::polyhedron::{EXACT, polyhedron};
+use super::smallest::Smallest;
 use super::solid_boundary::solid_boundary;
 use super::start::{Start, start};
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
 use crate::error::BuildError;
+use crate::math::Real;
 
 /// Note on a result that is not what the source was.
 pub const GAVE_UP: &str = "holes or parts were given up to reach the count";
@@ -21,6 +24,9 @@ pub const GAVE_UP: &str = "holes or parts were given up to reach the count";
 /// The plain collapses of two medial meshes of one body are compared by few samples: the one whose largest
 /// residual is above this many of the other's is not fitted.
 const HOPELESS: f64 = 2.0;
+
+/// Samples for tens of primitives.
+const FEW_SAMPLES: usize = 2_000;
 
 /// The checked surface, its tree, and what to build from it.
 pub struct Source {
@@ -32,12 +38,28 @@ pub struct Source {
 }
 
 impl Source {
-    /// Balls inside where the surface bounds matter, slabs where it is a sheet.
+    /// What the limits allow: balls inside where the surface bounds matter, slabs where it is a sheet.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        if let Some(exact) = self.polyhedron(watch)? {
+        let exact = self.polyhedron(watch)?;
+        if self.limits.max_error.is_none()
+            && let Some(exact) = exact
+        {
             return Ok(exact);
         }
-        let count = self.limits.samples(self.surface.area);
+        let (start, samples) = self.start(exact.is_some(), watch)?;
+        match self.limits.max_error {
+            None => self.rounded_or_creased(start, samples, watch),
+            Some(limit) => self.within(limit, start, samples, exact, watch),
+        }
+    }
+
+    /// The medial mesh of balls inside and of slabs, and from how many samples it is: few where it is only to be
+    /// smaller than one that is exact.
+    pub fn start(&mut self, few: bool, watch: &mut Watch) -> Result<(Start, usize), BuildError> {
+        let count = match few {
+            true => FEW_SAMPLES,
+            false => self.limits.samples(self.surface.area),
+        };
         let mut findings = std::mem::take(&mut self.surface.findings);
         let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
         self.surface.findings = findings;
@@ -45,11 +67,26 @@ impl Source {
         if self.limits.quality > Quality::Fast && !self.surface.simple && !has_sheets {
             self.boundary = solid_boundary(&self.surface, &self.tree, watch)?;
         }
-        self.candidate(start, count, watch)
+        Ok((start, count))
+    }
+
+    /// The medial mesh whose ends are rounded, and one that keeps creases, if there are any, to be asked for many
+    /// counts.
+    pub fn ladders(
+        &self,
+        start: Start,
+        samples: usize,
+        watch: &mut Watch,
+    ) -> Result<(Ladder<'_>, Option<Ladder<'_>>), BuildError> {
+        watch.begin("simplify")?;
+        let rounded = Parts::new(start, &self.tree, watch)?;
+        let creased = self.creased(samples, watch)?;
+        let creased = creased.map(|c| Ladder::new(Parts::solid(c.simplifier), c.creases));
+        Ok((Ladder::new(rounded, Vec::new()), creased))
     }
 
     /// The medial axis of a convex polyhedron itself, if that is within the limit on the count.
-    fn polyhedron(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+    pub fn polyhedron(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
         let most = self.limits.primitives.unwrap_or(usize::MAX);
         let Some(angle) = self.limits.creases.angle_of_flat() else {
             return Ok(None);
@@ -81,57 +118,52 @@ impl Source {
         Ok(Some(candidate))
     }
 
-    /// Simplifies and fits to the limits, encloses and measures.
-    fn candidate(
+    /// The better, within the limit on the count, of a medial mesh whose ends are rounded, and one that keeps
+    /// creases, if there are any.
+    fn rounded_or_creased(
         &self,
         start: Start,
         samples: usize,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
         watch.begin("simplify")?;
+        let rounded = Parts::new(start, &self.tree, watch)?;
         let most = self.limits.primitives.unwrap_or(usize::MAX);
-        let mut parts = Parts::new(start, &self.tree, watch)?;
-        if self.limits.max_error.is_none() {
-            parts = match parts.into_only_solid() {
-                Ok(rounded) => {
-                    let rounded = self.collapses(rounded, Vec::new(), most, watch)?;
-                    return self.rounded_or_creased(rounded, samples, watch);
-                }
-                Err(parts) => *parts,
-            };
-        }
-        parts.reduce_to(most, watch)?;
-        let mut candidate = match self.limits.max_error {
-            Some(error) => self.coarsest(&mut parts, error, watch)?,
-            None => self.finish(parts.draft(), watch)?,
+        let most = most.min(rounded.primitives());
+        let rounded = self.collapses(rounded, Vec::new(), most, watch)?;
+        let creased = match self.creased(samples, watch)? {
+            None => None,
+            Some(Creased {
+                simplifier,
+                creases,
+            }) => Some(self.collapses(Parts::solid(simplifier), creases, most, watch)?),
         };
-        if parts.broke_topology() {
-            candidate.notes.push(GAVE_UP.into());
-        }
-        Ok(candidate)
+        self.better(rounded, creased, watch)
     }
 
-    /// The better of a medial mesh whose ends are rounded, and one that keeps creases, if there are any.
-    fn rounded_or_creased(
+    /// A medial mesh that keeps creases, if any are wanted, and there are any.
+    fn creased(
         &self,
-        rounded: Collapses,
         samples: usize,
         watch: &mut Watch,
+    ) -> Result<Option<Creased<'_>>, BuildError> {
+        let keeps = self.fits() && self.surface.simple && !self.surface.sheet.contains(&true);
+        match self.limits.creases.angle().filter(|_| keeps) {
+            Some(angle) => creased(&self.surface, &self.tree, angle, samples, watch),
+            None => Ok(None),
+        }
+    }
+
+    /// The better of two medial meshes of one body, fitted and measured.
+    fn better(
+        &self,
+        rounded: Collapses,
+        creased: Option<Collapses>,
+        watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
-        let keeps = self.fits() && self.surface.simple;
-        let angle = self.limits.creases.angle().filter(|_| keeps);
-        let creased = match angle {
-            Some(angle) => creased(&self.surface, &self.tree, angle, samples, watch)?,
-            None => None,
-        };
-        let Some(Creased {
-            simplifier,
-            creases,
-        }) = creased
-        else {
+        let Some(creased) = creased else {
             return self.best_of(&rounded, watch);
         };
-        let creased = self.collapses(simplifier, creases, rounded.most(), watch)?;
         let [error, other] = [&rounded, &creased].map(|c| c.rough_error);
         let rounded = match error > HOPELESS * other {
             true => None,
@@ -151,5 +183,49 @@ impl Source {
             Some(rounded) if rounded.error() <= creased.error() => rounded,
             _ => creased,
         })
+    }
+
+    /// The smallest medial mesh whose error is at most `limit`, or the best that there is; `exact` is one that may
+    /// be larger than it takes.
+    fn within(
+        &self,
+        limit: f64,
+        start: Start,
+        samples: usize,
+        exact: Option<Candidate>,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
+        let (mut rounded, mut creased) = self.ladders(start, samples, watch)?;
+        let ladders = std::iter::once(&mut rounded)
+            .chain(creased.as_mut())
+            .collect();
+        let asked = self.limits.primitives;
+        let below = exact.as_ref().map(|e| e.draft.primitives().len() - 1);
+        let top = match self.smallest(ladders, limit, below.or(asked), watch)? {
+            Smallest::Found(candidate) => return Ok(*candidate),
+            Smallest::OutOfReach(top) => top,
+        };
+        if let Some(exact) = exact {
+            return Ok(exact);
+        }
+        watch.attempt();
+        let rounded = self.collapses(rounded.finest, rounded.creases, top, watch)?;
+        let creased = match creased {
+            None => None,
+            Some(creased) => Some(self.collapses(creased.finest, creased.creases, top, watch)?),
+        };
+        let mut candidate = self.better(rounded, creased, watch)?;
+        let (count, error) = (candidate.draft.primitives().len(), candidate.error());
+        candidate.notes.push(match asked.filter(|most| *most <= top) {
+            Some(most) => format!(
+                "primitives {most} bound first: the least error {error:.6}, with {count}, is above max_error {}",
+                limit as Real
+            ),
+            None => format!(
+                "max_error {} is out of reach: the least error is {error:.6}, with {count} primitives",
+                limit as Real
+            ),
+        });
+        Ok(candidate)
     }
 }

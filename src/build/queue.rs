@@ -43,6 +43,7 @@ impl PartialOrd for Candidate {
 }
 
 /// Candidates, the cheapest first.
+#[derive(Clone)]
 pub struct Queue {
     heap: BinaryHeap<Candidate>,
     /// All that cost more than `limit`.

@@ -42,6 +42,7 @@ const NO_COST: f64 = 1e-10;
 const MOST_AROUND: usize = 100;
 
 /// A medial mesh on its way to fewer primitives.
+#[derive(Clone)]
 pub struct Simplifier<'a> {
     pub(super) complex: Complex,
     pub(super) quadrics: Vec<Quadric>,

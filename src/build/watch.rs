@@ -28,6 +28,9 @@ const STAGES: [(&str, f64); 12] = [
 /// microsecond. The promise is 200 ms; more reports cost more than they serve.
 const EVERY: usize = 1 << 14;
 
+/// Share of what is left that an attempt has: how many there will be is not known.
+const ATTEMPT: f64 = 0.25;
+
 /// Bytes of an array, with what it has in reserve.
 pub fn bytes_of<T>(array: &Vec<T>) -> usize {
     array.capacity() * size_of::<T>()
@@ -39,6 +42,9 @@ pub struct Watch<'a> {
     stage: &'static str,
     start: f64,
     share: f64,
+    /// Where the stages of an attempt begin, and the share of all that they have.
+    from: f64,
+    span: f64,
     /// Never falls, though a stage may be entered more than once.
     fraction: f64,
     since: Instant,
@@ -56,12 +62,20 @@ impl<'a> Watch<'a> {
             stage: "",
             start: 0.0,
             share: 0.0,
+            from: 0.0,
+            span: 1.0,
             fraction: 0.0,
             since: Instant::now(),
             seconds: Vec::new(),
             kept: 0,
             peak: 0,
         }
+    }
+
+    /// Says that all stages come again: they share a quarter of what is left.
+    pub fn attempt(&mut self) {
+        self.from = self.fraction;
+        self.span = ATTEMPT * (1.0 - self.fraction);
     }
 
     /// Ends the running stage and begins `stage`.
@@ -80,6 +94,7 @@ impl<'a> Watch<'a> {
     /// Reports that `part` of the running stage is done. Stages call it about every millisecond.
     pub fn at(&mut self, part: f64) -> Result<(), BuildError> {
         let done = self.start + self.share * part.clamp(0.0, 1.0);
+        let done = self.from + self.span * done;
         self.fraction = self.fraction.max(done.min(1.0));
         let progress = Progress {
             stage: self.stage,
@@ -123,8 +138,7 @@ impl<'a> Watch<'a> {
     /// Ends the build: the last report, and the seconds of each stage in order of first entry.
     pub fn finish(mut self) -> Result<Vec<(&'static str, f64)>, BuildError> {
         self.end();
-        self.start = 1.0;
-        self.share = 0.0;
+        (self.from, self.span, self.start, self.share) = (0.0, 1.0, 1.0, 0.0);
         self.at(1.0)?;
         Ok(self.seconds)
     }

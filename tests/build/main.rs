@@ -19,6 +19,7 @@ mod planted;
 mod polyhedra;
 mod scale;
 mod shapes;
+mod smallest;
 mod topology;
 
 use meshes::Mesh;

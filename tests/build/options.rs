@@ -201,7 +201,7 @@ fn the_limit_that_binds_is_named() {
     );
     let (count, reached, notes) = limited(200, 0.1);
     assert!(
-        count < 100 && reached && notes.contains("bound first") && notes.contains("max_error"),
+        count < 100 && reached && notes.contains("max_error 0.1 is kept by"),
         "{count} {notes}"
     );
 }

@@ -3,6 +3,7 @@
 use crate::describe::{Description, Errors, describe, relative};
 use crate::failure::{Failed, Failure};
 use crate::jobs::{Job, plan};
+use crate::lengths::{Length, Unit, UnitUnknown, longest_side};
 use crate::output::{print, say};
 use crate::{INTERRUPTED, STOP};
 use clap::{Args, ValueEnum};
@@ -13,11 +14,11 @@ use rapier3d_medial::{BuildOptions, MedialMesh, Quality};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 /// Steps of the progress bar (a count) for each mesh: one per mille.
-const BAR_STEPS: u64 = 1000;
+pub const BAR_STEPS: u64 = 1000;
 
 #[derive(Args)]
 pub struct BuildArguments {
@@ -29,12 +30,19 @@ pub struct BuildArguments {
     #[arg(short, long, value_name = "OUT.ma")]
     output: PathBuf,
     /// Largest number of primitives: slabs, cones that belong to no slab, lone spheres
-    /// [default: 500, or what --max-error needs].
+    /// [default: 500, or what the largest error needs].
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     primitives: Option<u32>,
-    /// Largest two-sided Hausdorff error, as a fraction of the longest side of the mesh's box.
+    /// Largest two-sided Hausdorff error, as a fraction of the longest side of the mesh's box. Without --primitives
+    /// the smallest mesh that keeps it is built.
     #[arg(short = 'e', long, value_name = "E", value_parser = positive)]
     max_error: Option<f32>,
+    /// The same as a length: 0.02 in the unit of the files, or 0.02mm.
+    #[arg(long, value_name = "LENGTH", conflicts_with = "max_error")]
+    tolerance: Option<Length>,
+    /// What one unit of the files is (um, mm, cm, m, km, in, ft); glTF is in metres.
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<Unit>,
     /// How much work to spend on a small error.
     #[arg(short, long, value_enum, default_value_t)]
     quality: QualityArgument,
@@ -70,7 +78,7 @@ enum Up {
 
 /// [`Quality`], as an argument.
 #[derive(Clone, Copy, Default, ValueEnum)]
-enum QualityArgument {
+pub enum QualityArgument {
     /// Edge collapse alone.
     Fast,
     /// Then a fit to the surface.
@@ -120,23 +128,22 @@ fn positive(text: &str) -> Result<f32, String> {
     }
 }
 
+impl BuildArguments {
+    /// The largest error as a length in the unit of a file.
+    fn tolerance_in_unit_of(&self, path: &Path) -> Result<Option<f64>, UnitUnknown> {
+        let tolerance = self.tolerance;
+        tolerance.map(|t| t.in_unit_of(path, self.unit)).transpose()
+    }
+}
+
 /// Builds and writes all meshes; one that fails is told, the others are built.
 pub fn build(arguments: &BuildArguments) -> Result<(), Failure> {
     let jobs = plan(&arguments.inputs, &arguments.output, arguments.bake)?;
-    // The first Ctrl-C ends the build in order, which takes less than a second; the next at once.
-    // Without a handler it ends at once, too.
-    let _ = ctrlc::set_handler(|| {
-        if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED.into());
-        }
-    });
-    let bar = match arguments.quiet {
-        true => ProgressBar::hidden(),
-        false => ProgressBar::new(BAR_STEPS * jobs.len() as u64),
-    };
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg} {elapsed}") {
-        bar.set_style(style);
+    for job in &jobs {
+        arguments.tolerance_in_unit_of(&job.input)?;
     }
+    listen();
+    let bar = bar(jobs.len(), arguments.quiet);
     let mut summaries = Vec::new();
     let mut failed = 0;
     for (index, job) in jobs.iter().enumerate() {
@@ -184,6 +191,28 @@ pub fn build(arguments: &BuildArguments) -> Result<(), Failure> {
     }
 }
 
+/// The first Ctrl-C ends the build in order, which takes less than a second; the next at once. Without a handler it
+/// ends at once, too.
+pub fn listen() {
+    let _ = ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    });
+}
+
+/// A progress bar over some meshes.
+pub fn bar(meshes: usize, quiet: bool) -> ProgressBar {
+    let bar = match quiet {
+        true => ProgressBar::hidden(),
+        false => ProgressBar::new(BAR_STEPS * meshes as u64),
+    };
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg} {elapsed}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
 /// Builds and writes one mesh; `show` is told the stage and the part done.
 fn build_one(
     job: &Job,
@@ -192,6 +221,10 @@ fn build_one(
 ) -> Result<BuildSummary, Failure> {
     show("reading", 0.0);
     let mut source = mesh_file::read(&job.input)?;
+    let max_error = match arguments.tolerance_in_unit_of(&job.input)? {
+        Some(tolerance) => Some((tolerance / f64::from(longest_side(&source))) as f32),
+        None => arguments.max_error,
+    };
     let scale = arguments.scale.unwrap_or(1.0);
     for v in &mut source.vertices {
         *v = scale
@@ -202,11 +235,11 @@ fn build_one(
     }
     let mut options = BuildOptions {
         enclose: !arguments.no_enclose,
-        max_error: arguments.max_error,
+        max_error,
         quality: arguments.quality.into(),
         ..Default::default()
     };
-    if arguments.primitives.is_some() || arguments.max_error.is_some() {
+    if arguments.primitives.is_some() || max_error.is_some() {
         options.primitives = arguments.primitives.map(|n| n as usize);
     }
     let (mesh, report) = MedialMesh::from_trimesh_with_progress(

@@ -3,6 +3,7 @@
 #[cfg(feature = "gpu")]
 use crate::calibrate;
 use crate::jobs::PlanError;
+use crate::lengths::UnitUnknown;
 use rapier3d_medial::{BuildError, MeshError};
 use serde::Serialize;
 use std::io;
@@ -20,10 +21,17 @@ pub enum Failure {
     #[cfg(feature = "gpu")]
     #[error(transparent)]
     Calibrate(#[from] calibrate::Failure),
-    #[error("{0} is a triangle mesh; a medial mesh is built from it with `medial build`")]
+    #[error(transparent)]
+    Unit(#[from] UnitUnknown),
+    #[error(
+        "{0} is a triangle mesh; a medial mesh is built from it with `medial build`, and `medial info --curve` tells \
+         its errors by count"
+    )]
     TriangleMesh(PathBuf),
     #[error("{path}: {source}")]
     OfFile { path: PathBuf, source: Box<Failure> },
+    #[error("{0} is no triangle mesh, of which --curve tells the errors by count")]
+    NoTriangleMesh(PathBuf),
     #[error("{failed} of {all} meshes failed")]
     SomeFailed { failed: usize, all: usize },
     #[error("standard output: {0}")]

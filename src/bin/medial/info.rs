@@ -1,13 +1,15 @@
 //! `medial info` and `medial bake`: what a medial mesh is, and the same in a file that loads at once.
 
+use crate::build::QualityArgument;
+use crate::curve::curve;
 use crate::describe::{Description, Errors, describe, relative};
 use crate::failure::Failure;
 use crate::jobs;
+use crate::lengths::longest_side;
 use crate::output::print;
 use clap::Args;
 use rapier3d_medial::build::hausdorff;
 use rapier3d_medial::build::mesh_file::{self, MeshFormat, TriangleMesh};
-use rapier3d_medial::math::Vector;
 use rapier3d_medial::medial::asset;
 use rapier3d_medial::{BuildError, MedialMesh};
 use serde::Serialize;
@@ -24,16 +26,32 @@ pub struct BakeArguments {
     output: PathBuf,
 }
 
+/// Counts of primitives that a curve has unless told.
+const COUNTS: [u32; 6] = [10, 20, 50, 100, 200, 500];
+
 #[derive(Args)]
 pub struct InfoArguments {
-    /// Medial mesh in the .ma format, or baked.
-    mesh: PathBuf,
+    /// Medial mesh in the .ma format, or baked; with --curve a triangle mesh.
+    pub mesh: PathBuf,
     /// Measure both Hausdorff distances to the triangle mesh that it was built from.
     #[arg(long, value_name = "IN")]
     against: Option<PathBuf>,
+    /// Tell the error at each of some counts of primitives that a triangle mesh may be built with.
+    #[arg(long, conflicts_with = "against")]
+    curve: bool,
+    /// The counts.
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', requires = "curve", default_values_t = COUNTS,
+          value_parser = clap::value_parser!(u32).range(1..))]
+    pub counts: Vec<u32>,
+    /// How much work to spend on each.
+    #[arg(short, long, value_enum, default_value_t, requires = "curve")]
+    pub quality: QualityArgument,
+    /// Fit the surface on both sides instead of enclosing it.
+    #[arg(long, requires = "curve")]
+    pub no_enclose: bool,
     /// Print as JSON.
     #[arg(long)]
-    json: bool,
+    pub json: bool,
 }
 
 /// What `info` found.
@@ -68,6 +86,9 @@ pub fn bake(arguments: &BakeArguments) -> Result<(), Failure> {
 
 /// Describes a mesh, and measures it against its source where one is given.
 pub fn info(arguments: &InfoArguments) -> Result<(), Failure> {
+    if arguments.curve {
+        return curve(arguments);
+    }
     let mesh = load(&arguments.mesh)?;
     let errors = match &arguments.against {
         Some(path) => Some(measure(&mesh, &mesh_file::read(path)?)?),
@@ -87,10 +108,5 @@ pub fn info(arguments: &InfoArguments) -> Result<(), Failure> {
 
 fn measure(mesh: &MedialMesh, source: &TriangleMesh) -> Result<Errors, BuildError> {
     let measured = hausdorff::hausdorff(mesh, &source.vertices, &source.indices)?;
-    let corners = source.indices.iter().flatten();
-    let points = corners.map(|&v| source.vertices[v as usize]);
-    let (lo, hi) = points.fold((Vector::MAX, Vector::MIN), |(lo, hi), p| {
-        (lo.min(p), hi.max(p))
-    });
-    Ok(relative(&measured, (hi - lo).max_element()))
+    Ok(relative(&measured, longest_side(source)))
 }
