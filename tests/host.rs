@@ -118,3 +118,30 @@ fn shapes_of_ones_own_are_not_drawn() {
     assert_eq!(lines(ColliderBuilder::medial_mesh(mesh)), 0);
     assert!(lines(ColliderBuilder::ball(0.1)) > 0);
 }
+
+/// A sub-step moves bodies straight: what turns fast opens its joint by the square of the turn in one.
+#[test]
+fn joints_of_what_turns_fast_open_the_less_the_more_sub_steps_there_are() {
+    let opening = |more: usize| {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let root = world.insert_body(RigidBodyBuilder::fixed());
+        let body = RigidBodyBuilder::dynamic()
+            .translation(Vector::X * 0.2)
+            .linvel(Vector::Z * -8.0)
+            .angvel(Vector::Y * 40.0)
+            .additional_solver_iterations(more);
+        let bar = ColliderBuilder::capsule_x(0.2, 0.05);
+        let (bar, _) = world.insert(body, bar);
+        let joint = SphericalJointBuilder::new().local_anchor2(Vector::X * -0.2);
+        world.insert_impulse_joint(root, bar, joint.contacts_enabled(false));
+        let step = |_| {
+            world.step();
+            (world.bodies[bar].position() * (Vector::X * -0.2)).length()
+        };
+        (0..10).map(step).fold(0.0, Real::max)
+    };
+    let [few, many] = [0, 28].map(opening);
+    assert!(few > 2.0e-3, "opens by {few} m");
+    assert!(many < 0.2 * few, "opens by {many} m, {few} in few");
+}

@@ -22,8 +22,8 @@ pub const MOST_JOINTS: usize = 128;
 
 /// Turn of the fastest body, in radians, in one piece of its motion, and the most pieces of a step if nothing else is
 /// met.
-const PIECE_TURN: Real = 0.25;
-const MOST_PIECES: Real = 32.0;
+const PIECE_TURN: Real = 0.125;
+const MOST_PIECES: Real = 64.0;
 
 /// Opening that joints may gain, a length or an angle, from which they count as not closed: what is this far off says
 /// nothing of where bodies go, which then go straight, and rapier's next step closes the joints.
@@ -139,6 +139,11 @@ impl Joints {
             return Piece::default();
         }
         let mut system = self.system(snapshot, &[from], time, |b| inertia(snapshot, b));
+        for &b in &system.bodies {
+            if snapshot.bodies[b].kind == Kind::Free {
+                snapshot.bodies[b].advance(time);
+            }
+        }
         let twist = |b: &usize| snapshot.bodies[*b].twist(time);
         let mut before: Vec<Twist> = system.bodies.iter().map(twist).collect();
         if goes_on {
@@ -166,11 +171,6 @@ impl Joints {
         {
             return Piece::default();
         }
-        for &b in &system.bodies {
-            if snapshot.bodies[b].kind == Kind::Free {
-                snapshot.bodies[b].advance(time);
-            }
-        }
         let own: Vec<Twist> = system
             .bodies
             .iter()
@@ -189,10 +189,51 @@ impl Joints {
         for (k, &b) in system.bodies.iter().enumerate() {
             if !system.is_infinite(k) {
                 let gained = [0, 1].map(|i| end[k][i] - own[k][i]);
-                snapshot.bodies[b].aim(system.moved(k), gained, seconds);
+                snapshot.bodies[b].aim(system.moved(k), [before[k], gained], seconds);
                 moved.push(b);
             }
         }
         Piece { moved, until }
+    }
+}
+
+/// Gives bodies, where they are at `time`, the velocities and motions that their joints let them have: what was
+/// executed of a path is a chord, and an impact needs its tangent. `moving`: the system of the motions, where bodies
+/// keep theirs; `last`: that of the velocities at the end of the step.
+pub fn settle(
+    snapshot: &mut Snapshot,
+    time: Real,
+    system: &System,
+    moving: Option<&System>,
+    last: impl Fn(&Snapshot) -> Vec<Twist>,
+) {
+    if !system.holds() {
+        return;
+    }
+    let bodies = || system.bodies.iter().map(|b| &snapshot.bodies[*b]);
+    let mut tangents: Vec<Twist> = bodies().map(|b| b.twist(time)).collect();
+    let mut velocities: Vec<Twist> = bodies().map(|b| b.velocity).collect();
+    if bodies().any(|b| b.is_rapiers) {
+        let mut held = tangents.clone();
+        system.hold(&mut held);
+        for (k, end) in last(snapshot).into_iter().enumerate() {
+            let body = &snapshot.bodies[system.bodies[k]];
+            if body.is_rapiers {
+                let back = body.motion.start.rotation * body.end.rotation.inverse();
+                velocities[k][0] += held[k][0] - end[0];
+                velocities[k][1] += held[k][1] - back * end[1];
+            }
+        }
+    }
+    moving.unwrap_or(system).hold(&mut tangents);
+    system.hold(&mut velocities);
+    for (k, &b) in system.bodies.iter().enumerate() {
+        let body = &mut snapshot.bodies[b];
+        if !system.is_infinite(k) {
+            body.velocity = velocities[k];
+        }
+        if !moving.unwrap_or(system).is_infinite(k) {
+            body.go(tangents[k]);
+        }
     }
 }

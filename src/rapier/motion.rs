@@ -23,6 +23,17 @@ pub enum Kind {
     Free,
 }
 
+/// How joints bend the path of a body, of which its motion is a chord.
+#[derive(Clone, Copy, Debug)]
+struct Bend {
+    /// What they add to its velocities in a second.
+    rate: [Vector; 2],
+    /// Seconds into the step until which they do.
+    until: Real,
+    /// By how much its velocities exceed the tangent of the path.
+    excess: [Vector; 2],
+}
+
 /// A body in a step.
 #[derive(Clone, Debug)]
 pub struct Body {
@@ -43,10 +54,10 @@ pub struct Body {
     /// Linear and angular velocity that the solver works with, per second. The angular velocity turns with
     /// the body: where the step turns it about another axis, one fixed in the world would change its energy.
     pub velocity: [Vector; 2],
-    /// What joints add to them in a second: they turn velocities.
-    bend: [Vector; 2],
-    /// Seconds into the step until which they do.
-    bends_until: Real,
+    /// How joints bend its path.
+    bend: Option<Bend>,
+    /// Whether its motion is the one that rapier's step made, and its velocities are those at its end.
+    pub is_rapiers: bool,
     /// The velocities before rapier's step.
     pub velocity_before: [Vector; 2],
     /// Linear velocity that gravity and forces of the user give it in the whole step.
@@ -84,8 +95,8 @@ impl Body {
             start: *body.position(),
             end: *body.position(),
             velocity: [body.linvel(), body.angvel()],
-            bend: [Vector::ZERO; 2],
-            bends_until: 0.0,
+            bend: None,
+            is_rapiers: true,
             velocity_before: [body.linvel(), body.angvel()],
             pull: Vector::ZERO,
             reach: 0.0,
@@ -107,8 +118,8 @@ impl Body {
             start: Pose::IDENTITY,
             end: Pose::IDENTITY,
             velocity: [Vector::ZERO; 2],
-            bend: [Vector::ZERO; 2],
-            bends_until: 0.0,
+            bend: None,
+            is_rapiers: true,
             velocity_before: [Vector::ZERO; 2],
             pull: Vector::ZERO,
             reach: 0.0,
@@ -172,11 +183,13 @@ impl Body {
             self.velocity[0] -= along * gained;
         }
         self.motion = NonlinearRigidMotion::constant_position(self.motion.start);
+        self.bend = None;
     }
 
     /// Lets it be carried along by a motion, as if it were part of that body.
     pub fn follow(&mut self, carrying: &NonlinearRigidMotion) {
         let center = carrying.start * carrying.local_center;
+        self.bend = None;
         self.motion = NonlinearRigidMotion {
             local_center: self.motion.start.inverse_transform_point(center),
             linvel: carrying.linvel,
@@ -193,8 +206,12 @@ impl Body {
         }
     }
 
-    /// Linear velocity of its centre of mass at `time`, and angular velocity, of its motion.
+    /// Linear velocity of its centre of mass at `time`, where it is advanced to, and angular velocity: of its path,
+    /// where that is bent.
     pub fn twist(&self, time: Real) -> [Vector; 2] {
+        if let Some(bend) = self.bend.filter(|_| self.time == time) {
+            return [0, 1].map(|i| self.velocity[i] - bend.excess[i]);
+        }
         let m = self.motion_from(time);
         // A body that is carried along turns about another's centre.
         let arm = m.start.rotation * (self.mass.local_com - m.local_center);
@@ -203,15 +220,33 @@ impl Body {
 
     /// Gives it the motion that moves its centre of mass by a way and turns it, in some seconds, with the whole turns
     /// that it makes; by then its velocities have gained so much.
-    pub fn aim(&mut self, (way, turn): (Vector, Rotation), gained: [Vector; 2], seconds: Real) {
+    pub fn aim(
+        &mut self,
+        (way, turn): (Vector, Rotation),
+        [tangent, gained]: [[Vector; 2]; 2],
+        seconds: Real,
+    ) {
         let turned = shortest(turn).to_scaled_axis();
         let turned = unwrapped(turned, self.motion.angvel * seconds, Real::MAX.sqrt());
         self.motion.local_center = self.mass.local_com;
         self.motion.linvel = way / seconds;
         self.motion.angvel = turned / seconds;
         let spin = self.velocity[1] + gained[1] - turn * self.velocity[1];
-        self.bend = [gained[0] / seconds, spin / seconds];
-        self.bends_until = self.time + seconds;
+        self.bend = Some(Bend {
+            rate: [gained[0] / seconds, spin / seconds],
+            until: self.time + seconds,
+            excess: [0, 1].map(|i| self.velocity[i] - tangent[i]),
+        });
+        self.is_rapiers = false;
+    }
+
+    /// Gives it a motion along these velocities.
+    pub fn go(&mut self, [linear, angular]: [Vector; 2]) {
+        self.motion.local_center = self.mass.local_com;
+        self.motion.linvel = linear;
+        self.motion.angvel = angular;
+        self.bend = None;
+        self.is_rapiers = false;
     }
 
     /// Moves it to where it is at `time`.
@@ -220,9 +255,14 @@ impl Body {
         self.motion = self.motion_from(time);
         self.motion.start.rotation = self.motion.start.rotation.normalize();
         self.velocity[1] = self.motion.start.rotation * (before.inverse() * self.velocity[1]);
-        let bent = (time.min(self.bends_until) - self.time).max(0.0);
-        for (velocity, bend) in self.velocity.iter_mut().zip(self.bend) {
-            *velocity += bend * bent;
+        if let Some(bend) = self.bend {
+            let seconds = (time.min(bend.until) - self.time).max(0.0);
+            for (velocity, rate) in self.velocity.iter_mut().zip(bend.rate) {
+                *velocity += rate * seconds;
+            }
+            if time > bend.until {
+                self.bend = None;
+            }
         }
         self.time = time;
     }

@@ -9,6 +9,7 @@ use super::recycled::{RECYCLE_DISTANCE, Recycled};
 use super::report::StepReport;
 use super::snapshot::Snapshot;
 use super::speculative::Speculators;
+use super::substeps::Substeps;
 use super::tuning::Tuning;
 use super::verdicts::Verdicts;
 use super::{candidates, hanging, links, muting};
@@ -263,16 +264,11 @@ impl MedialPipeline {
             may_stop,
         };
         let mut work = Work::default();
+        let joints = (&*impulse_joints, &*multibody_joints);
         let mut snapshot = if medial == 0 || self.effects.none() {
             Snapshot::default()
         } else {
-            Snapshot::take(
-                gravity,
-                parameters.dt,
-                bodies,
-                colliders,
-                (impulse_joints, multibody_joints),
-            )
+            Snapshot::take(gravity, parameters.dt, bodies, colliders, joints)
         };
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         bodies.propagate_modified_body_positions_to_colliders(colliders);
@@ -323,6 +319,7 @@ impl MedialPipeline {
         self.answers.take_depth();
         let speculators = Speculators::set(&snapshot, &self.effects, asker.unit, bodies);
         report.speculative = speculators.count();
+        let substeps = Substeps::set(&snapshot, joints, parameters, bodies);
         report.batch_seconds = clock.elapsed().as_secs_f64();
 
         // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
@@ -351,6 +348,7 @@ impl MedialPipeline {
         self.answers.sweep_elsewhere(false);
         self.answers.let_none_pass();
         speculators.restore(bodies);
+        substeps.restore(bodies);
 
         let clock = Instant::now();
         snapshot.follow(parameters, bodies, colliders);

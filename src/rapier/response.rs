@@ -12,10 +12,11 @@ use super::blow::Blow;
 use super::course::Course;
 use super::first_contact::{Asker, Hit};
 use super::impulse::{Impact, Inertia, Material};
-use super::joints::Joints;
+use super::joints::{Joints, settle};
 use super::meetings::Meetings;
 use super::motion::Kind;
 use super::pairs::Rules;
+use super::pieces::Pieces;
 use super::snapshot::Snapshot;
 use super::tied::{System, Twist};
 use crate::math::{Real, Vector};
@@ -40,8 +41,7 @@ pub struct Response {
     met: Meetings,
     /// Joints, once something was struck.
     joints: Option<Joints>,
-    /// When pieces of motions end, and of which bodies.
-    pieces: Vec<(Real, Vec<usize>)>,
+    pieces: Pieces,
 }
 
 fn bodies(snapshot: &Snapshot, pair: Pair) -> [usize; 2] {
@@ -56,7 +56,7 @@ impl Response {
             impulses: BTreeMap::new(),
             met: Meetings::default(),
             joints: None,
-            pieces: Vec::new(),
+            pieces: Pieces::default(),
         }
     }
 
@@ -115,10 +115,7 @@ impl Response {
 
     /// Seconds into the step at which the first piece of a motion ends that joints give ([`super::joints`]).
     pub fn next_piece(&self) -> Option<Real> {
-        self.pieces
-            .iter()
-            .map(|(until, _)| *until)
-            .min_by(Real::total_cmp)
+        self.pieces.first_end()
     }
 
     /// Gives bodies whose piece ends at `time` the next one; returns them.
@@ -128,10 +125,9 @@ impl Response {
         asker: &Asker,
         time: Real,
     ) -> Vec<usize> {
-        let Some(ended) = self.pieces.iter().position(|(until, _)| *until <= time) else {
+        let Some(bodies) = self.pieces.take_ended(time) else {
             return Vec::new();
         };
-        let (_, bodies) = self.pieces.swap_remove(ended);
         self.close_joints(snapshot, asker, time, &bodies, true)
     }
 
@@ -251,6 +247,16 @@ impl Response {
                 inertia(snapshot, b, frozen(b))
             })
         });
+        settle(snapshot, hit.time, &system, moving.as_ref(), |snapshot| {
+            let end = joints.system(snapshot, &both, asker.dt, |b| inertia(snapshot, b, false));
+            let twists = end
+                .bodies
+                .iter()
+                .map(|b| snapshot.bodies[*b].twist(asker.dt));
+            let mut twists: Vec<Twist> = twists.collect();
+            end.hold(&mut twists);
+            twists
+        });
         let now = both.map(|b| snapshot.bodies[b].motion_from(hit.time));
         let centers = [0, 1].map(|k| now[k].start * snapshot.bodies[both[k]].mass.local_com);
         let arms = centers.map(|c| hit.point - c);
@@ -344,11 +350,8 @@ impl Response {
                 continue;
             }
             let piece = joints.close(snapshot, body, [time, asker.dt], goes_on, inertia);
-            let begun = |bodies: &[usize]| bodies.iter().any(|b| piece.moved.contains(b));
-            self.pieces.retain(|(_, bodies)| !begun(bodies));
             moved.extend(&piece.moved);
-            self.pieces
-                .extend(piece.until.map(|until| (until, piece.moved)));
+            self.pieces.begin(piece);
         }
         for &b in &moved {
             self.courses[b].moved = true;

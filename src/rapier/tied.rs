@@ -105,6 +105,11 @@ impl<'a> System<'a> {
         self.inertias[k].is_infinite()
     }
 
+    /// Whether any joint holds any body.
+    pub fn holds(&self) -> bool {
+        !self.rows.is_empty()
+    }
+
     /// Way of a body's centre of mass, and its turn.
     pub fn moved(&self, k: usize) -> (Vector, Rotation) {
         self.moved[k]

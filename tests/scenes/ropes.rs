@@ -96,13 +96,14 @@ fn struck(links: usize, speed: Real, drift: Option<Vector>, medial: bool, steps:
     }
 }
 
-/// Symptom: a rope of 30 links opened by 17 mm at 20 m/s, rapier's own by 10. Cause: an impulse went through the
-/// nearest 24 joints only, and velocities after it were those that joints held at its start.
+/// Symptom: ropes of 8 and 30 links opened by 131 and 60 mm at 120 m/s, rapier's own by 59 and 36, and kept 0.30 and
+/// 0.41 of the energy, rapier's 0.47 and 0.43. Cause: an impact that came while bodies were on their way along the chord
+/// of an arc took the chord for their velocity, and rapier's next steps move straight in a sub-step.
 #[test]
 fn a_rope_struck_opens_no_wider_than_rapiers() {
     let coarse = |n: usize| vec![1.0 / 60.0; n];
     let fine = [vec![1.0 / 1980.0; 66], coarse(2)].concat();
-    for links in [4, 8, 30] {
+    for links in [4, 8, 16, 30] {
         for speed in [20.0, 60.0, 120.0] {
             let ours = struck(links, speed, None, true, &coarse(4));
             let own = struck(links, speed, None, false, &fine).widest;
@@ -111,9 +112,10 @@ fn a_rope_struck_opens_no_wider_than_rapiers() {
                 "{links} links, {speed} m/s: {ours} m, rapier's own {own} m, {energy} of the energy"
             );
             assert!(energy <= 1.001, "{links} links, {speed} m/s: {energy}");
-            if speed == 20.0 {
-                assert!(ours < own + 2.0e-3, "{links} links: {ours} m, {own} m");
-            }
+            assert!(
+                ours < own + 2.0e-3,
+                "{links} links, {speed} m/s: {ours} m, {own} m"
+            );
         }
     }
 }
