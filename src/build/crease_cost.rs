@@ -46,28 +46,6 @@ pub fn fold_cost(complex: &Complex, [a, b]: [u32; 2], ball: &Ball) -> f64 {
     FOLD_COST * sum
 }
 
-/// Whether all of these balls touch the surface, within `tolerance`, if their centres are inside.
-pub fn all_touch(
-    complex: &Complex,
-    tree: &TriangleTree,
-    ab: [u32; 2],
-    ball: &Ball,
-    tolerance: f64,
-) -> bool {
-    let touches = |b: &Ball| {
-        let nearest = tree.closest_within(b.center, b.radius + tolerance);
-        nearest.is_some_and(|p| (p - b.center).length() >= b.radius - tolerance)
-    };
-    // What does not move is as good as it was.
-    let moved = ab
-        .into_iter()
-        .filter(|&v| !stays(&complex.balls[v as usize], ball));
-    touches(ball)
-        && moved
-            .flat_map(|v| middles(complex, ab, v, ball))
-            .all(|b| touches(&b))
-}
-
 /// How far the ball that both ends of an edge become, and the middles of what is around it, stick out of the
 /// solid; 0 where none does.
 pub fn stick_out(complex: &Complex, tree: &TriangleTree, ab: [u32; 2], ball: &Ball) -> f64 {

@@ -7,6 +7,7 @@
 
 use super::bounds::{Point, direction};
 use super::edges::Edges;
+use super::groups::Groups;
 use super::surface::Surface;
 use super::triangle::closest_on_triangle;
 use super::watch::Watch;
@@ -16,10 +17,6 @@ use std::collections::BTreeMap;
 
 /// Cosine of the turn of a chain of creases above which its vertex is no corner: 32°.
 const STRAIGHT: f64 = 0.85;
-
-/// Cosine of the angle between normals of triangles of one flat face: a hundred-thousandth rad, which the
-/// rounding of vertices to `f32` gives.
-const FLAT: f64 = 1.0 - 5e-11;
 
 /// Needles crossed on the way from a triangle to its neighbour at most: strips of them are short.
 const MOST_NEEDLES: usize = 20;
@@ -61,7 +58,7 @@ impl Creases {
     pub fn new(surface: &Surface, angle: f64, watch: &mut Watch) -> Result<Self, BuildError> {
         let adjacent = adjacent(surface, watch)?;
         let count = surface.triangles.len();
-        let mut groups = Groups((0..count as u32).collect());
+        let mut groups = Groups::new(count);
         let (mut convex, mut reflex) = (Vec::new(), Vec::new());
         for (&[t, u], &vertices) in &adjacent {
             let normals = [t, u].map(|i| surface.normals[i as usize]);
@@ -141,23 +138,10 @@ impl Creases {
         }
     }
 
-    /// Whether all faces are flat and none meet at a reflex edge: then the medial axis is of flat sheets.
-    pub fn is_polyhedron(&self, surface: &Surface) -> bool {
-        let flat = |(t, &group): (usize, &u32)| {
-            surface.normals[t].dot(surface.normals[group as usize]) > FLAT
-        };
-        self.reflex.is_empty() && self.group.iter().enumerate().all(flat)
-    }
-
     /// Number of corners at which a single crease ends.
     pub fn ends_alone(&self) -> usize {
         let at_corners = self.creases_at.values();
         at_corners.filter(|creases| creases.len() == 1).count()
-    }
-
-    /// Number of pairs of groups that share a convex crease.
-    pub fn pairs(&self) -> usize {
-        self.between.len()
     }
 
     /// Whether creases end, branch or turn at a vertex.
@@ -284,23 +268,4 @@ fn adjacent(
 /// The edges of a triangle, each with its lower vertex first.
 fn sides(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)])
-}
-
-/// Triangles joined into groups (union and find).
-struct Groups(Vec<u32>);
-
-impl Groups {
-    fn find(&mut self, mut triangle: u32) -> u32 {
-        while self.0[triangle as usize] != triangle {
-            let up = self.0[triangle as usize];
-            self.0[triangle as usize] = self.0[up as usize];
-            triangle = up;
-        }
-        triangle
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }

@@ -38,27 +38,11 @@ const DILATION_PASSES: usize = 8;
 const FINEST: f64 = 0.003;
 const FINEST_UP_TO: f64 = 500.0;
 
-/// The same where pieces are cut at whatever size: what is left of one there may be off by a thousandth of it.
-const FINEST_EXACTLY: f64 = 3e-4;
-
-/// And so many of them at most in a pass: half a second. A needle of 1:1000 would take millions.
-const MOST_EXACTLY: usize = 300_000;
-
 /// Passes of the certificate before all balls grow alike. Measured: 2 to 5 are needed.
 const CERTIFICATE_PASSES: usize = 12;
 
 /// Growth beyond what a piece needs (longest side 1), so that rounding does not ask again.
 const MARGIN: f64 = 1e-9;
-
-/// As [`enclose`], and cuts pieces of flat faces along the outlines of slabs however small they are: for medial meshes
-/// that cover all of the surface but for rounding. False where that takes too many pieces.
-pub fn enclose_exactly(
-    draft: &mut Draft,
-    surface: &Surface,
-    watch: &mut Watch,
-) -> Result<bool, BuildError> {
-    raise(draft, surface, 0.0, true, watch)
-}
 
 /// Raises radii until every triangle of the surface is proven to stick out of the solid by at most
 /// `allowed`: to lie in the solid whose radii are all larger by that.
@@ -68,29 +52,18 @@ pub fn enclose(
     allowed: f64,
     watch: &mut Watch,
 ) -> Result<(), BuildError> {
-    raise(draft, surface, allowed, false, watch)?;
-    Ok(())
-}
-
-fn raise(
-    draft: &mut Draft,
-    surface: &Surface,
-    allowed: f64,
-    exactly: bool,
-    watch: &mut Watch,
-) -> Result<bool, BuildError> {
     let before: Vec<f64> = draft.balls.iter().map(|b| b.radius).collect();
     // The certificate is about welded vertices; the source's own are this near.
     let slack = (allowed - surface.welded).max(0.0);
     let welded = (surface.welded - allowed).max(0.0);
     draft.balls.iter_mut().for_each(|b| b.radius += slack);
     dilate(draft, surface, watch)?;
-    let certain = certify(draft, surface, exactly, watch)?;
+    certify(draft, surface, watch)?;
     for (ball, before) in draft.balls.iter_mut().zip(before) {
         // Taking the slack back must not shrink, by rounding, what never grew.
         ball.radius = (ball.radius - slack).max(before) + welded;
     }
-    Ok(certain)
+    Ok(())
 }
 
 /// What each ball must grow by.
@@ -149,12 +122,7 @@ fn dilate(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(),
     Ok(())
 }
 
-fn certify(
-    draft: &mut Draft,
-    surface: &Surface,
-    exactly: bool,
-    watch: &mut Watch,
-) -> Result<bool, BuildError> {
+fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(), BuildError> {
     let triangles = surface.all_corners().chain(surface.needle_corners());
     let mut open: Vec<[Point; 3]> = triangles.collect();
     let crowd = (draft.primitives().len() as f64 / FINEST_UP_TO).max(1.0);
@@ -165,12 +133,7 @@ fn certify(
             tree: &tree,
             hint: 0,
             worst: 0.0,
-            finest_sq: match exactly {
-                true => FINEST_EXACTLY * FINEST_EXACTLY,
-                false => FINEST * FINEST / crowd,
-            },
-            exactly,
-            examined: 0,
+            finest_sq: FINEST * FINEST / crowd,
         };
         let mut left = Vec::new();
         for (i, &triangle) in open.iter().enumerate() {
@@ -183,12 +146,9 @@ fn certify(
             }
         }
         let worst = prover.worst;
-        if prover.gives_up() {
-            return Ok(false);
-        }
         drop(tree);
         if left.is_empty() {
-            return Ok(true);
+            return Ok(());
         }
         if pass + 1 == CERTIFICATE_PASSES {
             // Each piece's primitive then holds its worst corner: its ball, whatever its weights,
@@ -198,7 +158,7 @@ fn certify(
         growth.apply(draft);
         open = left;
     }
-    Ok(true)
+    Ok(())
 }
 
 struct Prover<'a> {
@@ -209,10 +169,6 @@ struct Prover<'a> {
     worst: f64,
     /// Squared length of the longest edge of the smallest pieces.
     finest_sq: f64,
-    /// Whether smaller ones are cut, too.
-    exactly: bool,
-    /// Pieces looked at.
-    examined: usize,
 }
 
 impl Prover<'_> {
@@ -223,19 +179,13 @@ impl Prover<'_> {
         let normal = direction((b - a).cross(c - a));
         let mut pieces = vec![triangle];
         while let Some(piece) = pieces.pop() {
-            self.examined += 1;
-            if self.gives_up() {
-                return false;
-            }
             let (primitive, worst, at_middle) = self.tightest(&piece);
             if worst.distance <= 0.0 {
                 continue;
             }
             let large = longest_edge_sq(&piece) > self.finest_sq;
             let cut = |by: u32| Some((by, self.cut(&piece, normal, by)?));
-            if (large || self.exactly)
-                && let Some((by, cut)) = cut(primitive).or_else(|| cut(at_middle))
-            {
+            if large && let Some((by, cut)) = cut(primitive).or_else(|| cut(at_middle)) {
                 for part in cut.inner {
                     let worst = self.worst_corner(by, &part);
                     proven &= self.is_covered(by, &worst, growth);
@@ -250,10 +200,6 @@ impl Prover<'_> {
             proven &= self.is_covered(primitive, &worst, growth);
         }
         proven
-    }
-
-    fn gives_up(&self) -> bool {
-        self.exactly && self.examined > MOST_EXACTLY
     }
 
     /// Whether a primitive covers a piece whose worst corner is given; else asks for its growth.

@@ -54,11 +54,6 @@ pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> Tar
     }
 }
 
-/// Few samples, to tell drafts that may serve from those that cannot.
-pub fn rough_target<'a>(surface: &Surface, tree: &'a TriangleTree) -> Target<'a> {
-    target(surface, tree, 1)
-}
-
 /// Drafts of a plain collapse on its way to a count.
 pub struct Collapsed {
     /// The count.

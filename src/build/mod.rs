@@ -1,6 +1,7 @@
 //! L2: triangle mesh → [`MedialMesh`]. The entry; `pipeline.rs` calls the stages in order.
 
 mod ball_quadrics;
+mod blunt_sheets;
 mod bounds;
 mod candidate;
 mod chunks;
@@ -19,7 +20,10 @@ mod edges;
 mod enclose;
 mod findings;
 mod fit;
+mod flat_axis;
+mod flat_faces;
 mod four_boxes;
+mod groups;
 pub mod hausdorff;
 mod inner_balls;
 mod insert;
@@ -49,8 +53,10 @@ mod random;
 mod refine;
 mod refit;
 mod residuals;
+mod roof;
 mod samples;
 mod seams;
+mod sheet_triangles;
 mod sheets;
 mod simplify;
 mod smallest;

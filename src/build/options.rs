@@ -21,14 +21,14 @@ pub enum Quality {
 
 /// Which sharp convex edges of the source may be kept, by spheres of radius 0 on them.
 ///
-/// Boxes, pegs, convex hulls and other convex bodies with flat faces become their own medial axis, which is exact,
-/// where the limit on the count allows it and it is found whole. Other closed bodies keep what makes the error
+/// Convex bodies with flat faces, alone or several apart, become their own medial axis, which is exact,
+/// where the limit on the count allows it. Other closed bodies keep what makes the error
 /// smallest: all medial meshes are measured, those with spheres of radius 0 and one without
 /// ([`Quality::Fast`]: that one only). `BuildReport::notes` says what came out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Creases {
     /// Those above 25°, unless most of them end within a face, as those of a coarse organic mesh do; between
-    /// flat faces of a convex body those above 1°.
+    /// flat faces of a convex body all.
     #[default]
     Auto,
     /// Those at which the faces' normals differ by more than this angle (rad).
@@ -47,8 +47,8 @@ impl Creases {
 
     /// The same between flat faces.
     pub(super) fn angle_of_flat(self) -> Option<f64> {
-        /// 1°: far above what the rounding of vertices bends a flat face by.
-        const SHARP: f64 = 0.0175;
+        /// Above the rounding of normals only: faces are told apart by their vertices.
+        const SHARP: f64 = 1e-6;
         self.angle_or(SHARP)
     }
 

@@ -3,12 +3,10 @@
 use super::candidate::Candidate;
 use super::counts::Collapses;
 use super::creased::{Creased, creased};
-use super::enclose::enclose_exactly;
 use super::ladder::Ladder;
-use super::largest::Effort;
 use super::options::{Limits, Quality};
 use super::parts::Parts;
-use super::polyhedron::{EXACT, polyhedron};
+use super::polyhedron::polyhedra;
 use super::smallest::Smallest;
 use super::solid_boundary::solid_boundary;
 use super::start::{Start, start};
@@ -40,7 +38,7 @@ pub struct Source {
 impl Source {
     /// What the limits allow: balls inside where the surface bounds matter, slabs where it is a sheet.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let exact = self.polyhedron(watch)?;
+        let exact = self.polyhedra(watch)?;
         if self.limits.max_error.is_none()
             && let Some(exact) = exact
         {
@@ -85,37 +83,15 @@ impl Source {
         Ok((Ladder::new(rounded, Vec::new()), creased))
     }
 
-    /// The medial axis of a convex polyhedron itself, if that is within the limit on the count.
-    pub fn polyhedron(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+    /// The medial axis of convex polyhedra itself, if that is within the limit on the count.
+    pub fn polyhedra(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
         let most = self.limits.primitives.unwrap_or(usize::MAX);
         let Some(angle) = self.limits.creases.angle_of_flat() else {
             return Ok(None);
         };
-        let Some(draft) = polyhedron(&self.surface, &self.tree, angle, most, watch)? else {
-            return Ok(None);
-        };
-        // Where balls cover all of the surface without growing, no part of the axis is missing.
-        watch.begin("enclose")?;
-        let mut covering = draft.clone();
-        let certain = enclose_exactly(&mut covering, &self.surface, watch)?;
-        let mut balls = covering.balls.iter().zip(&draft.balls);
-        if !certain || balls.any(|(grown, ball)| grown.radius - ball.radius > EXACT) {
-            return Ok(None);
-        }
-        let (draft, before) = match self.limits.enclose {
-            true => (covering, Some(draft)),
-            false => (draft, None),
-        };
-        let measured = self.measured(draft, before, Effort::CLOSE, watch)?;
-        let mut candidate = self.reported(measured, watch)?;
-        if candidate.error() > EXACT {
-            return Ok(None);
-        }
-        let count = candidate.draft.primitives().len();
-        candidate.notes.push(format!(
-            "a convex polyhedron: its own medial axis has {count} primitives, and is exact"
-        ));
-        Ok(Some(candidate))
+        watch.begin("samples")?;
+        let axis = polyhedra(&self.surface, &self.tree, angle, most, watch)?;
+        Ok(axis.map(|axis| axis.candidate(&self.limits)))
     }
 
     /// The better, within the limit on the count, of a medial mesh whose ends are rounded, and one that keeps

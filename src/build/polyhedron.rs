@@ -1,84 +1,173 @@
 //! The medial mesh of a convex polyhedron: its medial axis itself, which is of flat sheets, with radii linear
 //! on each, and so exact.
+//!
+//! The axis is that of the roof over the body (`roof.rs`, `flat_axis.rs`). How short an edge of the roof must be to
+//! count as a point is tried, from long to short, until what comes out is exact.
 
-use super::clip::creased_mesh;
-use super::crease_samples::crease_samples;
-use super::creases::Creases;
+use super::bounds::Point;
+use super::candidate::Candidate;
 use super::draft::Draft;
-use super::fit::rough_target;
-use super::simplify::Simplifier;
-use super::subdivide::longest_edge_sq;
+use super::flat_axis::{Axis, Body};
+use super::flat_faces::{FlatFaces, flat_faces};
+use super::options::{Hausdorff, Limits};
+use super::roof::{FIRST, GROUND, Plane, roof};
 use super::surface::Surface;
-use super::tangent::Faces;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
 use crate::error::BuildError;
+use crate::math::Real;
 
-/// A medial mesh is exact when it is nowhere farther off than this (longest side 1).
+/// A medial mesh is exact when it is nowhere farther off than this (longest side 1), of which half is left to the
+/// rounding of its balls to `f32`.
 pub const EXACT: f64 = 1e-6;
+const EXACT_HERE: f64 = 0.6 * EXACT;
 
-/// Height of a slab over its longest edge below which its squared sine is lost in `f32`.
-const FLATTEST: f64 = 1e-3;
+/// Corners of the roof this near are one (longest side 1): tried in order.
+const SAME: [f64; 7] = [1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-9, 0.0];
 
-/// Samples: the first are enough for faces of about the same size and cost half a second, the last for
-/// chamfers of a hundredth of the size.
-const SAMPLES: [usize; 2] = [1_500, 6_000];
+/// Orders in which the roof is cut, should rounding spoil it.
+const SEEDS: u64 = 4;
 
-/// More samples are no use where the first give more than this many times the primitives allowed.
-const HOPELESS: usize = 4;
+/// Corners of the roof for each primitive allowed, at most: boxes and random hulls have .5 to .7.
+const CORNERS: usize = 8;
 
-/// The medial axis of a convex polyhedron with edges of more than `angle` (rad), of at most `most`
-/// primitives; `None` where the surface is no such polyhedron, or its axis was not found.
-pub fn polyhedron(
+/// The source's triangles and the faces have the same area but for this share, by rounding.
+const SAME_AREA: f64 = 1e-5;
+
+/// Primitives at most, where no fewer are asked for: faces are compared each with each.
+const MOST: usize = 2_000;
+
+impl Axis {
+    /// The axis as a build returns it, grown if asked to. Its errors are bounds, not samples.
+    pub fn candidate(self, limits: &Limits) -> Candidate {
+        let Self {
+            mut draft,
+            growth,
+            bulge,
+            ..
+        } = self;
+        let error = |uncovered: f64, bloat: f64| Hausdorff {
+            surface_to_envelope: uncovered.max(bloat) as Real,
+            envelope_to_surface: uncovered.max(bloat) as Real,
+            uncovered: uncovered as Real,
+            bloat: bloat as Real,
+            sampling: 0.0,
+        };
+        let before = error(growth, bulge);
+        let count = draft.faces.len();
+        let note = format!(
+            "a convex polyhedron: its own medial axis has {count} primitives, and is exact"
+        );
+        let grown = match limits.enclose {
+            true => (growth - limits.allow_uncovered).max(0.0),
+            false => 0.0,
+        };
+        draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
+        Candidate {
+            draft,
+            hausdorff: error(growth - grown, bulge + grown),
+            before: limits.enclose.then_some(before),
+            notes: vec![note],
+        }
+    }
+}
+
+/// The medial axes of a surface's bodies, of at most `most` primitives together; `None` where one of them is no
+/// convex polyhedron, or where its axis has a sheet between faces whose normals differ by less than `angle` (rad).
+pub fn polyhedra(
     surface: &Surface,
     tree: &TriangleTree,
     angle: f64,
     most: usize,
     watch: &mut Watch,
-) -> Result<Option<Draft>, BuildError> {
-    if !surface.simple || surface.sheet.contains(&true) {
+) -> Result<Option<Axis>, BuildError> {
+    if surface.sheet.contains(&true) {
         return Ok(None);
     }
-    watch.begin("samples")?;
-    let creases = Creases::new(surface, angle, watch)?;
-    // Two faces that share an edge have a sheet between them.
-    let least = creases.pairs();
-    if least == 0 || least > most || !creases.is_polyhedron(surface) {
-        return Ok(None);
+    let most = most.min(MOST);
+    let patches = surface.patch_of.iter().max();
+    let mut bodies = vec![Vec::new(); patches.map_or(0, |&p| p as usize + 1)];
+    for (t, &patch) in surface.patch_of.iter().enumerate() {
+        // Patches that are open or overlap may be pieces of one body.
+        let body = if surface.simple { patch } else { 0 };
+        bodies[body as usize].push(t);
     }
-    let faces = Faces {
-        surface,
-        tree,
-        creases: &creases,
+    bodies.retain(|body| !body.is_empty());
+    let mut all = Axis {
+        draft: Draft::default(),
+        growth: 0.0,
+        bulge: 0.0,
+        area: 0.0,
     };
-    for count in SAMPLES {
-        watch.begin("samples")?;
-        let (samples, spacing) = crease_samples(surface, tree, &creases, count, watch)?;
-        let mesh = creased_mesh(&faces, &samples, spacing, watch)?;
-        watch.begin("simplify")?;
-        let mut simplifier = Simplifier::creased(mesh, true, tree, watch)?;
-        if !simplifier.reduce_exactly(watch)? {
+    let mut planes = Vec::new();
+    for body in bodies {
+        let left = most.saturating_sub(all.draft.faces.len());
+        // Three edges or more bound a face, two faces share one, and each has a slab or more.
+        let Some(faces) = flat_faces(surface, body, left - left / 3, watch)? else {
             return Ok(None);
-        }
-        let draft = simplifier.draft();
-        let count = draft.primitives().len();
-        if count == 0 || count > most.saturating_mul(HOPELESS) {
+        };
+        let Some(axis) = axis(surface, tree, &faces, angle.cos(), left, watch)? else {
             return Ok(None);
-        }
-        let exact = rough_target(surface, tree).largest_below(&draft, EXACT, watch)?;
-        if exact.is_some() && count <= most && !has_needles(&draft) {
-            return Ok(Some(draft));
-        }
+        };
+        all.area += axis.area;
+        all.draft = all.draft.and(axis.draft);
+        all.growth = all.growth.max(axis.growth);
+        all.bulge = all.bulge.max(axis.bulge);
+        planes.push(faces.planes);
     }
-    Ok(None)
+    // Where not every edge is of two triangles, some of a face may be missing.
+    if (all.area - surface.area).abs() > SAME_AREA * surface.area {
+        return Ok(None);
+    }
+    // Triangles without area lie in the bodies.
+    let beyond = |p: Point, planes: &Vec<Plane>| {
+        let heights = planes.iter().map(|plane| -plane.depth(p));
+        heights.fold(0.0, f64::max)
+    };
+    for p in surface.needle_corners().flatten() {
+        let least = planes.iter().map(|planes| beyond(p, planes));
+        all.growth = all.growth.max(least.fold(f64::INFINITY, f64::min));
+    }
+    all.growth += surface.welded;
+    Ok((all.growth + all.bulge <= EXACT_HERE).then_some(all))
 }
 
-/// Whether a slab of a size that matters is so flat that queries in `f32` see its edges only.
-fn has_needles(draft: &Draft) -> bool {
-    draft.faces.iter().any(|face| {
-        let [a, b, c] = draft.balls_of(*face).map(|ball| ball.center);
-        let longest = longest_edge_sq(&[a, b, c]).sqrt();
-        let height = (b - a).cross(c - a).length() / longest.max(f64::MIN_POSITIVE);
-        height > EXACT && height < FLATTEST * longest
-    })
+/// The axis of one body.
+fn axis(
+    surface: &Surface,
+    tree: &TriangleTree,
+    faces: &FlatFaces,
+    least_cosine: f64,
+    most: usize,
+    watch: &mut Watch,
+) -> Result<Option<Axis>, BuildError> {
+    for seed in 0..SEEDS {
+        watch.again()?;
+        let mut planes = faces.planes.clone();
+        let Some(corners) = roof(&mut planes, CORNERS.saturating_mul(most), seed) else {
+            continue;
+        };
+        let body = Body::new(surface, faces, planes, corners);
+        let polygons = body.polygons();
+        let too_blunt = polygons.iter().any(|polygon| {
+            let [a, b] = polygon.sides;
+            a != GROUND && {
+                let [a, b] = [a, b].map(|side| body.planes[(side - FIRST) as usize].normal);
+                a.dot(b) > least_cosine
+            }
+        });
+        if too_blunt {
+            return Ok(None);
+        }
+        for same in SAME {
+            watch.again()?;
+            let found = body.axis(&polygons, same, tree);
+            let count = found.draft.faces.len();
+            if found.growth + found.bulge <= EXACT_HERE && count > 0 {
+                return Ok((count <= most).then_some(found));
+            }
+        }
+        return Ok(None);
+    }
+    Ok(None)
 }

@@ -11,7 +11,6 @@
 use super::ball_quadrics::{creased_quadrics, quadrics};
 use super::clip::CreasedMesh;
 use super::complex::Complex;
-use super::crease_cost::{all_touch, fold_cost};
 use super::draft::{Ball, Draft};
 use super::quadric::Quadric;
 use super::queue::{Candidate, Queue};
@@ -19,12 +18,6 @@ use super::triangle_tree::TriangleTree;
 use super::voids::open_voids;
 use super::watch::{Watch, bytes_of};
 use crate::error::BuildError;
-
-/// Sum of squared distances to planes below which a collapse is exact, and the rounding of the sum for each
-/// of them; and how far the balls between may be from touching the surface (longest side 1).
-const FREE: f64 = 1e-13;
-const FREE_PER_PLANE: f64 = 2.5e-13;
-const FREE_GAP: f64 = 5e-7;
 
 /// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
 const BULGE: f64 = 0.2;
@@ -36,10 +29,6 @@ const MEASURED: usize = 10_000;
 /// A collapse waits where its measured cost is above the one in the queue by this share, and more than rounding.
 const STALE: f64 = 1.05;
 const NO_COST: f64 = 1e-10;
-
-/// Neighbours that a step of the collapse to what is exact looks at on average, at most: 15 in boxes and pegs,
-/// 1,300 in a needle of 1:1000, which would take minutes.
-const MOST_AROUND: usize = 100;
 
 /// A medial mesh on its way to fewer primitives.
 #[derive(Clone)]
@@ -204,68 +193,6 @@ impl<'a> Simplifier<'a> {
         self.collapse(a, b, ball);
         self.progressed = true;
         self.push_around(a, |_| true);
-    }
-
-    /// Collapses the edges that cost nothing, in a medial mesh with creases: what is left of a convex
-    /// polyhedron's is its own medial axis. False where that is too much work.
-    pub fn reduce_exactly(&mut self, watch: &mut Watch) -> Result<bool, BuildError> {
-        let mut dear = Vec::new();
-        let mut work = 0usize;
-        let mut steps = 0usize;
-        self.progressed = false;
-        loop {
-            let (versions, queue) = (&self.versions, &mut self.queue);
-            let current = |c: &Candidate| [c.a, c.b].map(|v| versions[v as usize]) == c.versions;
-            let Some(candidate) = queue.pop(current) else {
-                // What was held back by its surroundings may be exact since they changed.
-                let waiting = self.blocked.drain(..).chain(dear.drain(..));
-                waiting.for_each(|candidate| self.queue.push(candidate));
-                if !std::mem::take(&mut self.progressed) {
-                    return Ok(true);
-                }
-                continue;
-            };
-            if steps.is_multiple_of(512) {
-                watch.again()?;
-            }
-            steps += 1;
-            let Candidate { a, b, .. } = candidate;
-            // Where thousands of balls are joined to one, each step looks at them all.
-            work += [a, b]
-                .map(|v| self.complex.neighbors(v).len())
-                .iter()
-                .sum::<usize>();
-            if work > MOST_AROUND * (steps + 1_000) {
-                return Ok(false);
-            }
-            match self.exact(a, b) {
-                Some(_) if !self.may_collapse(a, b) => self.blocked.push(candidate),
-                Some(ball) => {
-                    self.collapse(a, b, ball);
-                    self.progressed = true;
-                    self.push_around(a, |_| true);
-                }
-                None => dear.push(candidate),
-            }
-        }
-    }
-
-    /// The ball that two may be merged into without a change of the solid.
-    fn exact(&self, a: u32, b: u32) -> Option<Ball> {
-        if a == b || !self.complex.is_alive(a) || !self.complex.is_alive(b) {
-            return None;
-        }
-        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let most = FREE + FREE_PER_PLANE * quadric.weight();
-        let keeps = |ball: &Ball| {
-            quadric.error(ball) <= most
-                && fold_cost(&self.complex, [a, b], ball) == 0.0
-                && all_touch(&self.complex, self.tree, [a, b], ball, FREE_GAP)
-        };
-        // Balls that stay where they are gather no rounding, by which thin slabs would fold.
-        let ends = [a, b].map(|v| self.complex.balls[v as usize]);
-        let end = ends.into_iter().find(keeps);
-        end.or_else(|| Some(self.merge(a, b).1).filter(keeps))
     }
 
     /// Whether the ball that `a` and `b` are merged into sticks out of the solid by no more than

@@ -25,7 +25,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// The intersection of half spaces `n·p ≤ d`, by trying all triples of planes.
-fn convex(planes: &[([f64; 3], f64)]) -> Mesh {
+pub fn convex(planes: &[([f64; 3], f64)]) -> Mesh {
     let mut points: Vec<[f64; 3]> = Vec::new();
     for (i, a) in planes.iter().enumerate() {
         for (j, b) in planes[..i].iter().enumerate() {

@@ -1,0 +1,27 @@
+//! Things joined into groups. Source: Galler and Fisher, "An improved equivalence algorithm" (1964).
+
+/// Groups of indices; the lowest index of each stands for it.
+pub struct Groups(Vec<u32>);
+
+impl Groups {
+    /// Each index a group of its own.
+    pub fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    /// What stands for the group of an index.
+    pub fn find(&mut self, mut index: u32) -> u32 {
+        while self.0[index as usize] != index {
+            let up = self.0[index as usize];
+            self.0[index as usize] = self.0[up as usize];
+            index = up;
+        }
+        index
+    }
+
+    /// Makes the groups of two indices one.
+    pub fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
