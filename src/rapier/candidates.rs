@@ -81,7 +81,7 @@ struct Scene<'a> {
 impl<'a> Scene<'a> {
     fn new(sets: Sets<'a>) -> Self {
         let items = Items::new(&sets);
-        let start = |item: &Item| item.start(sets.gravity, sets.parameters.dt);
+        let start = |item: &Item| item.start(&sets);
         let mut all: Vec<Start> = items.all.iter().map(start).collect();
         let mut boxes: Vec<Aabb> = items.all.iter().map(|item| item.aabb).collect();
         let speed = |(item, start): (&Item, &Start)| match item.parent {

@@ -6,8 +6,8 @@ use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::{
-    ImpulseJointSet, IntegrationParameters, MultibodyJointSet, RigidBody, RigidBodyHandle,
-    RigidBodySet,
+    ImpulseJointSet, IntegrationParameters, JointAxesMask, MultibodyJointSet, RigidBody,
+    RigidBodyHandle, RigidBodySet,
 };
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase, SharedShape};
 use rapier3d::pipeline::ActiveHooks;
@@ -84,7 +84,7 @@ pub struct Item<'a> {
 
 impl<'a> Item<'a> {
     /// Its motion, in a step of this gravity and length.
-    pub fn start(&self, gravity: Vector, dt: Real) -> Start {
+    pub fn start(&self, sets: &Sets) -> Start {
         let aabb = self.mesh.aabb();
         let offset = self.collider.position_wrt_parent();
         let extent = aabb.mins.abs().max(aabb.maxs.abs()).length();
@@ -92,12 +92,31 @@ impl<'a> Item<'a> {
             self.parent.map(|(_, body)| body),
             [self.pose, offset.copied().unwrap_or(Pose::IDENTITY)],
             [extent, self.skin],
-            gravity,
-            dt,
+            sets.gravity,
+            sets.parameters.dt,
         );
+        start.body = self.parent.map(|(handle, _)| handle);
+        start.joint = self.joint(sets.multibody_joints, offset.copied());
         let hooks = self.collider.active_hooks();
         start.modified = hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS);
         start
+    }
+
+    /// The parent of its body in a multibody, and where the joint to it is in the collider's frame, if that lets it
+    /// turn only.
+    fn joint(
+        &self,
+        multibodies: &MultibodyJointSet,
+        offset: Option<Pose>,
+    ) -> Option<(RigidBodyHandle, Vector)> {
+        let id = multibodies.rigid_body_link(self.parent?.0)?;
+        let multibody = multibodies.get_multibody(id.multibody)?;
+        let link = multibody.link(id.id)?;
+        let parent = multibody.link(link.parent_id()?)?;
+        let joint = &link.joint.data;
+        let turns_only = joint.locked_axes.contains(JointAxesMask::LIN_AXES);
+        let anchor = offset.unwrap_or(Pose::IDENTITY).inverse() * joint.local_frame2.translation;
+        turns_only.then(|| (parent.rigid_body_handle(), anchor))
     }
 }
 

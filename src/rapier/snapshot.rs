@@ -1,6 +1,7 @@
 //! The bodies and colliders of a step that can meet, before rapier's step and on the motions that it then made.
 
 use super::enabled::enabled;
+use super::joints::MOST_JOINTS;
 use super::motion::{Body, Kind};
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
@@ -269,14 +270,11 @@ impl Snapshot {
     }
 }
 
-/// Links of a multibody up to which impacts move them. A rope of 24 links struck at 120 m/s left all numbers.
-const MOST_LINKS: usize = 16;
-
 /// Whether impacts move the links of a multibody: rapier tells the order of the coordinates only where none is
-/// driven by the user, couplings between joints are not known here, and a long chain adds up what its links are off.
+/// driven by the user, couplings between joints are not known here, and an impulse goes through so many joints at most.
 fn gives_way(multibody: &Multibody) -> bool {
     let driven = |link: &MultibodyLink| link.joint.kinematic;
     multibody.couplings().is_empty()
-        && multibody.num_links() <= MOST_LINKS
+        && multibody.num_links() <= MOST_JOINTS
         && !multibody.links().any(driven)
 }

@@ -303,52 +303,69 @@ fn what_joints_hold_is_struck_as_a_whole() {
     }
 }
 
+/// The energy of a rope on ball joints and of what strikes its middle at a speed, step by step, in units of that at
+/// the start. Neighbours touch end to end.
+fn struck_rope(links: usize, by: By, speed: Real, steps: usize) -> Vec<Real> {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let mut pipeline = attached(&mut world);
+    let mut last = world.insert_body(RigidBodyBuilder::fixed());
+    for i in 0..links {
+        let at = Vector::new((2 * i + 1) as Real * HALF, 0.0, 0.0);
+        let link = RigidBodyBuilder::dynamic().translation(at);
+        let link = world.insert(link, bar(true, Vector::X, HALF - RADIUS)).0;
+        let anchor = if i == 0 {
+            Vector::ZERO
+        } else {
+            Vector::X * HALF
+        };
+        let joint = SphericalJointBuilder::new()
+            .local_anchor1(anchor)
+            .local_anchor2(-Vector::X * HALF);
+        match by {
+            By::Multibody => _ = world.insert_multibody_joint(last, link, joint),
+            By::ImpulseJoints => _ = world.insert_impulse_joint(last, link, joint),
+        }
+        last = link;
+    }
+    let middle = Vector::new(links as Real * HALF, 0.0, -0.1 - speed / 60.0 * 1.37);
+    let rod = RigidBodyBuilder::dynamic()
+        .translation(middle)
+        .linvel(Vector::Z * speed);
+    let rod = world.insert(rod, bar(true, Vector::Y, HALF)).0;
+    let start = world.bodies[rod].kinetic_energy();
+    let step = |_| {
+        pipeline.step(&mut world);
+        let all = world.bodies.iter().map(|(_, b)| b.kinetic_energy());
+        all.sum::<Real>() / start
+    };
+    (0..steps).map(step).collect()
+}
+
 /// Symptom: a rope of 30 links, struck in its middle at 120 m/s, ended with four times the energy that came in, as a
 /// multibody with no numbers at all. Cause: joints that impacts had left open were closed in what was left of the
 /// step, and the speed that this takes stayed with the bodies.
+///
+/// Multibodies of 22 links and more left all numbers, struck at 2 m/s. Cause: along the normal of two neighbours that
+/// touch end to end nothing moves but by rounding, and rapier's solver divides by it.
 #[test]
-fn a_rope_struck_hard_gains_no_energy() {
-    const LINKS: usize = 30;
-    for (by, speed) in [By::Multibody, By::ImpulseJoints]
-        .into_iter()
-        .flat_map(|by| [20.0, 60.0, 120.0].map(|speed| (by, speed)))
-    {
-        let mut world = PhysicsWorld::new();
-        world.gravity = Vector::ZERO;
-        let mut pipeline = attached(&mut world);
-        let mut last = world.insert_body(RigidBodyBuilder::fixed());
-        for i in 0..LINKS {
-            let at = Vector::new((2 * i + 1) as Real * HALF, 0.0, 0.0);
-            let link = RigidBodyBuilder::dynamic().translation(at);
-            let link = world.insert(link, bar(true, Vector::X, HALF - RADIUS)).0;
-            let anchor = if i == 0 {
-                Vector::ZERO
-            } else {
-                Vector::X * HALF
-            };
-            let joint = SphericalJointBuilder::new()
-                .local_anchor1(anchor)
-                .local_anchor2(-Vector::X * HALF);
-            match by {
-                By::Multibody => _ = world.insert_multibody_joint(last, link, joint),
-                By::ImpulseJoints => _ = world.insert_impulse_joint(last, link, joint),
+fn ropes_are_struck_and_gain_no_energy() {
+    for by in [By::Multibody, By::ImpulseJoints] {
+        for links in [8, 22, 30, 40] {
+            for speed in [2.0, 5.0, 20.0, 60.0] {
+                let energies = struck_rope(links, by, speed, 10);
+                let most = energies.iter().copied().fold(0.0, Real::max);
+                println!("{links} links by {by:?}, {speed} m/s: {energies:.2?}");
+                let name = format!("{links} links by {by:?}, {speed} m/s");
+                assert!(most <= 1.001, "{name}: {most} of the energy");
+                assert!(
+                    energies.iter().all(|e| e.is_finite()),
+                    "{name}: {energies:?}"
+                );
+                // A rope that gave no way would take nearly all.
+                let struck = energies[1];
+                assert!(struck > 0.4 && struck < 0.75, "{name}: keeps {struck}");
             }
-            last = link;
         }
-        let middle = Vector::new(LINKS as Real * HALF, 0.0, -0.3);
-        let rod = RigidBodyBuilder::dynamic()
-            .translation(middle)
-            .linvel(Vector::Z * speed);
-        let rod = world.insert(rod, bar(true, Vector::Y, HALF)).0;
-        let start = world.bodies[rod].kinetic_energy();
-        for _ in 0..6 {
-            pipeline.step(&mut world);
-        }
-        let energy: Real = world.bodies.iter().map(|(_, b)| b.kinetic_energy()).sum();
-        println!("{by:?}, {speed} m/s: {start} J became {energy} J");
-        assert!(
-            energy <= 1.001 * start,
-            "{by:?}, {speed} m/s: {energy} of {start} J"
-        );
     }
 }
