@@ -1,18 +1,6 @@
 //! What is known to be wrong today. Each test asserts the wrong result, so it fails when the fault is
 //! mended; then it becomes a test of the right result elsewhere.
 
-#[path = "build/broken.rs"]
-#[allow(dead_code)] // Shared with `tests/build`, which uses all of it.
-mod broken;
-#[path = "build/combined.rs"]
-#[allow(dead_code)]
-mod combined;
-#[path = "build/meshes.rs"]
-#[allow(dead_code)]
-mod meshes;
-#[path = "medial/oracle.rs"]
-#[allow(dead_code)]
-mod oracle;
 #[allow(dead_code)] // Shared with `tests/scenes`.
 mod scenes {
     pub mod bodies;
@@ -134,20 +122,6 @@ fn rapier_panics_when_a_compound_in_contact_gets_another_shape() {
         swapped.is_err(),
         "mended: swap shapes in tests/scenes/endurance.rs"
     );
-}
-
-/// A mesh of 364 patches, most of them crumbs of a body that fell apart and lost pieces, beside an
-/// open sheet: with 16 and with 60 primitives a part is given up, and enclosure then swells another
-/// one over the gap. With 200 the error is 0.13 of the size.
-#[test]
-fn parts_of_a_mesh_in_hundreds_of_pieces_are_given_up() {
-    let mesh = combined::combined(56);
-    let mut options = BuildOptions::default();
-    options.primitives = Some(60);
-    let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
-    let (_, report) = built.expect("built");
-    let error = report.hausdorff.surface_to_envelope / report.longest_side;
-    assert!(error > 0.5, "error {error} now");
 }
 
 /// rapier 0.36 integrates gyroscopic forces once a step. A free body that is no ball gains energy by that when

@@ -20,6 +20,9 @@ pub const BOUNDARY_WEIGHT_SOLID: f64 = 0.1;
 /// See [`BOUNDARY_WEIGHT_SOLID`].
 pub const BOUNDARY_WEIGHT_SHEET: f64 = 1.0;
 
+/// Where both balls of an edge are smaller than this (longest side 1), and no crease's, it is a sheet's.
+const THIN: f64 = 1.5e-3;
+
 /// Weight of the plane across the wedge or tip of a crease, at a ball of radius 0: it holds the ball against
 /// sinking into matter along the bisector. With 4 a plate's rim is off by .02, with 16 by .0003.
 const TIP_WEIGHT: f64 = 16.0;
@@ -65,6 +68,11 @@ pub fn quadrics(
 /// The planes that hold the medial mesh's boundary at an edge of one face or none.
 fn add_end(complex: &Complex, [a, b]: [u32; 2], weight: f64, quadrics: &mut [Quadric]) {
     let balls = &complex.balls;
+    let is_thin = |v: u32| (1e-9..THIN).contains(&balls[v as usize].radius);
+    let weight = match is_thin(a) && is_thin(b) {
+        true => BOUNDARY_WEIGHT_SHEET,
+        false => weight,
+    };
     let mut opposite = complex.opposite(a, b);
     match (opposite.next(), opposite.next()) {
         (None, _) => add_dangling(complex, [a, b], weight, quadrics),

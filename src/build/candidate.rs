@@ -6,6 +6,8 @@ use super::hausdorff::measure;
 use super::largest::Effort;
 use super::options::{Hausdorff, Quality};
 use super::pipeline::Source;
+use super::surface::Surface;
+use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
 use crate::error::BuildError;
 
@@ -81,13 +83,32 @@ impl Source {
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
         watch.begin("measure")?;
-        let hausdorff = measure(&self.surface, &self.tree, &draft, effort, watch)?;
+        let hausdorff = self.error_of(&draft, effort, watch)?;
         Ok(Enclosed {
             draft,
             lower_quality: hausdorff.error().into(),
             hausdorff,
             before,
         })
+    }
+
+    /// Distances between a draft and the boundary of the solid, both ways.
+    fn error_of(
+        &self,
+        draft: &Draft,
+        effort: Effort,
+        watch: &mut Watch,
+    ) -> Result<Hausdorff, BuildError> {
+        let (surface, tree) = self.bounds();
+        measure(surface, tree, &self.tree, draft, effort, watch)
+    }
+
+    /// The boundary of the solid and its tree.
+    pub fn bounds(&self) -> (&Surface, &TriangleTree) {
+        match &self.boundary {
+            Some(boundary) => (&boundary.surface, &boundary.tree),
+            None => (&self.surface, &self.tree),
+        }
     }
 
     /// The better of two; the second is measured only until it is worse.
@@ -121,13 +142,7 @@ impl Source {
         let mut before = None;
         if let Some(draft) = &enclosed.before {
             watch.begin("measure")?;
-            before = Some(measure(
-                &self.surface,
-                &self.tree,
-                draft,
-                Effort::ROUGH,
-                watch,
-            )?);
+            before = Some(self.error_of(draft, Effort::ROUGH, watch)?);
         }
         Ok(Candidate {
             draft: enclosed.draft,

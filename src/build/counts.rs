@@ -150,16 +150,13 @@ impl Source {
 
     /// Whether drafts are fitted.
     pub fn fits(&self) -> bool {
-        let bounded = self.surface.simple || self.boundary.is_some();
-        self.limits.quality > Quality::Fast && bounded
+        self.limits.quality > Quality::Fast
     }
 
     /// What `most` primitives are fitted to.
     pub fn target(&self, most: usize) -> Target<'_> {
-        match &self.boundary {
-            Some((boundary, tree)) => fit::target(boundary, tree, most),
-            None => fit::target(&self.surface, &self.tree, most),
-        }
+        let (surface, tree) = self.bounds();
+        fit::target(surface, tree, most)
     }
 
     /// The same, of few samples, to tell drafts that may serve from those that cannot.

@@ -49,12 +49,7 @@ pub fn error_curve(
     let mut watch = Watch::new(progress);
     watch.begin("surface")?;
     let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;
-    let mut source = Source {
-        surface,
-        tree,
-        limits: Limits::new(&options)?,
-        boundary: None,
-    };
+    let mut source = Source::new(surface, tree, Limits::new(&options)?);
     let points = source.curve(counts, &mut watch)?;
     watch.finish()?;
     Ok((points, source.surface.frame.scale as Real))

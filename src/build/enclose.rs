@@ -1,5 +1,5 @@
-//! Enclosure: radii are raised until the solid covers the whole source surface, and a certificate
-//! proves it.
+//! Enclosure: radii are raised until the solid covers the whole source surface, and the lids of its small
+//! openings, and a certificate proves it.
 //!
 //! # Dilation
 //! An uncovered point at distance `d` from the ball of weights `α` is reached when the radii grow
@@ -94,6 +94,7 @@ fn dilate(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(),
     let spread = even_samples(surface, POINTS, &mut Random::new(3));
     let vertices = vertex_samples(surface);
     let points = vertices.into_iter().chain(spread).map(|s| s.point);
+    let points = points.chain(surface.lids.iter().flat_map(|lid| lid.0));
     let mut uncovered: Vec<Point> = points.chain(surface.needle_corners().flatten()).collect();
     for pass in 0..DILATION_PASSES {
         let mut growth = Growth::none(draft);
@@ -124,6 +125,7 @@ fn dilate(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(),
 
 fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(), BuildError> {
     let triangles = surface.all_corners().chain(surface.needle_corners());
+    let triangles = triangles.chain(surface.lids.iter().map(|lid| lid.0));
     let mut open: Vec<[Point; 3]> = triangles.collect();
     let crowd = (draft.primitives().len() as f64 / FINEST_UP_TO).max(1.0);
     for pass in 0..CERTIFICATE_PASSES {

@@ -45,6 +45,10 @@ pub struct Findings {
     /// Triangles of sheets, after long edges are halved, left out because they lie inside solid
     /// matter.
     pub triangles_buried: usize,
+    /// Triangles that lie inside solid matter all over: they count for nothing in the error.
+    pub triangles_hidden: usize,
+    /// Patches of such triangles only.
+    pub patches_hidden: usize,
     /// Whether solid patches overlap, or one passes through itself.
     pub overlapping: bool,
     /// Where the mass properties are from.
@@ -130,6 +134,21 @@ impl Findings {
             notes.push("sheets count nothing in the mass properties: they have no volume".into());
         }
         notes
+    }
+
+    /// What is hidden inside matter: `share` of the area.
+    pub(super) fn hidden_in_words(&self, share: f64) -> String {
+        let mut text = format!(
+            "{:.1} % of the source's area lies inside solid matter, and counts for nothing in the error: {} triangles \
+             and parts of others",
+            100.0 * share,
+            self.triangles_hidden
+        );
+        if self.patches_hidden > 0 {
+            // Writing to a string does not fail.
+            let _ = write!(text, "; {} patches are hidden whole", self.patches_hidden);
+        }
+        text
     }
 
     fn patches_in_words(&self) -> String {

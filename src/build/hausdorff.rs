@@ -25,10 +25,12 @@
 
 use super::bounds::{Point, direction};
 use super::draft::Draft;
+use super::findings::Findings;
 use super::largest::{Effort, Look, Search, Side};
 use super::options::{Hausdorff, Progress};
 use super::samples::vertex_samples;
 use super::solid::{Cell, Solid};
+use super::solid_boundary::solid_boundary;
 use super::subdivide;
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
@@ -59,7 +61,13 @@ pub fn hausdorff(
     let mut watch = Watch::new(&mut proceed);
     let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;
     let draft = Draft::from_medial_mesh(mesh, &surface.frame);
-    let measured = measure(&surface, &tree, &draft, Effort::CLOSE, &mut watch)?;
+    let mut findings = Findings::default();
+    let boundary = solid_boundary(&surface, &tree, &mut findings, &mut watch)?;
+    let (seen, seen_tree) = match &boundary {
+        Some(boundary) => (&boundary.surface, &boundary.tree),
+        None => (&surface, &tree),
+    };
+    let measured = measure(seen, seen_tree, &tree, &draft, Effort::CLOSE, &mut watch)?;
     Ok(in_unit(measured, surface.frame.scale))
 }
 
@@ -75,11 +83,13 @@ pub(super) fn in_unit(h: Hausdorff, scale: f64) -> Hausdorff {
     }
 }
 
-/// Measures a draft against the surface; lengths are in the builder's frame. Where
+/// Measures a draft against the surface of `tree`; `winding` tells what is inside the source. Lengths are in the
+/// builder's frame. Where
 /// [`Effort::enough`] ends the search the result is below the true error, and above that.
 pub(super) fn measure(
     surface: &Surface,
     tree: &TriangleTree,
+    winding: &TriangleTree,
     draft: &Draft,
     mut effort: Effort,
     watch: &mut Watch,
@@ -87,7 +97,7 @@ pub(super) fn measure(
     let solid = Solid::new(draft);
     let mut source = FromSource {
         surface,
-        tree,
+        winding,
         solid: &solid,
         uncovered: 0.0,
         hint: 0,
@@ -146,7 +156,7 @@ const NEEDLE: u32 = u32::MAX;
 /// source triangle that it is part of, or [`NEEDLE`].
 struct FromSource<'a> {
     surface: &'a Surface,
-    tree: &'a TriangleTree,
+    winding: &'a TriangleTree,
     solid: &'a Solid<'a>,
     uncovered: f64,
     hint: u32,
@@ -228,7 +238,7 @@ impl FromSource<'_> {
 
     /// Whether the surface point `p` lies inside matter that the source bounds.
     fn is_enclosed(&self, p: Point, normal: Point) -> bool {
-        self.tree.winding(p + normal * OFF_SURFACE) > 0.5
+        self.winding.winding(p + normal * OFF_SURFACE) > 0.5
     }
 }
 

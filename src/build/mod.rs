@@ -133,15 +133,11 @@ impl MedialMesh {
         let mut watch = Watch::new(progress);
         watch.begin("surface")?;
         let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;
-        let mut source = Source {
-            surface,
-            tree,
-            limits,
-            boundary: None,
-        };
+        let mut source = Source::new(surface, tree, limits);
         let candidate = source.best_candidate(&mut watch)?;
         let target_reached = candidate.keeps(source.limits.max_error);
         watch.begin("mass")?;
+        let hidden = source.boundary.as_ref().map_or(0.0, |b| b.hidden);
         let surface = source.surface;
         let (mass, mass_source) = mass_properties(&surface, &mut watch)?;
         let mut mesh = candidate.draft.to_medial_mesh(&surface.frame)?;
@@ -151,6 +147,9 @@ impl MedialMesh {
         let mut findings = surface.findings;
         findings.mass = mass_source;
         let mut notes = findings.notes();
+        if hidden > 0.0 {
+            notes.push(findings.hidden_in_words(hidden / surface.area));
+        }
         notes.extend(candidate.notes);
         let frame = surface.frame;
         let report = BuildReport {
@@ -161,6 +160,7 @@ impl MedialMesh {
             euler: mesh.spheres().len() as i64 - mesh.edges().len() as i64
                 + mesh.faces().len() as i64,
             target_reached,
+            hidden_area: (hidden * frame.scale * frame.scale) as Real,
             findings,
             notes,
             memory: watch.peak(),

@@ -5,7 +5,7 @@
 //! that a handle is stuck into), its lid is not at the boundary of the solid at all, which the
 //! winding number tells: there it is about ½.
 
-use super::bounds::Point;
+use super::bounds::{Point, direction};
 use super::orient::Patches;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
@@ -20,6 +20,9 @@ const WIDE: f64 = 0.03;
 /// How far from ½ the winding number may be on a lid that bounds the solid.
 const UNDECIDED: f64 = 0.3;
 
+/// Lids are of openings whose area is at most this share of their patch's.
+const MOST_OPEN: f64 = 0.2;
+
 /// Points of a rim that a lid is looked at towards, at most.
 const RIM: usize = 16;
 
@@ -29,11 +32,66 @@ pub struct Opening {
     pub patch: u32,
     /// Mean of the rim, by length.
     center: Point,
-    rim: Vec<Point>,
+    edges: Vec<[Point; 2]>,
 }
 
 /// The openings that may be wide; each is a connected set of open edges of one patch.
 pub fn openings(
+    vertices: &[Point],
+    patches: &Patches,
+    watch: &mut Watch,
+) -> Result<Vec<Opening>, BuildError> {
+    let all = all_openings(vertices, patches, watch)?;
+    let wide = all.into_iter().filter(|o| o.radius() > WIDE);
+    Ok(wide.collect())
+}
+
+/// Fans that close the openings at the boundary of the solid, each turned to face outward, and its normal. `closed`
+/// says which patches are taken for solid.
+pub fn lids(
+    vertices: &[Point],
+    patches: &Patches,
+    closed: impl Fn(u32) -> bool,
+    tree: &TriangleTree,
+    watch: &mut Watch,
+) -> Result<Vec<([Point; 3], Point)>, BuildError> {
+    let mut lids = Vec::new();
+    for opening in all_openings(vertices, patches, watch)? {
+        watch.again()?;
+        let fan: Vec<[Point; 3]> = opening
+            .edges
+            .iter()
+            .map(|&[a, b]| [opening.center, a, b])
+            .collect();
+        let cross = |[a, b, c]: [Point; 3]| (b - a).cross(c - a);
+        let area: f64 = fan.iter().map(|t| 0.5 * cross(*t).length()).sum();
+        let patch = &patches.list[opening.patch as usize];
+        // A crumb's rim is all around it.
+        if !closed(opening.patch)
+            || area > MOST_OPEN * patch.area
+            || !is_at_boundary(tree, opening.center)
+        {
+            continue;
+        }
+        for [a, b, c] in fan {
+            let normal = direction(cross([a, b, c]));
+            let off = normal * (0.3 * opening.radius());
+            let middle = (a + b + c) * (1.0 / 3.0);
+            if normal.length_sq() == 0.0 || !is_at_boundary(tree, middle) {
+                continue;
+            }
+            lids.push(
+                match tree.winding(middle + off) <= tree.winding(middle - off) {
+                    true => ([a, b, c], normal),
+                    false => ([a, c, b], -normal),
+                },
+            );
+        }
+    }
+    Ok(lids)
+}
+
+fn all_openings(
     vertices: &[Point],
     patches: &Patches,
     watch: &mut Watch,
@@ -47,50 +105,57 @@ pub fn openings(
         let [a, b] = [a, b].map(&mut place);
         edges.push(rims.join(a, b));
     }
-    // Length and first moment of each rim, by root.
-    let mut sums: FastMap<u32, (f64, Point)> = FastMap::default();
-    let ends = |i: usize| patches.open_edges[i].0.map(|v| vertices[v as usize]);
-    for (i, place) in edges.iter_mut().enumerate() {
-        watch.every(i)?;
-        *place = rims.root(*place);
-        let [a, b] = ends(i);
-        let length = (b - a).length();
-        let sum = sums.entry(*place).or_insert((0.0, Point::zero()));
-        *sum = (sum.0 + length, sum.1 + (a + b) * (0.5 * length));
-    }
-    let mut wide: FastMap<u32, (u32, Point, Vec<Point>)> = FastMap::default();
+    let mut found: FastMap<u32, Opening> = FastMap::default();
     for (i, place) in edges.iter().enumerate() {
         watch.every(i)?;
-        let (length, moment) = sums[place];
-        let center = moment * (1.0 / length);
-        let [a, _] = ends(i);
-        if (a - center).length() > WIDE {
-            let patch = patches.open_edges[i].1;
-            let rim = wide.entry(*place).or_insert((patch, center, Vec::new()));
-            rim.2.push(a);
-        }
+        let root = rims.root(*place);
+        let ([a, b], patch) = patches.open_edges[i];
+        let opening = found.entry(root).or_insert_with(|| Opening {
+            patch,
+            center: Point::zero(),
+            edges: Vec::new(),
+        });
+        opening.edges.push([a, b].map(|v| vertices[v as usize]));
     }
-    let mut openings: Vec<(u32, Opening)> = wide
-        .into_iter()
-        .map(|(place, (patch, center, points))| {
-            let step = points.len().div_ceil(RIM);
-            let rim = points.into_iter().step_by(step).collect();
-            let opening = Opening { patch, center, rim };
-            (place, opening)
-        })
-        .collect();
-    openings.sort_unstable_by_key(|o| o.0);
-    Ok(openings.into_iter().map(|o| o.1).collect())
+    let mut found: Vec<(u32, Opening)> = found.into_iter().collect();
+    found.sort_unstable_by_key(|o| o.0);
+    for (_, opening) in &mut found {
+        opening.center = opening.mean();
+    }
+    Ok(found.into_iter().map(|o| o.1).collect())
 }
 
 impl Opening {
+    fn mean(&self) -> Point {
+        let (mut length, mut moment) = (0.0, Point::zero());
+        for &[a, b] in &self.edges {
+            let own = (b - a).length();
+            length += own;
+            moment = moment + (a + b) * (0.5 * own);
+        }
+        moment * (1.0 / length)
+    }
+
+    /// Distance of the rim's farthest point from the middle.
+    fn radius(&self) -> f64 {
+        let far = self.edges.iter().map(|e| (e[0] - self.center).length());
+        far.fold(0.0, f64::max)
+    }
+
     /// Whether closing it would move the solid's boundary far from the surface.
     pub fn is_wide(&self, tree: &TriangleTree) -> bool {
-        let towards = self.rim.iter().map(|&p| (self.center + p) * 0.5);
+        let step = self.edges.len().div_ceil(RIM).max(1);
+        let rim = self.edges.iter().step_by(step);
+        let towards = rim.map(|&[p, _]| (self.center + p) * 0.5);
         std::iter::once(self.center)
             .chain(towards)
-            .any(|p| (tree.winding(p) - 0.5).abs() < UNDECIDED && !tree.any_within(p, WIDE))
+            .any(|p| is_at_boundary(tree, p) && !tree.any_within(p, WIDE))
     }
+}
+
+/// Whether a point of a lid is at the boundary of the solid.
+fn is_at_boundary(tree: &TriangleTree, p: Point) -> bool {
+    (tree.winding(p) - 0.5).abs() < UNDECIDED
 }
 
 /// Union and find over the ends of open edges.

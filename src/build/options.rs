@@ -104,7 +104,8 @@ pub struct Progress {
     pub fraction: Real,
 }
 
-/// Two-sided distance between a source surface and the solid's boundary, in the user's unit.
+/// Two-sided distance between a source surface and the solid's boundary, in the user's unit. What of the source
+/// lies inside the matter that its parts make together is no surface here.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hausdorff {
     /// Largest distance from the source surface to the solid's boundary.
@@ -146,6 +147,9 @@ pub struct BuildReport {
     pub target_reached: bool,
     /// What was found in the input and what was done about it, counted.
     pub findings: Findings,
+    /// Area of the source that lies inside solid matter, where other parts hide it, in the user's unit squared: the
+    /// error is that of the boundary of the solid, and this counts for nothing.
+    pub hidden_area: Real,
     /// The same in words, and which limit bound.
     pub notes: Vec<String>,
     /// Most bytes that the builder's large arrays held at any time: the sum of their capacities. An

@@ -4,11 +4,11 @@ use super::candidate::Candidate;
 use super::counts::Collapses;
 use super::creased::{Creased, creased};
 use super::ladder::Ladder;
-use super::options::{Limits, Quality};
+use super::options::Limits;
 use super::parts::Parts;
 use super::polyhedron::polyhedra;
 use super::smallest::Smallest;
-use super::solid_boundary::solid_boundary;
+use super::solid_boundary::{Boundary, solid_boundary};
 use super::start::{Start, start};
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
@@ -31,11 +31,21 @@ pub struct Source {
     pub surface: Surface,
     pub tree: TriangleTree,
     pub limits: Limits,
-    /// What fits are fitted to where the surface overlaps itself or has gaps: the boundary of the solid.
-    pub boundary: Option<(Surface, TriangleTree)>,
+    /// The boundary of the solid, where some of the surface is hidden inside it.
+    pub boundary: Option<Boundary>,
 }
 
 impl Source {
+    /// A surface of which nothing is known to be hidden.
+    pub fn new(surface: Surface, tree: TriangleTree, limits: Limits) -> Self {
+        Self {
+            surface,
+            tree,
+            limits,
+            boundary: None,
+        }
+    }
+
     /// What the limits allow: balls inside where the surface bounds matter, slabs where it is a sheet.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
         let exact = self.polyhedra(watch)?;
@@ -60,11 +70,9 @@ impl Source {
         };
         let mut findings = std::mem::take(&mut self.surface.findings);
         let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
+        watch.begin("surface")?;
+        self.boundary = solid_boundary(&self.surface, &self.tree, &mut findings, watch)?;
         self.surface.findings = findings;
-        let has_sheets = self.surface.sheet.contains(&true) || start.share > 0.0;
-        if self.limits.quality > Quality::Fast && !self.surface.simple && !has_sheets {
-            self.boundary = solid_boundary(&self.surface, &self.tree, watch)?;
-        }
         Ok((start, count))
     }
 

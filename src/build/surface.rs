@@ -3,6 +3,7 @@
 
 use super::bounds::{Bounds, Point, direction};
 use super::findings::Findings;
+use super::openings::lids;
 use super::orient::{Patches, orient};
 use super::patches::{Kind, judge};
 use super::seams::seam_slivers;
@@ -56,6 +57,9 @@ pub struct Surface {
     pub sheet: Vec<bool>,
     /// The patch of each triangle; see [`super::orient`].
     pub patch_of: Vec<u32>,
+    /// Triangles that close the small openings of patches that bound matter, and their normals: the boundary of the
+    /// solid, where the source has none.
+    pub lids: Vec<([Point; 3], Point)>,
     /// Whether the triangles that are no sheet's close a volume without overlaps.
     pub simple: bool,
     /// What was found and what was done about it.
@@ -118,6 +122,7 @@ impl Surface {
             welded: moved,
             frame,
             sheet: Vec::new(),
+            lids: Vec::new(),
             patch_of: Vec::new(),
             simple: false,
             findings,
@@ -157,6 +162,8 @@ impl Surface {
                 }
             }
         }
+        let closed = |p: u32| kinds[p as usize] == Kind::Solid;
+        self.lids = lids(&self.vertices, &patches, closed, tree, watch)?;
         self.simple = simple;
         self.sheet = patches
             .of
@@ -191,6 +198,7 @@ impl Surface {
             needles: Vec::new(),
             welded: self.welded,
             frame: self.frame,
+            lids: Vec::new(),
             sheet: chosen.iter().map(|&i| self.sheet[i]).collect(),
             patch_of: chosen.iter().map(|&i| self.patch_of[i]).collect(),
             simple: self.simple,
@@ -198,10 +206,12 @@ impl Surface {
         }
     }
 
-    /// Pieces of triangles, each with its triangle, as a surface of their own that bounds matter everywhere.
+    /// Pieces of triangles, each with its triangle, and all lids, as a surface of their own.
     pub fn of_pieces(&self, pieces: &[([Point; 3], usize)]) -> Self {
         let mut index_of: FastMap<[u64; 3], u32> = FastMap::default();
         let mut vertices = Vec::new();
+        let lids = self.lids.iter();
+        let own = pieces.iter().map(|p| p.1);
         let mut index = |p: Point| {
             *index_of
                 .entry([p.x, p.y, p.z].map(f64::to_bits))
@@ -210,22 +220,33 @@ impl Surface {
                     vertices.len() as u32 - 1
                 })
         };
-        let triangles: Vec<[u32; 3]> = pieces
-            .iter()
-            .map(|(piece, _)| piece.map(&mut index))
-            .collect();
+        let all = pieces.iter().map(|(piece, _)| piece);
+        let all = all.chain(lids.clone().map(|(lid, _)| lid));
+        let triangles: Vec<[u32; 3]> = all.clone().map(|t| t.map(&mut index)).collect();
+        let area = all.map(|t| 0.5 * cross(*t).length()).sum();
+        let needles = self.needles.iter();
+        let needles = needles.map(|t| corners(&self.vertices, t).map(&mut index));
         Self {
+            needles: needles.collect(),
             vertices,
             triangles,
-            needles: Vec::new(),
-            normals: pieces.iter().map(|&(_, t)| self.normals[t]).collect(),
-            area: pieces
-                .iter()
-                .map(|(piece, _)| 0.5 * cross(*piece).length())
-                .sum(),
-            sheet: vec![false; pieces.len()],
-            patch_of: vec![0; pieces.len()],
-            simple: true,
+            normals: own
+                .clone()
+                .map(|t| self.normals[t])
+                .chain(lids.clone().map(|l| l.1))
+                .collect(),
+            area,
+            sheet: own
+                .clone()
+                .map(|t| self.sheet[t])
+                .chain(lids.clone().map(|_| false))
+                .collect(),
+            patch_of: own
+                .map(|t| self.patch_of[t])
+                .chain(lids.map(|_| 0))
+                .collect(),
+            lids: Vec::new(),
+            simple: self.simple,
             welded: self.welded,
             frame: self.frame,
             findings: self.findings.clone(),

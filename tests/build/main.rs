@@ -10,6 +10,7 @@ mod delaunay;
 mod distance;
 mod enclosure;
 mod fitting;
+mod hidden;
 mod meshes;
 mod options;
 #[path = "../medial/oracle.rs"]

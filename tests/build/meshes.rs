@@ -4,6 +4,7 @@ use parry3d::math::Vector;
 use std::collections::HashMap;
 use std::f32::consts::{PI, TAU};
 
+#[derive(Clone)]
 pub struct Mesh {
     pub vertices: Vec<Vector>,
     pub indices: Vec<[u32; 3]>,
