@@ -18,6 +18,10 @@ const CLEARLY_BETTER: f64 = 0.75;
 /// 1.3 on a ring, 2 on the bug, where all counts of primitives differ by more.
 pub const LARGEST_GAIN: f64 = 2.0;
 
+/// The same where sharp edges are kept, and for the medial mesh without them: 1.15 and 1.5 on plates with curved rims.
+const GAIN_OF_CREASED: f64 = 1.3;
+const GAIN_OF_ROUNDED: f64 = 1.5;
+
 /// A round body's counts ([`fit::round_from`]) are tried upwards until this many in turn fit no better.
 const FAILURES: usize = 2;
 
@@ -68,10 +72,12 @@ impl Source {
     ///
     /// The error never rises from one of [`fit::ROUND`] to a larger count (while both start from as
     /// many samples), nor with the quality: what gives the one is among what is tried for the other.
-    /// Left out are counts whose plain collapse is too bad for any fit to make it win.
+    /// Left out are counts whose plain collapse is too bad for any fit to make it win, or to bring it below the
+    /// error of another medial mesh of the body: `rival`, infinite where that is still to come.
     pub fn best_of(
         &self,
         collapses: &Collapses,
+        rival: Option<f64>,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
         let Collapses {
@@ -82,7 +88,12 @@ impl Source {
         } = collapses;
         let most = first.most;
         let rough = self.rough_target();
-        let gain = if self.fits() { LARGEST_GAIN } else { 1.0 };
+        let gain = match () {
+            _ if !self.fits() => 1.0,
+            _ if !creases.is_empty() => GAIN_OF_CREASED,
+            _ if rival.is_some() => GAIN_OF_ROUNDED,
+            _ => LARGEST_GAIN,
+        };
         let round = match self.fits() && creases.is_empty() {
             true => fit::round_from(first, smaller, &rough, watch)?,
             false => None,
@@ -121,7 +132,7 @@ impl Source {
             let sure = self.fits() || !self.surface.simple;
             let least = match sure && other.most >= fit::LARGE {
                 true => f64::INFINITY,
-                false => gain * best.lower_quality,
+                false => gain * best.lower_quality.min(rival.unwrap_or(f64::INFINITY)),
             };
             if rough.largest_below(&other.plain, least, watch)?.is_none() {
                 continue;

@@ -73,6 +73,31 @@ pub struct FourBoxes {
     hi: [f32x4; 3],
 }
 
+/// Four half spaces.
+#[derive(Clone, Copy)]
+pub struct FourHalfSpaces {
+    normal: [f32x4; 3],
+    offset: f32x4,
+}
+
+impl FourHalfSpaces {
+    /// Half spaces `normal · x ≤ offset`.
+    pub fn new(of: [(Point, f64); 4]) -> Self {
+        let lane = |axis: usize| f32x4::from(of.map(|h| coordinate(h.0, axis) as f32));
+        Self {
+            normal: [0, 1, 2].map(lane),
+            offset: f32x4::from(of.map(|h| h.1 as f32)),
+        }
+    }
+
+    /// How far a point is beyond each.
+    #[inline]
+    pub fn beyond(&self, p: &FourPoints) -> f32x4 {
+        let [x, y, z] = self.normal;
+        x * p.0[0] + y * p.0[1] + z * p.0[2] - self.offset
+    }
+}
+
 /// A point in all four lanes.
 #[derive(Clone, Copy)]
 pub struct FourPoints([f32x4; 3]);
@@ -89,7 +114,8 @@ impl FourPoints {
 ///
 /// Rounding a coordinate, of the box or of the point, and their difference: 1.5 ε each of `reach`
 /// and of `|p|`; √3 of that for the length, and four operations more of half an ε each on a length of
-/// at most √3 their sum. Radii and limits that are taken off or compared with are no larger.
+/// at most √3 their sum. A height over a plane of unit normal rounds six times, each by half an ε of at most √3 their
+/// sum. Radii and limits that are taken off or compared with are no larger.
 #[inline]
 pub fn slack(p: Point, reach: f64) -> f64 {
     const ULPS: f64 = 16.0 * f32::EPSILON as f64;

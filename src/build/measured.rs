@@ -232,6 +232,7 @@ impl<'a> Measure<'a> {
             .map(|c| Prepared::new(*c, c.map(of)))
             .collect();
         let mut around: Option<Vec<Prepared>> = None;
+        let mut last = 0;
         for &v in after.neighbors.iter().chain(&after.edge) {
             for &i in &self.of_ball[v as usize] {
                 let i = i as usize;
@@ -240,11 +241,21 @@ impl<'a> Measure<'a> {
                     continue;
                 }
                 let p = self.samples[i];
-                let to = |primitive: &Prepared| primitive.signed_distance(p).distance;
-                let mut d = prepared.iter().map(to).fold(f64::INFINITY, f64::min);
+                let nearer = |d: f64, primitive: &Prepared| match primitive.is_beyond(p, d) {
+                    true => d,
+                    false => d.min(primitive.signed_distance(p).distance),
+                };
+                // The one nearest to the sample before rules most others out.
+                let mut d = prepared[last].signed_distance(p).distance;
+                for (k, primitive) in prepared.iter().enumerate() {
+                    let nearer = nearer(d, primitive);
+                    if nearer < d {
+                        (d, last) = (nearer, k);
+                    }
+                }
                 if d > self.distance[i] && d > accepted {
                     let around = around.get_or_insert_with(|| after.around(s));
-                    d = around.iter().map(to).fold(d, f64::min);
+                    d = around.iter().fold(d, nearer);
                 }
                 worst = worst.max(d.abs());
                 squares += d * d;

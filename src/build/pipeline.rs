@@ -1,7 +1,7 @@
 //! The pipeline: from a checked surface to the best draft that the limits allow, stage by stage.
 
 use super::candidate::Candidate;
-use super::counts::Collapses;
+use super::counts::{Collapses, LARGEST_GAIN};
 use super::creased::{Creased, creased};
 use super::ladder::Ladder;
 use super::options::Limits;
@@ -146,27 +146,29 @@ impl Source {
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
         let Some(creased) = creased else {
-            return self.best_of(&rounded, watch);
+            return self.best_of(&rounded, None, watch);
         };
-        let [error, other] = [&rounded, &creased].map(|c| c.rough_error);
-        let rounded = match error > HOPELESS * other {
-            true => None,
-            false => Some(self.best_of(&rounded, watch)?),
+        let sharp_first = creased.rough_error <= rounded.rough_error;
+        let (first, second) = match sharp_first {
+            true => (&creased, &rounded),
+            false => (&rounded, &creased),
         };
-        if other > HOPELESS * error
-            && let Some(rounded) = rounded
-        {
-            return Ok(rounded);
+        let mut best = self.best_of(first, Some(f64::INFINITY), watch)?;
+        let mut is_sharp = sharp_first;
+        // The other has that error to beat, and no fit gains more than so much.
+        let bar = LARGEST_GAIN * best.error();
+        if second.rough_error <= bar.min(HOPELESS * first.rough_error) {
+            let other = self.best_of(second, Some(best.error()), watch)?;
+            if other.error() < best.error() || (sharp_first && other.error() == best.error()) {
+                (best, is_sharp) = (other, !sharp_first);
+            }
         }
-        let kept = creased.creases();
-        let mut creased = self.best_of(&creased, watch)?;
-        creased
-            .notes
-            .push(format!("{kept} convex edges are kept where they pay"));
-        Ok(match rounded {
-            Some(rounded) if rounded.error() <= creased.error() => rounded,
-            _ => creased,
-        })
+        if is_sharp {
+            let kept = creased.creases();
+            best.notes
+                .push(format!("{kept} convex edges are kept where they pay"));
+        }
+        Ok(best)
     }
 
     /// The smallest medial mesh whose error is at most `limit`, or the best that there is; `exact` is one that may

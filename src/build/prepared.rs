@@ -5,7 +5,7 @@
 //! `α + β ≤ 1`, that is the minimum; else the minimum is on an edge that separates the two. All that
 //! does not depend on the point is computed once. Formulas: `math/nearest.rs`, paper §4.2.
 
-use super::bounds::Point;
+use super::bounds::{Point, direction};
 use super::draft::{Ball, Corners, Signed};
 
 /// Discriminants below this share are those of a ball that contains the other.
@@ -13,6 +13,9 @@ const CONTAINED: f64 = 2.0 * f64::EPSILON;
 
 /// Slabs whose centres span a triangle flatter than this (sine of an angle, squared) are their edges.
 const FLAT: f64 = 1e-24;
+
+/// Far above the rounding of the heights of points over planes (longest side 1), far below what matters.
+const ROUNDING: f64 = 1e-12;
 
 /// Balls on a segment.
 #[derive(Clone, Copy)]
@@ -71,6 +74,39 @@ struct Middle {
     normal: Point,
 }
 
+/// Planes that a primitive lies behind, at most: the two that touch a slab's flat sides, and one across each edge.
+pub const PLANES: usize = 5;
+
+/// A half space `normal · x ≤ offset`.
+#[derive(Clone, Copy)]
+pub struct HalfSpace {
+    /// Outward unit normal; zero where there is none.
+    pub normal: Point,
+    /// Distance of its plane from the origin; infinite where there is none.
+    pub offset: f64,
+}
+
+impl HalfSpace {
+    /// All of space.
+    pub const ALL: Self = Self {
+        normal: Point {
+            x: 0.0,
+            y: 0.0,
+            z: 0.0,
+        },
+        offset: f64::INFINITY,
+    };
+
+    /// The least one of a unit normal that holds balls.
+    fn around(normal: Point, balls: &[Ball]) -> Self {
+        let reach = balls.iter().map(|b| normal.dot(b.center) + b.radius);
+        Self {
+            normal,
+            offset: reach.fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}
+
 /// A ball, a cone or a slab.
 #[derive(Clone, Copy)]
 pub struct Prepared {
@@ -79,6 +115,8 @@ pub struct Prepared {
     /// How many of them count: 1 for a cone or ball.
     count: usize,
     middle: Option<Middle>,
+    /// Half spaces that hold it. The signed distance is no less than how far a point is beyond any of them.
+    pub half_spaces: [HalfSpace; PLANES],
 }
 
 impl Prepared {
@@ -90,14 +128,24 @@ impl Prepared {
                 edges: [ab; 3],
                 count: 1,
                 middle: None,
+                half_spaces: around_cone(&ab, [a, b]),
             };
         }
         let ac = Edge::new(&a, &c);
+        let middle = middle(&ab, &ac);
         Self {
-            middle: middle(&ab, &ac),
+            half_spaces: around_slab(middle.as_ref(), [a, b, c]),
+            middle,
             edges: [ab, ac, Edge::new(&b, &c)],
             count: 3,
         }
+    }
+
+    /// Whether the signed distance of `p` is above `limit` for certain, by what costs least.
+    #[inline]
+    pub fn is_beyond(&self, p: Point, limit: f64) -> bool {
+        let beyond = |h: &HalfSpace| h.normal.dot(p) - h.offset > limit + ROUNDING;
+        self.half_spaces.iter().any(beyond)
     }
 
     /// Signed distance of `p`, and the weights of the balls that give it.
@@ -134,6 +182,38 @@ impl Prepared {
         }
         least
     }
+}
+
+/// Half spaces at the ends of a cone.
+fn around_cone(ab: &Edge, balls: [Ball; 2]) -> [HalfSpace; PLANES] {
+    let mut all = [HalfSpace::ALL; PLANES];
+    let along = direction(ab.axis);
+    if along != Point::zero() {
+        all[0] = HalfSpace::around(along, &balls);
+        all[1] = HalfSpace::around(-along, &balls);
+    }
+    all
+}
+
+/// Half spaces at the flat sides of a slab, and across its edges.
+fn around_slab(middle: Option<&Middle>, balls: [Ball; 3]) -> [HalfSpace; PLANES] {
+    let mut all = [HalfSpace::ALL; PLANES];
+    let Some(m) = middle else { return all };
+    let up = m.normal * (1.0 - m.slope.length_sq());
+    all[0] = HalfSpace::around(direction(up - m.slope), &balls);
+    all[1] = HalfSpace::around(direction(-up - m.slope), &balls);
+    let flat = direction(m.normal);
+    for k in 0..3 {
+        let [a, b, c] = [k, (k + 1) % 3, (k + 2) % 3].map(|i| balls[i].center);
+        let across = direction((b - a).cross(flat));
+        let outward = if across.dot(c - a) > 0.0 {
+            -across
+        } else {
+            across
+        };
+        all[2 + k] = HalfSpace::around(outward, &balls);
+    }
+    all
 }
 
 const NONE: Signed = Signed {

@@ -3,12 +3,13 @@
 //! A point near the medial axis is about as far from everything around it, a tree's worst case. Two
 //! lower bounds of the signed distance to a group prune it, and the larger counts: the signed
 //! distance to the box of its volume, and the distance to the box of its centres minus its
-//! largest radius.
+//! largest radius. Single primitives are pruned by half spaces that hold them as well: slabs that lie aslant fill
+//! little of their boxes.
 
 use super::bounds::{Bounds, Point, coordinate};
 use super::draft::{Ball, Corners, Draft, Signed};
-use super::four_boxes::{Child, FourBoxes, FourPoints, nearest_first, slack};
-use super::prepared::Prepared;
+use super::four_boxes::{Child, FourBoxes, FourHalfSpaces, FourPoints, nearest_first, slack};
+use super::prepared::{HalfSpace, PLANES, Prepared};
 use std::ops::ControlFlow;
 use wide::f32x4;
 
@@ -17,6 +18,8 @@ struct Node {
     volumes: FourBoxes,
     centers: FourBoxes,
     largest_radii: f32x4,
+    /// Half spaces that hold single primitives, if there are any among the children.
+    half_spaces: Option<[FourHalfSpaces; PLANES]>,
     children: [Child; 4],
 }
 
@@ -26,7 +29,11 @@ impl Node {
     fn lower_bounds(&self, p: &FourPoints) -> [f32; 4] {
         let volumes = self.volumes.signed_distance(p);
         let centers = self.centers.distance_sq(p).sqrt() - self.largest_radii;
-        volumes.fast_max(centers).to_array()
+        let mut bounds = volumes.fast_max(centers);
+        for half_spaces in self.half_spaces.iter().flatten() {
+            bounds = bounds.fast_max(half_spaces.beyond(p));
+        }
+        bounds.to_array()
     }
 }
 
@@ -121,10 +128,20 @@ impl<'a> PrimitiveTree<'a> {
             FourBoxes::new([0, 1, 2, 3].map(|k| balls(k).map(bounds).reduce(Bounds::union)))
         };
         let radius = |k: usize| balls(k).map(|b| b.radius).fold(0.0, f64::max) as f32;
+        let half_space = |k: usize, side: usize| {
+            let held = match &*parts[k] {
+                [only] => self.prepared[only.1 as usize].half_spaces[side],
+                _ => HalfSpace::ALL,
+            };
+            (held.normal, held.offset)
+        };
+        let four = |side: usize| FourHalfSpaces::new([0, 1, 2, 3].map(|k| half_space(k, side)));
+        let has_leaf = parts.iter().any(|part| part.len() == 1);
         Node {
             volumes: around(&|b| Bounds::of_ball(b.center, b.radius)),
             centers: around(&|b| Bounds::of([b.center])),
             largest_radii: f32x4::from([0, 1, 2, 3].map(radius)),
+            half_spaces: has_leaf.then(|| std::array::from_fn(four)),
             children: [Child::Nothing; 4],
         }
     }

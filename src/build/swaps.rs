@@ -15,6 +15,9 @@ use super::simplify::Simplifier;
 use super::watch::Watch;
 use crate::error::BuildError;
 
+/// Rounds end where two in turn leave scores above this many of the best: what they took out they cannot put back.
+const HOPELESS: f64 = 1.4;
+
 /// A fitted draft and its score.
 pub type Scored = (Draft, f64);
 
@@ -41,6 +44,7 @@ pub fn swap(
 ) -> Result<Vec<Scored>, BuildError> {
     let mut drafts = Vec::new();
     let mut best = start;
+    let mut hopeless = 0;
     for round in 0..swaps.rounds {
         let removed = swaps.share * most as f64 / (1.0 + 0.5 * round as f64);
         let removed = (removed as usize).max(2);
@@ -55,6 +59,14 @@ pub fn swap(
         grow(&mut draft, target, most, swaps.insertions, watch)?;
         watch.begin("refit")?;
         let score = refit(&mut draft, target, swaps.iterations, watch)?;
+        hopeless = if score > HOPELESS * best.1 {
+            hopeless + 1
+        } else {
+            0
+        };
+        if hopeless >= 2 {
+            break;
+        }
         if score < best.1 {
             drafts.push(std::mem::replace(&mut best, (draft, score)));
         }
