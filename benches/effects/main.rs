@@ -25,6 +25,8 @@ mod fast_pairs;
 #[allow(dead_code, reason = "shared with the tests")]
 #[path = "../../tests/scenes/heaps.rs"]
 mod heaps;
+#[path = "../../tests/scenes/linking.rs"]
+mod linking;
 #[path = "../../tests/scenes/oracle.rs"]
 mod oracle;
 mod planted;

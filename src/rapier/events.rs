@@ -14,20 +14,26 @@ use super::inquiry::{Inquiry, Known, Meshes};
 use super::motion::Kind;
 use super::outlines::Outlines;
 use super::pairs::{Rules, concerned, in_order, sweep};
+use super::placed::Placed;
 use super::response::Response;
 use super::snapshot::Snapshot;
 use super::waiting::Waiting;
 use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::Real;
-use crate::math::fast_hash::{FastMap, FastSet};
+use crate::math::fast_hash::FastMap;
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::SharedShape;
-use rapier3d::geometry::{ColliderHandle, ContactManifold, NarrowPhase};
+use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 
 /// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
 /// which grows a little with each meeting of a pair.
 const MARGIN: Real = 5.0e-3;
+
+/// Depth, in units of rapier's length unit, from which a pair that was put into each other may be left to the solver:
+/// twice the gap of a fast pair. Larger, and thin bodies spawned in one place are held there; smaller, and what rests
+/// on a surface without thickness may be taken for put into it.
+const SUNK: Real = 2.0e-3;
 
 /// Shares of a step before and after which the world does not stop: what is left would be no step, and
 /// a stop at the start would change nothing.
@@ -78,7 +84,8 @@ struct Loop<'a> {
     asker: Asker<'a>,
     rules: Rules<'a>,
     /// Slow pairs near enough to their medial axes to be watched.
-    deep: FastSet<[ColliderHandle; 2]>,
+    deep: FastMap<[usize; 2], bool>,
+    /// Whether the user's rules let a pair respond, as far as they were asked.
     allowed: FastMap<[usize; 2], bool>,
     response: Response,
     /// Box of each collider from its body's last impact to the end of the step.
@@ -98,16 +105,19 @@ pub fn resolve(
     asker: Asker,
     rules: Rules,
     (narrow_phase, depth): (&NarrowPhase, Real),
+    placed: &mut Placed,
     batch: &mut Batch,
     work: &mut Work,
 ) -> Outcome {
     let guarded = asker.tuning.guarded();
     let thinnest = snapshot.thinnest_part();
     let deep = if depth > guarded * thinnest {
-        deep(snapshot, narrow_phase, guarded)
+        deep(snapshot, narrow_phase, &asker)
     } else {
-        FastSet::default()
+        FastMap::default()
     };
+    let sunk = deep.iter().filter_map(|(pair, sunk)| sunk.then_some(*pair));
+    let left = placed.leave(snapshot, sunk);
     if deep.is_empty() && !asker.may_be_fast(snapshot, asker.tuning.fast, thinnest) {
         return Outcome::default();
     }
@@ -119,7 +129,7 @@ pub fn resolve(
         asker,
         rules,
         deep,
-        allowed: FastMap::default(),
+        allowed: left.into_iter().map(|pair| (pair, false)).collect(),
         response,
         boxes: Vec::new(),
         shapes: &shapes,
@@ -156,27 +166,33 @@ pub fn resolve(
     events.finish()
 }
 
-/// Pairs whose contacts in rapier are deep enough that even a slow one may get to the axes.
+/// Pairs whose contacts in rapier are deep enough that even a slow one may get to the axes, and whether any is below the
+/// floor and [`SUNK`].
 fn deep(
     snapshot: &Snapshot,
     narrow_phase: &NarrowPhase,
-    guarded: Real,
-) -> FastSet<[ColliderHandle; 2]> {
+    asker: &Asker,
+) -> FastMap<[usize; 2], bool> {
+    let tuning = &asker.tuning;
     let parts = snapshot.parts.iter().enumerate();
     let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
-    let mut deep = FastSet::default();
+    let mut deep = FastMap::default();
     for found in narrow_phase.contact_pairs() {
         let places = [found.collider1, found.collider2].map(|h| parts.get(&h));
         let [Some(&i), Some(&j)] = places else {
             continue;
         };
-        let is_deep = |m: &ContactManifold| {
+        let pair = in_order(snapshot, [i, j]);
+        for m in found.manifolds() {
             let depth = m.points.iter().map(|p| -p.dist).fold(0.0, Real::max);
-            let thickness = || snapshot.thickness_at([i, j], [m.subshape1, m.subshape2]);
-            depth > 0.0 && depth > guarded * thickness()
-        };
-        if found.manifolds().iter().any(is_deep) {
-            deep.insert(in_order(snapshot, [i, j]).map(|k| snapshot.parts[k].handle));
+            if depth <= 0.0 {
+                continue;
+            }
+            let thickness = snapshot.thickness_at([i, j], [m.subshape1, m.subshape2]);
+            if depth > tuning.guarded() * thickness {
+                let sunk = depth > (tuning.floor * thickness).max(SUNK * asker.unit);
+                *deep.entry(pair).or_insert(false) |= sunk;
+            }
         }
     }
     deep
@@ -224,8 +240,7 @@ impl Loop<'_> {
     }
 
     fn is_deep(&self, pair: [usize; 2]) -> bool {
-        let handles = pair.map(|k| self.snapshot.parts[k].handle);
-        self.deep.contains(&handles)
+        self.deep.contains_key(&pair)
     }
 
     /// The first queries of all pairs of medial meshes.

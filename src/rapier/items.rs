@@ -31,6 +31,22 @@ pub struct Sets<'a> {
     pub narrow_phase: &'a NarrowPhase,
 }
 
+#[cfg(feature = "gpu")]
+impl<'a> Sets<'a> {
+    /// Those of a world.
+    pub fn of(world: &'a rapier3d::pipeline::PhysicsWorld) -> Self {
+        Self {
+            gravity: world.gravity,
+            parameters: &world.integration_parameters,
+            bodies: &world.bodies,
+            colliders: &world.colliders,
+            impulse_joints: &world.impulse_joints,
+            multibody_joints: &world.multibody_joints,
+            narrow_phase: &world.narrow_phase,
+        }
+    }
+}
+
 /// How many medial colliders are enabled.
 pub fn count(colliders: &ColliderSet) -> usize {
     let medial = |c: &Collider| c.shape().as_shape::<MedialMesh>().is_some();

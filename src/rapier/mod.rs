@@ -25,6 +25,7 @@ mod outlines;
 mod pairs;
 mod pieces;
 pub mod pipeline;
+mod placed;
 mod pushes;
 mod recycled;
 pub mod report;

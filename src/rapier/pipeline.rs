@@ -5,6 +5,7 @@ use super::emit::{Once, Scene, Told};
 use super::first_contact::{Asker, Work};
 use super::items::{self, Sets};
 use super::pairs::Rules;
+use super::placed::Placed;
 use super::recycled::{RECYCLE_DISTANCE, Recycled};
 use super::report::StepReport;
 use super::snapshot::Snapshot;
@@ -42,6 +43,7 @@ pub struct MedialPipeline {
     effects: Wanted,
     tuning: Tuning,
     pub(super) told: Told,
+    placed: Placed,
 }
 
 impl MedialPipeline {
@@ -77,16 +79,7 @@ impl MedialPipeline {
     /// only when it comes. What is changed in the world after that goes to the CPU.
     #[cfg(feature = "gpu")]
     pub async fn prepare(&mut self, world: &PhysicsWorld) {
-        let sets = Sets {
-            gravity: world.gravity,
-            parameters: &world.integration_parameters,
-            bodies: &world.bodies,
-            colliders: &world.colliders,
-            impulse_joints: &world.impulse_joints,
-            multibody_joints: &world.multibody_joints,
-            narrow_phase: &world.narrow_phase,
-        };
-        let next = candidates::expect(sets, &self.recycled);
+        let next = candidates::expect(Sets::of(world), &self.recycled);
         self.batch.submit_async(&next).await;
         self.batch.ready().await;
     }
@@ -272,6 +265,7 @@ impl MedialPipeline {
         };
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         bodies.propagate_modified_body_positions_to_colliders(colliders);
+        self.placed.begin(&snapshot, colliders);
         let rules = Rules {
             bodies,
             colliders,
@@ -364,6 +358,7 @@ impl MedialPipeline {
             asker,
             rules,
             (narrow_phase, found.depth.max(self.answers.take_depth())),
+            &mut self.placed,
             &mut self.batch,
             &mut work,
         );
@@ -374,6 +369,7 @@ impl MedialPipeline {
             links::write_back(&snapshot, &outcome.changed, bodies, multibody_joints);
             bodies.propagate_modified_body_positions_to_colliders(colliders);
         }
+        self.placed.end(&snapshot, colliders);
         let scene = Scene {
             dt: parameters.dt,
             bodies,

@@ -46,6 +46,7 @@ mod rolling;
 mod ropes;
 #[cfg(feature = "serde-serialize")]
 mod saving;
+mod spawned;
 mod told;
 mod walls;
 mod wire_heaps;

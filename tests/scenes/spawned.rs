@@ -1,0 +1,170 @@
+//! Bodies that are put into each other: spawned in one place, in the ground, in a wall, teleported. They come apart as
+//! rapier's own shapes do, nothing holds them where they are, and what came apart stays apart.
+
+use crate::bodies::*;
+use crate::linking::{line, linking};
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+use std::f32::consts::TAU;
+
+const PARTS: u32 = 24;
+
+/// A ring: medial, or as a compound of as many capsules.
+fn collider(medial: bool) -> ColliderBuilder {
+    let mesh = ring(PARTS, 0.5, 0.12);
+    if medial {
+        return ColliderBuilder::medial_mesh(mesh);
+    }
+    let end = |k: u32| {
+        let (sin, cos) = (TAU * k as Real / PARTS as Real).sin_cos();
+        Vector::new(0.5 * cos, 0.0, 0.5 * sin)
+    };
+    let part = |k| SharedShape::capsule(end(k), end(k + 1), 0.12);
+    let parts = (0..PARTS).map(|k| (Pose::IDENTITY, part(k)));
+    let mass = mesh.mass_properties(1.0);
+    ColliderBuilder::compound(parts.collect()).mass_properties(mass)
+}
+
+/// What rings spawned together did.
+#[derive(Debug, Default)]
+struct Outcome {
+    /// Mean height at the end, metres.
+    height: Real,
+    /// Largest speed of all steps, metres per second.
+    speed: Real,
+    /// Most continuous queries in a step, and most bodies held in one.
+    queries: u64,
+    frozen: usize,
+}
+
+/// Rings spawned at one place above the ground, or in it, tilted one by one.
+fn spawn(medial: bool, rings: usize, height: Real, seed: usize, steps: usize) -> Outcome {
+    let mut world = world_with_ground();
+    let mut pipeline = attached(&mut world);
+    for k in 0..rings {
+        let k = (k + 3 * seed) as Real;
+        let tilt = Vector::new(0.7 * k, 0.3, 0.2 * k);
+        let body = RigidBodyBuilder::dynamic().pose(Pose::new(Vector::Y * height, tilt));
+        world.insert(body, collider(medial));
+    }
+    let mut outcome = Outcome::default();
+    for _ in 0..steps {
+        let report = pipeline.step(&mut world);
+        outcome.queries = outcome.queries.max(report.continuous_queries);
+        outcome.frozen = outcome.frozen.max(report.frozen);
+        let speeds = world.bodies.iter().map(|(_, b)| b.linvel().length());
+        outcome.speed = speeds.fold(outcome.speed, Real::max);
+    }
+    let heights = world.bodies.iter().map(|(_, b)| b.translation().y);
+    outcome.height = heights.sum::<Real>() / rings as Real;
+    outcome
+}
+
+/// They fall at once, as the compounds do: two seconds later they lie on the ground, as high in the mean of three
+/// heaps.
+#[test]
+fn rings_spawned_in_one_place_come_apart_and_fall() {
+    for rings in [3, 8] {
+        for height in [2.0, 0.3] {
+            let mut heights = [0.0; 2];
+            for seed in 0..3 {
+                let [own, ours] = [false, true].map(|m| spawn(m, rings, height, seed, 120));
+                let what = format!("{rings} rings, {height} m, seed {seed}: {ours:?}, {own:?}");
+                println!("{what}");
+                assert!(ours.speed < 1.5 * own.speed + 1.0, "{what}");
+                assert!(ours.queries < 200 * rings as u64, "{what}");
+                heights[0] += own.height / 3.0;
+                heights[1] += ours.height / 3.0;
+            }
+            let off = (heights[1] - heights[0]).abs();
+            assert!(off < 0.25, "{rings} rings, {height} m: {heights:?}");
+        }
+    }
+}
+
+/// What was spawned in each other and came apart is kept apart from then on: rings that are no longer linked are
+/// thrown at each other, and stay unlinked.
+#[test]
+fn what_came_apart_stays_apart() {
+    for seed in 0..6 {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let mut pipeline = attached(&mut world);
+        let mesh = ring(PARTS, 0.5, 0.12);
+        let rings = [0.0, 1.0].map(|k| {
+            let tilt = Vector::new(1.1 * k + 0.1 * seed as Real, 0.3, 0.4 * k);
+            let pose = Pose::new(Vector::X * 0.3 * k, tilt);
+            world
+                .insert(RigidBodyBuilder::dynamic().pose(pose), collider(true))
+                .0
+        });
+        for _ in 0..240 {
+            pipeline.step(&mut world);
+        }
+        let links = |world: &PhysicsWorld| {
+            let [a, b] = rings.map(|h| line(&mesh, world.bodies[h].position()));
+            linking(&a, &b)
+        };
+        let before = links(&world);
+        for (k, ring) in rings.into_iter().enumerate() {
+            let side = [1.0, -1.0][k];
+            world.bodies[ring].set_linvel(Vector::new(20.0 * side, 3.0, 2.0 * side), true);
+            world.bodies[ring].set_angvel(Vector::new(5.0, 7.0 * side, 9.0), true);
+        }
+        for step in 0..60 {
+            pipeline.step(&mut world);
+            assert_eq!(links(&world), before, "seed {seed}, step {step}");
+        }
+    }
+}
+
+/// A ring spawned or teleported across a wall is not held there: it moves about as far as the compound does.
+#[test]
+fn a_ring_put_across_a_wall_is_not_held() {
+    let (points, triangles) = Cuboid::new(Vector::new(1.0, 1.0, 0.2)).to_trimesh();
+    let walls: [(&str, ColliderBuilder); 3] = [
+        ("cuboid", ColliderBuilder::cuboid(1.0, 1.0, 0.2)),
+        (
+            "hull",
+            ColliderBuilder::convex_hull(&points).expect("a hull"),
+        ),
+        (
+            "solid triangle mesh",
+            ColliderBuilder::trimesh_with_flags(points, triangles, TriMeshFlags::ORIENTED)
+                .expect("a box"),
+        ),
+    ];
+    for (name, wall) in walls {
+        for teleported in [false, true] {
+            let left = |medial: bool| {
+                let mut world = PhysicsWorld::new();
+                world.gravity = Vector::ZERO;
+                let mut pipeline = attached(&mut world);
+                world.insert_collider(wall.clone(), None);
+                let at = Vector::new(0.1, 0.2, 0.28);
+                let start = if teleported { at + Vector::Z * 5.0 } else { at };
+                let body = RigidBodyBuilder::dynamic()
+                    .translation(start)
+                    .can_sleep(false);
+                let (ring, _) = world.insert(body, collider(medial));
+                if teleported {
+                    for _ in 0..5 {
+                        pipeline.step(&mut world);
+                    }
+                    world.bodies[ring].set_translation(at, true);
+                }
+                let mut held = 0;
+                for _ in 0..180 {
+                    held += pipeline.step(&mut world).frozen;
+                }
+                let pose = *world.bodies[ring].position();
+                (pose.translation, held)
+            };
+            let (own, ours) = (left(false), left(true));
+            println!("{name}, teleported {teleported}: {ours:?}, compound {own:?}");
+            let what = format!("{name}, teleported {teleported}: {ours:?}, compound {own:?}");
+            assert_eq!(ours.1, 0, "{what}");
+            assert!(ours.0.distance(own.0) < 0.35, "{what}");
+        }
+    }
+}
