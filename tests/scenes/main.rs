@@ -6,6 +6,7 @@ mod controls;
 mod creature_walks;
 mod crowds;
 mod determinism;
+mod dolls;
 #[cfg(feature = "debug-render")]
 mod drawing;
 mod driven;

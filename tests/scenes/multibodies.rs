@@ -351,9 +351,9 @@ fn struck_rope(links: usize, by: By, speed: Real, steps: usize) -> Vec<Real> {
 #[test]
 fn ropes_are_struck_and_gain_no_energy() {
     for by in [By::Multibody, By::ImpulseJoints] {
-        for links in [8, 22, 30, 40] {
-            for speed in [2.0, 5.0, 20.0, 60.0] {
-                let energies = struck_rope(links, by, speed, 10);
+        for links in [8, 22, 40] {
+            for speed in [2.0, 20.0, 60.0] {
+                let energies = struck_rope(links, by, speed, 6);
                 let most = energies.iter().copied().fold(0.0, Real::max);
                 println!("{links} links by {by:?}, {speed} m/s: {energies:.2?}");
                 let name = format!("{links} links by {by:?}, {speed} m/s");
