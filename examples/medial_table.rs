@@ -13,7 +13,8 @@
 //! of both surfaces and at points on each that no fit has seen, so many that on the source each stands for
 //! a square whose side, "apart", is a fifth of the builder's error or less; the solid's boundary is drawn
 //! with triangles of a quarter of it. "Before" is the builder's own measure of what it enclosed, by points that no fit has seen
-//! either; uncovered and bloat are its own too, and ± is by how much a distance may exceed them between
+//! either; class, variant, edges kept (those that may be, of the source) and hidden (share of the source's area inside
+//! matter) are what it reports; uncovered and bloat are its own too, and ± is by how much a distance may exceed them between
 //! the points that it looked at. MB is the largest resident set during the build, where the system tells
 //! it (Linux), and what of it the builder's arrays are.
 //!
@@ -31,6 +32,7 @@ use common::surface_error::surface_error;
 use indicatif::ProgressBar;
 use rapier3d::prelude::Real;
 use rapier3d_medial::build::mesh_file::{self, MeshFormat};
+use rapier3d_medial::build::{Findings, Variant};
 use rapier3d_medial::{BuildOptions, MedialMesh, Quality};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -58,8 +60,8 @@ const APART: Real = 0.2;
 const FINEST: Real = 0.0012;
 
 const HEAD: &str = "\
-| model | triangles | primitives | paper | H before | H | apart | uncovered | bloat | ± | Euler | MB | arrays | seconds | of which |
-|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
+| model | triangles | class | primitives | variant | edges kept | hidden | paper | H before | H | apart | uncovered | bloat | ± | Euler | MB | arrays | seconds | of which |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
 struct Options {
@@ -186,10 +188,19 @@ fn row(
     let seconds: f64 = report.seconds.iter().map(|s| s.1).sum();
     let long = report.seconds.iter().filter(|s| s.1 > 0.05 * seconds);
     let stages: Vec<String> = long.map(|(stage, s)| format!("{stage} {s:.1}")).collect();
+    let (variant, edges) = match report.variant {
+        Variant::Exact => ("exact", "all".into()),
+        Variant::Creased { edges } => ("creased", edges.to_string()),
+        _ => ("rounded", "–".to_owned()),
+    };
     let row = format!(
-        "| {name} | {} | {} of {size} | {} | {} | {} | {:.5} | {:.5} | {:.4} | {:.4} | {} | {} | {} | {seconds:.1} | {} |\n",
+        "| {name} | {} | {} | {} of {size} | {} | {} | {:.4} | {} | {} | {} | {:.5} | {:.5} | {:.4} | {:.4} | {} | {} | {} | {seconds:.1} | {} |\n",
         mesh.indices.len(),
+        class(&report.findings),
         report.primitives,
+        variant,
+        edges,
+        report.hidden_area / area,
         shown(paper(name, size)),
         shown(before),
         shown(error),
@@ -204,6 +215,22 @@ fn row(
     );
     progress.set_position(start + 1000);
     Ok(row)
+}
+
+/// What the source is, in a word or two.
+fn class(findings: &Findings) -> String {
+    let said = [
+        (findings.overlapping, "overlapping"),
+        (findings.patches_mended > 0, "torn"),
+        (findings.patches_sheet > 0, "sheets"),
+        (findings.triangles_thin > 0, "thin"),
+        (findings.patches_cavity > 0, "hollow"),
+    ];
+    let words: Vec<&str> = said.iter().filter(|s| s.0).map(|s| s.1).collect();
+    match words.is_empty() {
+        true => "whole".into(),
+        false => words.join(", "),
+    }
 }
 
 /// Lets the largest resident set start again from the present one, where the system can.

@@ -4,7 +4,7 @@ use super::draft::Draft;
 use super::enclose::enclose;
 use super::hausdorff::measure;
 use super::largest::Effort;
-use super::options::{Hausdorff, Quality};
+use super::options::{Hausdorff, Quality, Variant};
 use super::pipeline::Source;
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
@@ -17,11 +17,19 @@ pub struct Candidate {
     pub hausdorff: Hausdorff,
     pub before: Option<Hausdorff>,
     pub notes: Vec<String>,
+    pub variant: Variant,
 }
 
 impl Candidate {
     pub fn error(&self) -> f64 {
         f64::from(self.hausdorff.error())
+    }
+
+    /// Says that spheres of radius 0 lie on `edges` of the source, as far as they pay.
+    pub fn keeps_creases(&mut self, edges: usize) {
+        self.variant = Variant::Creased { edges };
+        let note = format!("{edges} convex edges are kept where they pay");
+        self.notes.push(note);
     }
 
     /// Whether the error is within a limit.
@@ -149,6 +157,7 @@ impl Source {
             hausdorff: enclosed.hausdorff,
             before,
             notes: Vec::new(),
+            variant: Variant::Rounded,
         })
     }
 }

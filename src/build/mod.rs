@@ -75,7 +75,7 @@ mod weld;
 
 pub use curve::{ErrorAt, error_curve};
 pub use findings::{Findings, MassSource};
-pub use options::{BuildOptions, BuildReport, Creases, Hausdorff, Progress, Quality};
+pub use options::{BuildOptions, BuildReport, Creases, Hausdorff, Progress, Quality, Variant};
 
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
@@ -157,6 +157,7 @@ impl MedialMesh {
             hausdorff_before_enclosure: candidate.before.map(|h| in_unit(h, frame.scale)),
             longest_side: frame.scale as Real,
             primitives: mesh.primitive_count(),
+            variant: candidate.variant,
             euler: mesh.spheres().len() as i64 - mesh.edges().len() as i64
                 + mesh.faces().len() as i64,
             target_reached,

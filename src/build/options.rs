@@ -129,6 +129,22 @@ impl Hausdorff {
     }
 }
 
+/// Of what kind a medial mesh is: which of those that were made of one body came out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Variant {
+    /// Balls inside, slabs of sheets: edges are rounded.
+    #[default]
+    Rounded,
+    /// Spheres of radius 0 on sharp convex edges.
+    Creased {
+        /// Edges of the source that may be kept: those that pay are.
+        edges: usize,
+    },
+    /// The medial axis of convex polyhedra, exact.
+    Exact,
+}
+
 /// What a build did, measured.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -141,6 +157,8 @@ pub struct BuildReport {
     pub longest_side: Real,
     /// Primitives of the result.
     pub primitives: usize,
+    /// Of what kind it is.
+    pub variant: Variant,
     /// Euler number of the result's complex: spheres − edges + faces. 1 for a ball, 0 for a ring.
     pub euler: i64,
     /// Whether the result keeps every limit asked for. The count is always kept.

@@ -164,9 +164,7 @@ impl Source {
             }
         }
         if is_sharp {
-            let kept = creased.creases();
-            best.notes
-                .push(format!("{kept} convex edges are kept where they pay"));
+            best.keeps_creases(creased.creases());
         }
         Ok(best)
     }

@@ -9,7 +9,7 @@ use super::candidate::Candidate;
 use super::draft::Draft;
 use super::flat_axis::{Axis, Body};
 use super::flat_faces::{FlatFaces, flat_faces};
-use super::options::{Hausdorff, Limits};
+use super::options::{Hausdorff, Limits, Variant};
 use super::roof::{FIRST, GROUND, Plane, roof};
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
@@ -68,6 +68,7 @@ impl Axis {
             hausdorff: error(growth - grown, bulge + grown),
             before: limits.enclose.then_some(before),
             notes: vec![note],
+            variant: Variant::Exact,
         }
     }
 }

@@ -99,9 +99,7 @@ impl Source {
                     limit as Real, found.count
                 ));
                 if found.creases > 0 {
-                    let kept = found.creases;
-                    let note = format!("{kept} convex edges are kept where they pay");
-                    candidate.notes.push(note);
+                    candidate.keeps_creases(found.creases);
                 }
                 if !found.kept_topology {
                     candidate.notes.push(GAVE_UP.into());

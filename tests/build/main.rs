@@ -11,6 +11,7 @@ mod distance;
 mod enclosure;
 mod fitting;
 mod hidden;
+mod many;
 mod meshes;
 mod options;
 #[path = "../medial/oracle.rs"]
