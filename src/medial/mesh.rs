@@ -222,8 +222,11 @@ impl MedialMesh {
     }
 
     /// Mass properties in the body's frame: of the source mesh when built from one, else of the
-    /// solid with overlaps counted once.
+    /// solid with overlaps counted once, measured at the first call that is for any density but 0.
     pub fn mass_properties(&self, density: Real) -> MassProperties {
+        if density == 0.0 {
+            return MassProperties::default();
+        }
         let mut scaled = *self.unit_mass_properties();
         scaled.set_mass(scaled.mass() * density, true);
         scaled
