@@ -1,12 +1,12 @@
-//! What impacts do to bodies: impulses, who stays where it is after too many, and how an impact is passed on
-//! to what already touches.
+//! What impacts do to bodies: impulses, who stays where it is after too many, and how an impact is passed on to what
+//! already touches.
 //!
-//! In a crowd an impact closes contacts that earlier ones of the step left: found one by one, each a hair
-//! later than the last, they were three impacts of four, and froze bodies in their midst. So what touches
-//! is solved together at the time of the impact (paper, section 4.5), by sequential impulses, round by round
-//! until nothing approaches fast enough to meet again in this step. Fixed and driven bodies are left out:
-//! rounds between two of them would not end, and their friction would hold what they press out. No contact
-//! is taken for granted: all pairs of the bodies that changed are searched again.
+//! In a crowd an impact closes contacts that earlier ones of the step left: found one by one, each a hair later than the
+//! last, they would be three impacts of four, and freeze bodies in their midst. So what touches is solved together at
+//! the time of the impact (paper, section 4.5), by sequential impulses, round by round until nothing approaches fast
+//! enough to meet again in this step. Fixed and driven bodies are left out: rounds between two of them would not end,
+//! and their friction would hold what they press out. No contact is taken for granted: all pairs of the bodies that
+//! changed are searched again.
 
 use super::blow::Blow;
 use super::course::Course;
@@ -24,8 +24,7 @@ use std::collections::BTreeMap;
 
 type Pair = [usize; 2];
 
-/// Rounds in which an impact is passed on. In heaps of 48 links at 60 m/s 2 give a sixth more impacts,
-/// 4 a thirtieth.
+/// Rounds in which an impact is passed on. In heaps of 48 links at 60 m/s 2 give a sixth more impacts, 4 a thirtieth.
 const ROUNDS: usize = 8;
 
 /// Share of the speed that an impulse gives two bodies which joints leave of it, below which joints hold the contact
@@ -378,20 +377,19 @@ impl Response {
         time: Real,
     ) {
         let (tuning, course) = (&asker.tuning, self.courses[body]);
-        let often = course.events > tuning.max_events;
-        if !often || snapshot.bodies[body].kind != Kind::Free {
+        if course.events <= tuning.max_events || snapshot.bodies[body].kind != Kind::Free {
             return;
         }
         let carrier = &snapshot.bodies[other];
         let carrier_driven = carrier.kind == Kind::Driven || self.courses[other].driven;
         let carries = carrier_driven || self.courses[other].frozen;
+        let carried = carries && course.events <= tuning.max_carried();
         let carrying = carrier.motion_from(time);
         self.courses[body].frozen = true;
+        self.courses[body].driven = carried && carrier_driven;
         let held = &mut snapshot.bodies[body];
-        self.courses[body].driven = false;
-        if carries && course.events <= tuning.max_carried() {
+        if carried {
             held.follow(&carrying);
-            self.courses[body].driven = carrier_driven;
         } else {
             // What it lost of the step is told once.
             let left = 1.0 - time / asker.dt;

@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 use std::thread;
 use std::time::Duration;
 
-fn scratch(name: &str) -> PathBuf {
+pub fn scratch(name: &str) -> PathBuf {
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cli-{name}"));
     // What an earlier run left would hide what this one does.
     let _ = fs::remove_dir_all(&directory);
@@ -16,7 +16,7 @@ fn scratch(name: &str) -> PathBuf {
     directory
 }
 
-fn medial(directory: &Path, arguments: &[&str]) -> Output {
+pub fn medial(directory: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_medial"))
         .args(arguments)
         .current_dir(directory)
@@ -24,12 +24,12 @@ fn medial(directory: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-fn text(bytes: &[u8]) -> &str {
+pub fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
 }
 
 #[track_caller]
-fn assert_fails(output: &Output, words: &str) {
+pub fn assert_fails(output: &Output, words: &str) {
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(message.contains(words), "{message:?} lacks {words:?}");
@@ -390,99 +390,4 @@ fn a_reader_that_went_away_is_no_failure() {
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(output.stderr.is_empty());
-}
-
-/// The unit cube, as a file.
-fn write_cube(directory: &Path) {
-    let mut text = String::new();
-    for k in 0..8 {
-        text += &format!("v {} {} {}\n", k & 1, k >> 1 & 1, k >> 2);
-    }
-    for [a, b, c, d] in [
-        [1, 3, 4, 2],
-        [5, 6, 8, 7],
-        [1, 2, 6, 5],
-        [3, 7, 8, 4],
-        [1, 5, 7, 3],
-        [2, 4, 8, 6],
-    ] {
-        text += &format!("f {a} {b} {c} {d}\n");
-    }
-    fs::write(directory.join("cube.obj"), text).unwrap();
-}
-
-#[test]
-fn a_tolerance_is_a_length_in_a_known_unit() {
-    let directory = scratch("tolerance");
-    write_cube(&directory);
-    let build = |more: &[&str]| {
-        let mut arguments = vec!["build", "cube.obj", "-o", "cube.ma", "-q", "fast", "--json"];
-        arguments.extend(more);
-        medial(&directory, &arguments)
-    };
-    // In its own unit, or that of the file: .4 of the cube's side allows one ball, a thousandth does not.
-    for (tolerance, unit, count) in [
-        ("0.4", None, 1),
-        ("4mm", Some("cm"), 1),
-        ("0.4 m", Some("m"), 1),
-        ("1e-3", None, 12),
-        ("1mm", Some("m"), 12),
-    ] {
-        let mut more = vec!["--tolerance", tolerance];
-        more.extend(unit.into_iter().flat_map(|unit| ["--unit", unit]));
-        let output = build(&more);
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
-        assert_eq!(json["mesh"]["primitives"], count, "{tolerance} {unit:?}");
-        assert_eq!(json["target_reached"], true);
-    }
-    assert_fails(&build(&["--tolerance", "0.02mm"]), "say --unit mm");
-    for (more, words) in [
-        (["--tolerance", "0"], "positive"),
-        (["--tolerance=-1mm", "--unit=mm"], "positive"),
-        (["--tolerance", "NaN"], "positive"),
-        (["--tolerance", "inf"], "positive"),
-        (["--tolerance", "1furlong"], "unknown unit \"furlong\""),
-        (["--tolerance", "mm"], "as 0.02mm"),
-        (["--unit", "parsec"], "unknown unit"),
-        (["--max-error", "0"], "positive"),
-        (["--max-error=-0.1", "--unit=mm"], "positive"),
-    ] {
-        let output = build(&more);
-        assert_eq!(output.status.code(), Some(2), "{more:?}");
-        assert!(
-            text(&output.stderr).contains(words),
-            "{}",
-            text(&output.stderr)
-        );
-    }
-}
-
-#[test]
-fn a_curve_lists_errors_by_count() {
-    let directory = scratch("curve");
-    write_cube(&directory);
-    let curve = [
-        "info", "cube.obj", "--curve", "--counts", "12,3", "-q", "fast",
-    ];
-    let output = medial(&directory, &curve);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let rows: Vec<Vec<f64>> = text(&output.stdout)
-        .lines()
-        .skip(2)
-        .map(|row| row.split_whitespace().map(|x| x.parse().unwrap()).collect())
-        .collect();
-    assert_eq!([rows[0][0], rows[1][0]], [3.0, 12.0]);
-    assert!(rows[0][1] > 0.05 && rows[1][1] < 1e-6, "{rows:?}");
-
-    MedialMesh::ball(1.0)
-        .unwrap()
-        .save_ma(directory.join("ball.ma"))
-        .unwrap();
-    let of_ball = medial(&directory, &["info", "ball.ma", "--curve"]);
-    assert_fails(&of_ball, "ball.ma is no triangle mesh");
-    assert_fails(
-        &medial(&directory, &["info", "no.obj", "--curve"]),
-        "no.obj",
-    );
 }

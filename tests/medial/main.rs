@@ -4,6 +4,8 @@ mod asset;
 mod broken_file;
 #[cfg(feature = "cli")]
 mod cli;
+#[cfg(feature = "cli")]
+mod cli_errors;
 mod envelope;
 mod fuzz;
 #[cfg(feature = "gltf")]
