@@ -18,11 +18,6 @@ use crate::error::BuildError;
 /// Rounds end where two in turn leave scores above this many of the best: what they took out they cannot put back.
 const HOPELESS: f64 = 1.4;
 
-/// Errors are even where so many of the primitives have one of this share of the largest: then none matters less
-/// than another, as round a ring, and no swap gains anything.
-const EVEN: f64 = 0.5;
-const EVEN_PRIMITIVES: f64 = 0.95;
-
 /// A fitted draft and its score.
 pub type Scored = (Draft, f64);
 
@@ -48,9 +43,6 @@ pub fn swap(
     watch: &mut Watch,
 ) -> Result<Vec<Scored>, BuildError> {
     let mut drafts = Vec::new();
-    if is_even(&start.0, target, watch)? {
-        return Ok(vec![start]);
-    }
     let mut best = start;
     let mut hopeless = 0;
     for round in 0..swaps.rounds {
@@ -81,18 +73,6 @@ pub fn swap(
     }
     drafts.push(best);
     Ok(drafts)
-}
-
-/// Whether nearly all primitives have errors near the largest.
-fn is_even(draft: &Draft, target: &Target, watch: &mut Watch) -> Result<bool, BuildError> {
-    let found = target.residuals(draft, watch)?;
-    let mut own = vec![0.0f64; draft.primitives().len()];
-    for row in &found.rows {
-        let largest = &mut own[row.primitive as usize];
-        *largest = largest.max(row.residual.abs());
-    }
-    let large = own.iter().filter(|error| **error >= EVEN * found.largest);
-    Ok(large.count() as f64 >= EVEN_PRIMITIVES * own.len() as f64)
 }
 
 /// Collapses by measured cost, over half of the samples, up to [`LARGE`] primitives; above by the

@@ -84,7 +84,7 @@ struct Loop<'a> {
     asker: Asker<'a>,
     rules: Rules<'a>,
     /// Slow pairs near enough to their medial axes to be watched.
-    deep: FastMap<[usize; 2], bool>,
+    deep: FastMap<[usize; 2], Real>,
     /// Whether the user's rules let a pair respond, as far as they were asked.
     allowed: FastMap<[usize; 2], bool>,
     response: Response,
@@ -116,7 +116,8 @@ pub fn resolve(
     } else {
         FastMap::default()
     };
-    let sunk = deep.iter().filter_map(|(pair, sunk)| sunk.then_some(*pair));
+    let sunk = deep.iter().map(|(pair, way)| (*pair, *way));
+    let sunk = sunk.filter(|(_, way)| *way > 0.0);
     let left = placed.leave(snapshot, sunk);
     if deep.is_empty() && !asker.may_be_fast(snapshot, asker.tuning.fast, thinnest) {
         return Outcome::default();
@@ -166,13 +167,13 @@ pub fn resolve(
     events.finish()
 }
 
-/// Pairs whose contacts in rapier are deep enough that even a slow one may get to the axes, and whether any is below the
-/// floor and [`SUNK`].
+/// Pairs whose contacts in rapier are deep enough that even a slow one may get to the axes; if any is below the floor and
+/// [`SUNK`], with the way from where that one would not count as deep, else with 0.
 fn deep(
     snapshot: &Snapshot,
     narrow_phase: &NarrowPhase,
     asker: &Asker,
-) -> FastMap<[usize; 2], bool> {
+) -> FastMap<[usize; 2], Real> {
     let tuning = &asker.tuning;
     let parts = snapshot.parts.iter().enumerate();
     let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
@@ -189,9 +190,11 @@ fn deep(
                 continue;
             }
             let thickness = snapshot.thickness_at([i, j], [m.subshape1, m.subshape2]);
-            if depth > tuning.guarded() * thickness {
+            let guarded = tuning.guarded() * thickness;
+            if depth > guarded {
                 let sunk = depth > (tuning.floor * thickness).max(SUNK * asker.unit);
-                *deep.entry(pair).or_insert(false) |= sunk;
+                let way = deep.entry(pair).or_insert(0.0);
+                *way = Real::max(*way, if sunk { depth - guarded } else { 0.0 });
             }
         }
     }

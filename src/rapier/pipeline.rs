@@ -265,7 +265,7 @@ impl MedialPipeline {
         };
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         bodies.propagate_modified_body_positions_to_colliders(colliders);
-        self.placed.begin(&snapshot, colliders);
+        self.placed.begin(&snapshot, narrow_phase);
         let rules = Rules {
             bodies,
             colliders,

@@ -4,55 +4,70 @@
 //! hold them for ever: whatever takes such a pair apart at one place takes it deeper at another. The event loop leaves
 //! them to rapier's solver until they are above the floor ([`super::tuning::Tuning::floor`]), and keeps them there.
 //!
-//! A collider was put where it is if it is not where the step before left it. What was not put there, but pressed, is
-//! held.
+//! A pair was put into each other if one of the two is new and rapier had no contacts of them, or if between two steps
+//! they were moved against each other by so much that they may have been apart before. What is pressed is held,
+//! wherever it is moved together.
 
 use super::snapshot::Snapshot;
-use crate::math::Pose;
 use crate::math::fast_hash::FastSet;
-use rapier3d::geometry::{ColliderHandle, ColliderSet};
+use crate::math::{Pose, Real};
+use rapier3d::geometry::{ColliderHandle, ColliderSet, NarrowPhase};
 
 type Pair = [ColliderHandle; 2];
 
-/// What is known from step to step. At first all that there is was put there.
+/// What is known from step to step.
 #[derive(Default)]
 pub struct Placed {
     /// Where the last step left the colliders, in the order of their indices.
     ends: Vec<(ColliderHandle, Pose)>,
-    /// Colliders that were put where they are, before this step.
-    put: FastSet<ColliderHandle>,
+    /// Pairs of new colliders of which rapier has contacts from before this step: of a world that was loaded.
+    met: FastSet<Pair>,
     /// Pairs that are left to the solver.
     left: FastSet<Pair>,
 }
 
+fn index(handle: ColliderHandle) -> u32 {
+    handle.into_raw_parts().0
+}
+
+/// In the order of their indices.
+fn sorted([a, b]: Pair) -> Pair {
+    if index(a) <= index(b) { [a, b] } else { [b, a] }
+}
+
 impl Placed {
-    /// Looks for what was put where it is, at the start of a step.
-    pub fn begin(&mut self, snapshot: &Snapshot, colliders: &ColliderSet) {
-        self.put.clear();
-        let mut ends = self.ends.iter().peekable();
-        let index = |handle: ColliderHandle| handle.into_raw_parts().0;
-        for part in &snapshot.parts {
-            while ends
-                .next_if(|(h, _)| index(*h) < index(part.handle))
-                .is_some()
-            {}
-            let pose = colliders.get(part.handle).map(|c| *c.position());
-            if ends.peek().map(|(h, at)| (*h, Some(*at))) != Some((part.handle, pose)) {
-                self.put.insert(part.handle);
-            }
+    /// Looks at the contacts that rapier has of new colliders, at the start of a step.
+    pub fn begin(&mut self, snapshot: &Snapshot, narrow_phase: &NarrowPhase) {
+        self.met.clear();
+        let is_new = |handle| self.end_of(handle).is_none();
+        if !snapshot.parts.iter().any(|part| is_new(part.handle)) {
+            return;
         }
+        let pairs = narrow_phase
+            .contact_pairs()
+            .filter(|pair| pair.has_any_active_contact());
+        let pairs = pairs.map(|pair| sorted([pair.collider1, pair.collider2]));
+        self.met = pairs
+            .filter(|pair| pair.iter().any(|h| is_new(*h)))
+            .collect();
     }
 
-    /// Of the pairs whose contacts in rapier are below the floor in this step, those that are left to the solver.
+    /// Of the pairs whose contacts in rapier are below the floor in this step, those that are left to the solver. Each
+    /// with the least way, a length, on which it got there if it was apart before.
     pub fn leave(
         &mut self,
         snapshot: &Snapshot,
-        sunk: impl Iterator<Item = [usize; 2]>,
+        sunk: impl Iterator<Item = ([usize; 2], Real)>,
     ) -> Vec<[usize; 2]> {
-        let handles = |pair: [usize; 2]| pair.map(|k| snapshot.parts[k].handle);
-        let was_put =
-            |pair: Pair| pair.iter().any(|h| self.put.contains(h)) || self.left.contains(&pair);
-        let pairs: Vec<_> = sunk.filter(|pair| was_put(handles(*pair))).collect();
+        let handles = |pair: [usize; 2]| sorted(pair.map(|k| snapshot.parts[k].handle));
+        let was_put = |pair: [usize; 2], way: Real| match self.moved(snapshot, pair) {
+            Some(moved) => moved >= way,
+            None => !self.met.contains(&handles(pair)),
+        };
+        let is_left = |(pair, way): &([usize; 2], Real)| {
+            self.left.contains(&handles(*pair)) || was_put(*pair, *way)
+        };
+        let pairs: Vec<_> = sunk.filter(is_left).map(|(pair, _)| pair).collect();
         self.left = pairs.iter().map(|pair| handles(*pair)).collect();
         pairs
     }
@@ -63,5 +78,25 @@ impl Placed {
         let parts = snapshot.parts.iter().map(|part| part.handle);
         let ends = parts.filter_map(|h| Some((h, *colliders.get(h)?.position())));
         self.ends.extend(ends);
+    }
+
+    fn end_of(&self, handle: ColliderHandle) -> Option<&Pose> {
+        let place = self
+            .ends
+            .binary_search_by_key(&index(handle), |(h, _)| index(*h));
+        let (known, pose) = &self.ends[place.ok()?];
+        (*known == handle).then_some(pose)
+    }
+
+    /// Bound on how far points of two colliders were moved against each other between the last step and this one, a
+    /// length; `None` if one of them is new.
+    fn moved(&self, snapshot: &Snapshot, pair: [usize; 2]) -> Option<Real> {
+        let [p, q] = pair.map(|k| &snapshot.parts[k]);
+        let start = |k: usize| snapshot.start_pose(pair[k]);
+        let before = self.end_of(p.handle)?.inv_mul(self.end_of(q.handle)?);
+        let now = start(0).inv_mul(&start(1));
+        let turn = before.rotation.angle_between(now.rotation);
+        let extent = q.bound.center().length() + q.bound.radius();
+        Some((now.translation - before.translation).length() + turn * extent)
     }
 }

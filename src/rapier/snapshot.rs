@@ -191,6 +191,12 @@ impl Snapshot {
         }
     }
 
+    /// Pose of a collider at the start of the step.
+    pub fn start_pose(&self, part: usize) -> Pose {
+        let part = &self.parts[part];
+        self.bodies[part.body].start * part.offset
+    }
+
     /// How thin the thinner of two colliders is as a whole, a length; surfaces do not count.
     pub fn thickness(&self, [i, j]: [usize; 2]) -> Real {
         self.parts[i].thickness.min(self.parts[j].thickness)

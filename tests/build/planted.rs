@@ -148,7 +148,9 @@ pub fn holds(medial: &MedialMesh, p: Vector, grow: f32) -> bool {
     medial.primitives().any(|primitive| {
         let grown = |s: &MedialSphere| MedialSphere::new(s.center, (s.radius + grow).max(0.0));
         let spheres: Vec<_> = primitive.spheres().iter().map(grown).collect();
-        !oracle::beyond_box(&spheres, p, 0.0) && oracle::covers(&spheres, p)
+        // The quadratic loses its digits on needles.
+        !oracle::beyond_box(&spheres, p, 0.0)
+            && (oracle::covers(&spheres, p) || oracle::signed_distance(&spheres, p) <= 0.0)
     })
 }
 

@@ -31,7 +31,7 @@ impl Random {
 fn convex_minimum(hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut a, mut b) = (0.0, hi);
     let mut best = f(a).min(f(b));
-    for _ in 0..60 {
+    for _ in 0..90 {
         let (m1, m2) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
         let (f1, f2) = (f(m1), f(m2));
         best = best.min(f1).min(f2);
@@ -40,34 +40,58 @@ fn convex_minimum(hi: f64, f: impl Fn(f64) -> f64) -> f64 {
         } else {
             a = m1;
         }
-        if b - a < 1e-9 {
+        if b - a < 1e-15 * hi {
             break;
         }
     }
     best
 }
 
-/// Smallest |p − c| − r over the spheres interpolated between 1, 2 or 3 of them: convex in the
-/// weights, so nested one-dimensional searches find it.
-pub fn signed_distance(spheres: &[MedialSphere], p: [f64; 3]) -> f64 {
-    let at = |weights: [f64; 3]| {
-        let mut d = p;
-        let mut r = 0.0;
-        for (s, w) in spheres.iter().zip(weights) {
-            let c = [s.center.x, s.center.y, s.center.z].map(f64::from);
-            for k in 0..3 {
-                d[k] -= w * c[k];
-            }
-            r += w * f64::from(s.radius);
-        }
-        (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt() - r
+/// A sphere in double precision: its centre and radius.
+type Ball = ([f64; 3], f64);
+
+/// The sphere at weight `x` between two.
+fn between((a, r): Ball, (b, s): Ball, x: f64) -> Ball {
+    ([0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * x), r + (s - r) * x)
+}
+
+/// Smallest |p − c| − r over the spheres between two, in closed form: at the foot of `p`, moved along by `h s / √(1 − s²)`,
+/// with `h` the distance from the line and `s` the slope of the radius.
+fn on_cone(p: [f64; 3], first: Ball, second: Ball) -> f64 {
+    let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] - b[k]);
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
     };
-    match spheres.len() {
-        1 => at([1.0, 0.0, 0.0]),
-        2 => convex_minimum(1.0, |x| at([1.0 - x, x, 0.0])),
-        _ => convex_minimum(1.0, |x| {
-            convex_minimum(1.0 - x, |y| at([1.0 - x - y, x, y]))
-        }),
+    let at = |x: f64| {
+        let (c, r) = between(first, second, x);
+        let d = minus(p, c);
+        dot(d, d).sqrt() - r
+    };
+    let d = minus(second.0, first.0);
+    let length = dot(d, d).sqrt();
+    let ends = at(0.0).min(at(1.0));
+    let slope = (second.1 - first.1) / length;
+    if length == 0.0 || slope.abs() >= 1.0 {
+        return ends;
+    }
+    let q = minus(p, first.0);
+    let off = cross(q, d);
+    let aside = dot(off, off).sqrt() / length;
+    let x = (dot(q, d) / length + aside * slope / (1.0 - slope * slope).sqrt()) / length;
+    ends.min(at(x.clamp(0.0, 1.0)))
+}
+
+/// Smallest |p − c| − r over the spheres interpolated between 1, 2 or 3 of them: of three by a search along the edge
+/// between two for the cone from the third, which is convex in the weights.
+pub fn signed_distance(spheres: &[MedialSphere], p: [f64; 3]) -> f64 {
+    let ball = |s: &MedialSphere| (s.center.to_array().map(f64::from), f64::from(s.radius));
+    let balls: Vec<Ball> = spheres.iter().map(ball).collect();
+    match balls[..] {
+        [a] => on_cone(p, a, a),
+        [a, b] => on_cone(p, a, b),
+        [a, b, c] => convex_minimum(1.0, |x| on_cone(p, a, between(b, c, x))),
+        _ => f64::INFINITY,
     }
 }
 

@@ -168,3 +168,57 @@ fn a_ring_put_across_a_wall_is_not_held() {
         }
     }
 }
+
+/// Two linked rings, the upper one fixed, the lower one pulled down by 1,000 times its weight: deep in each other, and
+/// linked. What `touch` does between two steps moves them against each other by nothing, or by far less than they are
+/// deep.
+fn stays_linked(name: &str, mut touch: impl FnMut(usize, &mut PhysicsWorld, &mut MedialPipeline)) {
+    let mesh = ring(PARTS, 0.5, 0.06);
+    let mut world = PhysicsWorld::new();
+    let mut pipeline = attached(&mut world);
+    let quarter = std::f32::consts::FRAC_PI_2;
+    let upper = RigidBodyBuilder::fixed().rotation(Vector::X * quarter);
+    let (upper, _) = world.insert(upper, ColliderBuilder::medial_mesh(mesh.clone()));
+    let at = Pose::new(Vector::NEG_Y * (1.0 - 2.2 * 0.06), Vector::Z * quarter);
+    let lower = RigidBodyBuilder::dynamic().pose(at).can_sleep(false);
+    let lower_collider = ColliderBuilder::medial_mesh(mesh.clone()).density(1000.0);
+    let (lower, _) = world.insert(lower, lower_collider);
+    let weight = 9.81 * world.bodies[lower].mass();
+    for step in 0..240 {
+        let share = (step as Real / 120.0).min(1.0);
+        let body = &mut world.bodies[lower];
+        body.reset_forces(true);
+        body.add_force(Vector::NEG_Y * 1000.0 * weight * share, true);
+        if step >= 180 {
+            touch(step, &mut world, &mut pipeline);
+        }
+        pipeline.step(&mut world);
+        let [a, b] = [upper, lower].map(|h| line(&mesh, world.bodies[h].position()));
+        assert_eq!(linking(&a, &b).abs(), 1, "{name}: unlinked at step {step}");
+    }
+}
+
+#[test]
+fn what_is_pressed_into_each_other_was_not_put_there() {
+    stays_linked("left alone", |_, _, _| ());
+    stays_linked("a new pipeline", |step, world, pipeline| {
+        if step == 180 {
+            *pipeline = attached(world);
+        }
+    });
+    stays_linked("all moved together", |_, world, _| {
+        let handles: Vec<_> = world.bodies.iter().map(|(h, _)| h).collect();
+        for h in handles {
+            let body = &mut world.bodies[h];
+            let at = body.translation() + Vector::X * 0.01;
+            body.set_translation(at, true);
+        }
+    });
+    stays_linked("one moved by a hair", |step, world, _| {
+        let by = if step % 2 == 0 { 1.0e-4 } else { -1.0e-4 };
+        for (_, body) in world.bodies.iter_mut().filter(|(_, b)| b.is_fixed()) {
+            let at = body.translation() + Vector::Y * by;
+            body.set_translation(at, true);
+        }
+    });
+}
