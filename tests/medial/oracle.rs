@@ -82,15 +82,15 @@ fn on_cone(p: [f64; 3], first: Ball, second: Ball) -> f64 {
     ends.min(at(x.clamp(0.0, 1.0)))
 }
 
-/// Smallest |p − c| − r over the spheres interpolated between 1, 2 or 3 of them: of three by a search along the edge
-/// between two for the cone from the third, which is convex in the weights.
+/// Smallest |p − c| − r over the spheres interpolated between 1, 2 or 3 of them: of three by a search over the weight of
+/// the third, in which the least over the other two is convex.
 pub fn signed_distance(spheres: &[MedialSphere], p: [f64; 3]) -> f64 {
     let ball = |s: &MedialSphere| (s.center.to_array().map(f64::from), f64::from(s.radius));
     let balls: Vec<Ball> = spheres.iter().map(ball).collect();
     match balls[..] {
         [a] => on_cone(p, a, a),
         [a, b] => on_cone(p, a, b),
-        [a, b, c] => convex_minimum(1.0, |x| on_cone(p, a, between(b, c, x))),
+        [a, b, c] => convex_minimum(1.0, |x| on_cone(p, between(a, c, x), between(b, c, x))),
         _ => f64::INFINITY,
     }
 }
