@@ -111,7 +111,7 @@ fn fuzz(target: usize, first: u64, stride: u64, until: Instant) -> Tally {
 }
 
 #[test]
-#[ignore = "as long as MINUTES says"]
+#[ignore = "for finding, not for checking: runs as many minutes as MINUTES says; CI runs a share of each target"]
 fn fuzz_for() {
     let number = |name: &str| std::env::var(name).ok().and_then(|v| v.parse::<f64>().ok());
     if let Ok(one) = std::env::var("CASE") {
