@@ -1,12 +1,20 @@
-//! Drop-in concave colliders for the [rapier](https://rapier.rs) physics engine, with certified
-//! continuous collision detection.
+//! Concave colliders for the [rapier](https://rapier.rs) physics engine, with certified continuous
+//! collision detection: fast bodies do not tunnel.
 //!
-//! A triangle mesh of a concave body that moves (ring, chain link, hook, gripper, creature) becomes
-//! a [`MedialMesh`]: spheres joined by medial cones and slabs, a simplified medial axis transform.
-//! It is a solid, keeps its holes, and answers continuous collision queries with a certificate: what they
-//! call free is free, for the inputs and by the bounds of `docs/guarantee.md`.
-//! Source of the method: "Continuous Collision Detection with Medial Axis Transform for Rigid Body
-//! Simulation"; where this crate departs from the paper, the file that does says so.
+//! A triangle mesh describes the surface of a body. A [`MedialMesh`] describes its inside, by spheres
+//! whose centres lie in the middle of the body (on its *medial axis*). Each two neighbouring spheres are
+//! joined by a *medial cone* and each three by a *medial slab*, the convex shape that wraps round them.
+//! These are the *primitives* of the mesh. A few dozen follow a concave body (a ring, chain link, hook,
+//! gripper, creature) closely, holes included. They are solid, and the time at which two of them first
+//! touch can be computed with a proof: if a query answers that two bodies do not meet in a step, they
+//! do not. `docs/guarantee.md` says for which inputs, and how rounding is accounted for.
+//!
+//! How to use it:
+//! 1. [`MedialMesh::from_trimesh`] builds a medial mesh from your triangles, once, in seconds.
+//!    [`MedialMesh::save_asset`] and [`MedialMesh::load_asset`] keep it in a file.
+//! 2. [`ColliderBuilder::medial_mesh`](MedialColliderBuilder::medial_mesh) makes a collider of it.
+//! 3. [`MedialPipeline::attach`] prepares a world, and [`MedialPipeline::step`] takes the place of
+//!    `world.step()`.
 //!
 //! ```
 //! use rapier3d::prelude::*;
@@ -16,7 +24,8 @@
 //! # let (vertices, indices) = Cuboid::new(Vector::new(0.5, 0.2, 0.3)).to_trimesh();
 //! let options = BuildOptions { primitives: Some(50), ..Default::default() };
 //! let (mesh, report) = MedialMesh::from_trimesh(&vertices, &indices, &options)?;
-//! println!("off by at most {} m", report.hausdorff.error() + report.hausdorff.sampling);
+//! let off = report.hausdorff.error() + report.hausdorff.sampling;
+//! println!("at most {off} m from the triangle mesh");
 //!
 //! let mut world = PhysicsWorld::new();
 //! let mut pipeline = MedialPipeline::new(MedialOptions::default());
@@ -32,22 +41,26 @@
 //! # }
 //! ```
 //!
+//! Lengths are in your unit (metres in rapier), times are fractions of the step from 0 to 1 unless a
+//! name says seconds. `docs/guide.md` goes on from here; `docs/notation.md` lists the symbols.
+//!
+//! The method is that of the paper "Continuous Collision Detection with Medial Axis Transform for Rigid
+//! Body Simulation". Each file that departs from the paper says so at its beginning.
+//!
 //! # Layers
-//! Imports go down only; a test checks it.
+//! Each module imports only modules below it in this table; a test checks this. Most games need only
+//! [`prelude`].
 //!
-//! | layer | what |
+//! | module | contents |
 //! |---|---|
-//! | [`rapier`] | the hook round rapier's step, builder traits, step report |
-//! | [`parry`] | the medial mesh as a parry shape, dispatcher, manifolds, shape casts |
-//! | [`batch`] | many pairs at once |
-//! | [`pair`] | mesh against mesh: culling, first contact, contacts |
-//! | [`elementary`] | the maths of one pair of primitives, certified; the paper's method beside it |
-//! | [`build`] | triangle mesh → medial mesh |
-//! | [`medial`] | the checked data, its trees, mass, envelope, files |
-//! | [`math`] | lanes, closed forms at a fixed time, rigid motion, constants |
-//!
-//! Lengths are in the user's unit (metres in rapier), times fractions of the step in `[0, 1]`
-//! unless named seconds. Symbols: `docs/notation.md`.
+//! | [`rapier`] | the pipeline around rapier's step, traits for rapier's builders, the report of a step |
+//! | [`parry`] | the medial mesh as a shape of parry, rapier's geometry library: queries, contacts, casts |
+//! | [`batch`] | contacts or first contacts of many pairs at once, on the CPU or a GPU |
+//! | [`pair`] | two medial meshes: which primitives can meet, first contact, contacts |
+//! | [`elementary`] | two primitives: distance and first contact, certified; the paper's own method beside it |
+//! | [`build`] | from a triangle mesh to a medial mesh |
+//! | [`medial`] | the medial mesh itself, its trees, mass, surface and files |
+//! | [`math`] | SIMD lanes, closed forms, rigid motion, constants |
 
 pub mod batch;
 pub mod build;
@@ -70,7 +83,7 @@ pub use rapier::{
     StepReport,
 };
 
-/// What a rapier app needs: `use rapier3d_medial::prelude::*;`.
+/// Everything that a game with rapier usually needs: `use rapier3d_medial::prelude::*;`.
 pub mod prelude {
     pub use crate::{
         Backend, BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder, MedialMesh,
@@ -79,17 +92,17 @@ pub mod prelude {
     };
 }
 
-/// The README's example, as a test.
+/// Runs the README's example as a test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct Readme;
 
-/// The guide's examples, as tests.
+/// Runs the guide's examples as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/guide.md")]
 pub struct Guide;
 
-/// The migration page's example, as a test.
+/// Runs the migration page's example as a test.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/migration.md")]
 pub struct Migration;
