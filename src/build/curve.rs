@@ -1,4 +1,4 @@
-//! Error by count: the least error of a body at each of several counts of primitives, from one construction.
+//! [`error_curve`]: how small the error can be at each of several numbers of primitives.
 
 use super::draft::Draft;
 use super::hausdorff::in_unit;
@@ -10,26 +10,44 @@ use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use std::ops::ControlFlow;
 
-/// The least error found with up to a count of primitives.
+/// The smallest error found with up to a number of primitives.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ErrorAt {
-    /// The count.
+    /// The number of primitives that was asked for.
     pub asked: usize,
-    /// Primitives of the medial mesh that has it.
+    /// Number of primitives of the medial mesh with this error; at most [`Self::asked`].
     pub primitives: usize,
-    /// The error, after enclosure if that is asked for, in the user's unit.
+    /// How far that medial mesh is from the triangle mesh, in the user's unit.
     pub hausdorff: Hausdorff,
 }
 
-/// The least error at each of `counts`, in ascending order, and the longest side of the source's box.
+/// The error that a triangle mesh has with each of several numbers of primitives (`counts`), to choose one before
+/// a build. Returns them in ascending order, and the longest side of the mesh's bounding box in the user's unit.
 ///
-/// Each is about what [`crate::MedialMesh::from_trimesh`] gives with that many `primitives` and the other
-/// `options`, whose own count and error count for nothing. No error is above that of a smaller count. The mesh is
-/// cleaned, sampled and collapsed once; each count costs a fit, an enclosure and a measurement.
+/// Each error is about what [`crate::MedialMesh::from_trimesh`] gives with that many `primitives` and the other
+/// `options`; `primitives` and `max_error` of the options are ignored. No error is larger than that of a
+/// smaller number. This is faster than as many builds: the mesh is cleaned, sampled and simplified once, and only
+/// fitting, covering and measuring are done for each number. `progress` is called as in
+/// [`crate::MedialMesh::from_trimesh_with_progress`].
 ///
 /// # Errors
-/// As [`crate::MedialMesh::from_trimesh`]; counts of 0 are refused.
+/// Those of [`crate::MedialMesh::from_trimesh_with_progress`]; a number of 0 primitives is refused.
+///
+/// ```no_run
+/// use rapier3d::prelude::*;
+/// use rapier3d_medial::{BuildOptions, build::error_curve};
+/// use std::ops::ControlFlow;
+///
+/// let (vertices, indices) = Cuboid::new(Vector::new(0.5, 0.2, 0.3)).to_trimesh();
+/// let options = BuildOptions::default();
+/// let mut go_on = |_| ControlFlow::Continue(());
+/// let (curve, _) = error_curve(&vertices, &indices, &[22, 50], &options, &mut go_on)?;
+/// for point in curve {
+///     println!("{} primitives: off by {} m", point.primitives, point.hausdorff.error());
+/// }
+/// # Ok::<(), rapier3d_medial::BuildError>(())
+/// ```
 pub fn error_curve(
     vertices: &[Vector],
     indices: &[[u32; 3]],

@@ -1,70 +1,73 @@
-//! What was found in a source mesh and what was done about it: counts, and in words.
+//! What was found wrong in a triangle mesh and what was done about it, as numbers and in words.
 
 use std::fmt::Write as _;
 
-/// What a build found in its triangle mesh and did about it. All are counts.
+/// What a build found in its triangle mesh and did about it, as numbers. [`super::BuildReport::notes`] says the
+/// same in words.
+///
+/// A *patch* is a set of triangles that are joined across edges of exactly two triangles. It is *solid* if it
+/// bounds a volume, alone or together with others, else it is a *sheet*.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Findings {
-    /// Vertices that no triangle uses.
+    /// Vertices that no triangle uses; ignored.
     pub vertices_unused: usize,
-    /// Vertices that became one with another at the same place (within 1e-6 of the longest side).
+    /// Vertices that were welded to another at the same place (within 1e-6 of the longest side).
     pub vertices_welded: usize,
-    /// Triangles of which two corners are one vertex. As segments or points they are covered, and measured
-    /// as far as they stick out, and count for nothing else.
+    /// Triangles of which two corners are one vertex. The medial mesh covers the segments or points that they are, and
+    /// the error includes how far they stick out; for all else they are ignored.
     pub triangles_collapsed: usize,
-    /// Triangles dropped because another has the same corners, in whatever order.
+    /// Triangles dropped because another has the same corners, in any order.
     pub triangles_repeated: usize,
-    /// Triangles without area: they join their neighbours and are covered, and count for nothing
-    /// else.
+    /// Triangles without area. They join their neighbours and are covered; for all else they are ignored.
     pub triangles_without_area: usize,
-    /// Triangles turned round.
+    /// Triangles whose orientation was reversed, to face outward.
     pub triangles_turned: usize,
-    /// Slivers without area that close seams, where a triangle's edge meets several of others.
+    /// Triangles without area that were added to close seams, where one long edge meets several short ones.
     pub slivers: usize,
-    /// Edges of one triangle.
+    /// Edges of only one triangle.
     pub edges_open: usize,
     /// Edges of more than two triangles.
     pub edges_crowded: usize,
     /// Edges whose triangles cannot be made to face the same way.
     pub edges_twisted: usize,
-    /// Patches: triangles joined across edges of two.
+    /// Patches.
     pub patches: usize,
-    /// Patches that bound solid matter, alone or together.
+    /// Solid patches.
     pub patches_solid: usize,
-    /// Of those, patches with openings that were taken for damage and closed.
+    /// Solid patches with openings that were taken for damage and closed.
     pub patches_mended: usize,
-    /// Of those, closed shells that face inward: cavities.
+    /// Solid patches that bound a cavity: closed, and facing inward.
     pub patches_cavity: usize,
-    /// Patches built as sheets, which have no inside.
+    /// Patches that were built as sheets.
     pub patches_sheet: usize,
-    /// Of those, closed ones: they enclose no volume.
+    /// Sheets that are closed but enclose no volume.
     pub patches_flat: usize,
-    /// Triangles of solid patches built as sheets, because matter is too thin there to hold balls.
+    /// Triangles of solid patches that were built as sheets, because the solid is too thin there to hold spheres.
     pub triangles_thin: usize,
-    /// Triangles of sheets, after long edges are halved, left out because they lie inside solid
-    /// matter.
+    /// Triangles of sheets (after long edges were halved) that were left out because they lie inside a solid.
     pub triangles_buried: usize,
-    /// Triangles that lie inside solid matter all over: they count for nothing in the error.
+    /// Triangles that lie entirely inside a solid. They do not count in the error.
     pub triangles_hidden: usize,
-    /// Patches of such triangles only.
+    /// Patches of which all triangles lie entirely inside a solid.
     pub patches_hidden: usize,
     /// Whether solid patches overlap, or one passes through itself.
     pub overlapping: bool,
-    /// Where the mass properties are from.
+    /// How the mass properties were computed.
     pub mass: MassSource,
 }
 
-/// Where the mass properties of a built mesh are from.
+/// How the mass properties of a built mesh were computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MassSource {
-    /// The source's closed surface, exactly.
+    /// From the closed surface of the triangle mesh, exactly.
     #[default]
     Surface,
-    /// The source's solid patches, overlaps counted once, integrated along lines.
+    /// From the solid patches of the triangle mesh, with overlaps counted once, by integration along lines: exact to
+    /// about a thousandth.
     Lines,
-    /// The medial mesh: the source encloses nothing.
+    /// From the medial mesh, because the triangle mesh encloses nothing.
     MedialMesh,
 }
 

@@ -1,4 +1,4 @@
-//! Measured two-sided distance between a triangle mesh and the boundary of a medial mesh's solid.
+//! Measures how far a medial mesh is from a triangle mesh: the Hausdorff distance of their surfaces.
 //!
 //! # Method
 //! Branch and bound (`largest.rs`), starting from whole triangles of the source, or from a box around
@@ -48,10 +48,11 @@ const OFF_SURFACE: f64 = 1e-4;
 const PIECES: f64 = 3e5;
 const PIECES_PER_PRIMITIVE: f64 = 500.0;
 
-/// Measures a medial mesh against a triangle mesh, both in the same frame and unit.
+/// Measures how far a medial mesh is from a triangle mesh, both in the same frame and unit. Distances are in that
+/// unit. Takes up to seconds if the error is far below a thousandth of the size.
 ///
-/// Distances are in that unit. Takes up to seconds for errors far below a thousandth of the size.
-/// Fails on a triangle mesh that [`MedialMesh::from_trimesh`] would refuse.
+/// # Errors
+/// [`BuildError`] for a triangle mesh that [`MedialMesh::from_trimesh`] would refuse.
 pub fn hausdorff(
     mesh: &MedialMesh,
     vertices: &[Vector],

@@ -1,13 +1,13 @@
-//! Triangle meshes from files: Wavefront OBJ, STL, PLY, OFF, and glTF with feature `gltf`.
+//! Reads triangle meshes from files: Wavefront OBJ, STL, PLY, OFF, and glTF (with feature `gltf`).
 //!
-//! PLY is read by `ply-rs-bw` and glTF by `gltf`, behind a check of the counts they are asked to believe.
-//! The other three are read here: the line formats are smaller than the guards that the crates for them
-//! would need. `tobj` 4.0 names no line, stops at a comment that is not UTF-8 and overflows on a
-//! texture index below its range; `stl_io` 0.11 names no line either and takes a binary file
-//! whose header begins with `solid` for text.
+//! PLY is read by the crate `ply-rs-bw` and glTF by `gltf`, after a check that the file is long enough for the
+//! counts it announces. The other three formats are read here, since the crates for them would need more guards
+//! around them than a reader has lines: `tobj` 4.0 names no line in its errors, stops at a comment that is not
+//! UTF-8 and overflows on a texture index below its range; `stl_io` 0.11 names no line either and takes a
+//! binary file whose header begins with `solid` for text.
 //!
-//! Every reader ends in `Polygons::finish`: indices are checked, polygons are cut into triangles,
-//! and vertices at exactly the same place become one.
+//! Every reader ends in `Polygons::finish`, which checks indices, cuts polygons into triangles, and makes vertices
+//! at exactly the same place one.
 
 #[cfg(feature = "gltf")]
 mod gltf;
@@ -23,16 +23,16 @@ use crate::medial::text::TextError;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// A triangle mesh as it came from a file, in the file's unit of length.
+/// A triangle mesh from a file, in the file's unit of length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
-    /// Corners; no two are equal.
+    /// Positions of the corners; no two are equal.
     pub vertices: Vec<Vector>,
-    /// Three different vertices each, counter-clockwise from outside as the file has them.
+    /// Three different vertices of each triangle, in the order of the file: usually counter-clockwise seen from outside.
     pub indices: Vec<[u32; 3]>,
 }
 
-/// The formats that [`read`] knows.
+/// A file format that [`read`] knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshFormat {
     /// Wavefront OBJ: `v` and `f` lines; everything else is skipped.
@@ -43,13 +43,14 @@ pub enum MeshFormat {
     Ply,
     /// Object File Format, text.
     Off,
-    /// glTF 2.0, JSON or binary: all triangles of its scene, moved by their nodes.
+    /// glTF 2.0, JSON or binary (GLB): all triangles of the scene, each mesh placed by its nodes.
     #[cfg(feature = "gltf")]
     Gltf,
 }
 
 impl MeshFormat {
-    /// The format that a file's ending names, in either case.
+    /// The format that the ending of a file's name stands for, in capital or small letters; `None` if it is none of
+    /// these.
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match extension.as_str() {
@@ -64,13 +65,22 @@ impl MeshFormat {
     }
 }
 
-/// Reads a mesh file; its ending names the format.
+/// Reads a triangle mesh from a file; the ending of its name says the format.
 ///
-/// Polygons are cut into triangles, equal vertices become one, triangles left with two equal
-/// corners are dropped. Memory is bounded by the file's size, whatever counts it announces.
+/// Polygons are cut into triangles, vertices at the same place become one, and triangles with two equal
+/// corners are dropped. Memory is bounded by the size of the file, whatever counts it announces.
 ///
-/// Fails on an unknown ending, on a file that cannot be read, and on content as
-/// [`read_bytes`] does.
+/// # Errors
+/// [`BuildError::UnknownFormat`] for an unknown ending, [`BuildError::File`] if the file cannot be read, and the errors
+/// of [`read_bytes`].
+///
+/// ```no_run
+/// use rapier3d_medial::{BuildOptions, MedialMesh, build::mesh_file};
+/// let ring = mesh_file::read("ring.obj")?;
+/// let options = BuildOptions { primitives: Some(50), ..Default::default() };
+/// let (mesh, _) = MedialMesh::from_trimesh(&ring.vertices, &ring.indices, &options)?;
+/// # Ok::<(), rapier3d_medial::BuildError>(())
+/// ```
 pub fn read(path: impl AsRef<Path>) -> Result<TriangleMesh, BuildError> {
     let path = path.as_ref();
     let Some(format) = MeshFormat::of(path) else {
@@ -87,13 +97,15 @@ pub fn read(path: impl AsRef<Path>) -> Result<TriangleMesh, BuildError> {
     read_bytes(&bytes, format, path)
 }
 
-/// As [`read`], from memory; `name` stands for the path in errors. Buffers of a glTF file that are files of
-/// their own are read from beside it.
+/// Reads a triangle mesh from the bytes of a file, as [`read`] does. Errors call it `name`; if a glTF file keeps
+/// its buffers in files of their own, they are read from the folder of `name`.
 ///
-/// Fails with [`BuildError::Syntax`] (line, or byte offset of a binary file) on content that
-/// breaks off or breaks the format, with [`BuildError::NotFinite`] or
-/// [`BuildError::IndexOutOfRange`] on values of a binary file, with [`BuildError::Empty`] if no
-/// triangle is left.
+/// # Errors
+/// - [`BuildError::Syntax`] with the line (or byte offset, in a binary file) if the content ends early or
+///   breaks the format.
+/// - [`BuildError::NotFinite`] for a coordinate that is not finite, [`BuildError::IndexOutOfRange`] for a vertex that is
+///   not there, in a binary file.
+/// - [`BuildError::Empty`] if no triangle is left.
 ///
 /// ```
 /// use rapier3d_medial::build::mesh_file::{MeshFormat, read_bytes};

@@ -1,4 +1,5 @@
-//! L2: triangle mesh → [`MedialMesh`]. The entry; `pipeline.rs` calls the stages in order.
+//! Builds a [`MedialMesh`] from a triangle mesh (layer 2). This file has the functions that users call;
+//! `pipeline.rs` calls the stages in order.
 
 mod ball_quadrics;
 mod blunt_sheets;
@@ -89,16 +90,20 @@ use surface::Surface;
 use watch::Watch;
 
 impl MedialMesh {
-    /// Builds a medial mesh from a triangle mesh: its solid where triangles enclose one, sheets where they
-    /// do not. `indices` are counter-clockwise seen from outside; triangles that are not are turned round.
-    /// The result is in the same unit and frame, and has the mass of the solid. It takes a second to half a
-    /// minute with optimisation (`docs/medial-mesh-error.md` has a table), and many times that without:
-    /// build once and save it ([`MedialMesh::save_asset`]).
+    /// Builds a medial mesh from a triangle mesh. Where the triangles enclose a volume it becomes a solid, where
+    /// they do not they become sheets without thickness. The result is in the unit and frame of the
+    /// vertices, and has the mass, centre of mass and inertia of the solid.
+    ///
+    /// Triangles are meant to be counter-clockwise seen from outside; those that are not are turned round.
+    /// Other damage (cracks, small openings, repeated triangles, overlapping parts) is repaired if possible, and
+    /// [`BuildReport::findings`] counts it.
+    ///
+    /// A build takes a second to half a minute in optimised code (`docs/medial-mesh-error.md` has a table), and
+    /// many times as long without optimisation. Build once and save the result ([`MedialMesh::save_asset`]).
     ///
     /// # Errors
-    /// [`BuildError`] names what is wrong: an option out of its range, no triangles, coordinates that are
-    /// not finite or too large, an index beyond the vertices, or triangles without any extent. What can be
-    /// repaired is, and [`BuildReport::findings`] counts it.
+    /// [`BuildError`] says what is wrong: an option out of its range, no triangles, coordinates that are
+    /// not finite or too large, an index beyond the vertices, or triangles without any extent.
     ///
     /// ```
     /// use rapier3d::prelude::*;
@@ -121,8 +126,28 @@ impl MedialMesh {
         })
     }
 
-    /// As [`MedialMesh::from_trimesh`], calling `progress` between and within stages; a `Break` ends
-    /// the build with [`BuildError::Cancelled`].
+    /// Does the same as [`MedialMesh::from_trimesh`], and calls `progress` several times a second to tell how far
+    /// the build is. If `progress` returns `Break`, the build stops.
+    ///
+    /// # Errors
+    /// Those of [`MedialMesh::from_trimesh`], and [`BuildError::Cancelled`] if `progress` returned `Break`.
+    ///
+    /// ```
+    /// use rapier3d::prelude::*;
+    /// use rapier3d_medial::prelude::*;
+    /// use std::ops::ControlFlow;
+    ///
+    /// let (vertices, indices) = Cuboid::new(Vector::new(0.5, 0.2, 0.3)).to_trimesh();
+    /// let options = BuildOptions { primitives: Some(50), ..Default::default() };
+    /// let mut show = |progress: Progress| {
+    ///     println!("{:3.0} % {}", 100.0 * progress.fraction, progress.stage);
+    ///     ControlFlow::Continue(())
+    /// };
+    /// let (mesh, _) =
+    ///     MedialMesh::from_trimesh_with_progress(&vertices, &indices, &options, &mut show)?;
+    /// # assert!(mesh.primitive_count() <= 50);
+    /// # Ok::<(), rapier3d_medial::BuildError>(())
+    /// ```
     pub fn from_trimesh_with_progress(
         vertices: &[Vector],
         indices: &[[u32; 3]],

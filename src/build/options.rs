@@ -1,39 +1,43 @@
-//! What a build is asked for, and what it reports.
+//! The options of a build, its progress, and its report.
 
 use super::findings::Findings;
 use crate::error::BuildError;
 use crate::math::Real;
 
-/// How much work a build spends on a small error.
+/// How much work a build spends on making the error small.
 ///
-/// A higher one never gives a larger error (the larger direction of [`BuildReport::hausdorff`],
-/// within its sampling): it compares its result with the lower one's and keeps the better.
+/// A higher quality never gives a larger error ([`Hausdorff::error`], up to its `sampling`), because a build
+/// also makes the result of the lower quality and keeps the better one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quality {
-    /// Edge collapse by quadric error (Q-MAT).
+    /// A fifth of the time of [`Self::Balanced`], and one and a half to three times its error: edges are
+    /// collapsed by an error estimate (the quadric error of Q-MAT), and that is all.
     Fast,
-    /// Then collapse by measured error, insertion where it is largest, least-squares refit.
+    /// The default. After that, edges are collapsed by the measured error, primitives are inserted where the error is
+    /// largest, and centres and radii are fitted by least squares.
     #[default]
     Balanced,
-    /// Then several starts for small counts, and rounds of swaps.
+    /// Three times the time of [`Self::Balanced`] for little gain: more rounds in which primitives are removed in one
+    /// place and inserted in another and, if their number is small, a second start.
     Best,
 }
 
-/// Which sharp convex edges of the source may be kept, by spheres of radius 0 on them.
+/// Which edges of the triangle mesh count as sharp. Convex sharp edges may be kept, by spheres of radius 0 that lie
+/// on them; all other edges are rounded.
 ///
-/// Convex bodies with flat faces, alone or several apart, become their own medial axis, which is exact,
-/// where the limit on the count allows it. Other closed bodies keep what makes the error
-/// smallest: all medial meshes are measured, those with spheres of radius 0 and one without
-/// ([`Quality::Fast`]: that one only). `BuildReport::notes` says what came out.
+/// Convex bodies with flat faces, alone or several apart, become their own medial axis if the number of
+/// primitives allows it, and are then exact. Of other closed bodies one medial mesh is made with sharp edges
+/// and one without, and the one of smaller error is returned ([`Quality::Fast`] makes only the one
+/// without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Creases {
-    /// Those above 25°, unless most of them end within a face, as those of a coarse organic mesh do; between
-    /// flat faces of a convex body all.
+    /// Edges at which the surface bends by more than 25°, unless most of these edges end within a face, as on a
+    /// coarse mesh of an animal. On a convex body with flat faces, all edges.
     #[default]
     Auto,
-    /// Those at which the faces' normals differ by more than this angle (rad).
+    /// Edges at which the normals of the two faces differ by more than this angle, in radians.
     Keep(Real),
-    /// None: spheres of radius 0 are avoided.
+    /// No edges: all are rounded.
     None,
 }
 
@@ -61,24 +65,36 @@ impl Creases {
     }
 }
 
-/// What to build.
+/// What [`crate::MedialMesh::from_trimesh`] should build. The defaults are 500 primitives, balanced quality, and
+/// a solid that covers the triangle mesh.
+///
+/// ```
+/// use rapier3d_medial::prelude::*;
+/// // At most 100 primitives:
+/// let by_count = BuildOptions { primitives: Some(100), ..Default::default() };
+/// // As few primitives as keep the error below 1 % of the mesh's longest side:
+/// let by_error = BuildOptions { primitives: None, max_error: Some(0.01), ..Default::default() };
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuildOptions {
-    /// Largest number of primitives (slabs, cones that belong to no slab, lone spheres).
+    /// Largest number of primitives (slabs, cones that belong to no slab, lone spheres): what the collider costs.
+    /// `None` leaves it to `max_error`; without that either, it is 500.
     pub primitives: Option<usize>,
-    /// Largest two-sided Hausdorff error after enclosure, as a fraction of the longest side of the bounding box:
-    /// the smallest mesh that keeps it is built, as far as counts were tried (`BuildReport::notes`). With `primitives`
-    /// as well it has no more than those. Where none keeps it, the best is built, and
-    /// [`BuildReport::target_reached`] is false. Takes five to fifteen times as long as a count does.
+    /// Largest error ([`Hausdorff::error`] of the result), as a fraction of the longest side of the bounding box.
+    /// The smallest mesh that keeps to it is built, among the numbers of primitives that were tried
+    /// ([`BuildReport::notes`]); with `primitives` set as well, it has at most that many. If no mesh
+    /// keeps to it, the best one found is returned, and [`BuildReport::target_reached`] is false. Such a build takes
+    /// five to fifteen times as long as one for a given number of primitives.
     pub max_error: Option<Real>,
-    /// How much work to spend.
+    /// How much work to spend on making the error small.
     pub quality: Quality,
-    /// Enlarge radii until the solid provably covers the whole source surface.
+    /// Whether to enlarge radii until the solid provably covers the whole triangle mesh. Without this, the
+    /// error is about six tenths as large, and parts of the triangle mesh stick out of the solid.
     pub enclose: bool,
-    /// How far the source surface may stick out of the enclosed solid, as a fraction of the longest
-    /// side of the bounding box. Enclosure then proves this instead: bloat falls by up to as much.
+    /// With `enclose`: how far the triangle mesh may stick out of the solid nevertheless, as a fraction of the
+    /// longest side of the bounding box. The solid becomes thinner by up to as much.
     pub allow_uncovered: Real,
-    /// Which sharp edges to keep.
+    /// Which edges of the triangle mesh count as sharp.
     pub creases: Creases,
 }
 
@@ -95,86 +111,92 @@ impl Default for BuildOptions {
     }
 }
 
-/// How far a build is.
+/// How far a build has got, as its callback is told
+/// ([`MedialMesh::from_trimesh_with_progress`](crate::MedialMesh::from_trimesh_with_progress)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Name of the running stage.
+    /// Name of the running stage: `"simplify"`, `"refit"`, ….
     pub stage: &'static str,
-    /// Of the whole build, in [0, 1].
+    /// Share of the whole build that is done, from 0 to 1. It is estimated, and never falls.
     pub fraction: Real,
 }
 
-/// Two-sided distance between a source surface and the solid's boundary, in the user's unit. What of the source
-/// lies inside the matter that its parts make together is no surface here.
+/// How far a medial mesh is from the triangle mesh: the Hausdorff distance of the two surfaces, that is the largest
+/// distance from a point of either surface to the nearest point of the other. All fields are lengths in the
+/// user's unit. Triangles that lie inside the solid that all parts of the triangle mesh make together do not count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hausdorff {
-    /// Largest distance from the source surface to the solid's boundary.
+    /// Largest distance from a point of the triangle mesh to the surface of the medial mesh.
     pub surface_to_envelope: Real,
-    /// Largest distance from the solid's boundary to the source surface.
+    /// Largest distance from a point on the surface of the medial mesh to the triangle mesh.
     pub envelope_to_surface: Real,
-    /// How far the source surface sticks out of the solid.
+    /// How far the triangle mesh sticks out of the medial mesh, at most.
     pub uncovered: Real,
-    /// How far the solid sticks out of the source surface, at the points examined.
+    /// How far the medial mesh sticks out of the triangle mesh, at the points that were looked at.
     pub bloat: Real,
-    /// No point of either surface is farther from the other than [`Self::error`] and this: a quarter
-    /// of the error ([`Quality::Fast`] without [`BuildOptions::max_error`]: half), or more where the
-    /// error is below two thousandths of the size, or the search runs out of its budget.
+    /// Uncertainty of [`Self::error`], since only some points were looked at: no point of either surface is farther from
+    /// the other than `error() + sampling`. It is a quarter of the error (half with [`Quality::Fast`] and no
+    /// [`BuildOptions::max_error`]), or more if the error is below two thousandths of the size or the
+    /// search ran out of its budget.
     pub sampling: Real,
 }
 
 impl Hausdorff {
-    /// The two-sided distance: the larger of both directions.
+    /// The Hausdorff distance: the larger of [`Self::surface_to_envelope`] and [`Self::envelope_to_surface`].
     pub fn error(&self) -> Real {
         self.surface_to_envelope.max(self.envelope_to_surface)
     }
 }
 
-/// Of what kind a medial mesh is: which of those that were made of one body came out.
+/// What became of the sharp edges of a triangle mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Variant {
-    /// Balls inside, slabs of sheets: edges are rounded.
+    /// All edges are rounded.
     #[default]
     Rounded,
-    /// Spheres of radius 0 on sharp convex edges.
+    /// Sharp convex edges are kept where that makes the error smaller, by spheres of radius 0 on them.
     Creased {
-        /// Edges of the source that may be kept: those that pay are.
+        /// Number of edges of the triangle mesh that could be kept.
         edges: usize,
     },
-    /// The medial axis of convex polyhedra, exact.
+    /// The medial mesh is the medial axis of convex bodies with flat faces, and exact.
     Exact,
 }
 
-/// What a build did, measured.
+/// What a build made, how far it is from the triangle mesh, and what was repaired.
+///
+/// Look first at [`Self::hausdorff`] (the error), [`Self::target_reached`] (whether you got what you
+/// asked for) and [`Self::notes`] (what you should know, in sentences).
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BuildReport {
-    /// Error of the result.
+    /// How far the result is from the triangle mesh, in the user's unit.
     pub hausdorff: Hausdorff,
-    /// Error before the enclosure, when one was asked for.
+    /// The same before radii were enlarged to cover the triangle mesh; `None` without [`BuildOptions::enclose`].
     pub hausdorff_before_enclosure: Option<Hausdorff>,
-    /// Longest side of the source's bounding box: errors are usually quoted in it.
+    /// Longest side of the triangle mesh's bounding box, in the user's unit. Errors are often given as fractions of it.
     pub longest_side: Real,
-    /// Primitives of the result.
+    /// Number of primitives of the result.
     pub primitives: usize,
-    /// Of what kind it is.
+    /// What became of sharp edges.
     pub variant: Variant,
-    /// Euler number of the result's complex: spheres − edges + faces. 1 for a ball, 0 for a ring.
+    /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring.
     pub euler: i64,
-    /// Whether the result keeps every limit asked for. The count is always kept.
+    /// Whether the result keeps to [`BuildOptions::max_error`]; true if none was asked for. The number of primitives
+    /// is always kept to.
     pub target_reached: bool,
-    /// What was found in the input and what was done about it, counted.
+    /// What was found wrong in the triangle mesh and what was done about it, as numbers.
     pub findings: Findings,
-    /// Area of the source that lies inside solid matter, where other parts hide it, in the user's unit squared: the
-    /// error is that of the boundary of the solid, and this counts for nothing.
+    /// Area of the triangle mesh that lies inside the solid, hidden by other parts, in the user's unit squared. It
+    /// does not count in the error.
     pub hidden_area: Real,
-    /// The same in words, and which limit bound.
+    /// What you should know about the triangle mesh and the result, a sentence each.
     pub notes: Vec<String>,
-    /// Most bytes that the builder's large arrays held at any time: the sum of their capacities. An
-    /// estimate from below: small lists, and what the allocator adds, are not in it, nor is the
-    /// caller's mesh.
+    /// Bytes that the builder's large arrays held at most at any time. Small lists, overhead of the allocator and
+    /// your own mesh are not included, so the true number is larger.
     pub memory: usize,
-    /// Seconds per stage, in order.
+    /// Seconds that each stage took, in order.
     pub seconds: Vec<(&'static str, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! Baked meshes: all that loading needs no work for, in one block of bytes.
+//! Baked meshes: a medial mesh as bytes, with its trees and mass properties, so that loading computes nothing.
 //!
 //! ```text
 //! bytes        little-endian words of 4 bytes
@@ -19,9 +19,9 @@
 //! ```
 //!
 //! # Trust
-//! Counts are compared with the bytes that are there before anything is allocated. The checksum tells any
-//! changed byte. A file made by hand is checked as far as every query then ends without a panic; that its
-//! tree bounds what is below it, and its mass is that of its solid, is taken from it.
+//! Counts are compared with the length of the bytes before anything is allocated. The checksum finds every
+//! changed byte. A file forged with a good checksum is checked so far that no query on it panics. It is not
+//! checked that its tree bounds its primitives, nor that its mass is that of its solid.
 
 use super::check::{check, check_primitives};
 use super::files::{self, file_error};
@@ -36,7 +36,8 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 
-/// First bytes of a baked mesh. As PNG's: no text starts so, and a transfer that changes line ends shows.
+/// First bytes of a baked mesh. Like those of PNG, no text begins so, and they reveal a transfer that changed
+/// line ends.
 pub const MAGIC: [u8; 8] = *b"\x89medial\n";
 
 /// Version of the layout that is written and read.
@@ -49,8 +50,8 @@ const CHECKSUM: usize = 8;
 const MASS: usize = 11;
 
 impl MedialMesh {
-    /// The mesh with its trees and mass properties, baked: [`Self::from_bytes`] gives it back bit by bit
-    /// without computing any of it. Computes the mass properties if nobody asked for them yet.
+    /// The mesh as bytes, with its trees and mass properties (baked). [`Self::from_bytes`] gives back the same
+    /// mesh, bit by bit, without computing them. The mass properties are computed here if they are not known.
     ///
     /// ```
     /// use rapier3d_medial::MedialMesh;
@@ -105,11 +106,13 @@ impl MedialMesh {
         out.0
     }
 
-    /// Takes a mesh baked by [`Self::to_bytes`]: about 0.3 ms for 5,000 primitives, all of it reading and
-    /// checking. (parry's tree of boxes follows at its first use, [`Self::bvh`].)
+    /// Loads a mesh from the bytes of [`Self::to_bytes`], in about 0.3 ms for 5,000 primitives. Only parry's
+    /// tree of boxes ([`Self::bvh`]) is still computed, at its first use.
     ///
-    /// Fails on bytes that are something else, of another version, cut, damaged, or hold what no baking
-    /// writes; never allocates more than a few times the bytes given.
+    /// # Errors
+    /// [`AssetError`] if the bytes are not a baked mesh, are of another version of the format, too short,
+    /// too long or damaged, or contain numbers that [`Self::to_bytes`] never writes. At most a few
+    /// times the length of the bytes is allocated, whatever they contain.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, AssetError> {
         let counts = Counts::of_header(bytes)?;
         let (needed, found) = (counts.bytes(), bytes.len() as u64);
@@ -126,17 +129,21 @@ impl MedialMesh {
         read(content, &counts)
     }
 
-    /// Bakes into a file; see [`Self::to_bytes`]. Written beside `path` first, then renamed: `path` is
-    /// complete or as it was before.
+    /// Saves the mesh to a file, with its trees and mass properties (the bytes of [`Self::to_bytes`]). The
+    /// usual ending is `.medial`.
+    ///
+    /// # Errors
+    /// [`MeshError::File`] if the file cannot be written. An older file at `path` is then still there, unchanged.
     pub fn save_asset(&self, path: impl AsRef<Path>) -> Result<(), MeshError> {
         let bytes = self.to_bytes();
         files::replace(path.as_ref(), |mut file| file.write_all(&bytes))
     }
 
-    /// Loads a file written by [`Self::save_asset`].
+    /// Loads a file written by [`Self::save_asset`], in about 0.3 ms for 5,000 primitives.
     ///
-    /// Fails with [`MeshError::File`] if it cannot be read, and with [`MeshError::Asset`] as
-    /// [`Self::from_bytes`] does; reads no more than the file's header asks for.
+    /// # Errors
+    /// [`MeshError::File`] if the file cannot be read, [`MeshError::Asset`] with the error of
+    /// [`Self::from_bytes`] if it is not a baked mesh. No more is read than the file's header asks for.
     pub fn load_asset(path: impl AsRef<Path>) -> Result<Self, MeshError> {
         let path = path.as_ref();
         let asset = |source| MeshError::Asset {

@@ -1,4 +1,4 @@
-//! Boxes, sharp or rounded, as exact medial meshes.
+//! Constructors of boxes, sharp or rounded, as exact medial meshes.
 //!
 //! The medial axis of a box of half extents `a ≥ b ≥ c` is made of flat sheets on each of which the
 //! distance to the surface is linear: the rectangle `|x| ≤ a − c`, `|y| ≤ b − c` of radius `c` in the
@@ -14,10 +14,11 @@ use crate::error::MeshError;
 use crate::math::{Real, Vector};
 
 impl MedialMesh {
-    /// A box about the origin, its edges sharp (lengths, body's frame): exact up to the rounding of its
-    /// numbers, from 22 slabs and 12 spheres; a cube from 12 slabs.
+    /// A box with sharp edges around the origin of the body's frame. It is exact up to the rounding of its
+    /// numbers, and takes 22 slabs, or 12 for a cube.
     ///
-    /// Fails unless all half extents are positive and finite.
+    /// # Errors
+    /// [`MeshError::Parameter`] unless all half extents are positive and finite.
     ///
     /// ```
     /// use rapier3d_medial::{MedialMesh, math::Vector};
@@ -33,11 +34,13 @@ impl MedialMesh {
         round_box(half_extents, 0.0)
     }
 
-    /// A box with all within `border_radius` of it (lengths, body's frame): parry's round cuboid,
-    /// exact as [`Self::cuboid`]. A half extent of 0 gives a rounded plate, two of them a capsule, three a
-    /// ball.
+    /// All points within `border_radius` of a box around the origin of the body's frame: parry's round
+    /// cuboid, as exact as [`Self::cuboid`]. One half extent of 0 gives a rounded plate, two a capsule,
+    /// three a ball.
     ///
-    /// Fails unless all half extents are at least 0, `border_radius` is positive, and all are finite.
+    /// # Errors
+    /// [`MeshError::Parameter`] unless all half extents are at least 0, `border_radius` is positive, and all
+    /// are finite.
     pub fn round_cuboid(half_extents: Vector, border_radius: Real) -> Result<Self, MeshError> {
         let [x, y, z] = NAMES;
         not_negative(x, half_extents.x)?;
@@ -46,10 +49,11 @@ impl MedialMesh {
         round_box(half_extents, positive("border_radius", border_radius)?)
     }
 
-    /// A plate with a round rim: all within `radius` of the rectangle `|x| ≤ half_x`, `|z| ≤ half_z` of
-    /// the xz-plane (lengths, body's frame). Exact: 2 slabs of one radius.
+    /// A plate with a round rim: all points within `radius` of the rectangle `|x| ≤ half_x`,
+    /// `|z| ≤ half_z` in the xz-plane of the body's frame. Exact: two slabs.
     ///
-    /// Fails unless all three are positive and finite.
+    /// # Errors
+    /// [`MeshError::Parameter`] unless all three are positive and finite.
     pub fn round_plate(half_x: Real, half_z: Real, radius: Real) -> Result<Self, MeshError> {
         let half_x = positive("half_x", half_x)?;
         let half_z = positive("half_z", half_z)?;

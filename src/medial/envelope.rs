@@ -1,4 +1,4 @@
-//! The surface of the solid as triangles, for drawing and measuring.
+//! The surface of a medial mesh as triangles, for drawing and measuring.
 //!
 //! # Method
 //! Every sheet (`sheet`: balls, flanks, planes) gets a grid; what lies inside another primitive
@@ -64,15 +64,16 @@ const CREASE_ROUNDS: usize = 4;
 const ROOT_STEPS: usize = 40;
 
 impl MedialMesh {
-    /// The exposed surface as vertices and triangles, counter-clockwise from outside, in the body's
-    /// frame. Every vertex lies on the boundary of the solid, up to rounding to `f32`; neighbours
-    /// are about `spacing` apart (a length), nearer along creases. Parts of radius 0 are there
-    /// as two-sided sheets. Seams between sheets are not sewn. Costs 5 to 20 µs per triangle.
+    /// The surface of the solid as vertices and triangles, for drawing, in the body's frame. Triangles are
+    /// counter-clockwise seen from outside. Every vertex lies on the surface, up to rounding to `f32`.
+    /// Neighbouring vertices are about `spacing` apart (a length), and closer along creases. Parts of radius 0
+    /// appear as sheets with two sides. The pieces of the surface that different primitives contribute share
+    /// no vertices, so fine cracks can be seen between them. Takes 5 to 20 µs per triangle.
     ///
-    /// A spacing that is not positive and finite is taken as 1/64 of the longest side of the box,
-    /// one that needs more than four million triangles is widened until it does not. Exposed strips
-    /// narrower than 1/8 of the spacing may be missing, and where something narrower than the
-    /// spacing stands on a triangle its foot is not cut out.
+    /// A spacing that is not positive and finite stands for 1/64 of the longest side of the bounding box. One
+    /// that would need more than four million triangles is widened until it does not. Strips of the surface
+    /// narrower than 1/8 of the spacing may be missing, and where a part narrower than the spacing stands on
+    /// another, the surface beneath it may not be cut out.
     ///
     /// ```
     /// use rapier3d_medial::MedialMesh;

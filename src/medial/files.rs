@@ -1,4 +1,4 @@
-//! Files that are complete or as they were before.
+//! Writing files safely: if a write fails half way, the old file is still there.
 
 use crate::error::MeshError;
 use std::fs::{self, File, OpenOptions};
@@ -6,7 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Writes beside `path` first, then renames.
+/// Writes a new file beside `path`, then renames it to `path`.
 pub fn replace(path: &Path, write: impl FnOnce(&File) -> io::Result<()>) -> Result<(), MeshError> {
     let (partial, file) = create_beside(path).map_err(|source| file_error(path, source))?;
     write(&file)

@@ -1,4 +1,4 @@
-//! The `.ma` text format of Q-MAT (Li et al. 2015), read and written.
+//! Reads and writes `.ma` files, the text format for medial meshes of the program Q-MAT (Li et al. 2015).
 //!
 //! ```text
 //! nV nE nF              header: counts
@@ -23,17 +23,22 @@ use std::path::Path;
 const RESERVE: usize = 1 << 16;
 
 impl MedialMesh {
-    /// Reads a `.ma` file. Lengths are taken as they are, in the file's unit.
+    /// Reads a `.ma` file, the text format of the program Q-MAT. Lengths stay in the file's unit. The file
+    /// holds no mass properties, so those of the solid are used.
     ///
-    /// Fails with [`MeshError::File`] if the file cannot be read, with [`MeshError::Syntax`] and
-    /// the line number if it breaks off or breaks the format, and as [`MedialMesh::new`] does.
+    /// # Errors
+    /// [`MeshError::File`] if the file cannot be read, [`MeshError::Syntax`] with the line number if it ends
+    /// early or breaks the format, and the errors of [`MedialMesh::new`].
     pub fn load_ma(path: impl AsRef<Path>) -> Result<Self, MeshError> {
         let path = path.as_ref();
         let file = File::open(path).map_err(|source| file_error(path, source))?;
         Self::read_ma(BufReader::new(file), path)
     }
 
-    /// As [`MedialMesh::load_ma`], from a reader; `name` stands for the path in errors.
+    /// Reads the text of a `.ma` file from a reader; errors call it `name`.
+    ///
+    /// # Errors
+    /// Those of [`MedialMesh::load_ma`].
     ///
     /// ```
     /// use rapier3d_medial::MedialMesh;
@@ -54,16 +59,19 @@ impl MedialMesh {
         Self::new(elements.spheres, elements.edges, elements.faces)
     }
 
-    /// Writes a `.ma` file that [`MedialMesh::load_ma`] reads back exactly: spheres, all edges
-    /// (those of faces among them) and faces. Mass properties of a source mesh are not kept.
+    /// Writes a `.ma` file, from which [`MedialMesh::load_ma`] reads exactly the same spheres, edges and faces.
+    /// It does not hold mass properties; [`MedialMesh::save_asset`] does.
     ///
-    /// Written beside `path` first, then renamed: `path` is complete or as it was before.
+    /// # Errors
+    /// [`MeshError::File`] if the file cannot be written. An older file at `path` is then still there, unchanged.
     pub fn save_ma(&self, path: impl AsRef<Path>) -> Result<(), MeshError> {
         files::replace(path.as_ref(), |file| self.write_ma(file))
     }
 
-    /// As [`MedialMesh::save_ma`], to a writer. Numbers have the fewest digits that read back as
-    /// the same `f32`.
+    /// Writes the text of a `.ma` file to a writer. Numbers have as few digits as give the same `f32` when read.
+    ///
+    /// # Errors
+    /// Those of the writer.
     pub fn write_ma(&self, writer: impl Write) -> io::Result<()> {
         let mut out = BufWriter::new(writer);
         let (spheres, edges, faces) = (self.spheres(), self.edges(), self.faces());

@@ -1,4 +1,5 @@
-//! L1: the data. Spheres joined by medial cones and slabs, their trees, mass and files.
+//! The medial mesh itself (layer 1): spheres joined by medial cones and slabs, their trees, mass, surface and
+//! files.
 
 pub mod asset;
 pub mod boxes;

@@ -1,4 +1,5 @@
-//! Flat shapes with a round rim: triangles and polygons thickened by one radius, as exact medial meshes.
+//! Constructors of flat shapes with a round rim: triangles and polygons thickened by one radius, as exact medial
+//! meshes.
 //!
 //! The polygon is cut into triangles by ear clipping (Meisters, "Polygons have ears", 1975), each a slab:
 //! the union of all balls of one radius about its points. Orientations are computed in `f64` from `f32`
@@ -17,9 +18,11 @@ const MAX_CORNERS: usize = 4096;
 type Point = [f64; 2];
 
 impl MedialMesh {
-    /// All within `radius` of a triangle (lengths, body's frame): parry's round triangle. Exact: one slab.
+    /// All points within `radius` of a triangle, in the body's frame: parry's round triangle. Exact: one slab.
     ///
-    /// Fails unless `radius` is positive and finite, and on corners that are not finite.
+    /// # Errors
+    /// [`MeshError::Parameter`] unless `radius` is positive and finite, [`MeshError::NotFinite`] if a corner is
+    /// not finite.
     pub fn round_triangle(
         a: Vector,
         b: Vector,
@@ -31,12 +34,13 @@ impl MedialMesh {
         Self::new(spheres, vec![], vec![[0, 1, 2]])
     }
 
-    /// All within `radius` of a polygon in the xz-plane, given by its corners `[x, z]` in order, either way
-    /// round (lengths, body's frame). It may be concave. Exact: `n − 2` slabs for `n` corners.
+    /// All points within `radius` of a polygon in the xz-plane of the body's frame, which may be concave. Its
+    /// corners `[x, z]` are listed in order, clockwise or not. Exact: `n − 2` slabs for `n` corners.
     ///
-    /// Fails unless `radius` is positive and finite and there are 3 to 4096 corners; on a corner that is not
-    /// finite; and on edges that meet where they are not neighbours, or neighbours that fold back, which are
-    /// named.
+    /// # Errors
+    /// - [`MeshError::Parameter`] unless `radius` is positive and finite and there are 3 to 4096 corners.
+    /// - [`MeshError::NotFinite`] if a corner is not finite.
+    /// - [`MeshError::PolygonEdgesMeet`] if two edges cross or touch, or one folds back onto its neighbour.
     pub fn round_polygon(corners: &[[Real; 2]], radius: Real) -> Result<Self, MeshError> {
         let radius = positive("radius", radius)?;
         if !(3..=MAX_CORNERS).contains(&corners.len()) {

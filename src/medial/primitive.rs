@@ -1,8 +1,8 @@
-//! Spheres, medial cones and medial slabs. Source: paper §3, Figure 1(a).
+//! The primitives of a medial mesh: spheres, medial cones and medial slabs. Source: paper §3, Figure 1(a).
 //!
-//! A cone is the union of the spheres interpolated between two, a slab between three: centres and
-//! radii are interpolated linearly with the same weights. Both are convex: the convex hull of
-//! their spheres.
+//! A cone is the union of all spheres interpolated between two given ones, a slab of those between three:
+//! centres and radii are interpolated linearly with the same weights. Both are the convex hull of the
+//! given spheres.
 
 use super::exact::{balls, nearest_to_point};
 use crate::math::lane::Vec3;
@@ -25,24 +25,25 @@ impl MedialSphere {
     }
 }
 
-/// One convex volume of a medial mesh.
+/// One convex part of a medial mesh: the convex hull of one, two or three spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MedialPrimitive {
-    /// A sphere that no edge joins.
+    /// A sphere without an edge.
     Sphere(MedialSphere),
-    /// Two spheres interpolated: the paper's `C_ij`.
+    /// A medial cone: all spheres interpolated between two (the paper's `C_ij`).
     Cone([MedialSphere; 2]),
-    /// Three spheres interpolated: the paper's `C_ijk`.
+    /// A medial slab: all spheres interpolated between three (the paper's `C_ijk`).
     Slab([MedialSphere; 3]),
 }
 
-/// Signed distance of a point to a primitive, and the sphere that gives it.
+/// Signed distance of a point to a primitive, and which interpolated sphere is nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointDistance {
-    /// Distance to the nearest interpolated sphere's surface; negative inside. Inside it is the
-    /// depth within that sphere, a lower bound of the depth within the primitive.
+    /// Distance to the surface of the nearest interpolated sphere, a length, negative inside. The depth of a point
+    /// inside is that within the sphere, which is at most the depth within the primitive.
     pub distance: Real,
-    /// Weights of the primitive's spheres that interpolate that sphere; sum 1, unused are 0.
+    /// Weights with which the primitive's spheres interpolate that sphere. They sum to 1; weights of spheres that
+    /// the primitive does not have are 0.
     pub weights: [Real; 3],
 }
 
@@ -56,7 +57,8 @@ impl MedialPrimitive {
         }
     }
 
-    /// The three spheres of the slab it degenerates from: a sphere thrice, a cone's end twice.
+    /// The primitive as three spheres: those of a slab, a cone with its second sphere repeated, or the same
+    /// sphere three times.
     pub fn as_slab(&self) -> [MedialSphere; 3] {
         match *self {
             Self::Sphere(s) => [s; 3],
@@ -65,7 +67,7 @@ impl MedialPrimitive {
         }
     }
 
-    /// Signed distance of `point` (body frame), computed in double precision.
+    /// Signed distance of `point`, in the body's frame, computed in double precision.
     pub fn signed_distance(&self, point: Vector) -> PointDistance {
         let nearest = nearest_to_point(&balls(self), Vec3::from_vector(point));
         let (x, y) = (nearest.alpha as Real, nearest.beta as Real);
@@ -80,7 +82,7 @@ impl MedialPrimitive {
         }
     }
 
-    /// The sphere interpolated with these weights.
+    /// The sphere interpolated with these weights, one for each of [`Self::spheres`].
     pub fn interpolate(&self, weights: [Real; 3]) -> MedialSphere {
         self.spheres()
             .iter()
@@ -91,7 +93,7 @@ impl MedialPrimitive {
             })
     }
 
-    /// Axis-aligned box of the volume, in the body's frame.
+    /// Axis-aligned bounding box, in the body's frame.
     pub fn aabb(&self) -> Aabb {
         self.spheres()
             .iter()

@@ -1,5 +1,5 @@
-//! serde for medial meshes (feature `serde`): in binary formats the baked asset ([`super::asset`]), in
-//! formats for people its spheres, edges and faces, from which all else is computed anew.
+//! Serialization of medial meshes by serde (feature `serde`). Binary formats hold the bytes of a baked mesh
+//! ([`super::asset`]). Text formats such as JSON list spheres, edges and faces, and trees are computed on loading.
 
 use super::asset::{mass_numbers, mass_of};
 use super::mesh::MedialMesh;

@@ -1,5 +1,5 @@
-//! A body as a few balls, however many spheres it has: what directions are tried on before a search
-//! ([`crate::pair::outline`]).
+//! A coarse hull of a medial mesh made of a few balls, however many spheres the mesh has. Directions that may keep
+//! two bodies apart are tried on it before a search ([`crate::pair::outline`]).
 
 use super::mesh::MedialMesh;
 use super::tree::Below;

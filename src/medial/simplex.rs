@@ -1,21 +1,21 @@
-//! The convex volumes of a medial mesh by their spheres, and who of them tests which edge and sphere.
+//! The primitives of a medial mesh as indices of spheres, and which of them tests a shared edge or sphere.
 
 use super::primitive::{MedialPrimitive, MedialSphere};
 use std::collections::HashSet;
 
-/// The spheres of a primitive, and the edges and spheres that it tests for the whole mesh.
+/// A primitive as indices of its spheres, and the edges and spheres that it tests for its neighbours too.
 ///
-/// An edge shared by several slabs is owned by the first of them, and so is a sphere: a query that
-/// visits all primitives then meets each edge and sphere once.
+/// An edge or sphere that several primitives share is owned by the first of them, so that a query that visits all
+/// primitives tests it once.
 #[derive(Clone, Copy, Debug)]
 pub struct Simplex {
-    /// Indices of its spheres.
+    /// Indices of its spheres; those beyond [`Self::len`] repeat the last one.
     pub vertices: [u32; 3],
-    /// How many of them count: 1, 2 or 3.
+    /// Number of spheres: 1, 2 or 3.
     pub len: u8,
-    /// Bit `i`: it owns sphere `vertices[i]`.
+    /// Bit `i` is set if it owns sphere `vertices[i]`.
     pub owns_vertex: u8,
-    /// Bit `i`: it owns the edge from `vertices[i]` to `vertices[(i + 1) % 3]`.
+    /// Bit `i` is set if it owns the edge from `vertices[i]` to `vertices[(i + 1) % 3]`.
     pub owns_edge: u8,
 }
 

@@ -1,4 +1,5 @@
-//! Round solids whose medial mesh is known: ball, capsule, torus, tubes, and frames of round bars.
+//! Constructors of round solids whose medial mesh is known and needs no build: ball, capsule, torus, tubes,
+//! and frames of round bars.
 
 use super::mesh::MedialMesh;
 use super::primitive::MedialSphere;
@@ -10,9 +11,10 @@ use crate::math::{Real, Vector};
 const MAX_SEGMENTS: usize = 4096;
 
 impl MedialMesh {
-    /// A ball about the origin: one sphere. `radius` is a length, in the body's frame.
+    /// A ball around the origin of the body's frame: one sphere.
     ///
-    /// Fails unless `radius` is positive and finite.
+    /// # Errors
+    /// [`MeshError::Parameter`] unless `radius` is positive and finite.
     pub fn ball(radius: Real) -> Result<Self, MeshError> {
         let radius = positive("radius", radius)?;
         Self::new(
@@ -22,10 +24,12 @@ impl MedialMesh {
         )
     }
 
-    /// A capsule: all points within `radius` of the segment from `a` to `b` (lengths, body's
-    /// frame). `a == b` gives a ball.
+    /// A capsule: all points within `radius` of the segment from `a` to `b`, in the body's frame. One
+    /// cone, or a ball if `a == b`.
     ///
-    /// Fails unless `radius` is positive and finite, and on end points that are not finite.
+    /// # Errors
+    /// [`MeshError::Parameter`] unless `radius` is positive and finite, [`MeshError::NotFinite`] if an end
+    /// point is not finite.
     pub fn capsule(a: Vector, b: Vector, radius: Real) -> Result<Self, MeshError> {
         let radius = positive("radius", radius)?;
         if a == b {
@@ -35,12 +39,13 @@ impl MedialMesh {
         Self::new(spheres, vec![[0, 1]], vec![])
     }
 
-    /// A torus about the y-axis (the axis of parry's cylinder and cone), its centre circle in the
-    /// xz-plane: `segments` cones around a regular polygon inscribed in the circle of
-    /// `major_radius`, each a tube of `minor_radius` (lengths). The polygon leaves the circle by at
-    /// most `major_radius · (1 − cos(π/segments))`.
+    /// A ring around the y-axis (the axis of parry's cylinder and cone): a tube of `minor_radius` whose
+    /// middle line is a circle of `major_radius` in the xz-plane. The circle is replaced by a regular polygon
+    /// of `segments` corners on it, each side of which is one cone; between corners the polygon is off the
+    /// circle by at most `major_radius · (1 − cos(π/segments))`.
     ///
-    /// Fails unless both radii are positive and finite and `segments` is in 3..=4096.
+    /// # Errors
+    /// [`MeshError::Parameter`] unless both radii are positive and finite and `segments` is from 3 to 4096.
     ///
     /// ```
     /// use rapier3d_medial::MedialMesh;
@@ -76,12 +81,13 @@ impl MedialMesh {
         Self::new(spheres, edges, vec![])
     }
 
-    /// A tube: a cone between each two neighbouring spheres, and from the last to the first if it is
-    /// `closed` (body's frame). Exact where the radius changes linearly along straight pieces; joints are
-    /// balls. Radii may be 0 at single points: a tip.
+    /// A tube through a list of spheres, in the body's frame: a cone from each sphere to the next, and from the
+    /// last to the first if the tube is `closed`. Its bends are round. A radius of 0 makes a pointed
+    /// tip.
     ///
-    /// Fails on an empty list, on a closed one of less than three, and on spheres as
-    /// [`MedialMesh::new`] does, by their index.
+    /// # Errors
+    /// [`MeshError`] if the list is empty, if a closed tube has fewer than three spheres, and for bad spheres as
+    /// [`MedialMesh::new`].
     ///
     /// ```
     /// use rapier3d_medial::{MedialMesh, MedialSphere, math::Vector};
@@ -104,13 +110,13 @@ impl MedialMesh {
         Self::new(spheres.to_vec(), edges, vec![])
     }
 
-    /// A rectangular frame, as around a picture, its hole along the y-axis like that of
-    /// [`Self::torus`]: four round bars of `radius` whose axes are the sides of the rectangle `|x| ≤ half_x`,
-    /// `|z| ≤ half_z` of the xz-plane, rounded at the corners (lengths, body's frame). Exact: all points
-    /// within `radius` of the rectangle's outline.
+    /// A rectangular frame, like that of a picture, with its hole along the y-axis: all points within
+    /// `radius` of the outline of the rectangle `|x| ≤ half_x`, `|z| ≤ half_z` in the xz-plane, in the body's
+    /// frame. Four cones; the corners are round.
     ///
-    /// Fails unless all three are positive and finite, and `radius` is below both half lengths, which
-    /// would leave no hole.
+    /// # Errors
+    /// [`MeshError::Parameter`] unless all three are positive and finite, and `radius` is less than both half
+    /// lengths (else there would be no hole).
     pub fn rectangle_frame(half_x: Real, half_z: Real, radius: Real) -> Result<Self, MeshError> {
         let radius = positive("radius", radius)?;
         let half_x = wider("half_x", half_x, radius)?;
@@ -125,11 +131,12 @@ impl MedialMesh {
         Self::tube(&corners, true)
     }
 
-    /// The frame of a box, as of a crate or a cage: twelve round bars of `radius` whose axes are the edges
-    /// of the box of `half_extents` about the origin (lengths, body's frame). Exact: all points
-    /// within `radius` of an edge.
+    /// The frame of a box, like that of a crate or a cage: all points within `radius` of an edge of the box of
+    /// `half_extents` around the origin of the body's frame. Twelve cones.
     ///
-    /// Fails unless all are positive and finite, and `radius` is below all half extents.
+    /// # Errors
+    /// [`MeshError::Parameter`] unless all numbers are positive and finite, and `radius` is less than all half
+    /// extents.
     pub fn box_frame(half_extents: Vector, radius: Real) -> Result<Self, MeshError> {
         let radius = positive("radius", radius)?;
         let h = Vector::new(

@@ -1,4 +1,4 @@
-//! Text files line by line in bounded memory, with errors that name the line.
+//! Reads text files line by line, in bounded memory, with errors that name the line.
 
 use std::io::{self, BufRead, Read};
 use std::str::FromStr;

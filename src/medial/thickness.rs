@@ -1,8 +1,8 @@
-//! How thin a medial mesh is: as a whole, and where it may meet something.
+//! How thin a medial mesh is: as a whole, and at each primitive.
 //!
-//! Whether a body can pass through another, or may sink into it, is decided where they meet: an antenna
-//! is as thin as itself, whatever it stands on. So each primitive has a thickness of its own, and each node
-//! of the tree the least below it.
+//! Whether one body can pass through another depends on how thin they are where they meet: an antenna is
+//! thin, even if it stands on something thick. So each primitive has a thickness of its own, and each node of the
+//! tree has the smallest thickness below it.
 
 use super::mesh::Simplex;
 use super::primitive::MedialSphere;

@@ -1,7 +1,7 @@
-//! A static tree of bounding spheres over the primitives of a medial mesh.
+//! The tree of bounding spheres over the primitives of a medial mesh, which all queries search.
 //!
-//! It lives in the body's frame and is built once: a rigid body never changes its shape, and a
-//! sphere keeps its radius under any rotation, so moving a node is moving its centre.
+//! It is built once, in the body's frame: a rigid body keeps its shape, and a sphere keeps its radius
+//! when it turns, so only the centre of a node moves with the body.
 
 use super::mesh::Simplex;
 use super::primitive::MedialSphere;
