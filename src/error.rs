@@ -1,12 +1,12 @@
-//! Every input that can be refused, with the item and its value, and why a GPU was not used.
+//! The errors of this crate. Each names the item that was refused and its value.
 
 use std::path::PathBuf;
 
-/// A set of spheres, edges and faces, or a file of them, that is no medial mesh.
+/// Why spheres, edges and faces, or a file of them, are not a medial mesh. Lengths are in the user's unit.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// No sphere at all.
+    /// There is no sphere.
     #[error("a medial mesh needs at least one sphere")]
     Empty,
     /// A coordinate or radius is NaN or infinite.
@@ -19,7 +19,7 @@ pub enum MeshError {
         /// Its radius.
         radius: f32,
     },
-    /// A sphere ends so far from the origin that squares of lengths would be infinite.
+    /// A sphere reaches so far from the origin that the squares of lengths would be infinite.
     #[error("sphere {index} reaches beyond {most:e}: center {center:?}, radius {radius}")]
     TooFar {
         /// Index of the sphere.
@@ -31,7 +31,7 @@ pub enum MeshError {
         /// Largest coordinate that a sphere may reach.
         most: f32,
     },
-    /// A radius below zero.
+    /// A radius is negative.
     #[error("sphere {index} has negative radius {radius}")]
     NegativeRadius {
         /// Index of the sphere.
@@ -61,7 +61,7 @@ pub enum MeshError {
         /// The sphere named twice.
         value: u32,
     },
-    /// All spheres are one point of radius zero.
+    /// All spheres are the same point, with radius 0.
     #[error("the mesh has no size: all {count} spheres are the point {center:?} of radius 0")]
     ZeroSize {
         /// How many spheres there are.
@@ -69,25 +69,25 @@ pub enum MeshError {
         /// Where they are.
         center: [f32; 3],
     },
-    /// A length, radius or count given to an exact constructor is out of its range.
+    /// A length, radius or number given to a constructor of a simple solid is out of its range.
     #[error("{what} is {value}, must be {must}")]
     Parameter {
         /// Name of the parameter.
         what: &'static str,
-        /// What was given.
+        /// The value that was given.
         value: f64,
-        /// What is accepted.
+        /// Which values are accepted.
         must: &'static str,
     },
-    /// A polygon that crosses, touches or folds back onto itself.
+    /// The outline of a polygon crosses, touches or folds back onto itself.
     #[error("edges {edge} and {other} of the polygon meet")]
     PolygonEdgesMeet {
-        /// First corner of one edge.
+        /// Index of the first corner of one edge.
         edge: usize,
-        /// First corner of the other.
+        /// Index of the first corner of the other edge.
         other: usize,
     },
-    /// A text file that is not in the `.ma` format.
+    /// A text file ends early or breaks the rules of the `.ma` format.
     #[error("{path}, line {line}: {message}")]
     Syntax {
         /// The file.
@@ -97,7 +97,7 @@ pub enum MeshError {
         /// What is wrong, with the offending text.
         message: String,
     },
-    /// A file that is no baked asset, or a damaged one.
+    /// A file is not a baked medial mesh, or is damaged.
     #[error("{path}: {source}")]
     Asset {
         /// The file.
@@ -105,7 +105,7 @@ pub enum MeshError {
         /// What is wrong with it.
         source: AssetError,
     },
-    /// A file that cannot be read or written.
+    /// A file cannot be read or written.
     #[error("{path}: {source}")]
     File {
         /// The file.
@@ -115,55 +115,55 @@ pub enum MeshError {
     },
 }
 
-/// Bytes that are no baked medial mesh of the version this crate reads, or a damaged one.
+/// Why bytes cannot be loaded as a baked medial mesh.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AssetError {
-    /// Some other file.
+    /// The bytes do not begin like a baked mesh.
     #[error("not a baked medial mesh: it starts with \"{}\"", start.escape_ascii())]
     NotAnAsset {
-        /// Its first bytes, at most 8.
+        /// The first bytes, at most 8.
         start: Vec<u8>,
     },
-    /// Baked by a crate with another layout.
+    /// The mesh was baked in another version of the format.
     #[error(
         "baked in version {found} of the format, this crate reads version {reads}: bake it anew"
     )]
     Version {
-        /// Its version.
+        /// Version of the bytes.
         found: u32,
-        /// The only version read.
+        /// The version that this crate reads.
         reads: u32,
     },
-    /// Cut short, or with something added, or counts that were changed.
+    /// The bytes are too few or too many for the numbers of spheres, edges, faces and primitives that they announce.
     #[error("{found} bytes, but {needed} by its counts")]
     Length {
-        /// What its counts ask for.
+        /// How many bytes are needed.
         needed: u64,
         /// How many bytes there are.
         found: u64,
     },
-    /// Changed since it was baked.
+    /// The bytes were changed since the mesh was baked: the checksum is wrong.
     #[error("damaged: checksum {computed:016x}, but {stored:016x} when baked")]
     Damaged {
         /// Checksum of the bytes that are there.
         computed: u64,
-        /// Checksum that the file carries.
+        /// Checksum that was stored when the mesh was baked.
         stored: u64,
     },
-    /// A number that no baking writes.
+    /// The checksum is right, but a number is one that baking never writes.
     #[error("{item} {index} is {value}, must be {must}")]
     Content {
-        /// What it belongs to.
+        /// Kind of the item that the number belongs to.
         item: &'static str,
-        /// Which one of these.
+        /// Index of the item among those of its kind.
         index: usize,
-        /// What was found.
+        /// The number that was found.
         value: String,
-        /// What is accepted.
+        /// Which numbers are accepted.
         must: &'static str,
     },
-    /// Spheres, edges and faces that are no medial mesh.
+    /// The spheres, edges and faces are not a medial mesh.
     #[error(transparent)]
     Mesh(Box<MeshError>),
 }
@@ -184,17 +184,17 @@ impl AssetError {
     }
 }
 
-/// A triangle mesh, or a file of one, that no medial mesh can be built from.
+/// Why no medial mesh can be built from a triangle mesh, or a file of one. Lengths are in the user's unit.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// No triangle at all.
+    /// There is no triangle.
     #[error("the mesh has no triangles ({vertices} vertices)")]
     Empty {
         /// How many vertices there are.
         vertices: usize,
     },
-    /// A coordinate is NaN or infinite.
+    /// A coordinate of a vertex is NaN or infinite.
     #[error("vertex {index} is not finite: {position:?}")]
     NotFinite {
         /// Index of the vertex.
@@ -212,35 +212,35 @@ pub enum BuildError {
         /// How many vertices there are.
         count: usize,
     },
-    /// The triangles have no area, or the mesh no extent.
+    /// All triangles lie in one point, or none of them has an area.
     #[error("the mesh has no size: {message}")]
     ZeroSize {
-        /// Which measure is zero, with its value.
+        /// Which of the two, with the values.
         message: String,
     },
-    /// An option is out of its range.
+    /// An option of the build is out of its range.
     #[error("option `{option}` is {value}, must be {must}")]
     Option {
         /// Name of the option.
         option: &'static str,
-        /// What was given.
+        /// The value that was given.
         value: f64,
-        /// What is accepted.
+        /// Which values are accepted.
         must: &'static str,
     },
-    /// Nothing of the surface encloses a volume, so no ball lies inside.
+    /// No part of the surface encloses a volume, so no sphere lies inside.
     #[error("no inside found: {message}")]
     NoInside {
         /// What was found instead.
         message: String,
     },
-    /// The progress callback asked to stop.
+    /// The progress callback returned `Break`.
     #[error("cancelled during {stage}")]
     Cancelled {
         /// The stage that was running.
         stage: &'static str,
     },
-    /// The file's ending names no known format.
+    /// The ending of the file's name is that of no known format.
     #[error(
         "{path}: unknown mesh format {extension:?} (known: obj, stl, ply, off; glb and gltf with feature `gltf`)"
     )]
@@ -250,17 +250,17 @@ pub enum BuildError {
         /// Its ending.
         extension: String,
     },
-    /// A file that breaks off or breaks its format's rules.
+    /// A file ends early or breaks the rules of its format.
     #[error("{path}, {location}: {message}")]
     Syntax {
         /// The file.
         path: PathBuf,
-        /// Line number or byte offset, as `line 7`.
+        /// Line number or byte offset, like `line 7` or `byte 84`.
         location: String,
         /// What is wrong, with the offending text.
         message: String,
     },
-    /// A file that cannot be read.
+    /// A file cannot be read.
     #[error("{path}: {source}")]
     File {
         /// The file.
@@ -268,86 +268,86 @@ pub enum BuildError {
         /// The reason.
         source: std::io::Error,
     },
-    /// The result is no medial mesh.
+    /// The result is not a medial mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
 
-/// Why a batch, or part of it, was computed on the CPU. Nothing is lost by any of these.
+/// Why a batch of pairs, or part of one, was computed on the CPU instead of a GPU. The answers are the same.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
     /// The crate was built without feature `gpu`.
     #[error("built without feature `gpu`")]
     NotBuilt,
-    /// No loader, no driver, or no adapter.
+    /// There is no graphics driver, or no GPU (adapter).
     #[error("no GPU adapter: {message}")]
     NoAdapter {
-        /// What the graphics library says.
+        /// The message of the graphics library.
         message: String,
     },
-    /// The only adapter computes on the CPU, which `Backend::Auto` does better itself.
+    /// The only adapter is a program on the CPU, which is slower than this crate's own code for the CPU.
     #[error("adapter {name} is not a GPU")]
     Software {
         /// Its name.
         name: String,
     },
-    /// The adapter gives no device with the portable limits.
+    /// The adapter cannot be opened with the limits that WebGPU guarantees.
     #[error("adapter {name} gives no device: {message}")]
     NoDevice {
         /// Name of the adapter.
         name: String,
-        /// What it says.
+        /// Its message.
         message: String,
     },
-    /// The device is gone; a new one needs a new batch object.
+    /// The GPU was lost (unplugged, reset). To use one again, open a new [`Batch`](crate::batch::Batch).
     #[error("GPU device lost: {message}")]
     Lost {
-        /// What the driver says.
+        /// The message of the driver.
         message: String,
     },
-    /// No memory on the device.
+    /// The GPU has not enough memory.
     #[error("out of GPU memory: {message}")]
     OutOfMemory {
-        /// What the driver says.
+        /// The message of the driver.
         message: String,
     },
-    /// More than one binding of this device holds.
+    /// The data is larger than a buffer of this GPU may be.
     #[error("{what} take {bytes} bytes, a binding holds {limit}")]
     TooLarge {
-        /// What does not fit.
+        /// The data that does not fit.
         what: &'static str,
-        /// How much it takes.
+        /// Its size in bytes.
         bytes: u64,
-        /// How much there is.
+        /// The largest size in bytes.
         limit: u64,
     },
-    /// A call that the device refused.
+    /// The GPU refused a call.
     #[error("GPU call failed: {message}")]
     Refused {
-        /// What it says.
+        /// Its message.
         message: String,
     },
 }
 
-/// Why a calibration of the GPU cannot be read.
+/// Why a saved calibration of the GPU ([`Calibration`](crate::batch)) cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CalibrationError {
-    /// A line that says nothing known.
+    /// A line is none of those that a calibration has.
     #[error(
         "line {number} of the calibration is `{text}`, not `adapter = NAME`, `jobs = N` or `tests = N`"
     )]
     Line {
         /// Number of the line, from 1.
         number: usize,
-        /// The line.
+        /// Its text.
         text: String,
     },
-    /// A line that is not there.
+    /// A line is missing.
     #[error("the calibration has no line `{what} = …`")]
     Missing {
-        /// How it would start.
+        /// How the line would begin.
         what: &'static str,
     },
 }

@@ -1,6 +1,6 @@
-//! Which backend runs a batch. The device proposes: jobs that it proves free are answered at once,
-//! all others go to the CPU as if there were no device. So answers are the same on either backend,
-//! but for the counts of work, and a device that fails costs time only.
+//! Decides whether a batch runs on the CPU or a GPU. A GPU only finds pairs that certainly do not meet; all others are
+//! computed on the CPU as if there were no GPU. So answers are the same on both, except for counts of work, and a
+//! GPU that fails costs nothing but time.
 
 #[cfg(feature = "gpu")]
 use super::calibration::Calibration;
@@ -18,15 +18,16 @@ use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
 
-/// Where batches are computed.
+/// Where contacts and first contacts of many pairs are computed. Answers are the same on each, bit by bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// On a GPU if there is one, for batches large enough; else on the CPU.
+    /// On a GPU for batches that are large enough, if there is one; else on the CPU. Needs the feature `gpu`.
     Auto,
     /// On the CPU.
     #[default]
     Cpu,
-    /// Every batch through the GPU, be it code on the CPU.
+    /// On a GPU for every batch, however small, even if it is a GPU simulated on the CPU. For tests. Needs the feature
+    /// `gpu`.
     Gpu,
 }
 
@@ -47,30 +48,31 @@ struct Least {
     tests: Option<usize>,
 }
 
-/// What a [`Batch`] has done since it was made.
+/// What a [`Batch`] has done since it was made. A *job* is one pair of meshes or one elementary test.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BatchReport {
-    /// Jobs and elementary tests that the GPU settled.
+    /// Jobs that the GPU proved not to meet.
     pub settled_by_gpu: u64,
-    /// Those that the CPU answered, asked about on the GPU before or not.
+    /// Jobs that the CPU answered, whether the GPU was asked before or not.
     pub settled_by_cpu: u64,
-    /// Jobs asked of the GPU that it cannot take, as their poses or sizes are not finite or too large.
+    /// Jobs that the GPU could not take, since a pose or size was not finite or too large.
     pub unfit: u64,
-    /// Submissions to the GPU: one a batch.
+    /// Submissions to the GPU: one for each batch.
     pub submissions: u64,
-    /// Times that the CPU waited for answers of the GPU: one a submission.
+    /// Times that the CPU waited for answers of the GPU: one for each submission.
     pub maps: u64,
-    /// Jobs asked that had gone to the GPU before ([`Batch::submit`]).
+    /// Jobs that had been sent to the GPU before their answers were asked for ([`Batch::submit`]).
     pub sent_early: u64,
-    /// Jobs, or pieces of their step, of which too much meets to be looked at on the GPU.
+    /// Jobs, or pieces of their step, of which too many primitives meet to be looked at on the GPU.
     pub given_up: u64,
-    /// Batches that a GPU was to have and could not take.
+    /// Batches for the GPU that it could not take.
     pub fallbacks: u64,
-    /// Why the last of them, or the device as a whole, was not used.
+    /// Why the last of these batches, or the GPU as a whole, was not used.
     pub error: Option<GpuError>,
 }
 
-/// A backend with the meshes that it holds; the CPU by default.
+/// Computes contacts or first contacts of many pairs on the CPU (the default) or on a GPU, and keeps the meshes that
+/// it has sent there.
 #[derive(Default)]
 pub struct Batch {
     #[cfg(feature = "gpu")]
@@ -95,9 +97,8 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// On the CPU, or on a GPU opened here, which takes a moment. Never fails: without a device
-    /// the CPU serves, and the report says why. In a browser this gives the CPU; use
-    /// `open_async` there.
+    /// Opens a backend; a GPU takes a moment. This never fails: if there is no GPU, the CPU is used, and
+    /// [`BatchReport::error`] says why. In a browser it always is the CPU; use `open_async` there.
     pub fn new(backend: Backend) -> Self {
         #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
         return pollster::block_on(Self::open_async(backend, options(backend)));
@@ -111,13 +112,13 @@ impl Batch {
         }
     }
 
-    /// What it has done.
+    /// What has been done so far.
     pub fn report(&self) -> &BatchReport {
         &self.report
     }
 
-    /// Answers all jobs, in their order. In a browser the CPU does, but for those that were sent
-    /// before and are back (`submit_async`, `ready`).
+    /// Answers all jobs, in their order. In a browser the CPU answers all but those that were sent to the GPU
+    /// before and have come back (`submit_async`, `ready`).
     pub fn run<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
         #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
         return pollster::block_on(self.run_async(jobs));
@@ -133,7 +134,7 @@ impl Batch {
         self.run_on_cpu(jobs)
     }
 
-    /// Whether there is a GPU that serves.
+    /// Whether a GPU is open and working.
     pub fn has_device(&self) -> bool {
         #[cfg(feature = "gpu")]
         return self.gpu.is_some();
@@ -141,9 +142,9 @@ impl Batch {
         false
     }
 
-    /// Sends jobs to a GPU, if the backend has one for so many, before their answers are needed: the next
-    /// [`Self::run`] has those that it asks again, to the bit, from this submission, and the others from
-    /// the CPU. Does not wait for the GPU. In a browser nothing is sent; use `submit_async` there.
+    /// Sends jobs to the GPU before their answers are needed, if there is one and there are enough jobs, and does not
+    /// wait for it. The next [`Self::run`] takes the answers of jobs that are the same, bit by bit, from this
+    /// submission, and computes the others on the CPU. In a browser nothing is sent; use `submit_async` there.
     pub fn submit<J: Job>(&mut self, jobs: &[J]) {
         #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
         pollster::block_on(self.submit_async(jobs));
@@ -156,8 +157,8 @@ impl Batch {
         cpu::run(jobs)
     }
 
-    /// Brackets of many elementary tests, in their order. One that the GPU proves free has no
-    /// nearest spheres.
+    /// Brackets the first contacts of many elementary tests, in their order. A bracket that the GPU has proved free has
+    /// no nearest spheres.
     pub fn brackets(
         &mut self,
         paths: &[LinearPath<f32>],
@@ -191,7 +192,7 @@ fn options(backend: Backend) -> GpuOptions {
 
 #[cfg(feature = "gpu")]
 impl Batch {
-    /// As [`Self::new`] with a choice of device, without blocking.
+    /// Opens a backend without blocking, with options for the choice of the GPU.
     pub async fn open_async(backend: Backend, options: GpuOptions) -> Self {
         let mut batch = Self {
             backend,
@@ -206,23 +207,23 @@ impl Batch {
         batch
     }
 
-    /// The device, while it serves.
+    /// The GPU, as long as it works.
     pub fn gpu(&self) -> Option<&Gpu> {
         self.gpu.as_ref()
     }
 
-    /// The device, to drop meshes that are gone.
+    /// The GPU, to drop meshes that are no longer used.
     pub fn gpu_mut(&mut self) -> Option<&mut Gpu> {
         self.gpu.as_mut()
     }
 
-    /// Work of the device.
+    /// What the GPU has done.
     pub fn gpu_counts(&self) -> GpuCounts {
         self.gpu.as_ref().map(Gpu::counts).unwrap_or_default()
     }
 
-    /// From now on [`Backend::Auto`] goes by these sizes. False, and nothing changes, where they were
-    /// measured on another adapter than this, or there is none.
+    /// Has [`Backend::Auto`] use the GPU from the sizes of batches of this calibration on. Returns false, and changes
+    /// nothing, if it was measured on another GPU than this, or if there is none.
     pub fn calibrate(&mut self, calibration: &Calibration) -> bool {
         let Calibration {
             adapter,

@@ -1,5 +1,5 @@
-//! L4: many pairs at once, contacts at fixed poses or first contacts in motion. One call in, one
-//! answer per job out, in the order of the jobs.
+//! Many pairs at once (layer 4): contacts at fixed poses, or first contacts in motion, on the CPU or a GPU. A call takes
+//! a list of jobs and returns their answers in the same order.
 
 mod backend;
 #[cfg(feature = "gpu")]

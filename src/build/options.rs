@@ -26,8 +26,8 @@ pub enum Quality {
 /// on them; all other edges are rounded.
 ///
 /// Convex bodies with flat faces, alone or several apart, become their own medial axis if the number of
-/// primitives allows it, and are then exact. Of other closed bodies one medial mesh is made with sharp edges
-/// and one without, and the one of smaller error is returned ([`Quality::Fast`] makes only the one
+/// primitives allows it, and are then exact. Of other closed bodies whose surface does not overlap itself one medial
+/// mesh is made with sharp edges and one without, and the one of smaller error is returned ([`Quality::Fast`] makes only the one
 /// without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Creases {

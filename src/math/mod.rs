@@ -1,4 +1,4 @@
-//! L0: numbers and geometry that know nothing of medial meshes.
+//! Numbers and geometry that know nothing of medial meshes (layer 0).
 
 pub(crate) mod approach;
 pub(crate) mod fast_hash;

@@ -1,7 +1,8 @@
-//! L3: one medial mesh against another, or against any body given as swept spheres.
+//! One medial mesh against another, or against any body given as swept spheres (layer 3): first contact in motion,
+//! distance and contacts at fixed poses.
 //!
-//! Culling happens here and only here: bounding spheres decide which primitives meet, and the
-//! distance itself is always left to [`crate::elementary`].
+//! This layer decides which primitives can meet, by bounding spheres and directions; the distance of two primitives is
+//! always computed by [`crate::elementary`].
 
 mod apart;
 pub mod contacts;

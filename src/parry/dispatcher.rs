@@ -1,5 +1,5 @@
-//! Which queries of parry are answered here. Everything else falls through to the default
-//! dispatcher, which handles a medial mesh as a composite of convex parts.
+//! [`MedialDispatcher`]: the entry through which parry and rapier ask this crate about medial meshes. What it does not
+//! answer falls through to parry's default dispatcher, which treats a medial mesh as a compound of convex parts.
 
 use super::answers::Answers;
 use super::bearing;
@@ -20,15 +20,31 @@ use parry3d::query::{
 use parry3d::shape::Shape;
 use std::sync::Arc;
 
-/// Answers all queries of two medial meshes, and of one with any built-in shape; contact manifolds of
-/// these only where it lies on a flat face. Chain it before the default: `MedialDispatcher::default().chain(DefaultQueryDispatcher)`.
+/// A query dispatcher of parry that answers all queries between two medial meshes, and between one and any of parry's own
+/// shapes: distance, intersection, closest points, contact, and both kinds of shape casts. Contact manifolds with
+/// parry's shapes are the exception: it computes only those with flat faces, and leaves the others to parry.
+///
+/// [`MedialPipeline::attach`](crate::MedialPipeline::attach) sets it in a world. To use it with parry alone, chain it before
+/// parry's default dispatcher:
+///
+/// ```
+/// use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
+/// use rapier3d_medial::{MedialDispatcher, MedialMesh, math::{Pose, Vector}};
+///
+/// let dispatcher = MedialDispatcher::default().chain(DefaultQueryDispatcher);
+/// let (ring, ball) = (MedialMesh::torus(1.0, 0.2, 32)?, MedialMesh::ball(0.1)?);
+/// // The ball is in the middle of the ring's hole.
+/// let distance = dispatcher.distance(&Pose::from_translation(Vector::ZERO), &ring, &ball);
+/// assert!(distance.is_ok_and(|d| (d.distance - 0.7).abs() < 0.01));
+/// # Ok::<(), rapier3d_medial::MeshError>(())
+/// ```
 #[derive(Clone, Default)]
 pub struct MedialDispatcher {
     answers: Arc<Answers>,
 }
 
 impl MedialDispatcher {
-    /// A dispatcher that looks answers of a batch up before computing them.
+    /// A dispatcher that looks for an answer among those that a batch has computed before it computes one.
     pub fn new(answers: Arc<Answers>) -> Self {
         Self { answers }
     }

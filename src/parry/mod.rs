@@ -1,4 +1,5 @@
-//! L5: the medial mesh as a parry shape: shape traits, contact manifolds, shape casts.
+//! The medial mesh as a shape of parry, rapier's geometry library (layer 5): queries, contact manifolds and shape casts,
+//! against medial meshes and all of parry's shapes.
 
 pub mod advance;
 pub mod answers;

@@ -1,5 +1,5 @@
-//! Lines of medial colliders for rapier's debug renderer, which draws nothing for custom shapes: call
-//! [`MedialDebugRender::render`] beside its own `render`. Feature `debug-render`.
+//! Debug lines of medial colliders (feature `debug-render`). rapier's debug renderer draws nothing for custom shapes, so
+//! call [`MedialDebugRender::render`] after its own `render`.
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -21,17 +21,18 @@ const CIRCLE: u32 = 24;
 /// Brightness of the medial mesh's lines against those of the envelope (a ratio of each channel).
 const MEDIAL_SHADE: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
 
-/// Draws medial colliders through rapier's own style, mode and backend.
+/// Draws medial colliders with the style, mode and backend of rapier's debug renderer. Keep one and call
+/// [`Self::render`] in each frame.
 ///
-/// A mesh's lines are computed when it is first seen, once for all colliders that share its data, and
-/// forgotten when none is drawn any more.
+/// The lines of a mesh are computed when it is first seen, once for all colliders that share its data, and dropped when no
+/// collider with it is drawn any more.
 pub struct MedialDebugRender {
-    /// Whether to draw the envelope: the surface of the solid.
+    /// Whether to draw the surface of the solid. On by default.
     pub envelope: bool,
-    /// Whether to draw the edges of the medial mesh, at half the brightness.
+    /// Whether to draw the lines between the centres of neighbouring spheres, at half the brightness. On by default.
     pub medial_mesh: bool,
-    /// Whether to draw the colliding sphere pairs of medial colliders: a circle of each sphere about
-    /// the normal, and the normal.
+    /// Whether to draw the spheres that touch where two medial colliders are in contact: a circle of each around the
+    /// contact normal, and the normal. Off by default.
     pub sphere_pairs: bool,
     outlines: HashMap<usize, Outline>,
 }
@@ -55,9 +56,9 @@ impl Default for MedialDebugRender {
 }
 
 impl MedialDebugRender {
-    /// Draws as `pipeline` draws other colliders: nothing without
-    /// [`DebugRenderMode::COLLIDER_SHAPES`], nothing that the backend filters, in the colours of the
-    /// body's kind and state. Sphere pairs need [`DebugRenderMode::CONTACTS`].
+    /// Draws medial colliders as rapier's `pipeline` draws others: only with [`DebugRenderMode::COLLIDER_SHAPES`], only
+    /// what the backend's filter lets through, and in the colours of the body's type and state. Touching
+    /// spheres are drawn only with [`DebugRenderMode::CONTACTS`].
     pub fn render(
         &mut self,
         pipeline: &DebugRenderPipeline,

@@ -1,5 +1,5 @@
-//! What a scene, or a collider, calls for; what is off costs nothing. `docs/effects.md` has the
-//! inequality by which each is decided.
+//! The settings of the pipeline: which work beyond rapier's own step is done for the pairs of a scene or of single
+//! colliders. What is off costs nothing. `docs/effects.md` has the inequality by which each is decided.
 
 use crate::batch::Backend;
 use crate::medial::MedialMesh;
@@ -7,67 +7,80 @@ use crate::parry::answers::OnePoint;
 use rapier3d::geometry::{ColliderHandle, ColliderSet};
 use std::collections::HashMap;
 
-/// Whether an effect is wanted.
+/// Whether an effect is on for a pair of colliders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Effect {
     /// Never.
     Off,
     /// Always.
     On,
-    /// Decided per pair and step.
+    /// Decided for each pair in each step, as the documentation of each effect says. In the settings of a collider:
+    /// the scene's setting holds.
     #[default]
     Auto,
 }
 
-/// What a pair of colliders calls for.
+/// Which work beyond rapier's own step is done for a pair of colliders. By default all of it is decided
+/// automatically, and only pairs that move fast, or are deep in each other, cost extra time.
+///
+/// Set effects for the whole scene by [`MedialOptions::effects`], or for single colliders by
+/// [`MedialPipeline::set_effects`](super::MedialPipeline::set_effects). For each effect of a pair, `On` of either collider
+/// wins, then `Off` of either, then the scene's setting.
+///
+/// *Thickness* below is that of the thinner of the two parts that may meet, a length: roughly their radius.
 ///
 /// ```
 /// use rapier3d_medial::prelude::*;
 ///
+/// // Fast debris may pass through other bodies, as with rapier's own shapes.
 /// let debris = Effects::default().continuous(Effect::Off).guard(Effect::Off);
 /// let options = MedialOptions::default().effects(debris);
+/// let pipeline = MedialPipeline::new(options);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct Effects {
-    /// Exact first contact on the motion of the step, and the impulse there. `Auto`: for pairs that
-    /// travel more than a quarter of their thickness in the step. Off: fast bodies may pass through
-    /// each other, as in rapier.
+    /// Finds the first contact of a pair within the step and resolves it there, by an impulse. `Auto`: for pairs
+    /// that move relative to each other by more than a quarter of their thickness in the step. Off: fast
+    /// bodies may pass through each other, as rapier's own do.
     pub continuous: Effect,
-    /// Slow pairs are kept from crossing medial axes, whatever the solver does. `Auto`: for pairs whose
-    /// contacts in rapier are deeper than a quarter of their thickness.
+    /// Does the same for slow pairs before they are so deep in each other that one could pass through the other.
+    /// `Auto`: for pairs of which rapier knows a contact deeper than a quarter of their thickness. Off: a heavy load
+    /// may press a slow body through another.
     pub guard: Effect,
-    /// First contacts are those of the rigid motion. `Auto`: always
-    /// (`docs/effects.md`). Off: of straight paths from where each point starts to
-    /// where it ends, as in the paper (Eq. 1): what a turning body passes beyond them is missed. Two
-    /// medial meshes only.
+    /// Follows turning bodies on their exact paths to find a first contact. `Auto`: always. Off: each point is
+    /// taken to move straight from where it is at the start of the step to where it is at the end, as in the paper
+    /// (Eq. 1), and contacts of turning bodies beside these lines are missed. For pairs of two medial
+    /// meshes only.
     pub exact_rotation: Effect,
-    /// Every contact of a pair goes to the solver. `Auto`: always. Off: the deepest one alone, enough
-    /// for bullets and debris, too little to rest on. Sensors have no contacts at all.
+    /// Gives the solver all contacts of a pair. `Auto`: always. Off: only the deepest one, which is enough for
+    /// bullets and debris, but bodies cannot rest on it. Sensors have no contacts in either case.
     pub full_manifolds: Effect,
-    /// rapier's speculative contacts, kept to compare with: the pair is never muted, and both bodies
-    /// get contacts from their poses at the start for all they may reach in the step
-    /// (`RigidBody::set_soft_ccd_prediction`). `Auto`: never; they stop bodies that pass each other.
+    /// Uses rapier's own speculative contacts (`RigidBody::set_soft_ccd_prediction`), for comparison: the solver gets
+    /// contacts with all that the body may reach in the step, computed at the start of the step. `Auto`: never,
+    /// because such contacts also stop bodies that would pass beside each other.
     pub speculative: Effect,
-    /// The paper's response (§4.5): where `continuous` finds the pair's first contact, the whole world
-    /// stops at that time, and rapier's solver does the contact in a step over the rest. `Auto`:
-    /// never; each stop costs a step. Off: an impulse between the two bodies, the others go on. After
-    /// eight stops in a step, and in worlds with multibodies or soft bodies, as if off.
+    /// Stops the whole world at the first contact that [`Self::continuous`] finds for the pair, and lets rapier's
+    /// solver resolve it in a step over the time that is left (the paper's response, §4.5). Better for bodies that
+    /// land flat on each other. `Auto`: never, because each stop costs another step. Off: only the two
+    /// bodies get an impulse, and all others go on. There are at most eight stops in a step, and none in worlds
+    /// with multibodies or soft bodies.
     pub stop: Effect,
 }
 
-/// How a pipeline works.
+/// Settings of a [`MedialPipeline`](super::MedialPipeline). The defaults suit games.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MedialOptions {
-    /// What the scene calls for.
+    /// The effects of all colliders that have no settings of their own.
     pub effects: Effects,
-    /// Where batches are computed; the world is the same on each, bit by bit.
+    /// Where contacts and first contacts of many pairs are computed. The results are the same on each, bit by bit.
     pub backend: Backend,
 }
 
 impl Effects {
-    /// No effect but those that every contact has: rapier's own step, its contacts computed in a batch.
+    /// Nothing beyond rapier's own step: contacts between medial colliders, and no continuous collision detection but
+    /// rapier's.
     pub const OFF: Self = Self {
         continuous: Effect::Off,
         guard: Effect::Off,
@@ -77,37 +90,37 @@ impl Effects {
         stop: Effect::Off,
     };
 
-    /// The same, with [`Self::continuous`] set.
+    /// Returns these effects with [`Self::continuous`] set.
     pub const fn continuous(mut self, effect: Effect) -> Self {
         self.continuous = effect;
         self
     }
 
-    /// The same, with [`Self::guard`] set.
+    /// Returns these effects with [`Self::guard`] set.
     pub const fn guard(mut self, effect: Effect) -> Self {
         self.guard = effect;
         self
     }
 
-    /// The same, with [`Self::exact_rotation`] set.
+    /// Returns these effects with [`Self::exact_rotation`] set.
     pub const fn exact_rotation(mut self, effect: Effect) -> Self {
         self.exact_rotation = effect;
         self
     }
 
-    /// The same, with [`Self::full_manifolds`] set.
+    /// Returns these effects with [`Self::full_manifolds`] set.
     pub const fn full_manifolds(mut self, effect: Effect) -> Self {
         self.full_manifolds = effect;
         self
     }
 
-    /// The same, with [`Self::speculative`] set.
+    /// Returns these effects with [`Self::speculative`] set.
     pub const fn speculative(mut self, effect: Effect) -> Self {
         self.speculative = effect;
         self
     }
 
-    /// The same, with [`Self::stop`] set.
+    /// Returns these effects with [`Self::stop`] set.
     pub const fn stop(mut self, effect: Effect) -> Self {
         self.stop = effect;
         self
@@ -120,13 +133,13 @@ impl Effects {
 }
 
 impl MedialOptions {
-    /// The same, with the scene's effects set.
+    /// Returns these options with [`Self::effects`] set.
     pub const fn effects(mut self, effects: Effects) -> Self {
         self.effects = effects;
         self
     }
 
-    /// The same, with the place set where batches are computed.
+    /// Returns these options with [`Self::backend`] set.
     pub const fn backend(mut self, backend: Backend) -> Self {
         self.backend = backend;
         self

@@ -1,4 +1,5 @@
-//! L6: the hook round rapier's step, and what a rapier user calls.
+//! What a user of rapier calls (layer 6), and what is done before and after rapier's step to have medial colliders
+//! collide.
 
 mod ahead;
 mod blow;

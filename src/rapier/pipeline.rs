@@ -1,4 +1,5 @@
-//! [`MedialPipeline`]: the hook round rapier's step. Calls in order, nothing else.
+//! [`MedialPipeline`]: what is done before and after rapier's step, as calls in order. The work itself is in the
+//! other files of this folder.
 
 use super::effects::{Effect, Effects, MedialOptions, Wanted};
 use super::emit::{Once, Scene, Told};
@@ -28,13 +29,33 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use web_time::Instant;
 
-/// Steps a world whose medial colliders meet each other: finds their near pairs, computes all
-/// contacts in one batch, and hands them to rapier's narrow phase as it asks for them. After rapier's
-/// step it resolves the first contacts of fast bodies, of which one at least is medial, on the motion
-/// of the step: see [`Effects`].
+/// Steps a world with medial colliders: call [`Self::step`] in place of `world.step()`. Use one pipeline for
+/// each world.
 ///
-/// One pipeline per world. A world stepped without one still has contacts, through parry's own
-/// composite shapes.
+/// Before rapier's step it computes the contacts between medial colliders that are near each other. After the
+/// step it finds fast bodies that met within it, of which at least one is medial, and resolves these
+/// impacts: see [`Effects`]. What it does to the world besides is said at [`Self::attach`].
+///
+/// In a world that is stepped without a pipeline, medial colliders still have contacts, computed by parry as for
+/// its compound shapes, but fast bodies pass through each other.
+///
+/// ```
+/// use rapier3d::prelude::*;
+/// use rapier3d_medial::prelude::*;
+///
+/// let mut world = PhysicsWorld::new();
+/// let mut pipeline = MedialPipeline::new(MedialOptions::default());
+/// pipeline.attach(&mut world);
+/// world.insert_collider(ColliderBuilder::cuboid(9.0, 0.1, 9.0), None);
+/// let ring = ColliderBuilder::medial_mesh(MedialMesh::torus(0.5, 0.1, 16)?);
+/// let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 1.0, 0.0));
+/// let (body, _) = world.insert(body, ring);
+/// for _ in 0..60 {
+///     pipeline.step(&mut world);
+/// }
+/// # assert!((0.1..0.4).contains(&world.bodies[body].translation().y));
+/// # Ok::<(), rapier3d_medial::MeshError>(())
+/// ```
 #[derive(Default)]
 pub struct MedialPipeline {
     batch: Batch,
@@ -47,13 +68,14 @@ pub struct MedialPipeline {
 }
 
 impl MedialPipeline {
-    /// A pipeline for one world. Opens a device where the backend asks for one; without it the CPU
-    /// serves, and [`Self::batch`] says why. In a browser use [`Self::with_batch`].
+    /// A pipeline for one world. Opens a GPU if [`MedialOptions::backend`] asks for one. If there is none, the CPU
+    /// does its work, and [`BatchReport::error`](crate::batch::BatchReport::error) of [`Self::batch`] says why. In a
+    /// browser, where a GPU cannot be opened like this, use [`Self::with_batch`].
     pub fn new(options: MedialOptions) -> Self {
         Self::with_batch(options, Batch::new(options.backend))
     }
 
-    /// A pipeline whose batches go to a backend that was opened before, whatever the options say of it.
+    /// A pipeline that uses a backend opened before; [`MedialOptions::backend`] is ignored.
     pub fn with_batch(options: MedialOptions, batch: Batch) -> Self {
         let mut pipeline = Self {
             batch,
@@ -63,20 +85,20 @@ impl MedialPipeline {
         pipeline
     }
 
-    /// The backend: what it has done since it was opened, and why it was not used where it was not.
+    /// The backend, whose report says what it has done, and why a GPU was not used.
     pub fn batch(&self) -> &Batch {
         &self.batch
     }
 
-    /// Has batches computed elsewhere from now on, and gives back the backend before; between two steps.
-    /// The world goes on the same, bit by bit.
+    /// Uses another backend from now on, and returns the one used so far. Call it between two steps. The world goes on
+    /// in the same way, bit by bit.
     pub fn replace_batch(&mut self, batch: Batch) -> Batch {
         std::mem::replace(&mut self.batch, batch)
     }
 
-    /// For a browser, between two steps: asks the device about the contacts of the next one and waits
-    /// for its answers without blocking. Elsewhere each step asks for the next one by itself, and waits
-    /// only when it comes. What is changed in the world after that goes to the CPU.
+    /// Has a GPU in a browser work on the contacts of the next step, and waits for its answers without blocking
+    /// the page. Await it between two steps, after your changes to the world: pairs that change later are
+    /// computed on the CPU. Outside browsers each step does this by itself.
     #[cfg(feature = "gpu")]
     pub async fn prepare(&mut self, world: &PhysicsWorld) {
         let next = candidates::expect(Sets::of(world), &self.recycled);
@@ -84,8 +106,9 @@ impl MedialPipeline {
         self.batch.ready().await;
     }
 
-    /// What a collider calls for, whatever the scene does; [`Effects::default`] leaves it to the scene.
-    /// Of two colliders that differ, the one that has an effect on decides.
+    /// Sets the effects of one collider. An effect left at [`Effect::Auto`] follows the scene's setting, so
+    /// [`Effects::default`] removes the collider's own settings. If two colliders of a pair differ in an effect, `On` wins
+    /// over `Off`.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
         self.effects.set(collider, effects);
     }
@@ -96,15 +119,17 @@ impl MedialPipeline {
         self.tuning = tuning;
     }
 
-    /// Prepares a world to be stepped: its narrow phase asks this pipeline for contacts first, and
-    /// `normalized_contact_recycle_distance` is lowered to [`RECYCLE_DISTANCE`] if it is above, for all bodies.
-    /// Nothing else of the world changes. Call it once, and again after the narrow phase was replaced (a
-    /// world that was loaded).
+    /// Prepares a world to be stepped by this pipeline. Call it once, and again after the world was loaded or its
+    /// narrow phase replaced. It changes two things in the world, and no others:
+    /// - The narrow phase (the part of rapier that computes contacts) asks this pipeline first, and parry after that.
+    ///   A query dispatcher that you set yourself is replaced.
+    /// - `integration_parameters.normalized_contact_recycle_distance`, the distance that a pair may move before rapier
+    ///   computes its contacts anew, is lowered to [`RECYCLE_DISTANCE`] if it is larger. This holds for all bodies.
     pub fn attach(&mut self, world: &mut PhysicsWorld) {
         self.attach_sets(&mut world.integration_parameters, &mut world.narrow_phase);
     }
 
-    /// As [`Self::attach`], for a world kept in sets of your own.
+    /// Does the same as [`Self::attach`] for games that keep rapier's sets themselves.
     pub fn attach_sets(
         &mut self,
         parameters: &mut IntegrationParameters,
@@ -116,13 +141,15 @@ impl MedialPipeline {
         *distance = distance.min(RECYCLE_DISTANCE);
     }
 
-    /// Steps the world: call it in place of `world.step()`. The report counts what was done;
-    /// [`StepReport::events`], [`StepReport::continuous_queries`] and [`StepReport::frozen`] tell most.
+    /// Steps the world by `world.integration_parameters.dt`: call it in place of `world.step()`. The report
+    /// counts what was done; [`StepReport::events`], [`StepReport::continuous_queries`] and [`StepReport::frozen`] tell
+    /// most.
     pub fn step(&mut self, world: &mut PhysicsWorld) -> StepReport {
         self.step_with_events(world, &(), &())
     }
 
-    /// Steps the world with the user's hooks and events.
+    /// Does the same as [`Self::step`] with your physics hooks and your handler of collision and contact force events.
+    /// Impacts within the step are reported to the handler too.
     pub fn step_with_events(
         &mut self,
         world: &mut PhysicsWorld,
@@ -147,7 +174,8 @@ impl MedialPipeline {
         )
     }
 
-    /// As [`PhysicsPipeline::step`], for a world kept in sets of your own.
+    /// Does the same as [`Self::step_with_events`] for games that keep rapier's sets themselves. It takes the arguments of
+    /// [`PhysicsPipeline::step`], the pipeline first.
     #[expect(
         clippy::too_many_arguments,
         reason = "the arguments of rapier's own step"

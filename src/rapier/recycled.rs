@@ -11,11 +11,13 @@ use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Rotation};
 use rapier3d::dynamics::IntegrationParameters;
 
-/// Contact recycle distance that [`MedialPipeline::attach`](super::MedialPipeline::attach) sets, in units of rapier's length unit
-/// (rapier's own default is 0.05). Contacts that a pair can close before it has moved by this
-/// distance, and in the step after, are computed and solved; so a smaller distance takes more contact
-/// computations of fewer contacts. Contacts in which a body hangs are computed anew much sooner, whatever it is: rapier is
-/// made to by bit 31 of the collider's hooks, which stays until the next step and calls no hook.
+/// The `normalized_contact_recycle_distance` that [`MedialPipeline::attach`](super::MedialPipeline::attach) sets: how far a pair may
+/// move before rapier computes its contacts anew, in units of rapier's length unit (rapier's own default is 0.05).
+///
+/// Contacts must be known for all that a pair may touch until it has moved so far, and in the step after. So a smaller
+/// distance means more frequent computations of fewer contacts. The contacts of hanging bodies are computed anew
+/// much sooner, whatever this value is; this is requested from rapier by bit 31 of the collider's hooks, which is set until
+/// the next step and calls no hook.
 pub const RECYCLE_DISTANCE: Real = 0.004;
 
 /// Cosine of the rotation of either body since its pair's last update above which rapier recycles.

@@ -1,77 +1,86 @@
-//! What a step did, counted and timed.
+//! [`StepReport`]: what a step did, counted and timed.
 
 use super::first_contact::Work;
 use crate::batch::{BatchReport, PairResult};
 use crate::parry::answers::Counted;
 
-/// Counters and timings of one [`crate::MedialPipeline`] step. Counters cover medial colliders only.
+/// Counters and times of one step of a [`crate::MedialPipeline`], about medial colliders only. Three counters tell most:
+/// - [`Self::events`]: impacts that were resolved within the step. 0 in a quiet scene, dozens when bodies fly.
+/// - [`Self::continuous_queries`]: how often a first contact was searched for. Thousands mean that many bodies move fast,
+///   or that one has parts of (nearly) no thickness, and the step is slow.
+/// - [`Self::frozen`]: bodies that stopped before the end of the step, after too many impacts. A few are normal in
+///   a crash. Otherwise bodies are pressed where there is no room, or very thin ones were spawned inside each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StepReport {
-    /// Medial colliders in the world that are enabled.
+    /// Number of enabled medial colliders in the world.
     pub medial_colliders: usize,
-    /// Pairs of medial colliders, one of them awake, whose boxes were near at the start.
+    /// Pairs of medial colliders, at least one of them awake, whose bounding boxes were near each other at the start.
     pub pairs: usize,
-    /// Of these, the pairs whose contacts were computed in the batch; the others had moved too
-    /// little, so that rapier recycles theirs, or are muted.
+    /// Pairs of these whose contacts were computed in one batch before rapier's step. The others had moved so little that
+    /// rapier keeps their contacts, or are muted ([`Self::muted`]).
     pub jobs: usize,
-    /// Jobs that the GPU proved free, which the CPU has not looked at.
+    /// Pairs that the GPU proved not to meet, and which the CPU did not look at.
     pub settled_by_gpu: u64,
-    /// Jobs asked of the GPU that it cannot take; the CPU has them.
+    /// Pairs that the GPU could not take, since a number was not finite or too large. The CPU computed them.
     pub unfit: u64,
-    /// Submissions to the GPU: of this step's first contacts, and of the next one's contacts.
+    /// Submissions to the GPU: for the first contacts of this step, and for the contacts of the next one.
     pub submissions: u64,
-    /// Times that the step waited for answers of the GPU: one for each batch.
+    /// Times that the step waited for answers of the GPU.
     pub maps: u64,
-    /// Jobs of the batch that had gone to the GPU at the end of the step before.
+    /// Pairs whose contacts were sent to the GPU at the end of the step before.
     pub sent_early: u64,
-    /// Jobs, or pieces of their step, of which too much meets to be looked at on the GPU; the CPU has
+    /// Pairs, or pieces of their step, of which too many primitives meet to be looked at on the GPU. The CPU computed
     /// them.
     pub given_up: u64,
-    /// Batches that a GPU was to have and could not take; [`crate::MedialPipeline::batch`] says why.
+    /// Batches for the GPU that it could not take; [`crate::MedialPipeline::batch`] says why. The CPU computed them.
     pub fallbacks: u64,
-    /// Sphere pairs that the batch found near enough to close in the step, and held back by no nearer one.
+    /// Contacts found in the batch: pairs of spheres near enough to touch within the step, without those that cannot
+    /// touch while a nearer contact holds.
     pub contacts: usize,
-    /// Manifold requests of the narrow phase that the batch had answered.
+    /// Contact manifolds that rapier asked for and that the batch had computed. (A manifold is a set of contacts
+    /// with one normal.)
     pub cache_hits: u64,
-    /// Manifold requests computed on the spot: new pairs, bodies changed by the user.
+    /// Contact manifolds that rapier asked for and that were computed only then: those of new pairs, and of bodies that
+    /// you changed.
     pub cache_misses: u64,
-    /// Manifolds written for pairs of medial colliders, and for all that get one contact only
-    /// ([`crate::Effects::full_manifolds`]). Others with rapier's shapes are not
-    /// counted.
+    /// Contact manifolds given to rapier for pairs of two medial colliders, and for pairs that get one contact only
+    /// ([`crate::Effects::full_manifolds`]). Other manifolds with rapier's shapes are not counted.
     pub manifolds: u64,
-    /// Tests of intersection, of sensors above all.
+    /// Tests whether two shapes intersect, mostly for sensors.
     pub intersections: u64,
-    /// Continuous queries (first contact) executed.
+    /// Searches for a first contact (continuous queries).
     pub continuous_queries: u64,
-    /// Those of them, on the motions of the step, in which a body turned.
+    /// Continuous queries after rapier's step in which a body turned and was followed on its exact path.
     pub rotating_queries: u64,
-    /// Medial pairs asked for their first contacts after rapier's step; a GPU has them in one batch. On the
-    /// CPU those that spheres and directions keep apart, or that never come first, take no query. Other
-    /// continuous queries are with other shapes, in rapier's own sweeps, or after an impact.
+    /// Pairs of two medial colliders whose first contact was asked for at the end of rapier's step, before any impact.
+    /// Not all take a query: bounding spheres or a direction may keep the two apart, or an earlier impact comes
+    /// between. Other continuous queries are with rapier's shapes, by rapier's own sweeps, or after an impact.
     pub continuous_jobs: usize,
-    /// Pairs that the solver had no contacts for because the event loop took them over.
+    /// Fast pairs whose contacts were kept from rapier's solver, because their first contact is resolved after
+    /// rapier's step.
     pub muted: usize,
     /// Impacts resolved within the step.
     pub events: usize,
-    /// Bodies that stopped before the step's end, or were carried along, after too many impacts.
+    /// Bodies that stopped before the step's end, or were carried along by what pushed them, after too many impacts (more
+    /// than 16).
     pub frozen: usize,
-    /// Times that the world stopped at a first contact ([`crate::Effects::stop`]); each made a step more,
-    /// whose work is in all counters.
+    /// Times that the whole world stopped at a first contact ([`crate::Effects::stop`]). Each stop makes another step,
+    /// whose work is included in all counters.
     pub stops: usize,
-    /// Bodies that got speculative contacts ([`crate::Effects::speculative`]), summed over these steps.
+    /// Bodies that got speculative contacts ([`crate::Effects::speculative`]), summed over the steps between stops.
     pub speculative: usize,
-    /// Node pairs of sphere trees looked at.
+    /// Pairs of nodes of the bounding sphere trees that were looked at.
     pub culled_nodes: u64,
-    /// Elementary tests (cone–cone, sphere–slab) executed.
+    /// Elementary tests (cone against cone, sphere against slab) that were computed.
     pub elementary_tests: u64,
-    /// Seconds spent gathering near pairs and in the batch.
+    /// Seconds spent on finding near pairs and computing their contacts before rapier's step.
     pub batch_seconds: f64,
-    /// Seconds spent gathering colliders and choosing the muted pairs.
+    /// Seconds spent on gathering colliders and choosing the muted pairs.
     pub mute_seconds: f64,
-    /// Seconds of the event loop.
+    /// Seconds spent on impacts after rapier's step.
     pub event_seconds: f64,
-    /// Seconds of rapier's own step, which includes manifolds and continuous queries.
+    /// Seconds of rapier's own step, including the contacts and casts that it asked this crate for.
     pub step_seconds: f64,
 }
 

@@ -1,10 +1,10 @@
-//! Worlds with medial colliders, saved and loaded: rapier refuses to write custom shapes. Feature
-//! `serde-serialize`.
+//! Saves and loads worlds with medial colliders (feature `serde-serialize`), since rapier refuses to write custom
+//! shapes.
 //!
-//! A saved world is rapier's own with a ball in the place of every medial mesh, and beside it each mesh
-//! once, however many colliders share its data. Loading puts the meshes back and clears the marks that
-//! this leaves on the colliders, so that the world continues bit by bit as if it had not been saved:
-//! broad phase, contacts and impulses are rapier's own records.
+//! A saved world is rapier's own with a ball in place of each medial mesh, and the meshes beside it, each once, however
+//! many colliders share its data. Loading puts the meshes back and clears the change marks that this leaves on
+//! the colliders, so that the world goes on bit by bit as if it had not been saved: broad phase, contacts and
+//! impulses are in rapier's own records.
 
 use crate::medial::MedialMesh;
 use crate::medial::asset::checksum;
@@ -16,54 +16,54 @@ use rapier3d::pipeline::{CollisionPipeline, PhysicsWorld};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// First bytes of a saved world, as of a baked mesh.
+/// First bytes of a saved world.
 pub const MAGIC: [u8; 8] = *b"\x89worlds\n";
 
-/// Version of the bytes that is written and read: this crate's, and rapier 0.36's layout.
+/// Version of the format that is written and read. It stands for the layout of this crate and of rapier 0.36.
 pub const VERSION: u32 = 3;
 
 /// Bytes before the content: magic, version, checksum of the content.
 const HEADER: usize = 20;
 
-/// Why a world is not saved or not loaded.
+/// Why a world cannot be saved or loaded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SavedWorldError {
-    /// Colliders were removed since the last step, and the step that forgets them is not saved with them.
+    /// Colliders were removed since the last step. rapier forgets them in the next step; save after it.
     #[error("{0} colliders were removed since the last step: step once, then save")]
     Removed(usize),
-    /// A shape that is neither medial nor rapier's own, or a number that the format cannot hold.
+    /// The world has a shape that is neither medial nor rapier's own, or a number that the format cannot hold.
     #[error("the world cannot be written: {0}")]
     Unwritable(#[source] postcard::Error),
-    /// The bytes do not start like a saved world.
+    /// The bytes do not begin like a saved world.
     #[error("not a saved world: it starts with {start:?}")]
     NotAWorld {
         /// The first bytes, 8 at most.
         start: Vec<u8>,
     },
-    /// Another version of this crate wrote it.
+    /// The world was saved in another version of the format.
     #[error("saved by version {found}, this reads version {reads}")]
     Version {
         /// Version of the bytes.
         found: u32,
-        /// [`VERSION`].
+        /// The version that this crate reads: [`VERSION`].
         reads: u32,
     },
-    /// Bytes were changed or are missing.
+    /// Bytes were changed or are missing: the checksum is wrong.
     #[error("damaged: the checksum is {computed:#x}, stored is {stored:#x}")]
     Damaged {
-        /// Of the bytes that are there.
+        /// Checksum of the bytes that are there.
         computed: u64,
-        /// That was stored when it was saved.
+        /// Checksum stored when the world was saved.
         stored: u64,
     },
-    /// Bytes follow the world.
+    /// More bytes follow the world; this is their number.
     #[error("{0} bytes follow the world")]
     TooLong(usize),
-    /// The content is no world.
+    /// The checksum is right, but the content is not a world.
     #[error("the content is no world: {0}")]
     Unreadable(#[source] postcard::Error),
-    /// A collider's mesh is not there, or the collider is not.
+    /// A collider that should have a medial mesh is missing, or its mesh is.
     #[error("collider {collider:?} has mesh {mesh}, of {meshes}: one of them is missing")]
     Missing {
         /// The collider.
@@ -75,8 +75,8 @@ pub enum SavedWorldError {
     },
 }
 
-/// A world in the form that serde writes, in any format that holds rapier's own worlds.
-/// [`save_world`] and [`load_world`] are shorter, and see damage.
+/// A world as serde can write it, in any format that can hold rapier's own worlds. [`save_world`] and [`load_world`] are
+/// simpler to call, and detect damage.
 #[derive(Serialize, Deserialize)]
 pub struct SavedWorld {
     meshes: Vec<MedialMesh>,
@@ -87,14 +87,14 @@ pub struct SavedWorld {
 }
 
 impl MedialPipeline {
-    /// Pairs whose start was told by impacts of the last step, and which rapier has not found yet. Save them beside
-    /// the world, which does not have them, where somebody listens to collision events.
+    /// Pairs whose collision event `Started` was emitted because of an impact in the last step, and whose contact rapier
+    /// has not found yet. They are not part of the world: if your game handles collision events, save them beside it.
     pub fn told_starts(&self) -> &[[ColliderHandle; 2]] {
         &self.told.started
     }
 
-    /// Goes on from what [`Self::told_starts`] was when the world was saved: these are not told again, and their ends
-    /// are.
+    /// Restores what [`Self::told_starts`] was when the world was saved, so that no `Started` is emitted twice and each
+    /// `Stopped` is.
     pub fn resume_told_starts(&mut self, starts: Vec<[ColliderHandle; 2]>) {
         self.told.started = starts;
     }
@@ -111,10 +111,11 @@ enum Changes {
 }
 
 impl SavedWorld {
-    /// Takes a copy of the world. Save between steps: of colliders changed by hand since the last one
-    /// (added, given other groups) the contacts, if they had any, begin afresh after loading.
+    /// Takes a copy of the world, between steps. Colliders that you have added or changed since the last step (other
+    /// groups, for instance) lose their contacts, if they had any, and get new ones in the first step after loading.
     ///
-    /// Fails if colliders were removed since the last step.
+    /// # Errors
+    /// [`SavedWorldError::Removed`] if colliders were removed since the last step.
     pub fn new(world: &PhysicsWorld) -> Result<Self, SavedWorldError> {
         let mut colliders = world.colliders.clone();
         let removed = colliders.take_removed().len();
@@ -171,10 +172,11 @@ impl SavedWorld {
         })
     }
 
-    /// The world. Attach a pipeline to it ([`crate::MedialPipeline::attach`]) before it steps.
+    /// The world again. Attach a pipeline to it ([`crate::MedialPipeline::attach`]) before the first step.
     ///
-    /// Fails if a collider or its mesh is missing. Whether the rest of the world agrees with itself is not
-    /// looked at ([`load_world`]).
+    /// # Errors
+    /// [`SavedWorldError::Missing`] if a collider or its mesh is missing. The rest of the world is not checked for
+    /// contradictions; see [`load_world`].
     pub fn into_world(self) -> Result<PhysicsWorld, SavedWorldError> {
         let Self {
             meshes,
@@ -231,9 +233,28 @@ fn forget_changes(world: &PhysicsWorld, colliders: &mut ColliderSet) {
     );
 }
 
-/// The world as bytes: [`SavedWorld`] with a checksum. Save between steps.
+/// Saves a world as bytes with a checksum. Call it between steps.
 ///
-/// Fails if colliders were removed since the last step, and for custom shapes other than medial meshes.
+/// # Errors
+/// [`SavedWorldError::Removed`] if colliders were removed since the last step, [`SavedWorldError::Unwritable`] if the world has
+/// custom shapes other than medial meshes.
+///
+/// ```
+/// use rapier3d::prelude::*;
+/// use rapier3d_medial::prelude::*;
+/// use rapier3d_medial::rapier::{load_world, save_world};
+///
+/// let mut world = PhysicsWorld::new();
+/// let ring = ColliderBuilder::medial_mesh(MedialMesh::torus(0.5, 0.1, 16)?);
+/// world.insert(RigidBodyBuilder::dynamic(), ring);
+/// let bytes = save_world(&world)?;
+///
+/// let mut loaded = load_world(&bytes)?;
+/// let mut pipeline = MedialPipeline::new(MedialOptions::default());
+/// pipeline.attach(&mut loaded);
+/// pipeline.step(&mut loaded);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn save_world(world: &PhysicsWorld) -> Result<Vec<u8>, SavedWorldError> {
     let saved = SavedWorld::new(world)?;
     let content = postcard::to_stdvec(&saved).map_err(SavedWorldError::Unwritable)?;
@@ -245,13 +266,16 @@ pub fn save_world(world: &PhysicsWorld) -> Result<Vec<u8>, SavedWorldError> {
     Ok(bytes)
 }
 
-/// The world of [`save_world`]'s bytes, every mesh in memory once. Attach a pipeline to it
-/// ([`crate::MedialPipeline::attach`]) before it steps.
+/// Loads a world from the bytes of [`save_world`]. It goes on bit by bit as if it had not been saved. Attach a pipeline
+/// to it ([`crate::MedialPipeline::attach`]) before the first step.
 ///
-/// Fails on bytes that are something else, of another version or damaged. Checked for damage, not for
-/// malice: bytes made up with a good checksum may hold a world that contradicts itself (a joint of a
-/// body that is not there), which rapier does not look for, and on which its next step, or the
-/// loading itself, may panic. Load worlds from those you trust.
+/// # Errors
+/// [`SavedWorldError`] if the bytes are not a saved world, are of another version, or are damaged.
+///
+/// # Panics
+/// Damage is detected, malice is not: forged bytes with a good checksum may hold a world that contradicts itself (a joint
+/// of a body that is not there). rapier does not check this, and may panic in the loading or in the next step.
+/// Load only worlds from sources you trust.
 pub fn load_world(bytes: &[u8]) -> Result<PhysicsWorld, SavedWorldError> {
     let not_a_world = || SavedWorldError::NotAWorld {
         start: bytes.iter().take(MAGIC.len()).copied().collect(),
