@@ -1,5 +1,5 @@
-//! Many pairs at once (layer 4): contacts at fixed poses, or first contacts in motion, on the CPU or a GPU. A call takes
-//! a list of jobs and returns their answers in the same order.
+//! Many pairs at once (layer 4): contacts at fixed poses, or first contacts in motion, on the CPU or a GPU. A call
+//! takes a list of jobs and returns their answers in the same order.
 
 mod backend;
 #[cfg(feature = "gpu")]

@@ -25,10 +25,10 @@ pub enum Quality {
 /// Which edges of the triangle mesh count as sharp. Convex sharp edges may be kept, by spheres of radius 0 that lie
 /// on them; all other edges are rounded.
 ///
-/// Convex bodies with flat faces, alone or several apart, become their own medial axis if the number of
-/// primitives allows it, and are then exact. Of other closed bodies whose surface does not overlap itself one medial
-/// mesh is made with sharp edges and one without, and the one of smaller error is returned ([`Quality::Fast`] makes only the one
-/// without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
+/// Convex bodies with flat faces, alone or several apart, become their own medial axis if the number of primitives
+/// allows it, and are then exact. Of other closed bodies whose surface does not overlap itself one medial mesh is
+/// made with sharp edges and one without, and the one of smaller error is returned ([`Quality::Fast`] makes only
+/// the one without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Creases {
     /// Edges at which the surface bends by more than 25°, unless most of these edges end within a face, as on a

@@ -1,5 +1,5 @@
-//! The paper's own method (§4.2–4.4), kept as the baseline that the certified bracket is compared
-//! with. It carries no certificate: see the measured misses in the example `hard_cases`.
+//! The paper's own method for the first contact of two primitives (§4.2–4.4), kept to compare the certified bracket
+//! with. Its answers are not certified: the example `hard_cases` measures how many contacts it misses.
 //!
 //! Fix `t` and find the nearest sphere pair; fix the pair and find the time it touches (Eq. 4:
 //! `t⁽¹⁾`, `t⁽²⁾`, roots of the parabola, or `t⁽³⁾`, its axis); repeat, starting at the end of the

@@ -1,4 +1,6 @@
-//! The certified bracket of the first contact, for one elementary test. Source: paper §4.2–4.3 for the two half steps; the certificate is ours.
+//! The certified bracket of the first contact of one elementary test: a time `lower` before which there is no
+//! contact, and a time `upper` at which there is one. Source: paper §4.2–4.3 for the two half steps; the
+//! certificate is our own.
 //!
 //! # Loop, at `lower`
 //! 1. Nearest spheres at `lower` (paper §4.2, fixed `t`). `S ≤ tolerance`, rounding included:
@@ -9,15 +11,15 @@
 //!    paths the bound of the fixed direction over the largest speed ([`super::certificate`]); a little
 //!    less than proven, for rounding. Never by the distance of the pair found: that is above the
 //!    least distance by as much as the pair is not the nearest one.
-//! 4. `upper − lower ≤ time_tolerance`: contact. `lower` at the end without a root: separated. Without
-//!    any step, the next round would be the same: unresolved.
+//! 4. `upper − lower ≤ time_tolerance`: contact. `lower` at the end of the step without a root: separated. No
+//!    proven step at all: unresolved, since the next round would be the same.
 //!
 //! # Changes versus the paper
-//! - It starts at the end of the step and walks back, which can land in a later contact interval;
-//!   we start at the beginning and never step over a contact.
-//! - Its Condition 3 takes a local minimum of the distance as proof of a miss (2–8 % of hard hits
-//!   are lost); here a miss is proven for all sphere pairs.
-//! - Its Conditions 1 and 2 (touching at `t0` or `t1`) need no special case.
+//! - The paper starts at the end of the step and walks back, which can end in a later interval of contact. Here the
+//!   search starts at the beginning and never steps over a contact.
+//! - The paper's Condition 3 takes a local minimum of the distance for proof of a miss, and loses 2–8 % of hard
+//!   hits. Here a miss is proven for all sphere pairs.
+//! - The paper's Conditions 1 and 2 (touching at `t0` or `t1`) need no special case.
 
 use super::certificate::{ActiveFace, first_step, fixed_step, lower_bound, turning_step};
 use super::path::Path;

@@ -1,6 +1,6 @@
-//! Lower bounds of the distance that hold for all interpolation parameters at once, and how long
-//! they stay positive. They replace the paper's termination conditions (§4.4), which accept a
-//! local minimum as proof of a miss.
+//! The certificate: lower bounds of the distance of two primitives that hold for all of their interpolated spheres
+//! at once, and how long these bounds stay positive. They replace the paper's termination conditions (§4.4), which
+//! take a local minimum for proof of a miss.
 //!
 //! # Fixed direction
 //! For a unit `n`, `D(t) ≥ min over corners of n·y_i(t) − R_i`: the right-hand side is affine in

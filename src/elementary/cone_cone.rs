@@ -1,5 +1,6 @@
-//! Nearest spheres of two medial cones at a fixed time. Source: paper §4.2, Eq. (2) at fixed `t`,
-//! the QCQP of its reference 23, solved in closed form (derivation in [`crate::math::nearest`]).
+//! Which interpolated spheres of two medial cones are nearest to each other, at a fixed time. Source: paper §4.2,
+//! Eq. (2) at fixed `t`, the QCQP of its reference 23, solved in closed form (derivation in
+//! [`crate::math::nearest`]).
 //!
 //! Corners of the parameter box, in the order used everywhere: `(α, β)` = (0, 0), (1, 0), (0, 1),
 //! (1, 1), with `y = c2(β) − c1(α)`.

@@ -1,6 +1,5 @@
-//! Signed distance of two primitives at a fixed time: paper Eq. (2), minimised over all sphere
-//! pairs. Where medial surfaces cross it is minus the radius sum there, which the elementary tests
-//! alone do not see.
+//! Signed distance of two primitives at a fixed time: paper Eq. (2), minimised over all pairs of spheres. Where medial
+//! surfaces cross it is minus the sum of the radii there, which the elementary tests alone do not find.
 
 use super::penetration::Ball;
 use super::test_list::{Domain, ElementaryTest, Share, edges, for_each_test};

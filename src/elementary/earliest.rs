@@ -1,5 +1,5 @@
-//! The earliest contact over many elementary tests, and what the tests leave: crossings at the start,
-//! and the witness.
+//! The earliest contact over many elementary tests, and what the tests themselves do not find: medial surfaces that
+//! cross at the start, and the spheres and points that touch.
 
 use super::ToiStatus;
 use super::bracket::{Bracket, Limits, bracket, witness};

@@ -1,6 +1,6 @@
-//! The elementary queries in double precision: the same kernels with `f64` lanes.
+//! The elementary queries in double precision: the same code as in `f32`, with `f64` lanes.
 //!
-//! They are what mesh queries and the hook compute with; guarantee as in [`crate::elementary`].
+//! Queries of meshes and the pipeline compute with these. The guarantee is that of [`crate::elementary`].
 
 use super::bracket::Limits;
 use super::first_contact::{Earliest, Mover, linear, motion_is_finite, rigid};

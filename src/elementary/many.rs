@@ -1,10 +1,9 @@
-//! Many elementary tests on straight paths at once, in eight lanes of `f32`. After each round of
-//! the bracket's loop the lanes are filled anew with queries that are not finished; otherwise a group
-//! of eight takes as long as its slowest member, half as long again as the mean.
+//! Many elementary tests on straight paths at once, in eight lanes of `f32`. After each round of the bracket's loop,
+//! lanes whose query is finished are filled with new queries. A fixed group of eight would take as long as its slowest
+//! member, half as long again as the mean.
 //!
-//! On x86-64 with AVX2 the lanes are one register (`math::lane_avx`, chosen at run time),
-//! elsewhere what [`wide`] makes of them. Both, and the scalar [`super::bracket::bracket`], give the
-//! same bits.
+//! On x86-64 with AVX2 the eight lanes are one register (`math::lane_avx`, chosen at run time), elsewhere what [`wide`]
+//! makes of them. Both give the same bits as the scalar [`super::bracket::bracket`].
 
 use super::bracket::{Bracket, Limits, Running};
 use super::earliest::Earliest;

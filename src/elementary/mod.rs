@@ -1,4 +1,5 @@
-//! L2: the maths of one pair of primitives. Knows spheres and their motion, never meshes.
+//! The maths of two primitives (layer 2): their distance at a fixed time, and when they first touch in motion. It knows
+//! spheres and their motion, but no meshes.
 //!
 //! Two primitives of 1, 2 or 3 interpolated spheres each are in contact exactly when one of their
 //! elementary tests is (paper §4.1): cone–cone for every two edges, sphere–slab for every sphere
@@ -15,7 +16,7 @@
 //! - [`ToiStatus::Contact`]: `D > 0` before `lower`, `D(upper) ≤ tolerance`, and
 //!   `upper − lower ≤ time_tolerance`. Bodies that pass within `tolerance` may be reported.
 //! - [`ToiStatus::Overlapping`]: `D(0) < 0`; `lower = upper = 0`.
-//! - [`ToiStatus::Unresolved`]: the cap was reached; `D > 0` before `lower` still holds.
+//! - [`ToiStatus::Unresolved`]: the limit of iterations was reached; `D > 0` before `lower` still holds.
 //!
 //! Every bound that is compared with 0 first loses a rounding slack,
 //! [`crate::math::tolerance::SLACK_ULPS`]` × EPSILON × scale`; a tolerance below twice that is

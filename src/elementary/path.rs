@@ -1,5 +1,5 @@
-//! Where the corners of an elementary test are over the step: on straight paths (paper Eq. 1) or
-//! in exact rigid motion.
+//! The motion of an elementary test over the step, on straight paths (paper Eq. 1) or in exact rigid motion. It is
+//! known by four *corners*: the vectors from a sphere's centre of the first primitive to one of the second.
 
 use super::test_list::ElementaryTest;
 use crate::math::lane::{Lane, Scalar, Vec3};

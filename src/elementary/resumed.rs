@@ -1,6 +1,6 @@
-//! A bracket taken only as far as a search needs it, and taken up again later. On a curved path
-//! nothing but `lower` outlives a round of the loop (roots are sought on straight paths only), so
-//! taking it up again is starting a new one there.
+//! A bracket that is taken only as far as a search needs it, and resumed later. On a curved path nothing but
+//! `lower` outlives a round of the loop (roots are sought on straight paths only), so there resuming means starting
+//! a new bracket at `lower`.
 
 use super::bracket::{Bracket, Limits, Running};
 use super::path::Path;

@@ -1,4 +1,4 @@
-//! Nearest sphere of a medial slab to a sphere, at a fixed time. Source: paper §4.2 ("its routine
+//! Which interpolated sphere of a medial slab is nearest to a sphere, at a fixed time. Source: paper §4.2 ("its routine
 //! can be readily generalized to sphere-slab tests"); derivation in [`crate::math::nearest`].
 //!
 //! Corners: the slab's three spheres; the fourth repeats the third. `α` weighs the second sphere,

@@ -1,5 +1,5 @@
-//! How long one direction after another keeps two primitives apart, on chords of their paths: the
-//! cheap bound that decides which primitives are worth an elementary test.
+//! How long two primitives are certainly apart, because one direction after another separates them while they move
+//! along the chords of their paths. This cheap bound decides which primitives are worth an elementary test.
 
 use crate::math::lane::Vec3;
 

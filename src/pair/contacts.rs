@@ -1,11 +1,10 @@
-//! Near sphere pairs of two bodies at fixed poses: the points of contact manifolds. What a few directions
-//! keep apart ([`super::outline`]) is not searched.
+//! Contacts of two bodies at fixed poses: pairs of near spheres, from which contact manifolds are made. Parts that
+//! a few directions keep apart ([`super::outline`]) are not searched.
 //!
-//! Each elementary test gives its nearest sphere pair, in contact along the line of centres
-//! (paper §4.5: "contact point and contact normal through the nearest sphere pair"). Where medial
-//! surfaces cross, that line is lost and the true penetration depth and normal take its place
-//! ([`crate::elementary::penetration`]). Long parallel cones get a second pair, so that they rest
-//! on a line.
+//! Each elementary test gives its nearest pair of spheres, in contact along the line of their centres (paper §4.5:
+//! "contact point and contact normal through the nearest sphere pair"). Where medial surfaces cross, that line is
+//! lost, and the true penetration depth and normal take its place ([`crate::elementary::penetration`]). Long
+//! parallel cones get a second pair, so that they can rest on a line.
 
 use super::first_contact::Counts;
 use super::outline;

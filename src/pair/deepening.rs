@@ -1,14 +1,15 @@
-//! How far primitives that touch at the start may sink into each other
-//! ([`crate::elementary::InitialContact::Deepen`]) before that counts as a contact.
+//! How far two primitives that touch at the start of a step may sink into each other
+//! ([`crate::elementary::InitialContact::Deepen`]) before that counts as a contact. However often this is allowed, no
+//! medial axis crosses another.
 //!
-//! Mostly by a given length: the target distance falls to that below their distance `s` at the start. Where
-//! parts are thinner than that, no such target is ever met: the medial axes would cross before. There all
-//! radii shrink by one factor instead. With `m` the distance of the axes at the start and `s < 0`, and for
-//! any `0 < b < m`, the factor `σ = (m − b) / (m − s)` leaves primitives that are at least `b` apart: a
-//! pair of spheres of radius sum `R`, whose centres are no nearer than `m` and no nearer than `R + s`, is
-//! further apart than `σ R` by `m − σ R` and by `R + s − σ R`, of which one is at least `b` (they are equal
-//! at `R = m − s`). And spheres with radii of any factor from 0 on hold the axis: where they do not meet,
-//! no axis has crossed another.
+//! Usually they may sink by a given length: the target distance becomes their distance `s` at the start, minus this
+//! length. Where parts are thinner than that, such a target would never be met, because the medial axes would cross
+//! before. There all radii are reduced by one factor instead. Let `m` be the distance of the axes at the start, and
+//! `s < 0`. For any `0 < b < m`, the factor `σ = (m − b) / (m − s)` leaves primitives that are at least `b` apart: two
+//! spheres of radius sum `R`, whose centres are no nearer than `m` and no nearer than `R + s`, are farther apart than
+//! `σ R` by `m − σ R` and by `R + s − σ R`, of which one is at least `b` (they are equal at `R = m − s`). And spheres
+//! whose radii are multiplied by any factor from 0 on still contain the axis: while they do not meet, no axis has
+//! crossed another.
 
 /// Share of the asked tolerance below which axes at the start count as crossing: nearer than that, rounding
 /// of the poses decides.

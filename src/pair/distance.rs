@@ -1,8 +1,8 @@
-//! Signed distance of two bodies at fixed poses, and the sphere pair that attains it: best-first over
-//! their trees, nearest node pair first.
+//! Signed distance of two bodies at fixed poses, and the pair of spheres that attains it: a best-first search over both
+//! trees, the nearest pair of nodes first.
 //!
-//! For bodies that overlap it is the most negative distance of any primitive pair: how deep the
-//! nearest spheres are in each other, not how far the bodies must move apart.
+//! For bodies that overlap it is the most negative distance of any two primitives: how deep the nearest spheres are in
+//! each other, not how far the bodies must move to be apart.
 
 use super::contacts::{Placement, PrimitivePair, SpherePair};
 use super::first_contact::Counts;

@@ -1,5 +1,5 @@
-//! How the search of [`super::search`] ends: with the witness of the first contact, or unresolved when its
-//! work is used up.
+//! The two ends of a search for a first contact ([`super::search`]): its answer with the spheres and points that
+//! touch, or "unresolved" when its limit of work is used up.
 
 use super::apart::Balls;
 use super::deepening::Threshold;

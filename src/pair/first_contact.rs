@@ -1,5 +1,6 @@
-//! First contact of two bodies made of primitives, in exact rigid motion: best-first over their
-//! trees. The paper (§4.1) tests all pairs; this visits the few that can come first.
+//! First contact of two bodies in exact rigid motion: the call for medial meshes, and for all shapes that are given
+//! as swept spheres. The paper (§4.1) tests each primitive against each; here a best-first search over two trees of
+//! bounding spheres visits the few that can come first.
 
 use super::outline::Left;
 use super::search::Search;

@@ -1,5 +1,5 @@
-//! Contacts of two bodies that cannot close while a nearer one holds: a solver pays as much for them as
-//! for those that bear.
+//! Finds contacts that cannot close while a nearer one holds, so that they can be left out: a solver pays as much
+//! for them as for those that bear a load.
 //!
 //! While the bodies move, each place moves against the other by some `δ(p) = δ(q) + ω × (p − q)`. Where
 //! contact `k` has the normal `n_k` and the gap `g_k`, and holds, `δ(k) · n_k ≤ g_k`; with `|δ(k)| ≤ R` and
@@ -7,8 +7,8 @@
 //!
 //! `g_k cos θ + √(R² − g_k²) sin θ + |ω| |c − k|`,
 //!
-//! or by `R + |ω| |c − k|` where `g_k ≥ R cos θ`. In the narrowing gap between two tubes all but the
-//! nearest few contacts are held back so.
+//! or by `R + |ω| |c − k|` where `g_k ≥ R cos θ`. In the narrowing gap between two tubes this leaves only the
+//! nearest few contacts.
 
 use super::SpherePair;
 use crate::math::Real;

@@ -1,5 +1,5 @@
-//! What the search of [`super::search`] does with two primitives: lists their elementary tests, and takes
-//! one of them further.
+//! The part of the search for a first contact ([`super::search`]) that deals with two primitives: it lists their
+//! elementary tests, and takes one of them further.
 
 use super::deepening::Threshold;
 use super::queue::{Candidate, Entry, Open};

@@ -1,13 +1,14 @@
-//! Two bodies as wholes: what of them a few directions keep apart. Along a direction all primitives of
-//! the first that end before the second begins are done with for the rest of the step (or for good, of
-//! bodies at rest), and so are those of the second that begin after the first ends; what is left of both
-//! gives the next direction. Most neighbours in a crowd are used up in a few rounds, and of those that
-//! touch little is left to search.
+//! Rules out most primitives of two bodies before they are searched, by a few directions that keep them apart.
 //!
-//! On straight paths the gap of two sets of balls along a direction is concave in time (a least of linear
-//! functions less a greatest): between two times it is no less than the chord of its values there. Where
-//! a direction gets no further, the next one is its mirror image at the line between the two balls that
-//! overlap most (Chung and Wang, "Quick collision detection of polytopes in virtual environments", 1996).
+//! Along a direction, all primitives of the first body that end before the second body begins cannot touch it for
+//! the rest of the step (or at all, for bodies at rest), and neither can those of the second that begin after the first
+//! ends. What is left of both gives the next direction. Nothing is left of most neighbours in a crowd after a few
+//! rounds, and little of those that touch.
+//!
+//! On straight paths the gap of two sets of balls along a direction is a concave function of time (the smallest of
+//! linear functions minus the largest), so between two times it is no less than the chord of its values there. If a
+//! direction gets no further, the next one is its mirror image at the line between the two balls that overlap
+//! most (Chung and Wang, "Quick collision detection of polytopes in virtual environments", 1996).
 
 use super::volumes::Volumes;
 use crate::math::lane::Vec3;

@@ -1,5 +1,5 @@
-//! What the search of [`super::search`] still has to look at, in the order of the time before
-//! which it is proven free.
+//! The queue of the search for a first contact ([`super::search`]): pairs of nodes, pairs of primitives and elementary
+//! tests, in the order of the times until which they are proven not to meet.
 
 use super::deepening::Threshold;
 use crate::elementary::test_list::ElementaryTest;

@@ -1,17 +1,18 @@
-//! The search of [`super::first_contact`]: what may meet waits in a queue at the time until which it is
-//! proven free, and is taken further only when it comes first.
+//! The search for the first contact of two bodies. Everything that may meet (two nodes, two primitives, one elementary
+//! test) waits in a queue at the time until which it is proven not to meet, and is looked at further only when it comes
+//! first.
 //!
-//! - A node's ball keeps its radius under any rotation; its centre stays within the sagitta `A/8` of
-//!   its chord ([`crate::math::motion`]), so two nodes cannot meet before the balls, grown by both
-//!   sagittas and moved along the chords, do: the smaller root of a quadratic.
-//! - Two primitives cannot meet while a direction keeps them apart ([`super::apart`]), nor can the
-//!   spheres of one of their elementary tests. All this until they come within the tolerance, so that
-//!   what touches at the start is found there.
-//! - An elementary test has its bracket's lower bound ([`crate::elementary::bracket`]).
+//! - A node is a ball, which keeps its radius when it turns. Its centre stays within the sagitta `A/8` of the chord of
+//!   its path ([`crate::math::motion`]). So two nodes cannot meet before the two balls, enlarged by both sagittas and
+//!   moved along the chords, touch: the smaller root of a quadratic.
+//! - Two primitives cannot meet while a direction keeps them apart ([`super::apart`]), nor can the spheres of one of
+//!   their elementary tests. "Meet" here means to come within the tolerance, so that what touches at the start is
+//!   found there.
+//! - An elementary test has the lower bound of its bracket ([`crate::elementary::bracket`]).
 //!
-//! So the first test that is in contact when its turn comes is the first contact. A fast turn is
-//! searched in pieces, so that sagittas stay small. And what comes first in the queue bounds the contact
-//! from below at any moment: a search that has used up [`WORK`] ends there, unresolved, and says so.
+//! So the first test that is in contact when its turn comes is the first contact. A fast turn is searched in pieces,
+//! so that sagittas stay small. The time of the first entry in the queue is a lower bound of the contact at any moment:
+//! a search that has used up [`WORK`] ends with that bound, as unresolved.
 
 use super::apart::{Balls, free_until};
 use super::deepening::Threshold;

@@ -1,6 +1,6 @@
-//! What a query walks over: a hierarchy of bounding spheres with primitives of 1 to 3 spheres at
-//! its leaves. A medial mesh is one; a handful of loose primitives (the faces of a cuboid, a
-//! capsule, the triangles of a terrain near the body) is another.
+//! What a query searches: a hierarchy of bounding spheres with primitives of 1 to 3 spheres at its leaves. A medial
+//! mesh is one; a few loose primitives (the faces of a cuboid, a capsule, the triangles of a terrain near the body)
+//! are another.
 
 use crate::elementary::test_list::Share;
 use crate::math::{Real, Vector};

@@ -1,11 +1,11 @@
-//! First contact of a medial mesh with cylinders and cones, plain or rounded, in exact rigid motion:
-//! best-first over the mesh's tree, by the time until which each node is proven free. Nodes are
-//! spheres, so [`follow`] advances them as it does primitives, only less exactly.
+//! First contact of a medial mesh with cylinders and cones, plain or rounded, in exact rigid motion. It is a best-first
+//! search over the mesh's tree, by the time until which each node is proven not to meet. Nodes are spheres, so
+//! [`follow`] advances them as it does primitives, only less exactly.
 //!
 //! # Guarantee
-//! That of [`crate::elementary`], with `D(t)` the signed distance of [`super::turned`]: it counts a
-//! body inside the solid, and never falls below minus the largest radius. `upper = lower` for a
-//! contact, and `D` there is at most the tolerance. All in double precision.
+//! It is that of [`crate::elementary`], where `D(t)` is the signed distance of [`super::turned`], which sees bodies
+//! inside the cylinder or cone as overlapping, and never falls below minus the largest radius. For a contact,
+//! `upper = lower`, and `D` there is at most the tolerance. All is computed in double precision.
 
 use super::follow::{Advance, Limits, TOLERANCE_PER_SLACK, follow};
 use super::turned::{Ball, NearBall, Place, Turned, unit};

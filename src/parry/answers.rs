@@ -1,7 +1,8 @@
-//! Results of the batch, looked up by exact key when rapier's narrow phase asks for them.
+//! The contacts that were computed in a batch before rapier's step, kept until rapier's narrow phase asks for them; and
+//! which pairs it is to get no contacts of.
 //!
-//! The key is both shapes and every bit of the relative pose: an answer is either exactly the one asked
-//! for, or not there and computed on the spot.
+//! They are found by an exact key: both shapes and every bit of the relative pose. So an answer is either exactly
+//! the one asked for, or it is not there and is computed on the spot.
 
 use crate::batch::{Job, PairJob, PairResult};
 use crate::math::{Pose, Real};

@@ -1,12 +1,11 @@
-//! Which contacts bear the load. Of all contacts under one normal rapier solves four at most: the
-//! deepest, the furthest from it, and the two furthest to its sides. Under a body of many primitives
-//! those need not be what it lies on, and then it sinks in and never sleeps.
+//! Chooses the contacts that bear the load of a body, four at most for each normal. Of contacts with one normal
+//! rapier solves four: the deepest, the farthest from it, and the two farthest to its sides. A body of many
+//! primitives need not lie on these, and then it sinks in and never sleeps.
 //!
-//! Here it is what it lies on. Seen along the normal, contact `i` is at `u_i` with a gap `d_i`; a body
-//! pressed on with its centre of mass over `c` comes to lie on the facet above `c` of the lower convex
-//! hull of all `(u_i, d_i)`. That facet attains the least `Σ λ_i d_i` with `Σ λ_i u_i = c`, `Σ λ_i = 1`,
-//! `λ ≥ 0`, which the simplex method finds: three rows, a pivot is a change of one corner. A fourth
-//! contact widens it.
+//! Seen along the normal, contact `i` is at `u_i` with a gap `d_i`. A body that is pressed down with its centre of mass
+//! over `c` comes to lie on the facet above `c` of the lower convex hull of all `(u_i, d_i)`. That facet attains the
+//! smallest `Σ λ_i d_i` with `Σ λ_i u_i = c`, `Σ λ_i = 1`, `λ ≥ 0`, which the simplex method finds: it has three
+//! rows, and a pivot is a change of one corner. A fourth contact makes the facet wider.
 
 use crate::math::{Pose, Real, Vector};
 use parry3d::query::ContactManifold;

@@ -1,5 +1,5 @@
-//! Shape casts of medial meshes in exact rigid motion, against each other and against rapier's
-//! shapes, by the certified query.
+//! Shape casts of medial meshes, against each other and against parry's shapes, in exact rigid motion, by the certified
+//! query: it chooses how each shape is searched, and turns the bracket of the first contact into parry's answer.
 
 use super::advance;
 use super::foreign::{self, Parts};

@@ -20,12 +20,13 @@ use parry3d::query::{
 use parry3d::shape::Shape;
 use std::sync::Arc;
 
-/// A query dispatcher of parry that answers all queries between two medial meshes, and between one and any of parry's own
-/// shapes: distance, intersection, closest points, contact, and both kinds of shape casts. Contact manifolds with
-/// parry's shapes are the exception: it computes only those with flat faces, and leaves the others to parry.
+/// A query dispatcher of parry that answers all queries between two medial meshes, and between one and any of
+/// parry's own shapes: distance, intersection, closest points, contact, and both kinds of shape casts. Contact
+/// manifolds with parry's shapes are the exception: it computes only those with flat faces, and leaves the others
+/// to parry.
 ///
-/// [`MedialPipeline::attach`](crate::MedialPipeline::attach) sets it in a world. To use it with parry alone, chain it before
-/// parry's default dispatcher:
+/// [`MedialPipeline::attach`](crate::MedialPipeline::attach) sets it in a world. To use it with parry alone, chain
+/// it before parry's default dispatcher:
 ///
 /// ```
 /// use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};

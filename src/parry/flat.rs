@@ -1,6 +1,6 @@
-//! Contacts of a medial mesh with a flat face: a half-space, or a side of a cuboid that the mesh cannot
-//! reach past. Of a hull of spheres the point nearest to a plane is on one of the spheres, so the
-//! contacts are the spheres themselves, all under one normal; parry would run GJK for each primitive.
+//! Contacts of a medial mesh with a flat face: a half-space, or a side of a cuboid that the mesh cannot reach past. The
+//! point of a hull of spheres that is nearest to a plane lies on one of the spheres, so the contacts are those of the
+//! spheres themselves, all with one normal. parry would run its iterative GJK algorithm for each primitive.
 
 use crate::math::lane::Vec3;
 use crate::math::{Pose, Real, Vector};

@@ -1,5 +1,5 @@
-//! Certified advancement of one volume, 1 to 3 interpolated spheres, towards a cylinder or cone in
-//! exact rigid motion. Source: conservative advancement (Mirtich 1996), with the bound of
+//! How long one primitive (1 to 3 interpolated spheres) is certainly apart from a cylinder or cone in exact rigid
+//! motion, step by step until they touch. Source: conservative advancement (Mirtich 1996), with the bound of
 //! [`super::turned`] in place of a computed distance.
 //!
 //! # Step

@@ -1,10 +1,8 @@
-//! rapier's other shapes as swept spheres, so that one certified query serves them all: a ball is a
-//! sphere, a capsule a cone, a flat face a slab of radius 0, a rounded one a slab of its border
-//! radius.
+//! Turns parry's other shapes into swept spheres, so that one certified query serves all of them: a ball is a sphere, a
+//! capsule a cone, a flat face a slab of radius 0, a rounded face a slab of its border radius.
 //!
-//! A closed body is then only its surface: whether the other starts inside it needs
-//! [`super::inside`] besides. Cylinders and cones have no flat faces: they are collected apart, for
-//! [`super::advance`].
+//! A closed body is represented by its surface only, so [`super::inside`] has to find out whether the other body starts
+//! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::advance`].
 
 use super::turned::Turned;
 use crate::math::{Pose, Real, Vector};

@@ -1,9 +1,9 @@
-//! Bodies that start inside a closed one: whether they do, and which way out is the shortest.
+//! Whether a medial mesh starts inside a closed shape, and which way out is the shortest.
 //!
-//! A convex body is left through one of its faces: with `n` the face's outward normal and `h` its
-//! offset, all spheres `(c, r)` are out after moving by `max (h − n·c + r)` along `n`, and the face for
-//! which that is least is the answer. (An edge may give a shorter way to a body that is not wholly
-//! inside; a face is what a solver can push against.)
+//! The way out of a convex body leads through one of its faces. If `n` is the face's outward normal and `h` its
+//! offset, all spheres `(c, r)` are outside after moving by `max (h − n·c + r)` along `n`. The answer is the face
+//! for which this is smallest. (For a body that is not entirely inside, the way over an edge may be shorter; but a
+//! face is what a solver can push against.)
 
 use crate::math::{Real, Vector};
 use crate::medial::MedialSphere;

@@ -1,7 +1,8 @@
-//! Where a ray or a point inside a medial mesh leaves it: out of the union, not out of one primitive.
+//! Where a ray or a point inside a medial mesh leaves it. What counts is leaving the whole solid, not one of the
+//! primitives, which overlap.
 //!
-//! Every primitive is convex, so a ray is inside it on one stretch ([`crate::medial::chord`], closed
-//! form); the union is left at the end of the stretches that overlap the start, one after the other.
+//! Every primitive is convex, so a ray is inside it on one stretch ([`crate::medial::chord`], in closed form). The ray
+//! leaves the solid at the end of the stretches that follow from the start without a gap.
 
 use crate::math::lane::Vec3;
 use crate::math::{Real, Vector};

@@ -1,6 +1,7 @@
-//! Sphere pairs → persistent contact manifolds: one contact per patch, for a solver's time goes by
-//! contacts; one manifold per primitive pair, so that each keeps its own normal (one per collider
-//! pair lets a chain of rings fall apart).
+//! Turns pairs of near spheres into contact manifolds of parry, which persist from step to step. There is one
+//! contact for each patch, because the time of a solver grows with the number of contacts, and one manifold for
+//! each pair of primitives, so that each keeps its own normal. (With one manifold for each pair of colliders a
+//! chain of rings falls apart.)
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;

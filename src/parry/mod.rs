@@ -1,5 +1,5 @@
-//! The medial mesh as a shape of parry, rapier's geometry library (layer 5): queries, contact manifolds and shape casts,
-//! against medial meshes and all of parry's shapes.
+//! The medial mesh as a shape of parry, rapier's geometry library (layer 5): queries, contact manifolds and shape
+//! casts, against medial meshes and all of parry's shapes.
 
 pub mod advance;
 pub mod answers;

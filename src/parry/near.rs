@@ -1,10 +1,11 @@
 //! Distance of a medial mesh to one of parry's shapes at fixed poses, and the contact that attains it.
 //!
-//! The other shape is its surface as swept spheres ([`super::foreign`]), so that the closed forms of two
-//! medial meshes serve; cylinders and cones have their own ([`super::turned`]); a centre inside a closed
-//! body counts as deep as its way out is long ([`super::inside`]). parry's own answers go through GJK,
-//! off by 1e-3 of the distance at times, and are missing for height fields and voxels; its contacts of
-//! composites with half-spaces take the wrong frame.
+//! The other shape is its surface as swept spheres ([`super::foreign`]), so the closed forms for two medial meshes
+//! serve here too. Cylinders and cones have closed forms of their own ([`super::turned`]). A centre inside a closed
+//! body counts as deep as its shortest way out is long ([`super::inside`]).
+//!
+//! parry's own answers come from its iterative GJK algorithm: they are off by up to 1e-3 of the distance at times, are
+//! missing for height fields and voxels, and are in the wrong frame for contacts of compounds with half-spaces.
 
 use super::cast::Unsweepable;
 use super::foreign::{self, Parts};

@@ -1,11 +1,10 @@
-//! Cones and slabs as convex parry shapes: support map, support feature, ray cast, projection.
-//! With them every query and contact manifold of parry works between a medial mesh and any shape.
+//! Cones and slabs as convex shapes of parry: support map, support feature, ray cast, projection. With them every query
+//! and contact manifold of parry works between a medial mesh and any shape.
 //!
-//! The smallest radius of a part is its border, the rest its core: parry's manifold code runs on
-//! the core and adds the border. A support feature is the tangent facet of the convex hull of the
-//! core's spheres towards a direction: a triangle on a slab's flat side, a segment along a cone.
-//! Its normal `n` satisfies `n·(c_j − c_i) = r_i − r_j` along the facet, as in
-//! [`crate::math::nearest`].
+//! The smallest radius of a part becomes a border, as in parry's rounded shapes, and what remains is the core: parry's
+//! manifold code runs on the core and adds the border. A support feature in a direction is the facet of the convex hull
+//! of the core's spheres that is tangent there: a triangle on a slab's flat side, a segment along a cone. Its
+//! normal `n` satisfies `n·(c_j − c_i) = r_i − r_j` along the facet, as in [`crate::math::nearest`].
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialPrimitive, MedialSphere};

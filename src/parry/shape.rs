@@ -1,7 +1,8 @@
-//! [`MedialMesh`] as a parry shape: a composite of convex parts, a custom shape to rapier.
+//! [`MedialMesh`] as a shape of parry: rays, points, boxes, mass, and a composite of convex parts for queries that this
+//! crate does not answer itself.
 //!
-//! It stays `TypedShape::Custom`: rapier then asks our dispatcher for its continuous collision
-//! detection, which keeps the certificate.
+//! To rapier it is a custom shape (`TypedShape::Custom`). If it were one of parry's compounds, rapier would sweep
+//! its convex parts itself instead of asking this crate's dispatcher, whose answers are certified.
 
 use super::leaving;
 use super::parts::MedialPart;

@@ -1,13 +1,14 @@
-//! Bodies that touch at the start of a cast, or are within its target distance then: what of it counts as
-//! an answer, and how near others may come.
+//! Shape casts whose bodies touch at the start, or are within the target distance then: which of these contacts
+//! count as hits, and how near other places may come.
 //!
-//! - In straight motion the distance of two primitives is convex in time: what does not come nearer at
-//!   once never does. So each pair that comes nearer is an answer at time 0, each other one none, and
-//!   pairs that start farther off have the target itself, as parry has it for the parts of a compound.
-//! - In turning motion bodies that touch go on with what they are in: as deep as they are, and as they get
-//!   by the speed at which their deepest contact closes. No other place may get deeper than that, so that
-//!   the next facet of a floor stops nobody and a wall stops everybody; and none deeper than half way to
-//!   the medial axes there: a thin part of a thick body may sink as deep as it is thin.
+//! - In straight motion the distance of two primitives is convex in time: if they do not come nearer at once, they
+//!   never do. So each pair of primitives that comes nearer is a hit at time 0, and one that does not is none.
+//!   Pairs that start farther apart are hit at the target distance. parry treats the parts of a compound in the
+//!   same way.
+//! - In turning motion, bodies that touch may stay as deep in each other as they are, and get deeper by the speed
+//!   at which their deepest contact closes. No other place may get deeper than that: so the next facet of a floor
+//!   stops nobody, and a wall stops everybody. And no place may get deeper than half way to the medial axes there,
+//!   so a thin part of a thick body may sink in only in proportion to how thin it is.
 
 use crate::elementary::{Cores, InitialContact, ToiOptions};
 use crate::math::{Real, Vector};

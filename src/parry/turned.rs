@@ -1,8 +1,9 @@
-//! Cylinders and cones, plain or rounded, and the interpolated sphere that is nearest to one.
+//! Distance of a medial primitive to a cylinder or cone, plain or rounded: which of its interpolated spheres is
+//! nearest, and a lower bound that holds for all of them.
 //!
-//! Such a body `K` is turned about an axis, so all about it is two-dimensional: its profile in the
+//! Such a body `K` is symmetric about an axis, so the problem is two-dimensional: its profile in the
 //! half plane of the height `y` along the axis and the radius `ρ` around it is a rectangle or a
-//! triangle. A border radius is added to the spheres instead. With `d(c)` the distance of a
+//! triangle. The border radius of a rounded one is added to the spheres instead. With `d(c)` the distance of a
 //! point to `K` (0 inside), the signed distance of a primitive is, as in paper Eq. (2),
 //! ```text
 //! D = min over (α, β) of  d(c(α, β)) − r(α, β)

@@ -1,20 +1,21 @@
-//! Contacts of what hangs as they are at the end of a step, as far as velocities tell before it.
+//! Contacts of medial pairs in which a body hangs, computed as they will be at the end of the step, as far as
+//! velocities tell at its start. With contacts of the step's start, chains and rings that hang swing ever wider.
 //!
-//! rapier keeps the normals and lever arms of a step's start through all its `s` substeps. A load that
-//! turns with its body (the pull in a chain, the weight of a ring that rolls in another) then lags
-//! behind it, and that feeds what swings. With contacts `θ` of a step ahead of its start, an oscillation
-//! of angular frequency `ω` grows in each step `h` by the factor
+//! rapier keeps the normals and lever arms of a step's start through all its `s` substeps. A force that turns with its
+//! body (the pull in a chain, the weight of a ring that rolls in another) then lags behind the body, which feeds the
+//! oscillation. With contacts at the time `θ` of the step, as a fraction, an oscillation of angular frequency `ω` grows
+//! in each step of length `h` by the factor
 //!
 //! `√(1 + ((s − 1) / 2s − θ) (ω h)²)`,
 //!
 //! the root of the determinant of one step `v' = v − h ω² (x + θ h v)`, `x' = x + (h / s) Σ_k v_k`, whose
 //! force acts in `s` equal parts. Warm-started impulses lag too, by up to half a step more. With `θ = 0`
-//! a ring that rolls in another swings ever wider, and twenty hanging links tremble for ever; with
+//! a ring that rolls in another swings ever wider, and twenty hanging links tremble for ever. With
 //! `θ = 1`, backward Euler for directions, nothing grows, and they sleep.
 //!
-//! What tips over its support is the reverse: its force grows with `x`, `ω²` is negative, and contacts
-//! ahead are what feeds it. A ring of cones that rolls on a plate tips over one vertex after another. So where nothing
-//! hangs contacts are those of the step's start.
+//! A body that tips over its support is the reverse case. Its force grows with `x`, `ω²` is negative, and contacts
+//! of the step's end would feed the motion: a ring of cones that rolls on a plate tips over one corner after
+//! another. So where no body hangs, contacts are those of the step's start.
 
 use super::motion::velocities;
 use crate::batch::{Job, PairJob, PairResult};

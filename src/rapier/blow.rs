@@ -1,4 +1,5 @@
-//! What two colliders give each other in the impacts of a step, as events tell it.
+//! An impulse that two colliders gave each other in an impact within the step, in the form in which contact force
+//! events report it.
 
 use super::first_contact::Hit;
 use super::snapshot::Snapshot;

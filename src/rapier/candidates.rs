@@ -1,5 +1,5 @@
-//! Which pairs of medial colliders may need manifolds in this step: those whose boxes at its start meet,
-//! and that the event loop has not taken over.
+//! Finds the pairs of medial colliders whose contacts rapier may ask for in this step, so that all can be computed
+//! in one batch before: pairs whose bounding boxes overlap at the start of the step, and which are not muted.
 
 use super::ahead::{Ahead, Start, Starts};
 use super::hanging::{self, is_hooked};

@@ -1,4 +1,4 @@
-//! What happened to a body in the impacts of a step.
+//! What the impacts of a step did to one body so far: how many it had, and whether it is frozen, moved or struck.
 
 /// State of one body in the loop.
 #[derive(Clone, Copy, Default)]

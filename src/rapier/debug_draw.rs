@@ -1,5 +1,5 @@
-//! Debug lines of medial colliders (feature `debug-render`). rapier's debug renderer draws nothing for custom shapes, so
-//! call [`MedialDebugRender::render`] after its own `render`.
+//! Debug lines of medial colliders (feature `debug-render`). rapier's debug renderer draws nothing for custom
+//! shapes, so call [`MedialDebugRender::render`] after its own `render`.
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -24,8 +24,8 @@ const MEDIAL_SHADE: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
 /// Draws medial colliders with the style, mode and backend of rapier's debug renderer. Keep one and call
 /// [`Self::render`] in each frame.
 ///
-/// The lines of a mesh are computed when it is first seen, once for all colliders that share its data, and dropped when no
-/// collider with it is drawn any more.
+/// The lines of a mesh are computed when it is first seen, once for all colliders that share its data, and dropped
+/// when no collider with it is drawn any more.
 pub struct MedialDebugRender {
     /// Whether to draw the surface of the solid. On by default.
     pub envelope: bool,

@@ -24,8 +24,8 @@ pub enum Effect {
 /// automatically, and only pairs that move fast, or are deep in each other, cost extra time.
 ///
 /// Set effects for the whole scene by [`MedialOptions::effects`], or for single colliders by
-/// [`MedialPipeline::set_effects`](super::MedialPipeline::set_effects). For each effect of a pair, `On` of either collider
-/// wins, then `Off` of either, then the scene's setting.
+/// [`MedialPipeline::set_effects`](super::MedialPipeline::set_effects). For each effect of a pair, `On` of either
+/// collider wins, then `Off` of either, then the scene's setting.
 ///
 /// *Thickness* below is that of the thinner of the two parts that may meet, a length: roughly their radius.
 ///

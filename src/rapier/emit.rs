@@ -1,5 +1,6 @@
-//! Collision and contact-force events of impacts within a step: emitted once, with a contact pair like
-//! rapier's, and not a second time when rapier finds the same contact in a later step.
+//! Collision events and contact force events of impacts within a step, which rapier does not know. They are emitted
+//! once, with a contact pair like rapier's, and are not repeated when rapier finds the same contact in a later
+//! step.
 
 use super::blow::Blow;
 use super::events::Impulse;

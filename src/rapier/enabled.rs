@@ -1,5 +1,5 @@
-//! Which colliders take part in a step. rapier hands on whether a body is enabled to its colliders only in the
-//! step, so that they do not know yet of what the user changed since the last one.
+//! Which colliders take part in a step. rapier tells colliders only within the step that their body was enabled or
+//! disabled, so what runs before the step has to ask the body.
 
 use rapier3d::dynamics::RigidBodySet;
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};

@@ -1,12 +1,13 @@
-//! After rapier's step: the impacts that it missed, in the order of their times.
+//! The event loop: after rapier's step it finds the impacts within the step that rapier missed, and resolves them
+//! in the order of their times.
 //!
-//! Pairs wait at the time before which they are known not to meet; the first of them is looked at
-//! further until it has an answer or another comes first. Each impact moves both bodies to its time and
-//! gives two impulses: one to the velocities that the solver left, so that the next step begins right, and
-//! one to the motion of this step, so that it goes on right ([`super::response`]). Then all pairs of the
-//! bodies that changed are asked again. A body with more than [`Tuning::max_events`](super::tuning::Tuning) impacts stays where it is
-//! for the rest of the step, or is carried along by what pushes it. No hit is ever dropped, at the
-//! current time neither; so no medial axis crosses another on the motion executed.
+//! Each pair waits in a queue at the time before which it is known not to meet. The first in the queue is searched
+//! further until its first contact is known or another pair comes first. An impact moves both bodies to its time
+//! and gives two impulses: one to the velocities that the solver left, so that the next step begins right, and one
+//! to the motion of this step, so that the rest of it is right ([`super::response`]). Then all pairs of the bodies
+//! that changed are searched again. A body with more than [`Tuning::max_events`](super::tuning::Tuning) impacts
+//! stays where it is for the rest of the step, or is carried along by what pushes it. No impact is ever dropped,
+//! not even at the current time; so no medial axis crosses another on the motion that is executed.
 
 use super::blow::Blow;
 use super::first_contact::{Asker, Hit, Work};

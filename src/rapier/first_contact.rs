@@ -1,13 +1,13 @@
-//! First contact of two colliders on the motions of a [`Snapshot`]: which target distance a pair gets,
-//! and the certified query that finds it.
+//! First contact of two colliders on the motions of a [`Snapshot`]: at which distance a pair counts as in contact, and
+//! the certified query that finds when.
 //!
-//! A fast pair stops a small gap before it touches; what touches already may sink a tenth of the
-//! thickness deeper, but no further than [`Tuning::floor`]; what is deeper may sink by a hair. A slow pair is
-//! left to the solver down to that floor. At the floor the cores of the bodies meet
-//! ([`crate::elementary::Cores`]), half way to the medial axes in each place, so that none crosses another.
+//! - A fast pair stops a small gap before it touches. If it touches already, it may sink in by a tenth of the thickness
+//!   more, but not deeper than [`Tuning::floor`]; if it is deeper than that already, by a hair.
+//! - A slow pair is left to rapier's solver down to that floor. At the floor the cores of the bodies meet
+//!   ([`crate::elementary::Cores`]), at every place half way to the medial axes, so that no axis crosses another.
 //!
-//! Who is fast depends on what may meet: a pair that is slow for bodies as thick as these mostly are is fast
-//! where thinner parts of them are near each other ([`Thin`]).
+//! A pair is fast in relation to the thickness of the parts that may meet: one that is slow for two thick bodies is
+//! fast where thin parts of them are near each other ([`Thin`]).
 
 use super::effects::{Effect, Effects, Wanted};
 use super::snapshot::Snapshot;

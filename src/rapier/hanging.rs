@@ -1,12 +1,11 @@
-//! Whose contacts are computed anew although their pair has hardly moved.
+//! Finds colliders whose contacts must be computed anew although their pair has hardly moved, and makes rapier do
+//! so. It would keep the contacts of a pair until it has moved by the recycle distance.
 //!
-//! Bodies that hang: whose contacts pull them away from their centre of mass, as those of convex bodies
-//! never do. rapier keeps the contacts of a pair until it has moved by its recycle distance. They are
-//! contacts of the past, and what hangs in them swings on (see [`super::ahead`]). So where contacts that a
-//! body hangs in have moved, rapier is made to ask for all of that collider's.
-//!
-//! And bodies that came to rest: contacts that could close while they moved cannot any more, and the solver
-//! would pay for them as long as they lie there.
+//! - Bodies that hang, that is whose contacts pull them away from their centre of mass, as those of convex bodies
+//!   never do. With contacts that are out of date they keep swinging (see [`super::ahead`]). So all contacts of a
+//!   collider are computed anew if one in which it hangs has moved.
+//! - Bodies that have come to rest. Contacts that could close while they moved no longer can, and the solver would
+//!   pay for them as long as the bodies lie there.
 
 use super::ahead::{Start, Starts, reach};
 use super::items::{Item, Items, Sets};

@@ -1,10 +1,11 @@
 //! The impulse of one impact: Newton's restitution, Coulomb's friction, exact lever arms.
 //!
-//! With the relative velocity `v = (v2 + ω2 × r2) − (v1 + ω1 × r1)` at the contact, what an impulse adds to it, `K j`,
-//! and the effective inverse mass `k(u) = u · K u`; of two bodies without joints
-//! `K u = (m1⁻¹ + m2⁻¹) u + (I1⁻¹ (r1 × u)) × r1 + (I2⁻¹ (r2 × u)) × r2`;
-//! the normal impulse that takes `v·n` to `v'` is `j = (v' − v·n) / k(n)`; friction takes the sliding
-//! velocity to 0 with at most `μ j`, and with no more than leaves the impact without a gain of energy.
+//! Let `v = (v2 + ω2 × r2) − (v1 + ω1 × r1)` be the relative velocity at the contact. An impulse `j` adds `K j`
+//! to it; for two bodies without joints
+//! `K u = (m1⁻¹ + m2⁻¹) u + (I1⁻¹ (r1 × u)) × r1 + (I2⁻¹ (r2 × u)) × r2`.
+//! With the effective inverse mass `k(u) = u · K u`, the normal impulse that takes `v·n` to `v'` is
+//! `j = (v' − v·n) / k(n)`. Friction takes the sliding velocity towards 0, with an impulse of at most `μ j`, and of no
+//! more than leaves the impact without a gain of energy.
 
 use super::motion::Body;
 use crate::math::{Real, Vector};

@@ -1,5 +1,5 @@
-//! What is asked about a pair, and taken only as far as it comes first: most pairs are never searched
-//! further than to the time of the next impact, which gives one of the two another motion.
+//! The search for the first contact of one pair, which can be interrupted: it goes on only while no other pair comes
+//! first. Most pairs are never searched beyond the next impact, because it gives one of the two another motion.
 
 use super::first_contact::{Asker, Hit, Question, Work};
 use super::snapshot::Snapshot;

@@ -1,4 +1,5 @@
-//! The medial colliders at the start of a step.
+//! The medial colliders of a world at the start of a step, with what the batch needs of them: mesh, pose, box, skin,
+//! mass.
 
 use super::ahead::Start;
 use super::enabled::enabled;

@@ -1,9 +1,9 @@
-//! Joints in an impact: what holds bodies together hands an impulse on at once.
+//! Joints in an impact within the step: bodies that they hold together take the impulse together, at once.
 //!
-//! An impulse on one body of a chain moves them all ([`super::tied`]). After it each body moves to where its joints let
-//! it, and not along its velocity, which would open them: in pieces, since what turns about a hinge moves along an arc.
-//! Joints of bodies and of multibodies are the same here. Limits and motors act in rapier's next step; joints that the
-//! user made soft are left to it.
+//! An impulse on one body of a chain moves all of them ([`super::tied`]). After it, bodies do not move along their
+//! velocities, which would open the joints, but to where the joints let them. As a body that turns about a hinge
+//! moves along an arc, this is done in pieces of the step. Impulse joints and joints of multibodies are treated the
+//! same. Limits and motors act in rapier's next step, and joints that the user made soft are left to it.
 
 use super::impulse::Inertia;
 use super::motion::Kind;

@@ -1,5 +1,5 @@
-//! Hands poses and velocities that the event loop gave links on to their multibodies: as coordinates of joints,
-//! from which rapier then computes the poses.
+//! Writes the poses and velocities that impacts gave to links of multibodies back to rapier. rapier computes them from
+//! the coordinates of the joints, so these coordinates are what has to be written.
 
 use super::motion::shortest;
 use super::snapshot::Snapshot;

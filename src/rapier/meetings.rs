@@ -1,5 +1,5 @@
-//! Where colliders met in this step. Two that met mostly still touch there when one of them is pushed
-//! again; how far they have opened since follows from the poses.
+//! Where pairs of colliders met in the impacts of this step. Most of them still touch there when one of the two is
+//! struck again, and the poses tell how far such a contact has opened since.
 
 use super::first_contact::Hit;
 use super::snapshot::Snapshot;

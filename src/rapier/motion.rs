@@ -1,6 +1,7 @@
-//! A body in a step: its pose and velocities before rapier's step, and the motion that this then gave it. rapier
-//! turns a body in `n` linearised pieces, so a fast turn ends short of `|ω| dt`;
-//! what counts is where the body is, and the turns it made on the way.
+//! One body in a step: its pose and velocities before rapier's step, and the rigid motion that the step gave it.
+//!
+//! rapier turns a body in `n` linearised pieces, so a fast turn ends short of `|ω| dt`. So the motion is taken from the
+//! poses before and after, and from the number of full turns in between.
 
 use crate::math::{Pose, Real, Rotation, Vector};
 use parry3d::mass_properties::MassProperties;

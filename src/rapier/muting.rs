@@ -1,6 +1,6 @@
-//! Which pairs the event loop takes over from the solver: those that travel further in the step than
-//! they are thick, and do not touch yet. For them rapier gets no contacts, since its own would come
-//! from the poses at the start: too late, or at a place where the bodies never meet.
+//! Chooses the pairs that are kept from rapier's solver and left to the event loop: those that move by more than
+//! their thickness in the step and do not touch yet. Contacts computed at the start of the step would come too late
+//! for them, or lie at places where the bodies never meet.
 
 use super::first_contact::{Asker, Work};
 use super::pairs::{Rules, sweep};

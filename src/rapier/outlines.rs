@@ -1,5 +1,5 @@
-//! Which pairs need not be searched yet, or not at all: spheres round both, and then directions
-//! ([`crate::pair::outline`]), keep them apart.
+//! Decides cheaply which pairs need no search for a first contact, or not yet: those that bounding spheres keep
+//! apart, or directions ([`crate::pair::outline`]).
 
 use super::snapshot::Snapshot;
 use crate::math::Real;

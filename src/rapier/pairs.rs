@@ -1,4 +1,5 @@
-//! Which colliders may meet: rapier's own rules, and swept boxes.
+//! Decides which pairs of colliders may meet in the step: by rapier's own rules (groups, body types, joints, filters),
+//! and by the boxes that they sweep.
 
 use super::motion::{Body, Kind};
 use super::snapshot::Snapshot;

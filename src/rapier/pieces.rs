@@ -1,4 +1,4 @@
-//! Pieces of the motions of bodies that joints hold: when they end, and of which bodies ([`super::joints`]).
+//! When the pieces end in which bodies held by joints move ([`super::joints`]), and which bodies each piece moves.
 
 use super::joints::Piece;
 use crate::math::Real;

@@ -107,8 +107,8 @@ impl MedialPipeline {
     }
 
     /// Sets the effects of one collider. An effect left at [`Effect::Auto`] follows the scene's setting, so
-    /// [`Effects::default`] removes the collider's own settings. If two colliders of a pair differ in an effect, `On` wins
-    /// over `Off`.
+    /// [`Effects::default`] removes the collider's own settings. If two colliders of a pair differ in an effect,
+    /// `On` wins over `Off`.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
         self.effects.set(collider, effects);
     }
@@ -174,8 +174,8 @@ impl MedialPipeline {
         )
     }
 
-    /// Does the same as [`Self::step_with_events`] for games that keep rapier's sets themselves. It takes the arguments of
-    /// [`PhysicsPipeline::step`], the pipeline first.
+    /// Does the same as [`Self::step_with_events`] for games that keep rapier's sets themselves. It takes the
+    /// arguments of [`PhysicsPipeline::step`], the pipeline first.
     #[expect(
         clippy::too_many_arguments,
         reason = "the arguments of rapier's own step"

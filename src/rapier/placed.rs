@@ -1,12 +1,13 @@
-//! Pairs that lie in each other because they were put there: spawned in one place, or teleported.
+//! Pairs that are deep in each other because the user put them there: spawned at one place, or teleported.
 //!
-//! Their medial axes are next to each other or cross already, so there is nothing left to keep, and holding them would
-//! hold them for ever: whatever takes such a pair apart at one place takes it deeper at another. The event loop leaves
-//! them to rapier's solver until they are above the floor ([`super::tuning::Tuning::floor`]), and keeps them there.
+//! The medial axes of such a pair are near each other or cross already, so there is nothing left to protect, and
+//! holding them apart would hold them as they are for ever: whatever parts them at one place takes them deeper at
+//! another. So the event loop leaves them to rapier's solver until they are above the floor
+//! ([`super::tuning::Tuning::floor`]), and keeps them above it from then on.
 //!
-//! A pair was put into each other if one of the two is new and rapier had no contacts of them, or if between two steps
-//! they were moved against each other by so much that they may have been apart before. What is pressed is held,
-//! wherever it is moved together.
+//! A pair counts as put into each other if one of the two is new and rapier had no contacts of the pair, or if the two
+//! were moved against each other, between two steps, by so much that they may have been apart before. A pair that was
+//! pressed into each other by forces is held, also when both are moved together.
 
 use super::snapshot::Snapshot;
 use crate::math::fast_hash::FastSet;

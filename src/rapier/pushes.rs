@@ -1,6 +1,6 @@
-//! How fast what is near a collider may push it within a step. The velocities of a pair do not tell what a
-//! third body does to it, and the solver hands a push on from contact to contact. Of what joints hand on
-//! no bound is known.
+//! Bounds how fast the neighbours of a collider may push it within a step, to know how far away its contacts must
+//! be looked for. The velocities of a pair do not tell what a third body does to it, since the solver passes a push
+//! on from contact to contact. There is no such bound for what joints pass on.
 
 use super::enabled::enabled;
 use super::items::Sets;

@@ -1,23 +1,24 @@
-//! Which pairs rapier will not ask for: while a pair's relative pose stays near the one of its last
-//! full update, the narrow phase recycles its contacts (`narrow_phase/pair_update.rs` of rapier
-//! 0.36). This keeps the same account, so that a resting pile costs no contact computation.
+//! Predicts for which pairs rapier will not ask for contacts. Its narrow phase keeps the contacts of a pair while
+//! the relative pose stays near that of the last full update (`narrow_phase/pair_update.rs` of rapier 0.36). This
+//! file keeps the same record, so that no contacts are computed in a pile at rest.
 //!
-//! A wrong guess costs time, never correctness: a pair that is asked for and was not computed is a
-//! miss, computed on the spot as the batch would have done. So a loaded world, whose account is empty, goes
-//! on bit by bit.
+//! A wrong prediction costs time and nothing else: contacts that rapier asks for and that were not computed before are
+//! computed on the spot, with the same result. So a loaded world, for which this record is empty, goes on bit by
+//! bit.
 
 use crate::batch::PairJob;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Rotation};
 use rapier3d::dynamics::IntegrationParameters;
 
-/// The `normalized_contact_recycle_distance` that [`MedialPipeline::attach`](super::MedialPipeline::attach) sets: how far a pair may
-/// move before rapier computes its contacts anew, in units of rapier's length unit (rapier's own default is 0.05).
+/// The `normalized_contact_recycle_distance` that [`MedialPipeline::attach`](super::MedialPipeline::attach) sets:
+/// how far a pair may move before rapier computes its contacts anew, in units of rapier's length unit (rapier's own
+/// default is 0.05).
 ///
-/// Contacts must be known for all that a pair may touch until it has moved so far, and in the step after. So a smaller
-/// distance means more frequent computations of fewer contacts. The contacts of hanging bodies are computed anew
-/// much sooner, whatever this value is; this is requested from rapier by bit 31 of the collider's hooks, which is set until
-/// the next step and calls no hook.
+/// Contacts must be known for all that a pair may touch until it has moved so far, and in the step after. So a
+/// smaller distance means more frequent computations of fewer contacts. The contacts of hanging bodies are computed
+/// anew much sooner, whatever this value is; this is requested from rapier by bit 31 of the collider's hooks, which
+/// is set until the next step and calls no hook.
 pub const RECYCLE_DISTANCE: Real = 0.004;
 
 /// Cosine of the rotation of either body since its pair's last update above which rapier recycles.

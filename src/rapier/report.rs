@@ -4,10 +4,11 @@ use super::first_contact::Work;
 use crate::batch::{BatchReport, PairResult};
 use crate::parry::answers::Counted;
 
-/// Counters and times of one step of a [`crate::MedialPipeline`], about medial colliders only. Three counters tell most:
+/// Counters and times of one step of a [`crate::MedialPipeline`], about medial colliders only. Three counters tell
+/// most:
 /// - [`Self::events`]: impacts that were resolved within the step. 0 in a quiet scene, dozens when bodies fly.
-/// - [`Self::continuous_queries`]: how often a first contact was searched for. Thousands mean that many bodies move fast,
-///   or that one has parts of (nearly) no thickness, and the step is slow.
+/// - [`Self::continuous_queries`]: how often a first contact was searched for. Thousands mean that many bodies move
+///   fast, or that one has parts of (nearly) no thickness, and the step is slow.
 /// - [`Self::frozen`]: bodies that stopped before the end of the step, after too many impacts. A few are normal in
 ///   a crash. Otherwise bodies are pressed where there is no room, or very thin ones were spawned inside each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,8 +18,8 @@ pub struct StepReport {
     pub medial_colliders: usize,
     /// Pairs of medial colliders, at least one of them awake, whose bounding boxes were near each other at the start.
     pub pairs: usize,
-    /// Pairs of these whose contacts were computed in one batch before rapier's step. The others had moved so little that
-    /// rapier keeps their contacts, or are muted ([`Self::muted`]).
+    /// Pairs of these whose contacts were computed in one batch before rapier's step. The others had moved so
+    /// little that rapier keeps their contacts, or are muted ([`Self::muted`]).
     pub jobs: usize,
     /// Pairs that the GPU proved not to meet, and which the CPU did not look at.
     pub settled_by_gpu: u64,
@@ -62,8 +63,8 @@ pub struct StepReport {
     pub muted: usize,
     /// Impacts resolved within the step.
     pub events: usize,
-    /// Bodies that stopped before the step's end, or were carried along by what pushed them, after too many impacts (more
-    /// than 16).
+    /// Bodies that stopped before the step's end, or were carried along by what pushed them, after too many impacts
+    /// (more than 16).
     pub frozen: usize,
     /// Times that the whole world stopped at a first contact ([`crate::Effects::stop`]). Each stop makes another step,
     /// whose work is included in all counters.

@@ -1,12 +1,12 @@
-//! What impacts do to bodies: impulses, who stays where it is after too many, and how an impact is passed on to what
-//! already touches.
+//! What an impact does to bodies: the impulse, when a body stops after too many impacts, and how an impact is passed on
+//! to bodies that touch already.
 //!
-//! In a crowd an impact closes contacts that earlier ones of the step left: found one by one, each a hair later than the
-//! last, they would be three impacts of four, and freeze bodies in their midst. So what touches is solved together at
-//! the time of the impact (paper, section 4.5), by sequential impulses, round by round until nothing approaches fast
-//! enough to meet again in this step. Fixed and driven bodies are left out: rounds between two of them would not end,
-//! and their friction would hold what they press out. No contact is taken for granted: all pairs of the bodies that
-//! changed are searched again.
+//! In a crowd an impact presses on contacts that earlier impacts of the step left. Found one by one, each a hair
+//! later than the last, these would be three impacts of four, and freeze the bodies in the middle. So all that
+//! touches is solved together at the time of the impact (paper, section 4.5), by sequential impulses, until nothing
+//! approaches fast enough to meet again in this step. Fixed and driven bodies are left out: the rounds between two
+//! of them would not end, and their friction would hold what they press out. No contact is taken for granted
+//! afterwards: all pairs of the bodies that changed are searched again.
 
 use super::blow::Blow;
 use super::course::Course;

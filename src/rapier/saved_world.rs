@@ -75,8 +75,8 @@ pub enum SavedWorldError {
     },
 }
 
-/// A world as serde can write it, in any format that can hold rapier's own worlds. [`save_world`] and [`load_world`] are
-/// simpler to call, and detect damage.
+/// A world as serde can write it, in any format that can hold rapier's own worlds. [`save_world`] and
+/// [`load_world`] are simpler to call, and detect damage.
 #[derive(Serialize, Deserialize)]
 pub struct SavedWorld {
     meshes: Vec<MedialMesh>,
@@ -87,8 +87,9 @@ pub struct SavedWorld {
 }
 
 impl MedialPipeline {
-    /// Pairs whose collision event `Started` was emitted because of an impact in the last step, and whose contact rapier
-    /// has not found yet. They are not part of the world: if your game handles collision events, save them beside it.
+    /// Pairs whose collision event `Started` was emitted because of an impact in the last step, and whose contact
+    /// rapier has not found yet. They are not part of the world: if your game handles collision events, save them
+    /// beside it.
     pub fn told_starts(&self) -> &[[ColliderHandle; 2]] {
         &self.told.started
     }
@@ -236,8 +237,8 @@ fn forget_changes(world: &PhysicsWorld, colliders: &mut ColliderSet) {
 /// Saves a world as bytes with a checksum. Call it between steps.
 ///
 /// # Errors
-/// [`SavedWorldError::Removed`] if colliders were removed since the last step, [`SavedWorldError::Unwritable`] if the world has
-/// custom shapes other than medial meshes.
+/// [`SavedWorldError::Removed`] if colliders were removed since the last step, [`SavedWorldError::Unwritable`] if
+/// the world has custom shapes other than medial meshes.
 ///
 /// ```
 /// use rapier3d::prelude::*;
@@ -273,9 +274,9 @@ pub fn save_world(world: &PhysicsWorld) -> Result<Vec<u8>, SavedWorldError> {
 /// [`SavedWorldError`] if the bytes are not a saved world, are of another version, or are damaged.
 ///
 /// # Panics
-/// Damage is detected, malice is not: forged bytes with a good checksum may hold a world that contradicts itself (a joint
-/// of a body that is not there). rapier does not check this, and may panic in the loading or in the next step.
-/// Load only worlds from sources you trust.
+/// Damage is detected, malice is not: forged bytes with a good checksum may hold a world that contradicts itself (a
+/// joint of a body that is not there). rapier does not check this, and may panic in the loading or in the next
+/// step. Load only worlds from sources you trust.
 pub fn load_world(bytes: &[u8]) -> Result<PhysicsWorld, SavedWorldError> {
     let not_a_world = || SavedWorldError::NotAWorld {
         start: bytes.iter().take(MAGIC.len()).copied().collect(),

@@ -1,6 +1,6 @@
-//! Cholesky's factorisation of a symmetric matrix that is zero left of each row's first entry, and stays so (George
-//! and Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981, 4.2). Joints of a chain, in order, have
-//! rows of a few entries however long it is.
+//! Cholesky's factorisation of a symmetric matrix of which each row is zero before its first entry, as the factor
+//! then is too (George and Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981, 4.2). The joints
+//! of a chain, in their order, give rows of a few entries, however long the chain is.
 
 /// `A = L Lᵀ`, row by row.
 pub struct Skyline {

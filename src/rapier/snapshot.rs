@@ -1,4 +1,5 @@
-//! The bodies and colliders of a step that can meet, before rapier's step and on the motions that it then made.
+//! The bodies and colliders of a step that can meet, with their poses before rapier's step and their motions after
+//! it: all that the event loop knows of the world.
 
 use super::enabled::enabled;
 use super::joints::MOST_JOINTS;

@@ -1,5 +1,5 @@
-//! Speculative contacts, rapier's own: for the length of a step, bodies whose colliders call for them
-//! predict contacts as far as they may get ([`crate::Effects::speculative`]).
+//! rapier's own speculative contacts: switched on for one step for bodies whose colliders ask for them
+//! ([`crate::Effects::speculative`]), and off again after it.
 
 use super::effects::{Effect, Wanted};
 use super::motion::Kind;

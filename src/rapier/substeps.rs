@@ -1,6 +1,7 @@
-//! More of rapier's own sub-steps where joints hold what turns fast. A sub-step moves bodies straight, along their
-//! velocities at its start, so that a joint opens in it by `½ h² |ω1 × (ω1 × r1) − ω2 × (ω2 × r2)|`, with `h` its
-//! length and `r` from each centre of mass to the joint. Joints of multibodies stay closed, and turn wrong instead.
+//! Gives bodies more of rapier's sub-steps where joints hold what turns fast. In a sub-step a body moves straight
+//! along its velocity, so that a joint opens by `½ h² |ω1 × (ω1 × r1) − ω2 × (ω2 × r2)|`, where `h` is the length
+//! of the sub-step and `r` the vector from each centre of mass to the joint. Joints of multibodies stay closed, but
+//! turn wrong instead.
 
 use super::motion::Kind;
 use super::snapshot::Snapshot;

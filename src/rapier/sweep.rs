@@ -1,4 +1,4 @@
-//! Which boxes meet: sweep and prune (Baraff 1992).
+//! Finds all pairs of overlapping boxes, by sweep and prune (Baraff 1992), eight boxes at a time.
 
 use crate::math::{Real, Vector};
 use parry3d::bounding_volume::Aabb;

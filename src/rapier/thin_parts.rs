@@ -1,6 +1,6 @@
-//! Whether parts of two colliders that are thin enough to pass each other in a step may meet in it. A
-//! collider is typically thicker than what it travels, so this is asked of few pairs, and mostly ends at
-//! the root of both trees.
+//! Whether two colliders have parts near each other that are thin enough to pass each other in this step. Most
+//! bodies are thicker than the way they move in a step, so few pairs are asked this, and most are answered at the
+//! root of both trees.
 
 use super::snapshot::{Part, Snapshot};
 use crate::math::{Pose, Real, Vector};

@@ -1,12 +1,12 @@
-//! Bodies tied by joints, struck or let go on as a whole.
+//! Bodies tied together by joints, to which an impulse is given as a whole, and which move on as a whole.
 //!
 //! With the inverse masses `W` of the free bodies and the Jacobian `G` of the locked axes of their joints, a wrench `f`
 //! changes velocities by
 //!
 //! `W f − W Gᵀ (G W Gᵀ)⁻¹ G W f`,
 //!
-//! which keeps `G v` (Featherstone, Rigid Body Dynamics Algorithms, 2008, 3.2). In time they go as the RATTLE scheme
-//! lets them (Andersen 1983), which keeps energy where joints turn velocities.
+//! which keeps `G v` (Featherstone, Rigid Body Dynamics Algorithms, 2008, 3.2). The motion in time follows the RATTLE
+//! scheme (Andersen 1983), which keeps energy while joints turn velocities.
 
 use super::impulse::Inertia;
 use super::motion::shortest;

@@ -1,14 +1,14 @@
-//! What the user's hooks say of a pair, one verdict per pair and step.
+//! The answers of the user's physics hooks, one per pair and step, so that all stages of a step go by the same answer.
 //!
-//! rapier asks `filter_contact_pair` in its narrow phase and again in its sweeps; muting asks before both and
-//! the event loop after them, when bodies are elsewhere. A filter that goes by positions or velocities (a
-//! one-way platform by height) would then say yes to one and no to the other, and nobody would resolve the
-//! pair. So the first answer, given with the bodies as they are at the start of the step, holds for all.
+//! rapier asks `filter_contact_pair` in its narrow phase and again in its sweeps; this crate asks before both
+//! (muting) and after them (the event loop), when bodies are elsewhere. A filter that goes by positions or
+//! velocities, like a one-way platform, could then say yes to one stage and no to another, and nobody would resolve
+//! the pair. So the first answer, given with the bodies as they are at the start of the step, holds for all stages.
 //!
-//! rapier's sweeps stop a body at contacts that the user turned off for the solver: an empty set of solver
-//! flags, or solver contacts cleared in `modify_solver_contacts`. Of convex shapes it stops them once, since
-//! it drops hits of what overlaps at the start; of medial meshes it would hear of a deeper contact in every
-//! step. So those pairs are noted here, and the dispatcher lets them pass.
+//! rapier's sweeps stop a body even at contacts that the user turned off for the solver, by an empty set of solver
+//! flags or by clearing solver contacts in `modify_solver_contacts`. It stops convex shapes so once, since it drops
+//! hits of shapes that overlap at the start; for medial meshes it would be told a deeper contact in every step. So
+//! such pairs are noted here, and the dispatcher lets them pass.
 
 use super::snapshot::Snapshot;
 use crate::math::fast_hash::{FastMap, FastSet};

@@ -1,5 +1,5 @@
-//! Pairs in the order of the time before which they do not meet; of several at the same time, in the
-//! order of their colliders.
+//! The queue of the event loop: pairs in the order of the times before which they are known not to meet, and of
+//! pairs with the same time in the order of their colliders.
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
