@@ -1,4 +1,4 @@
-//! What a batch is asked and what it answers, whatever computes it.
+//! The jobs that a batch takes, and their answers, which are the same whether a CPU or a GPU computes them.
 
 use crate::elementary::{InitialContact, Paths, Toi, ToiOptions};
 use crate::math::tolerance::MAX_ITERATIONS;
@@ -9,7 +9,7 @@ pub use crate::pair::first_contact::ToiResult;
 use crate::pair::first_contact::{Counts, Query};
 use parry3d::query::NonlinearRigidMotion;
 
-/// One question of a batch. Answers depend on the job alone, never on the batch it is in.
+/// One query of a batch. Its answer depends on the job alone, never on the others in the batch.
 pub trait Job: Sync {
     /// What comes back.
     type Answer: Send;

@@ -122,12 +122,12 @@ fn valid(
         && spheres.all(|(finite, radius)| finite && radius.is_finite() && radius >= 0.0)
 }
 
-/// First contact of two primitives of 1, 2 or 3 interpolated spheres each, on straight paths
-/// (paper Eqs. 1 to 3), in `f32`. Positions in world space, in the user's unit; times as fractions
-/// of the step. Cost: 1 to 15 elementary tests of 2 iterations each, typically.
+/// First contact of two primitives on straight paths (paper Eqs. 1 to 3), in `f32`. A primitive is given by its 1, 2 or
+/// 3 spheres. Positions are in world space, in the user's unit; times are fractions of the step. It takes 1 to 15
+/// elementary tests of typically 2 iterations each.
 ///
-/// The guarantee is the module's ([`crate::elementary`]). Wrong counts, values that are not finite
-/// or negative radii give [`super::ToiStatus::Unresolved`] with `lower = 0`.
+/// The guarantee is that of [`crate::elementary`]. A wrong number of spheres, values that are not finite and negative
+/// radii give [`super::ToiStatus::Unresolved`] with `lower = 0`.
 pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions) -> Toi {
     let Some(movers) = movers(a, b, options) else {
         return Toi::bad_input(options);
@@ -168,9 +168,9 @@ pub(super) fn straight_toi(
     })
 }
 
-/// First contact of two primitives in exact rigid motion over `seconds`, in `f32`: spheres in their
-/// body's frame, motions in world space (velocities per second), rotations of any angle.
-/// Guarantee, bad input and units as in [`first_contact`]; about 1.6 times its cost.
+/// First contact of two primitives in exact rigid motion for `seconds`, in `f32`. Spheres are in the frame of their
+/// body, motions in world space with velocities per second; rotations may be by any angle. Times in the answer are
+/// fractions of `seconds`. Guarantee and bad input are as in [`first_contact`]; it takes about 1.6 times as long.
 pub fn first_contact_rigid(
     a: &[MedialSphere],
     motion_a: &NonlinearRigidMotion,

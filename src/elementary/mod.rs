@@ -56,47 +56,52 @@ pub struct MovingSphere {
     pub displacement: Vector,
 }
 
-/// How exact an answer is asked for.
+/// What counts as a contact in a query for the first contact, and how exact the answer has to be. The defaults suit
+/// metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToiOptions {
-    /// Distance at which bodies count as in contact, in the user's unit of length.
+    /// How much farther than [`Self::target_distance`] apart bodies may be to count as in contact, in the user's
+    /// unit of length. Default 1e-4. It is raised if it is finer than rounding allows ([`Toi::tolerance`]).
     pub tolerance: Real,
-    /// Width at which the bracket of the contact time may stop, as a fraction of the step.
+    /// How wide the bracket of the contact time may be at the end, as a fraction of the step. Default 1e-6.
     pub time_tolerance: Real,
-    /// Cap of the iterations of one elementary test.
+    /// Largest number of iterations of one elementary test; the answer is [`ToiStatus::Unresolved`] beyond it.
     pub max_iterations: u32,
-    /// Signed distance at which bodies count as in contact, a length. 0 for the bodies as they are;
-    /// negative lets them overlap that deep first, positive keeps them apart. The guarantee then
-    /// holds for `D − target_distance`. Never deeper than the two primitives are thick where they
-    /// are thinnest: beyond the smallest sum of their radii medial surfaces may cross, and a deeper
-    /// target is raised to it (with [`InitialContact::Stop`]; under `Deepen` ask for [`Cores`] instead).
+    /// Signed distance at which bodies count as in contact, a length. 0 stands for the bodies as they are, a negative
+    /// value lets them overlap that deep first, a positive one keeps them apart. The guarantee then holds for
+    /// `D − target_distance`. Bodies are never let in deeper than the smallest sum of the radii of two primitives,
+    /// because deeper than that medial surfaces may cross: a deeper target is raised to it. (This is so with
+    /// [`InitialContact::Stop`]; with [`InitialContact::Deepen`] ask for [`Cores`] instead.)
     pub target_distance: Real,
-    /// What becomes of primitives that touch at the start already. Mesh queries only.
+    /// How primitives that touch at the start already are treated. Only in queries of meshes.
     pub initial_contact: InitialContact,
-    /// Where the paper's iteration begins. [`alternating()`] only.
+    /// Where the paper's iteration begins. Only for [`alternating()`].
     pub alternating_start: AlternatingStart,
-    /// On which paths the points of a turning body go. Mesh queries only.
+    /// On which paths the points of a turning body move. Only in queries of meshes.
     pub paths: Paths,
-    /// Asks for the first contact of cores instead of the bodies themselves. Mesh queries only.
+    /// If set, the first contact of the bodies' cores is asked for instead of that of the bodies themselves. Only in
+    /// queries of meshes.
     pub cores: Option<Cores>,
 }
 
-/// What of two bodies may not meet although they overlap: each primitive loses a share of its radius, as thick
-/// as it and its partner are where they meet ([`crate::medial::thickness`]). A sphere of radius `r` has a
-/// core of radius `r − s min(r, t)`, with `t` the thickness of the thinner of the two primitives. Where both
-/// bodies are medial, `s` is half of [`Self::share`] for each of them; a surface has no inside to give, and
-/// the other body gives all of it. So bodies whose cores do not overlap are no deeper in each other than
-/// `share × t` in any place, and while `share` is at most 1 each core holds its medial axis: no axis has
-/// crossed another, or a surface, however thin the part is.
+/// The cores of two bodies: what remains of their primitives when the radii are reduced. Bodies may overlap as long as
+/// their cores do not, so that thick parts may be pressed deeper into each other than thin ones.
 ///
-/// [`ToiOptions::target_distance`] counts from the cores. Cores that touch at the start with
-/// [`InitialContact::Deepen`] may sink further in, but never to the axes.
+/// A sphere of radius `r` has a core of radius `r − s min(r, t)`, where `t` is the thickness of the thinner of the two
+/// primitives that meet ([`crate::medial::thickness`]). If both bodies are medial, `s` is half of [`Self::share`] for
+/// each of them. If one is a surface without an inside, it loses nothing, and `s` of the other is all of
+/// [`Self::share`]. So bodies whose cores do not overlap are nowhere deeper in each other than `share × t`. And while
+/// `share` is at most 1, each core contains its medial axis, so no axis has crossed another, or a surface, however
+/// thin the part is.
+///
+/// [`ToiOptions::target_distance`] counts from the cores. Cores that touch at the start may sink into each other with
+/// [`InitialContact::Deepen`], but never as far as the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cores {
-    /// How deep the bodies may be in each other, in units of the local thickness: from 0 to 1.
+    /// How deep the bodies may be in each other, as a share of the local thickness, from 0 to 1.
     pub share: Real,
-    /// Bound of that thickness, a length: how thick a partner is that is not medial. Infinite if there is
-    /// none.
+    /// An upper limit of that thickness, a length: the thickness of a partner that is not medial. Infinite if there is
+    /// no limit.
     pub at_most: Real,
 }
 
@@ -132,45 +137,47 @@ impl Loss {
     }
 }
 
-/// Paths of the points of a body that turns in the step.
+/// On which paths the points of a body that turns in the step are taken to move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Paths {
-    /// Those of its rigid motion.
+    /// On those of its rigid motion.
     #[default]
     Exact,
-    /// Straight from where each starts to where it ends (paper, Eq. 1): the guarantee is for these.
+    /// Straight from where each point is at the start to where it is at the end (paper, Eq. 1). The guarantee then
+    /// holds for these paths, not for the rigid motion.
     Straight,
 }
 
-/// Time at which the paper's iteration looks for its first nearest sphere pair (§4.3, Figure 3).
+/// Time at which the paper's iteration ([`alternating()`]) looks for its first nearest pair of spheres (§4.3,
+/// Figure 3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AlternatingStart {
-    /// `t0`: ends at once where that pair only moves apart, as in Figure 3.
+    /// At the start of the step, `t0`. The iteration ends at once if that pair only moves apart, as in Figure 3.
     Start,
-    /// `t1`, the paper's choice.
+    /// At the end of the step, `t1`: the paper's choice.
     #[default]
     End,
 }
 
-/// What a mesh query makes of primitives within the tolerance of each other at the start.
+/// How a query of meshes treats primitives that are within the tolerance of each other at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InitialContact {
-    /// They are the answer: contact at time 0.
+    /// They are the answer: a contact at time 0.
     Stop,
-    /// They touch, and may go on touching, but not sink in: such a pair counts as in contact only
-    /// when its signed distance has fallen below what it is at the start. Other pairs are searched
-    /// as usual.
+    /// They may stay in touch, and sink in by a length: such a pair counts as in contact only when its signed distance
+    /// has fallen by `by` below what it is at the start. Other pairs are searched as usual.
     Deepen {
-        /// By how much at most, a length, > 0. Where parts are so thin that their axes would cross before,
-        /// by half of what is left to them.
+        /// How much deeper they may get at most, a length above 0. Where parts are so thin that their axes would cross
+        /// before, it is a share of the distance of the axes instead.
         by: Real,
     },
-    /// They are the answer, contact at time 0, if they come nearer in the step than they are at the start,
-    /// before others meet. Those that part or slide go on to its end. For straight motion, in which the
-    /// distance of two primitives, convex in time, grows for ever once it does; if bodies turn, what parts
-    /// first and comes nearer later is an answer at time 0 too.
+    /// They are the answer, a contact at time 0, if they come nearer to each other in the step, before another pair
+    /// meets. Pairs that part or slide go on. This is meant for straight motion, in which the distance of two
+    /// primitives never shrinks again once it has grown. If bodies turn, a pair that parts first and comes nearer
+    /// later is an answer at time 0 too.
     Approach {
-        /// By how much nearer, a length, > 0: what rounding of poses and velocities makes of sliding.
+        /// How much nearer they must come, a length above 0: more than rounding of poses and velocities makes of
+        /// sliding.
         by: Real,
     },
 }
@@ -190,16 +197,18 @@ impl Default for ToiOptions {
     }
 }
 
-/// What is known of the first contact; see the module's guarantee.
+/// What a query found out about the first contact. The documentation of [this module](self) has the exact promise of
+/// each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ToiStatus {
     /// No contact in the whole step.
     Separated,
-    /// First contact bracketed by `lower` and `upper`.
+    /// The first contact is between [`Toi::lower`] and [`Toi::upper`].
     Contact,
-    /// In contact with negative distance at the start already.
+    /// The bodies overlap at the start already.
     Overlapping,
-    /// Iteration cap reached, or bad input (then `lower = 0`).
+    /// The limit of iterations or work was reached: no contact before [`Toi::lower`], nothing is known after. Or the
+    /// input was bad, and `lower` is 0.
     Unresolved,
 }
 
@@ -208,21 +217,21 @@ pub enum ToiStatus {
 pub struct Toi {
     /// What the numbers mean.
     pub status: ToiStatus,
-    /// No contact before this time. 1 when separated.
+    /// There is no contact before this time. 1 if separated.
     pub lower: Real,
-    /// Contact, within the tolerance, at this time. 1 when separated or unknown.
+    /// The bodies are in contact, within the tolerance, at this time. 1 if separated or unknown.
     pub upper: Real,
-    /// The contact distance used: as asked, or raised to twice the rounding slack.
+    /// The tolerance that was used, a length: as asked, or raised to the finest that rounding allows.
     pub tolerance: Real,
-    /// Iterations, summed over all elementary tests that were run.
+    /// Number of iterations, summed over all elementary tests.
     pub iterations: u32,
-    /// Unit normal from the first body to the second, world frame, at `lower`.
+    /// Unit normal from the first body to the second, in the world frame, at `lower`.
     pub normal: Vector,
-    /// Nearest spheres of both bodies, world frame, at `lower`.
+    /// Nearest spheres of both bodies, in the world frame, at `lower`.
     pub spheres: [MedialSphere; 2],
-    /// Nearest points on both bodies' surfaces, world frame, at `lower`.
+    /// Nearest points on the surfaces of both bodies, in the world frame, at `lower`.
     pub points: [Vector; 2],
-    /// Index of the primitive of each mesh; 0 for single primitives.
+    /// Index of the touching primitive of each mesh; 0 for single primitives.
     pub primitives: [u32; 2],
 }
 

@@ -1,6 +1,6 @@
 //! Lists the elementary tests of two primitives (paper §4.1): cone against cone for each edge of one with each edge
-//! of the other, and sphere against slab for each sphere with the other primitive's slab. The primitives touch
-//! exactly when the spheres of one of these tests do.
+//! of the other, and sphere against slab for each sphere with the other primitive's slab. As long
+//! as their medial surfaces do not cross, the primitives touch exactly when the spheres of one of these tests do.
 //!
 //! A lone sphere is an edge of length zero; against a slab its one sphere–slab test covers the
 //! slab's edges too.

@@ -32,7 +32,7 @@ const SAME_POINT: f64 = 1.0e-4;
 /// Feature of a pair whose medial surfaces cross: it belongs to no one test.
 const CROSSING: u32 = 1 << 17;
 
-/// A colliding, or nearly colliding, sphere pair.
+/// A contact of two bodies: a pair of interpolated spheres that touch or are near each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpherePair {
     /// Index of the primitive of each body.
@@ -50,9 +50,9 @@ pub struct SpherePair {
 
 type Ball = (Vec3<f64>, f64);
 
-/// All sphere pairs within `prediction` (a length) of each other, of bodies at relative pose
-/// `pos12` (second in first). Computed in double precision; order and result depend on the input
-/// only. A pose that is not finite gives none.
+/// All contacts of two bodies at fixed poses: pairs of spheres within `prediction` (a length) of each other. `pos12` is
+/// the pose of the second body in the frame of the first. Computed in double precision; result and order depend on
+/// the input only. A pose that is not finite gives no contacts.
 pub fn contacts(
     body1: &impl Volumes,
     body2: &impl Volumes,

@@ -14,8 +14,9 @@ use crate::medial::tree::Below;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// The nearest sphere pair of two bodies at relative pose `pos12` (second in first), if it is within
-/// `max_distance`. Computed in double precision. `None` also for a pose that is not finite.
+/// The nearest pair of spheres of two bodies at fixed poses, if they are within `max_distance` (a length) of each
+/// other. `pos12` is the pose of the second body in the frame of the first. Computed in double precision. A pose
+/// that is not finite gives `None`.
 pub fn nearest_spheres(
     body1: &impl Volumes,
     body2: &impl Volumes,

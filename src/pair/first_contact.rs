@@ -21,11 +21,29 @@ pub struct Counts {
     pub tests: u32,
 }
 
-/// First contact of two meshes whose bodies move rigidly over `seconds`.
+/// First contact of two medial meshes whose bodies move rigidly for `seconds`.
 ///
-/// Motions are in world space, velocities per second; times in the answer are fractions of the
-/// step. The guarantee is that of [`crate::elementary`], for the union of all primitives. Computed
-/// in double precision.
+/// Motions are in world space, with velocities per second; times in the answer are fractions of `seconds`. The
+/// guarantee is that of [`crate::elementary`], for the union of all primitives. Computed in double precision. Bad
+/// input gives [`ToiStatus::Unresolved`](crate::ToiStatus::Unresolved) with `lower = 0`.
+///
+/// ```
+/// use rapier3d::parry::query::NonlinearRigidMotion;
+/// use rapier3d_medial::math::{Pose, Vector};
+/// use rapier3d_medial::{MedialMesh, ToiOptions, ToiStatus, pair::first_contact};
+///
+/// // A ball of 0.1 m flies at 2 m/s towards another, 1 m away: they touch after 0.4 s.
+/// let ball = MedialMesh::ball(0.1)?;
+/// let motion = |x, speed| {
+///     let start = Pose::from_translation(Vector::new(x, 0.0, 0.0));
+///     NonlinearRigidMotion::new(start, Vector::ZERO, Vector::new(speed, 0.0, 0.0), Vector::ZERO)
+/// };
+/// let options = ToiOptions::default();
+/// let toi = first_contact(&ball, &motion(0.0, 2.0), &ball, &motion(1.0, 0.0), 1.0, &options);
+/// assert_eq!(toi.status, ToiStatus::Contact);
+/// assert!((toi.upper - 0.4).abs() < 1e-3);
+/// # Ok::<(), rapier3d_medial::MeshError>(())
+/// ```
 pub fn first_contact(
     mesh1: &crate::MedialMesh,
     motion1: &NonlinearRigidMotion,
@@ -37,7 +55,7 @@ pub fn first_contact(
     first_contact_counted(mesh1, motion1, mesh2, motion2, seconds, options).0
 }
 
-/// As [`first_contact`] for any two bodies, with the work it took.
+/// Does the same as [`first_contact`] for any two bodies made of primitives, and also returns the work it took.
 pub fn first_contact_counted(
     body1: &impl Volumes,
     motion1: &NonlinearRigidMotion,
@@ -51,19 +69,19 @@ pub fn first_contact_counted(
     (found.toi, found.counts)
 }
 
-/// All that a query found.
+/// Everything that a query found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToiResult {
     /// First contact, with the guarantee of [`first_contact()`].
     pub toi: Toi,
     /// Work it took.
     pub counts: Counts,
-    /// As [`Query::deepest`].
+    /// How deep primitives were that touched at the start ([`Query::deepest`]).
     pub deepest: f64,
 }
 
-/// A query of [`first_contact`] that is taken only as far as its answer matters. Its answer is the same,
-/// bit by bit, however often it pauses.
+/// The query of [`first_contact`], which can be interrupted and resumed, so that it is computed only as far as its
+/// answer matters. The answer is the same, bit by bit, however often it is interrupted.
 pub struct Query<'a, A, B> {
     motions: [NonlinearRigidMotion; 2],
     seconds: Real,
@@ -74,7 +92,8 @@ pub struct Query<'a, A, B> {
 }
 
 impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
-    /// Nothing is searched yet. Where it is known what is `left` of two meshes, nothing else is looked at.
+    /// A query of which nothing is computed yet. If it is known which primitives of two meshes are `left`, because all
+    /// others cannot meet, only these are searched.
     pub fn new(
         motions: [&NonlinearRigidMotion; 2],
         bodies: (&'a A, &'a B),
@@ -103,8 +122,8 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
         }
     }
 
-    /// Searches on, until nothing meets before some time after `until`, a fraction of the step. Returns that
-    /// time, rounded down, or `None` once the query is settled: with `until` at 1 it always is.
+    /// Continues the search until it is proven that nothing meets before a time of at least `until`, a fraction of the
+    /// step. Returns that time, rounded down, or `None` if the query is settled; with `until` at 1 it always is.
     pub fn search(&mut self, until: f64) -> Option<Real> {
         if self.settled {
             return None;
@@ -114,7 +133,7 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
         free.map(rounded_down)
     }
 
-    /// Searches to the end.
+    /// Continues the search to the end.
     pub fn settle(mut self) -> ToiResult {
         self.search(1.0);
         ToiResult {
@@ -124,15 +143,15 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
         }
     }
 
-    /// How deep primitives that touched at the start and were let sink in
-    /// ([`crate::elementary::InitialContact::Deepen`]) were: the least signed distance, less what counts as
-    /// touching, in units of the thickness of the thinner of the two. Infinite where none touched. All of them are known once
-    /// nothing meets before a time after 0.
+    /// How deep primitives were that touched at the start and were allowed to sink in
+    /// ([`crate::elementary::InitialContact::Deepen`]): the smallest signed distance, minus the distance that
+    /// counts as touching, in units of the thickness of the thinner of the two. Infinite if none touched. It is
+    /// complete as soon as it is proven that nothing meets before some time above 0.
     pub fn deepest(&self) -> f64 {
         self.search.as_ref().map_or(f64::INFINITY, |s| s.deepest)
     }
 
-    /// The answer, once it is settled.
+    /// The answer, once the query is settled.
     pub fn toi(&self) -> Toi {
         let Some(Search {
             sides, earliest, ..

@@ -6,8 +6,8 @@
 //! ([`super::tuning::Tuning::floor`]), and keeps them above it from then on.
 //!
 //! A pair counts as put into each other if one of the two is new and rapier had no contacts of the pair, or if the two
-//! were moved against each other, between two steps, by so much that they may have been apart before. A pair that was
-//! pressed into each other by forces is held, also when both are moved together.
+//! were moved against each other, between two steps, by so much that they may have been apart before. A pair that
+//! forces pressed together is held, even if both are moved together.
 
 use super::snapshot::Snapshot;
 use crate::math::fast_hash::FastSet;
