@@ -261,7 +261,7 @@ impl Batch {
         self.report.error = Some(error);
     }
 
-    /// As [`Self::submit`], without blocking.
+    /// Does the same as [`Self::submit`] without blocking.
     pub async fn submit_async<J: Job>(&mut self, jobs: &[J]) {
         self.early.forget();
         if !self.asks_gpu(jobs.len(), |least| least.jobs) {
@@ -286,8 +286,8 @@ impl Batch {
         self.sweeps = emptied(sweeps);
     }
 
-    /// Waits without blocking for what was sent by [`Self::submit_async`]; [`Self::run`] does so too, but
-    /// for a browser, where it takes what is back.
+    /// Waits without blocking until the answers to [`Self::submit_async`] have come back. [`Self::run`] waits for them
+    /// itself, except in a browser, where it uses only what has come back.
     pub async fn ready(&mut self) {
         if !std::mem::take(&mut self.early.pending) {
             return;
@@ -327,7 +327,7 @@ impl Batch {
         answers
     }
 
-    /// As [`Self::run`], without blocking while the device works.
+    /// Does the same as [`Self::run`] without blocking while the GPU works.
     pub async fn run_async<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
         if self.sent_early(jobs) {
             self.ready().await;
@@ -376,7 +376,7 @@ impl Batch {
         cpu::run_but_free(jobs, &self.free)
     }
 
-    /// As [`Self::brackets`], without blocking while the device works.
+    /// Does the same as [`Self::brackets`] without blocking while the GPU works.
     pub async fn brackets_async(
         &mut self,
         paths: &[LinearPath<f32>],

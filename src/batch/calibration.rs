@@ -1,14 +1,15 @@
-//! From which sizes on a GPU pays: measured on the machine that asks, kept as three lines of text.
+//! [`Calibration`]: from which sizes of batches on a GPU pays, measured on the machine itself and kept as three
+//! lines of text.
 
 use crate::error::CalibrationError;
 use std::fmt;
 use std::str::FromStr;
 
-/// Sizes from which [`super::Backend::Auto`] asks the GPU; see [`super::Batch::calibrate`]. Sizes that are
-/// wrong cost time, never an answer.
+/// The sizes of batches from which on [`super::Backend::Auto`] uses the GPU; see [`super::Batch::calibrate`]. Wrong
+/// sizes cost time, but change no answer.
 ///
-/// As text, one line each: `adapter = NAME`, `jobs = N` and `tests = N`, where N may be `never`. The
-/// program `medial` (features `cli` and `gpu`) measures and writes it:
+/// As text it has the lines `adapter = NAME`, `jobs = N` and `tests = N`, where N may be `never`. The program `medial`
+/// (features `cli` and `gpu`) measures and writes it:
 ///
 /// ```text
 /// medial calibrate body.ma -o gpu.txt
@@ -29,11 +30,11 @@ use std::str::FromStr;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Calibration {
-    /// Adapter that it was measured on, as [`super::gpu::Gpu::name`] has it.
+    /// Name of the GPU that it was measured on ([`super::gpu::Gpu::name`]).
     pub adapter: String,
-    /// Fewest jobs of a batch; `None`: the CPU has them all.
+    /// Smallest number of mesh pairs in a batch for the GPU; `None` if the CPU is always faster.
     pub jobs: Option<usize>,
-    /// Fewest elementary tests of a batch; `None`: the CPU has them all.
+    /// Smallest number of elementary tests in a batch for the GPU; `None` if the CPU is always faster.
     pub tests: Option<usize>,
 }
 
@@ -107,8 +108,11 @@ mod measure {
     const ROUNDS: usize = 3;
 
     impl Calibration {
-        /// Measures on a device, for pairs of this mesh: one that is typical of the scene. Takes some
-        /// seconds, and blocks.
+        /// Measures on a GPU with pairs of one mesh, which should be typical of the scene. Takes some seconds, and
+        /// blocks.
+        ///
+        /// # Errors
+        /// [`GpuError`] if the GPU fails.
         pub fn measure(gpu: &mut Gpu, mesh: &MedialMesh) -> Result<Self, GpuError> {
             let mut proposals = Vec::new();
             let jobs = smallest(SIZES[0], |count| {

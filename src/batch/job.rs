@@ -11,16 +11,16 @@ use parry3d::query::NonlinearRigidMotion;
 
 /// One query of a batch. Its answer depends on the job alone, never on the others in the batch.
 pub trait Job: Sync {
-    /// What comes back.
+    /// Its answer.
     type Answer: Send;
-    /// Fewest jobs worth handing to another thread, whose waking takes some microseconds.
+    /// The smallest number of jobs for which it pays to wake another thread, which takes some microseconds.
     const PER_THREAD: usize;
     /// Answers this job on the CPU.
     fn answer(&self) -> Self::Answer;
-    /// What a device may be asked about it; `None` leaves it to the CPU.
+    /// The question that a GPU may be asked about this job; `None` leaves it to the CPU.
     fn sweep(&self) -> Option<Sweep<'_>>;
-    /// The answer where nothing comes within the sweep's reach: that of [`Self::answer`], but for
-    /// the work it took.
+    /// The answer if nothing comes within the sweep's reach: equal to that of [`Self::answer`], except for the
+    /// counts of work.
     fn free(&self) -> Self::Answer;
 }
 
@@ -38,12 +38,12 @@ impl<J: Job> Job for &J {
     }
 }
 
-/// A question of the kind: do these come within `reach` of each other in the step?
+/// The question whether two meshes come within `reach` of each other in the step.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep<'a> {
     /// The two meshes.
     pub meshes: [&'a MedialMesh; 2],
-    /// Their motions, world space, velocities per second.
+    /// Their motions, in world space, with velocities per second.
     pub motions: [NonlinearRigidMotion; 2],
     /// Length of the step in seconds; 0 for bodies at rest.
     pub seconds: Real,
@@ -51,7 +51,7 @@ pub struct Sweep<'a> {
     pub reach: f64,
 }
 
-/// Asks for the sphere pairs of two meshes at fixed poses.
+/// Asks for the contacts of two meshes at fixed poses.
 #[derive(Clone, Debug)]
 pub struct PairJob {
     /// First mesh.
@@ -60,16 +60,16 @@ pub struct PairJob {
     pub mesh2: MedialMesh,
     /// Pose of the second in the first's frame.
     pub pos12: Pose,
-    /// Sphere pairs up to this distance are wanted, a length.
+    /// How far apart spheres may be to count as a contact, a length.
     pub prediction: Real,
 }
 
 /// Answer to a [`PairJob`].
 #[derive(Clone, Debug, Default)]
 pub struct PairResult {
-    /// Sphere pairs within the prediction.
+    /// The contacts: pairs of spheres within the prediction distance.
     pub contacts: Vec<SpherePair>,
-    /// Work it took.
+    /// The work it took.
     pub counts: Counts,
 }
 
@@ -107,7 +107,7 @@ pub struct ToiJob {
     pub motion2: NonlinearRigidMotion,
     /// Length of the step in seconds.
     pub seconds: Real,
-    /// How exact the answer has to be.
+    /// What counts as a contact, and how exact the answer has to be.
     pub options: ToiOptions,
 }
 

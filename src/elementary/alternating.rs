@@ -26,8 +26,8 @@ enum Roots<S> {
     Constant,
 }
 
-/// First contact by the paper's iteration over all elementary tests of two primitives, on straight
-/// paths, in `f32`. `lower = upper` is its contact time; 1 when it finds none.
+/// First contact of two primitives by the paper's iteration over all their elementary tests, on straight paths, in
+/// `f32`. `lower` and `upper` are both the contact time that it finds, or 1 if it finds none. It may miss contacts.
 pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions) -> Toi {
     let good = |s: &[MovingSphere]| (1..=3).contains(&s.len());
     if !good(a) || !good(b) {

@@ -10,7 +10,7 @@ use crate::math::motion::RigidMotion;
 use crate::math::tolerance;
 use parry3d::query::NonlinearRigidMotion;
 
-/// A sphere on a straight path over the step; as [`super::MovingSphere`].
+/// A sphere on a straight path over the step: [`super::MovingSphere`] in double precision.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct MovingSphere {
     /// Centre at the start.
@@ -21,7 +21,8 @@ pub struct MovingSphere {
     pub displacement: [f64; 3],
 }
 
-/// As [`super::ToiOptions`].
+/// What counts as a contact and how exact the answer has to be: [`super::ToiOptions`] in double precision, without
+/// what is only for meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToiOptions {
     /// Distance at which bodies count as in contact.
@@ -48,7 +49,7 @@ impl Default for ToiOptions {
     }
 }
 
-/// As [`super::Toi`], without the geometry.
+/// First contact of two primitives: [`super::Toi`] in double precision, without spheres and points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Toi {
     /// What the numbers mean.
@@ -121,7 +122,7 @@ fn movers(s: &[MovingSphere]) -> Option<Vec<Mover<f64>>> {
     })
 }
 
-/// As [`super::first_contact()`], in double precision.
+/// First contact of two primitives on straight paths: [`super::first_contact()`] in double precision.
 pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions) -> Toi {
     match (movers(a), movers(b), limits(options)) {
         (Some(a), Some(b), Some(limits)) => {
@@ -131,7 +132,8 @@ pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOption
     }
 }
 
-/// As [`super::first_contact_rigid`], computed in double precision from rapier's numbers.
+/// First contact of two primitives in exact rigid motion: [`super::first_contact_rigid`] computed in double
+/// precision, from rapier's numbers in single precision.
 pub fn first_contact_rigid(
     a: &[crate::MedialSphere],
     motion_a: &NonlinearRigidMotion,
@@ -165,7 +167,7 @@ pub fn first_contact_rigid(
     Toi::from_earliest(&earliest)
 }
 
-/// As [`super::alternating()`], in double precision.
+/// The paper's iteration: [`super::alternating()`] in double precision.
 pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions) -> Toi {
     let (Some(a), Some(b)) = (movers(a), movers(b)) else {
         return Toi::bad_input(options);

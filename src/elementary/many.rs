@@ -38,10 +38,10 @@ impl Lanes {
     }
 }
 
-/// First contacts of many pairs of primitives on straight paths, in their order: each as
-/// [`super::first_contact()`] promises, with all elementary tests of all pairs in the lanes. The times
-/// may differ within the tolerances, since a test is followed here even where another one of its
-/// pair has found an earlier contact.
+/// First contacts of many pairs of primitives on straight paths, in their order, with the promise of
+/// [`super::first_contact()`]. All elementary tests of all pairs share the lanes. The times may differ from those of
+/// [`super::first_contact()`] within the tolerances, since here a test is followed even if another test of its pair has
+/// found an earlier contact.
 pub fn first_contacts(
     pairs: &[[&[MovingSphere]; 2]],
     options: &ToiOptions,

@@ -15,9 +15,9 @@ use crate::math::{Real, Vector};
 /// needles count as thick as where they begin; larger, and sharp edges count as sheets.
 const BLUNT: Real = 4.0;
 
-/// Thickness of a primitive of one to three spheres, a length: the least radius `ρ` such that what is thinner
-/// than `ρ` reaches further than `4 ρ`, and the largest radius where there is none. 0 for what has
-/// no thickness in some place that is not blunt: sheets, fins, needles.
+/// Thickness of a primitive of one to three spheres, a length: the smallest radius `ρ` for which the part that is
+/// thinner than `ρ` extends farther than `4 ρ`, or the largest radius if there is none. It is 0 for a primitive
+/// that tapers to radius 0 slowly, or has radius 0 throughout: sheets, fins, needles.
 pub fn of_primitive(spheres: &[MedialSphere]) -> Real {
     let radii = spheres.iter().map(|s| s.radius);
     let (least, most) = radii.fold((Real::MAX, 0.0), |(least, most), r| {
@@ -53,12 +53,12 @@ fn slope(spheres: &[MedialSphere]) -> Real {
     }
 }
 
-/// Thickness of each primitive, and the least below each node of the tree.
+/// The thickness of each primitive, and the smallest one below each node of the tree.
 #[derive(Clone, Debug)]
 pub struct Thicknesses {
-    /// Of each primitive, a length.
+    /// Thickness of each primitive, a length.
     pub primitives: Vec<Real>,
-    /// The least below each node.
+    /// Smallest thickness below each node, a length.
     pub nodes: Vec<Real>,
 }
 
@@ -81,7 +81,7 @@ impl Thicknesses {
         Self { primitives, nodes }
     }
 
-    /// The least of the whole mesh.
+    /// Smallest thickness of the whole mesh, a length.
     pub fn least(&self) -> Real {
         self.nodes.first().copied().unwrap_or(0.0)
     }

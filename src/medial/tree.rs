@@ -7,12 +7,12 @@ use super::mesh::Simplex;
 use super::primitive::MedialSphere;
 use crate::math::{Real, Vector};
 
-/// A sphere around part of a medial mesh.
+/// A node of the tree: a sphere that encloses some primitives of a medial mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
     /// Centre, in the body's frame.
     pub center: Vector,
-    /// Encloses the whole volume of the primitives below it, rounding included.
+    /// Radius, such that the sphere encloses the primitives below it in spite of rounding.
     pub radius: Real,
     /// Leaf: index of its primitive. Inner: index of the first of two neighbouring children.
     index: u32,

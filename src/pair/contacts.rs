@@ -37,10 +37,10 @@ const CROSSING: u32 = 1 << 17;
 pub struct SpherePair {
     /// Index of the primitive of each body.
     pub primitives: [u32; 2],
-    /// Which elementary test of the two primitives, and which point of it: stable from step to
-    /// step while the same features touch.
+    /// A number of the elementary test of the two primitives, and of the point of it: the same from step to step as
+    /// long as the same features touch.
     pub feature: u32,
-    /// Signed distance.
+    /// Signed distance of the two spheres, a length, negative where they overlap.
     pub distance: Real,
     /// Unit normal from the first body to the second, in the first body's frame.
     pub normal: Vector,

@@ -30,19 +30,19 @@ const PRESSED: f64 = 1.0e-4;
 /// Share of the way that a query may take which is its tolerance.
 const TAKEN: f64 = 0.25;
 
-/// What counts as contact of two primitives.
+/// From when on two primitives count as in contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Threshold {
-    /// Factor of all radii, from 0 to 1.
+    /// Factor by which all radii are multiplied, from 0 to 1.
     pub scale: f64,
-    /// Signed distance of what these leave that counts as contact, a length.
+    /// Signed distance of the primitives with these radii that counts as a contact, a length.
     pub target: f64,
-    /// Tolerance of it.
+    /// Tolerance of that distance, a length.
     pub tolerance: f64,
 }
 
 impl Threshold {
-    /// Of primitives as they are.
+    /// The threshold of primitives whose radii stay as they are.
     pub fn new(target: f64, tolerance: f64) -> Self {
         Self {
             scale: 1.0,
@@ -51,8 +51,8 @@ impl Threshold {
         }
     }
 
-    /// Of primitives whose signed distance at the start is `distance`, so that they touch: they may deepen `by`
-    /// so much, and never to their axes. `thinnest` is the smallest sum of two of their radii, `axes` the
+    /// The threshold of primitives that touch at the start, at the signed distance `distance`: they may get deeper
+    /// by `by`, but never as deep as their axes. `thinnest` is the smallest sum of a radius of each, `axes` the
     /// distance of their medial axes at the start.
     pub fn deepened(
         distance: f64,

@@ -12,12 +12,12 @@ use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
 use parry3d::query::NonlinearRigidMotion;
 
-/// Work done by one query.
+/// How much work a query did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Node pairs looked at.
+    /// Pairs of tree nodes that were looked at.
     pub nodes: u32,
-    /// Elementary tests whose kernel ran, however often.
+    /// Elementary tests that were computed, each counted once.
     pub tests: u32,
 }
 
@@ -174,7 +174,7 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
         to_toi(earliest, &self.options, pose)
     }
 
-    /// Work done so far.
+    /// The work done so far.
     pub fn counts(&self) -> Counts {
         let of = |s: &Search<A, B>| Counts {
             nodes: s.nodes,

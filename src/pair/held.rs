@@ -16,16 +16,16 @@ use crate::math::Real;
 /// How far two bodies may move against each other before their contacts are computed again.
 #[derive(Clone, Copy, Debug)]
 pub struct Play {
-    /// Bound on the way of each place.
+    /// Upper bound of how far any place of one body moves against the other, a length.
     pub way: Real,
-    /// Bound on the angle (radians).
+    /// Upper bound of the angle by which one body turns against the other, in radians.
     pub turn: Real,
-    /// Gap at which a contact holds: the sum of both contact skins.
+    /// Gap at which a contact begins to hold, a length: the sum of both contact skins.
     pub skins: Real,
 }
 
 impl Play {
-    /// Takes out the contacts that are held back by nearer ones, which stay; the nearest come first.
+    /// Removes the contacts that cannot close because nearer ones hold, and sorts the others, the nearest first.
     pub fn drop_held_back(&self, contacts: &mut Vec<SpherePair>) {
         contacts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let mut kept: Vec<SpherePair> = Vec::with_capacity(contacts.len());

@@ -21,7 +21,8 @@ use std::sync::Arc;
 /// Directions tried. With 6 a ninth more queries are begun in a heap of links, with 24 a twentieth fewer.
 const TRIES: usize = 12;
 
-/// Balls and primitives of a body on its motion, on straight paths, or at rest; both bodies in one frame.
+/// The balls and primitives of a body's coarse hull, at rest or on straight paths that enclose its motion. Outlines
+/// of two bodies must be in one frame.
 pub struct Outline {
     /// When the motion starts, and how long it goes on, in seconds.
     times: [f64; 2],
@@ -33,7 +34,7 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// At rest where `place` puts its points.
+    /// The outline of a body at rest, whose points `place` moves into the common frame.
     pub fn resting(shell: &Arc<Shell>, place: impl Fn(Vector) -> Vec3<f64>) -> Self {
         let mut size = 0.0;
         let placed = shell.balls.iter().map(|(center, radius)| {
@@ -49,7 +50,7 @@ impl Outline {
         }
     }
 
-    /// On a motion that starts at `from` and ends at `end`, in seconds.
+    /// The outline of a body on a motion from `from` to `end`, in seconds.
     pub fn new(shell: &Arc<Shell>, motion: &NonlinearRigidMotion, [from, end]: [Real; 2]) -> Self {
         let times = [f64::from(from), f64::from(end) - f64::from(from)];
         let rigid = RigidMotion::<f64>::alone(motion, times[1]);
@@ -160,7 +161,7 @@ impl<'a> Rest<'a> {
     }
 }
 
-/// What may still meet.
+/// The primitives of a body that may still meet the other body.
 #[derive(Clone)]
 pub struct Left {
     /// The body.
@@ -170,27 +171,27 @@ pub struct Left {
 }
 
 impl Left {
-    /// Whether a node of the mesh's tree holds any of it.
+    /// Whether any of these primitives is below a node of the mesh's tree.
     pub fn meets(&self, node: u32) -> bool {
         let primitives = self.shell.nodes.get(node as usize);
         primitives.is_none_or(|p| p & self.primitives != 0)
     }
 }
 
-/// What of two bodies at rest may be near; by default all.
+/// The primitives of two bodies at rest that may be near each other; by default all.
 #[derive(Default)]
 pub struct Near(Option<[Left; 2]>);
 
 impl Near {
-    /// Whether a node of each may be.
+    /// Whether any of these primitives are below a node of each body.
     pub fn meet(&self, [i, j]: [u32; 2]) -> bool {
         let left = self.0.as_ref();
         left.is_none_or(|[a, b]| a.meets(i) && b.meets(j))
     }
 }
 
-/// What of two bodies at rest may come within `reach` of each other; `None`: nothing. `place` puts points of
-/// the second in the frame of the first.
+/// The primitives of two bodies at rest that may be within `reach` (a length) of each other; `None` if there are none.
+/// `place` moves points of the second body into the frame of the first.
 pub fn near(
     body1: &impl Volumes,
     body2: &impl Volumes,
@@ -206,19 +207,19 @@ pub fn near(
     Some(Near(Some(apart.left)))
 }
 
-/// How far two bodies are known to stay apart.
+/// Until when two bodies certainly stay apart.
 pub struct Apart {
-    /// Seconds into the step until which they do.
+    /// They stay apart until this time, in seconds into the step.
     pub until: Real,
-    /// All else of them does so until the motions end.
+    /// The primitives that may meet after that. All others stay apart until the motions end.
     pub left: [Left; 2],
 }
 
-/// Seconds into the step until which two bodies stay further apart than `target` from `from` on, as far as
-/// a few directions tell; `None`: until the motions end, which both do together.
+/// Until when two bodies certainly stay farther apart than `target`, from `from` on (seconds into the step), as far
+/// as a few directions can prove it. `None` if they do so until the motions end, which must be at the same time for
+/// both.
 ///
-/// Motions may be told again from a later time on in single precision, a few of whose ulps are allowed
-/// for.
+/// The motions may have been computed anew from a later time on in single precision; a few ulps are allowed for that.
 pub fn apart_until(a: &Outline, b: &Outline, from: Real, target: Real) -> Option<Apart> {
     let least = f64::from(target) + 16.0 * f64::from(Real::EPSILON) * (a.size + b.size);
     let (start, end) = (f64::from(from), a.times[0] + a.times[1]);

@@ -13,24 +13,24 @@ use std::sync::Arc;
 
 /// A body made of primitives, in its own frame.
 pub trait Volumes {
-    /// How many top nodes there are: nodes `0..roots()`.
+    /// Number of root nodes; they are the nodes `0..roots()`.
     fn roots(&self) -> u32;
     /// Bounding sphere of a node.
     fn bound(&self, node: u32) -> (Vector, Real);
     /// What is below a node.
     fn below(&self, node: u32) -> Below;
-    /// Spheres of a primitive (unused entries repeat the last), and what it tests.
+    /// Spheres of a primitive (unused entries repeat the last one), and which edges and spheres it tests.
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share);
-    /// Thickness of a primitive, a length ([`crate::medial::thickness`]); infinite for surfaces, and for
-    /// solids whose inside is not in play.
+    /// Thickness of a primitive, a length ([`crate::medial::thickness`]). Infinite for surfaces, and for solids
+    /// that are represented by their surface.
     fn thickness(&self, _primitive: u32) -> Real {
         Real::INFINITY
     }
-    /// The primitives that bound one convex body, this one among them; itself where it is one.
+    /// The range of primitives that bound the same convex body as this one. By default the primitive itself.
     fn convex_part(&self, index: u32) -> Range<u32> {
         index..index + 1
     }
-    /// A few balls that hold the body, if it has such.
+    /// A few balls that enclose the body, if there are any.
     fn shell(&self) -> Option<&Arc<Shell>> {
         None
     }
@@ -65,7 +65,7 @@ impl Volumes for MedialMesh {
     }
 }
 
-/// Loose primitives without a hierarchy.
+/// A list of loose primitives without a hierarchy.
 #[derive(Clone, Debug, Default)]
 pub struct Soup {
     primitives: Vec<([MedialSphere; 3], usize)>,
@@ -97,18 +97,18 @@ impl Soup {
             .push((center, reach + 8.0 * Real::EPSILON * size));
     }
 
-    /// Ends a part: what was added since the last call bounds one convex body.
+    /// Ends a part: the primitives added since the last call bound one convex body.
     pub fn end_part(&mut self) {
         let part = [self.parts.len() as u32, self.primitives.len() as u32];
         self.parts.resize(self.primitives.len(), part);
     }
 
-    /// How many primitives there are.
+    /// Number of primitives.
     pub fn len(&self) -> usize {
         self.primitives.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no primitives.
     pub fn is_empty(&self) -> bool {
         self.primitives.is_empty()
     }

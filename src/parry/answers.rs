@@ -13,7 +13,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-/// Two shapes, at one relative pose to the bit or wherever they are. Holds as long as both shapes live.
+/// A key for two shapes, at exactly one relative pose or at any. It is valid as long as both shapes exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
     shapes: [Id; 2],
@@ -40,7 +40,7 @@ impl Id {
 }
 
 impl Key {
-    /// Of two shapes at a relative pose, of which one at least is medial.
+    /// The key of two shapes at a relative pose. At least one of them must be medial.
     pub fn new(shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> Self {
         let (t, r) = (pos12.translation, pos12.rotation);
         Self {
@@ -49,7 +49,7 @@ impl Key {
         }
     }
 
-    /// Of two shapes wherever they are: for those that no other collider has.
+    /// The key of two shapes at any pose: for shapes that no other collider has.
     pub fn anywhere(shape1: &dyn Shape, shape2: &dyn Shape) -> Self {
         Self {
             shapes: [shape1, shape2].map(Id::new),
@@ -58,31 +58,31 @@ impl Key {
     }
 }
 
-/// Work counted by a dispatcher since the last [`Answers::take_counts`].
+/// What a dispatcher did since the last [`Answers::take_counts`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counted {
-    /// Manifold requests that the batch had answered.
+    /// Requests for manifolds that were answered from the batch.
     pub hits: u64,
-    /// Manifold requests computed on the spot.
+    /// Requests for manifolds that were computed on the spot.
     pub misses: u64,
-    /// First-contact queries (shape casts).
+    /// Shape casts (searches for a first contact).
     pub casts: u64,
-    /// Node pairs of both trees looked at, outside the batch.
+    /// Pairs of tree nodes that were looked at, not counting the batch.
     pub nodes: u64,
-    /// Elementary tests executed outside the batch.
+    /// Elementary tests that were computed, not counting the batch.
     pub tests: u64,
-    /// Manifolds written.
+    /// Manifolds that were written.
     pub manifolds: u64,
-    /// Whether two shapes intersect, as sensors ask.
+    /// Tests whether two shapes intersect, as sensors need.
     pub intersections: u64,
 }
 
-/// Which pairs get their deepest contact only.
+/// Which pairs get only their deepest contact.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct OnePoint {
-    /// Those of which neither shape is named below.
+    /// Whether pairs do of which neither shape is in `own`.
     pub others: bool,
-    /// By instance id; of two that differ, the one with all its contacts decides.
+    /// Whether pairs of a mesh do, by its instance id. If the two meshes of a pair differ, it gets all contacts.
     pub own: HashMap<u64, bool>,
 }
 
@@ -99,11 +99,11 @@ impl OnePoint {
     }
 }
 
-/// Contacts of a pair that the batch did not have, as the batch would have computed them: so it makes no
-/// difference to the world what was expected. `None`: it would not have.
+/// Computes the contacts of a pair that was not in the batch, exactly as the batch would have, so that it makes no
+/// difference to the world which pairs were in it. `None` if the batch would not have computed this pair.
 pub type Compute = Box<dyn Fn(PairJob) -> Option<PairResult> + Send + Sync>;
 
-/// Answers of one batch, shared by a pipeline and its dispatcher.
+/// The answers of one batch, and orders for single pairs, which a pipeline shares with its dispatcher.
 #[derive(Default)]
 pub struct Answers {
     known: RwLock<HashMap<Key, (Real, PairResult)>>,
@@ -126,8 +126,8 @@ pub struct Answers {
 }
 
 impl Answers {
-    /// Forgets the old answers and takes those of a new batch, each with the prediction distance it
-    /// holds for; `compute` is for the others.
+    /// Replaces all answers by those of a new batch, each with the prediction distance for which it holds. `compute` is
+    /// called for pairs that are not among them.
     pub fn replace(
         &self,
         answers: impl Iterator<Item = ((Key, Real), PairResult)>,
@@ -139,7 +139,7 @@ impl Answers {
         known.extend(answers.map(|((key, prediction), result)| (key, (prediction, result))));
     }
 
-    /// Calls `with` on the answer to a request, from the batch if it holds it, else computed.
+    /// Calls `with` on the answer to a request: that of the batch if there is one, else one computed now.
     pub fn contacts<T>(
         &self,
         mesh1: &MedialMesh,
@@ -180,7 +180,7 @@ impl Answers {
         with(&result)
     }
 
-    /// From now on these pairs have no contacts, and no others: someone else takes care of them.
+    /// From now on exactly these pairs get no contacts, because the event loop resolves them.
     pub fn mute(&self, pairs: HashSet<Key>) {
         *self.muted.write().unwrap_or_else(PoisonError::into_inner) = pairs;
     }
@@ -191,19 +191,19 @@ impl Answers {
         !muted.is_empty() && muted.contains(&Key::new(shape1, shape2, pos12))
     }
 
-    /// From now on rapier's own sweeps of medial bodies find nothing, or again what there is: someone else
-    /// takes care of what they meet on their way.
+    /// Sets whether rapier's own sweeps of medial bodies find nothing from now on, because the event loop resolves what
+    /// these bodies meet.
     pub fn sweep_elsewhere(&self, elsewhere: bool) {
         self.swept_elsewhere.store(elsewhere, Ordering::Relaxed);
     }
 
-    /// Whether someone else takes care of it.
+    /// Whether rapier's own sweeps of medial bodies find nothing.
     pub fn is_swept_elsewhere(&self) -> bool {
         self.swept_elsewhere.load(Ordering::Relaxed)
     }
 
-    /// Notes whether the user turned contacts of a pair off, under its keys. It passes in sweeps of this step if all
-    /// that is noted of it is off.
+    /// Notes, under the keys of a pair, whether the user turned off some of its contacts. If all contacts that are
+    /// noted of it are off, rapier's sweeps let the pair pass in this step.
     pub fn let_pass(&self, keys: &[Key], off: bool) {
         let mut passing = self.passing.write().unwrap_or_else(PoisonError::into_inner);
         for key in keys {
@@ -211,13 +211,13 @@ impl Answers {
         }
     }
 
-    /// No pair passes any more.
+    /// Forgets all pairs that rapier's sweeps were to let pass.
     pub fn let_none_pass(&self) {
         let passing = self.passing.write();
         passing.unwrap_or_else(PoisonError::into_inner).clear();
     }
 
-    /// Whether a pair passes in sweeps.
+    /// Whether rapier's sweeps let a pair pass.
     pub fn passes(&self, shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> bool {
         let passing = self.passing.read().unwrap_or_else(PoisonError::into_inner);
         let noted = |key| passing.get(&key) == Some(&true);
@@ -225,7 +225,7 @@ impl Answers {
             && (noted(Key::new(shape1, shape2, pos12)) || noted(Key::anywhere(shape1, shape2)))
     }
 
-    /// From now on these pairs get their deepest contact only.
+    /// From now on these pairs get only their deepest contact.
     pub fn give_one_point(&self, pairs: OnePoint) {
         *self
             .one_point
@@ -233,7 +233,7 @@ impl Answers {
             .unwrap_or_else(PoisonError::into_inner) = pairs;
     }
 
-    /// Whether a pair gets its deepest contact only. A shape that is not medial has no say.
+    /// Whether a pair gets only its deepest contact. Only medial shapes of the pair decide.
     pub fn has_one_point(&self, shape1: &dyn Shape, shape2: &dyn Shape) -> bool {
         let id = |s: &dyn Shape| s.as_shape::<MedialMesh>().map_or(0, |m| m.instance_id());
         let pairs = self
@@ -243,18 +243,18 @@ impl Answers {
         pairs.holds([id(shape1), id(shape2)])
     }
 
-    /// Notes how deep the contacts of a pair are that were written just now, a length.
+    /// Notes the depth of a contact that was written just now, a length.
     pub fn note_depth(&self, depth: Real) {
         let depth = depth.max(0.0).abs();
         self.depth.fetch_max(depth.to_bits(), Ordering::Relaxed);
     }
 
-    /// The deepest noted since the last call.
+    /// Returns the largest depth noted since the last call, a length.
     pub fn take_depth(&self) -> Real {
         Real::from_bits(self.depth.swap(0, Ordering::Relaxed))
     }
 
-    /// Counts manifolds written.
+    /// Counts manifolds that were written.
     pub fn count_manifolds(&self, manifolds: usize) {
         self.manifolds
             .fetch_add(manifolds as u64, Ordering::Relaxed);
@@ -271,18 +271,18 @@ impl Answers {
         self.count(nodes, tests);
     }
 
-    /// Counts work of other queries.
+    /// Counts the work of other queries.
     pub fn count(&self, nodes: u32, tests: u32) {
         self.nodes.fetch_add(nodes.into(), Ordering::Relaxed);
         self.tests.fetch_add(tests.into(), Ordering::Relaxed);
     }
 
-    /// Instance ids of the pairs that missed since the last call.
+    /// Returns the instance ids of pairs whose answer was not in the batch since the last call.
     pub fn take_missed(&self) -> Vec<[u64; 2]> {
         std::mem::take(&mut *self.missed.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Work since the last call, and starts counting anew.
+    /// Returns what was counted since the last call.
     pub fn take_counts(&self) -> Counted {
         let take = |counter: &AtomicU64| counter.swap(0, Ordering::Relaxed);
         Counted {

@@ -41,14 +41,14 @@ struct Seen {
     gap: f64,
 }
 
-/// A contact of the step before, of those that bore.
+/// A contact of the step before that carried a load.
 pub struct Borne<C> {
     subshapes: [u32; 2],
     place: Vector,
     data: C,
 }
 
-/// The contacts that bore, by their places on body `side` (0 or 1).
+/// The contacts of these manifolds that carried a load, at their points on body `side` (0 or 1).
 pub fn borne<M, C: Copy>(manifolds: &[ContactManifold<M, C>], side: usize) -> Vec<Borne<C>> {
     let of = |m: &ContactManifold<M, C>, i: usize| Borne {
         subshapes: [m.subshape1, m.subshape2],
@@ -60,7 +60,8 @@ pub fn borne<M, C: Copy>(manifolds: &[ContactManifold<M, C>], side: usize) -> Ve
         .collect()
 }
 
-/// Makes parry look for all contacts again: it goes on from those it has, and some were left out.
+/// Makes parry compute all contacts anew. It would otherwise go on from those in the manifolds, from which some were
+/// removed.
 pub fn look_again<M, C: Default + Copy>(manifolds: &mut [ContactManifold<M, C>]) {
     if manifolds.iter().map(|m| m.points.len()).sum::<usize>() >= SOLVED {
         manifolds
@@ -69,8 +70,9 @@ pub fn look_again<M, C: Default + Copy>(manifolds: &mut [ContactManifold<M, C>])
     }
 }
 
-/// Hands the data of the contacts that bore to the nearest of the same subshapes, each once: parry goes
-/// by features, which several contacts of an edge share, and then an impulse would count several times.
+/// Passes the data (impulses) of contacts of the step before to the nearest new contacts of the same subshapes, each
+/// once. parry matches contacts by features, which several contacts of an edge share, so that an impulse would count
+/// several times.
 pub fn hand_on<M, C: Default + Copy>(
     manifolds: &mut [ContactManifold<M, C>],
     borne: &[Borne<C>],
@@ -98,8 +100,8 @@ pub fn hand_on<M, C: Default + Copy>(
     }
 }
 
-/// Leaves out all contacts but those that bear the load: under each normal at most four, chosen for a
-/// load at `center` (in the first body's frame). `borne` are those of before, on body `side`.
+/// Removes all contacts but those that bear the load: at most four for each normal, chosen for a load at `center`
+/// (in the first body's frame). `borne` are the contacts that did so in the step before, on body `side`.
 pub fn choose<M, C: Copy>(
     manifolds: &mut [ContactManifold<M, C>],
     center: Vector,

@@ -34,17 +34,17 @@ pub struct Cast<'a> {
     pub times: [Real; 2],
     /// Distance at which they count as in contact.
     pub target_distance: Real,
-    /// Whether contact at the start is the answer; otherwise the next deeper one is looked for.
+    /// Whether a contact at the start is the answer. Otherwise the next, deeper one is searched for.
     pub stop_at_penetration: bool,
-    /// Whether contact at the start is the answer at least while they approach, as parry has it for
-    /// straight casts: the character controller would sink otherwise.
+    /// Whether a contact at the start is the answer at least if the two approach, as for parry's straight casts.
+    /// Without this, rapier's character controller would sink in.
     pub stop_approach: bool,
 }
 
 impl Cast<'_> {
-    /// First contact as the query tells it, with the mesh as first body; times are fractions of the cast's.
-    /// `options` take the place of its own target and choice of contact at the start. Where it is known what is
-    /// `left` of both, the mesh first, no more of the mesh is looked at.
+    /// The first contact as a bracket, with the mesh as first body; times are fractions of the duration of the
+    /// cast. `options` replace the cast's own target and treatment of contacts at the start. If it is known which
+    /// primitives of both are `left` (the mesh first), no others of the mesh are searched.
     pub fn toi(
         &self,
         options: &ToiOptions,
@@ -320,7 +320,7 @@ fn earlier(a: Toi, b: Toi) -> Toi {
     }
 }
 
-/// The other shape is neither medial nor built in.
+/// Error: the other shape is neither medial nor one of parry's own, so it cannot be swept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unsweepable;
 

@@ -18,7 +18,7 @@ const PLANE_REACH: Real = 2.0;
 /// What rounding takes from the coordinates of a box put in another frame, in units of the coordinates.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 
-/// What a shape is made of, in the shape's frame.
+/// A shape as swept spheres, cylinders and cones, in the shape's frame.
 #[derive(Clone, Debug, Default)]
 pub struct Parts {
     /// Swept spheres.
@@ -51,7 +51,8 @@ impl Parts {
     }
 }
 
-/// Thickness of a shape that is not medial, a length: infinite of a surface, which has no inside to give.
+/// Thickness of a shape that is not medial, a length. It is infinite for a surface, which has no inside that could be
+/// overlapped.
 pub fn thickness(shape: &dyn Shape) -> Real {
     let thickness = shape.ccd_thickness();
     if thickness > 0.0 {

@@ -13,8 +13,8 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::query::{Ray, RayIntersection};
 use parry3d::shape::FeatureId;
 
-/// Where a ray that starts inside the mesh leaves it, with the normal pointing back inside as parry's
-/// does; `None` if it starts outside. The time is in units of the ray's direction.
+/// Where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back inside, as in
+/// parry, and the time is in units of the length of the ray's direction.
 pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
     if !holds(mesh, ray.origin) {
         return None;

@@ -25,11 +25,12 @@ use std::collections::BinaryHeap;
 /// Slack on the first bound of the distance (a ratio): parry's projections are off by less.
 const SLACK: Real = 1.01;
 
-/// The nearest sphere pair of `mesh` and `other` at relative pose `pos12` (other in mesh), if it is
-/// within `max_distance`; the second primitive index is the other's subshape. For a mesh with a centre
-/// inside the other the distance is minus the length of the way out.
+/// The nearest pair of spheres of `mesh` and `other`, if they are within `max_distance` (a length) of each other.
+/// `pos12` is the pose of `other` in the frame of the mesh; the second primitive index is the subshape of `other`.
+/// If a centre of the mesh is inside `other`, the distance is minus the length of the shortest way out.
 ///
-/// Fails for a shape that is neither medial nor built in.
+/// # Errors
+/// For a shape that is neither medial nor one of parry's own.
 pub fn nearest(
     mesh: &MedialMesh,
     other: &dyn Shape,

@@ -14,25 +14,25 @@ use parry3d::bounding_volume::Aabb;
 use rapier3d::geometry::ColliderHandle;
 use std::collections::HashSet;
 
-/// Near pairs of medial colliders, and of them those that the narrow phase will ask for.
+/// Pairs of medial colliders that are near each other, and which of them rapier's narrow phase will ask for.
 pub struct Candidates {
-    /// How many near pairs there are.
+    /// Number of near pairs.
     pub pairs: usize,
-    /// Those whose relative pose changed too much for rapier to recycle their contacts.
+    /// The pairs of these that rapier will ask for: they have moved too much for it to keep their contacts.
     pub jobs: Vec<PairJob>,
-    /// Where the answers to these belong.
+    /// For each job, how its contacts are moved back from where they were computed to the start of the step.
     pub ahead: Vec<Ahead>,
-    /// What those need that rapier asks for besides.
+    /// What is needed to compute pairs that rapier asks for and that are not among the jobs.
     pub starts: Starts,
-    /// Colliders that rapier has to be made to ask for.
+    /// Colliders whose contacts rapier must be made to ask for.
     pub fresh: HashSet<ColliderHandle>,
-    /// How deep the deepest contact of all is, a length.
+    /// Depth of the deepest of all contacts, a length.
     pub depth: Real,
 }
 
-/// Finds all near pairs of medial colliders: at least one of them dynamic and awake, not on the same
-/// body, groups compatible. The order of the two is the narrow phase's (lower collider index
-/// first).
+/// Finds all pairs of medial colliders that are near each other, of which at least one is dynamic and awake, which are
+/// on different bodies, and whose groups are compatible. The order of the two is that of rapier's narrow phase (the
+/// lower collider index first).
 pub fn find(sets: Sets, recycled: &mut Recycled, muted: &HashSet<Key>) -> Candidates {
     let scene = Scene::new(sets);
     recycled.begin(sets.parameters);
@@ -56,7 +56,7 @@ pub fn find(sets: Sets, recycled: &mut Recycled, muted: &HashSet<Key>) -> Candid
     }
 }
 
-/// What [`find`] will find at the next step, if nothing is changed until then.
+/// The jobs that [`find`] will return at the next step, if nothing is changed until then.
 pub fn expect(sets: Sets, recycled: &Recycled) -> Vec<PairJob> {
     let scene = Scene::new(sets);
     let asked = |pair: &&[usize; 2]| scene.asked(pair) || !recycled.recycles(&scene.place(pair));

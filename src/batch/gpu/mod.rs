@@ -32,32 +32,32 @@ use layout::Pair;
 use meshes::Meshes;
 use transfer::Transfer;
 
-/// Work of the device since it was opened.
+/// What a GPU has done since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpuCounts {
-    /// Submissions.
+    /// Submissions to the GPU.
     pub submissions: u64,
-    /// Times that answers were mapped and waited for.
+    /// Times that the CPU waited for answers.
     pub maps: u64,
-    /// Mesh pairs, or pieces of their step, of which too much meets to be looked at there, or that it never
-    /// took up.
+    /// Pairs of meshes, or pieces of their step, of which too many primitives meet to be looked at there, or which were
+    /// never begun.
     pub given_up: u64,
-    /// Buffers and textures made since the device was opened: constant in steps like those before.
+    /// Buffers and textures that were made. It does not grow in steps that are like those before.
     pub buffers_made: u64,
-    /// Groups of bindings made since then: likewise.
+    /// Bind groups that were made. It does not grow in steps that are like those before.
     pub bindings_made: u64,
-    /// Meshes on the device.
+    /// Meshes that are kept on the GPU.
     pub meshes: usize,
 }
 
-/// What the device says of one [`Sweep`].
+/// The answer of the GPU to one [`Sweep`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Proposal {
     /// The two meshes are proven free in the whole step.
     Free,
-    /// They are not.
+    /// This was not proven: the CPU has to compute the pair.
     Open,
-    /// The sweep was not fit for the device.
+    /// The GPU could not take the sweep, since a number was not finite or too large.
     Unfit,
 }
 
@@ -68,7 +68,7 @@ impl Proposal {
     }
 }
 
-/// A device with the meshes that it holds.
+/// A GPU and the meshes that are kept on it.
 pub struct Gpu {
     context: Context,
     up: Transfer,
