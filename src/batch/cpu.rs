@@ -1,5 +1,5 @@
-//! The batch on the CPU: jobs are independent, so the result does not depend on the number of
-//! threads.
+//! Answers the jobs of a batch on the CPU, on several threads with feature `parallel`. Jobs are independent, so the
+//! answers do not depend on the number of threads.
 
 use super::job::Job;
 #[cfg(feature = "parallel")]

@@ -1,4 +1,5 @@
-//! Jobs that went to the device before they were asked: which of them a batch asks again, to the bit.
+//! Jobs that were sent to a GPU before their answers were needed: finds the answer to a job that is asked later, if
+//! it is the same bit by bit.
 
 use super::gpu::Proposal;
 use super::job::Sweep;

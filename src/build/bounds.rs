@@ -1,4 +1,5 @@
-//! Points and boxes in the builder's frame: `f64`, longest side of the source 1, centred.
+//! Points and boxes in the builder's frame: in `f64`, scaled so that the longest side of the triangle mesh is 1, and
+//! centred at the origin.
 
 use crate::math::lane::Vec3;
 

@@ -1,4 +1,5 @@
-//! What a build may return: a draft, enclosed if asked for, and how far it is from the surface.
+//! A possible result of a build: a medial mesh, enclosed if asked for, and how far it is from the surface. Builds make
+//! several and return the best.
 
 use super::draft::Draft;
 use super::enclose::enclose;

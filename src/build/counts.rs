@@ -1,4 +1,5 @@
-//! The count of primitives that fits best, among the one asked for and smaller round ones.
+//! Chooses the number of primitives that fits best, among the one asked for and smaller round ones: round bodies need
+//! few, and very many often fit worse.
 
 use super::bounds::Point;
 use super::candidate::{Candidate, Enclosed};

@@ -1,7 +1,8 @@
-//! What the planes that balls touch do not tell about a collapse in a medial mesh with creases.
+//! Additional costs of collapses in a medial mesh with creases, for damage that the quadrics do not see.
 //!
-//! All planes of a flat sheet agree on every ball of it, and cost nothing: so a sheet could fold over its
-//! own outline. Between balls of radius 0 a slab may span a notch, and touch all its planes.
+//! The quadrics measure how well balls touch the planes around them. On a flat sheet all planes agree on every
+//! ball, and moving it costs nothing, so the sheet could fold over its own outline. And a slab between balls of
+//! radius 0 may span a notch and still touch all its planes.
 
 use super::bounds::Point;
 use super::complex::Complex;

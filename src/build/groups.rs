@@ -1,4 +1,5 @@
-//! Things joined into groups. Source: Galler and Fisher, "An improved equivalence algorithm" (1964).
+//! Groups of indices that are joined step by step (union and find). Source: Galler and Fisher, "An improved
+//! equivalence algorithm" (1964).
 
 /// Groups of indices; the lowest index of each stands for it.
 pub struct Groups(Vec<u32>);

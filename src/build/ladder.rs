@@ -1,7 +1,7 @@
-//! One collapse that passes many counts of primitives, in whatever order they are asked for.
+//! Gives a collapsed medial mesh for any number of primitives, in whatever order they are asked for, from one collapse.
 //!
-//! A collapse does not depend on where it stops, so the state at every half of the count before is kept, and a
-//! draft of any count costs the way from the state above it.
+//! A collapse does not depend on where it stops. So the state is kept each time the number has halved, and a mesh
+//! of any number only needs the collapse from the kept state above it.
 
 use super::bounds::Point;
 use super::fit::{Collapsed, LARGE, fine_count, start_count};

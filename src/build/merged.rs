@@ -1,4 +1,5 @@
-//! What lies around an edge of a medial mesh once its two balls are one.
+//! The neighbourhood of an edge of a medial mesh as it would be after its two balls are merged into one, to judge
+//! what the merge costs.
 
 use super::draft::Corners;
 use super::prepared::Prepared;

@@ -1,6 +1,6 @@
-//! Where a slab touches a plane: the triangle of the points at which its three balls do. A piece of a flat
-//! face is cut along that triangle's sides, so that each part lies in one slab: halving alone never gets
-//! rid of pieces that cross from one slab to the next.
+//! The outline in which a slab touches a plane: the triangle of the points at which its three balls touch it. A
+//! piece of a flat face is cut along the sides of that triangle, so that each part lies in one slab. Halving pieces
+//! would never end those that cross from one slab to the next.
 
 use super::bounds::{Point, direction};
 use super::draft::Ball;

@@ -1,7 +1,7 @@
-//! Solid parts and sheets, simplified side by side to a common count.
+//! Simplifies the solid parts and the sheets of a mesh side by side, to a number of primitives that they share.
 //!
-//! One collapse over both would not do: errors are sums over the faces that were merged, of which
-//! a dense solid has thousands and a card two, so that cards would go first.
+//! One collapse over both would remove sheets first, because costs are sums over the faces that were merged, of which a
+//! dense solid has thousands and a sheet of paper two.
 
 use super::ball_quadrics::{BOUNDARY_WEIGHT_SHEET, BOUNDARY_WEIGHT_SOLID};
 use super::draft::Draft;

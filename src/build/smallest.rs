@@ -1,8 +1,10 @@
-//! An error instead of a count: the fewest primitives that keep it, by the measure after enclosure.
+//! Finds the smallest number of primitives that keeps to a given error, measured after enclosure
+//! ([`super::BuildOptions::max_error`]).
 //!
-//! Errors fall with the count, but for the scatter of single fits (a sixth). So counts are tried upwards from the
-//! first whose plain collapse is near enough, until one keeps the limit, then between those that do and do not.
-//! Each is fitted, enclosed and measured as a build of that count is, until it breaks the limit.
+//! Errors fall with the number of primitives, except for the scatter of single fits (a sixth). So numbers are tried
+//! upwards, from the first whose plain collapse is near enough, until one keeps to the limit; then between those
+//! that do and those that do not. Each is fitted, enclosed and measured as in a build of that number, until it
+//! breaks the limit.
 
 use super::candidate::{Candidate, Enclosed};
 use super::counts::LARGEST_GAIN;

@@ -1,5 +1,5 @@
-//! Progress and cancellation: stages report through one object, which also times them and adds up
-//! their arrays.
+//! Progress and cancellation: the stages of a build report to one object, which calls the user's callback, times the
+//! stages and adds up the memory of their arrays.
 
 use super::options::Progress;
 use crate::error::BuildError;

@@ -1,4 +1,4 @@
-//! What a medial mesh may be made of.
+//! Checks the spheres, edges and faces from which a medial mesh is to be made, or that a file contains.
 
 use super::primitive::MedialSphere;
 use super::simplex::Simplex;

@@ -1,6 +1,5 @@
-//! The surfaces that bound medial primitives, each as a grid of triangles: balls (spheres), flanks
-//! of cones, planes of slabs. Every sheet is whole; what of it is inside the solid is not known
-//! here.
+//! The surfaces that bound medial primitives, each as a grid of triangles: balls (spheres), flanks of cones, planes of
+//! slabs. Each is made whole here; the parts of it that lie inside the solid are removed by `envelope`.
 
 use super::exact::{Ball, tangent_normals};
 use super::mesh::MedialMesh;

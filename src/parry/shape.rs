@@ -95,8 +95,8 @@ impl RayCast for MedialMesh {
 }
 
 impl PointQuery for MedialMesh {
-    /// Of a point inside, not solid: a point of the surface, straight out of the primitive whose surface
-    /// is nearest. Where primitives overlap another way may be shorter.
+    /// If the point is inside and `solid` is false, this is the point of the surface that is reached straight out of
+    /// the primitive whose surface is nearest. Where primitives overlap, another point of the surface may be nearer.
     fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
         if !solid && let Some((surface, part)) = leaving::surface_point(self, point) {
             return PointProjection::new(true, surface).with_subshape(part);
@@ -133,10 +133,10 @@ impl Shape for MedialMesh {
         BoundingSphere::new(root.center, root.radius)
     }
 
-    /// Bounds the mesh on its way, not only at both ends: however it turns about its own centre of mass,
-    /// it stays in the ball around that centre. Two poses do not tell what else it may have turned about:
-    /// of a collider that is offset in its body, or one of several, nothing bounds the way between them.
-    /// Neither rapier's step nor this crate asks for it.
+    /// A box that contains the mesh on its way between two poses, if it turns about its own centre of mass: however it
+    /// turns, it stays in a ball around that centre. Two poses do not tell whether it turns about another point, as a
+    /// collider with an offset in its body does, or one of several; then the box may be too small on the way. Neither
+    /// rapier's step nor this crate calls this.
     fn compute_swept_aabb(&self, start_pos: &Pose, end_pos: &Pose) -> Aabb {
         let com = self.unit_mass_properties().local_com;
         let root = &self.tree().nodes()[0];
@@ -151,7 +151,9 @@ impl Shape for MedialMesh {
         Box::new(self.clone())
     }
 
-    /// Exact for uniform scaling; `None` otherwise: a scaled sphere is no sphere.
+    /// The mesh scaled by the same factor along all axes, exactly; an axis may also be mirrored. `None` for all
+    /// other scalings, which would turn spheres into ellipsoids. The result has the mass properties of the medial
+    /// mesh, even if this one has those of a triangle mesh.
     fn scale_dyn(&self, scale: Vector, _num_subdivisions: u32) -> Option<Box<dyn Shape>> {
         let factor = uniform_factor(scale)?;
         let spheres = self

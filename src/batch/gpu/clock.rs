@@ -1,4 +1,4 @@
-//! How long a shader takes on the device, where it can tell and is asked to.
+//! Measures how long a shader runs on the GPU, if this is asked for and the GPU can measure it.
 
 use super::context::Context;
 use super::transfer::Transfer;

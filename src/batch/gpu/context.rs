@@ -1,5 +1,5 @@
-//! The device and what goes wrong with it. No call panics: errors that the graphics library reports
-//! out of turn are kept, and the next check returns them.
+//! Opens a GPU and keeps its errors. No call panics: an error that the graphics library reports at any time is
+//! kept, and returned by the next check.
 
 use super::clock::Clock;
 use crate::error::GpuError;

@@ -1,4 +1,4 @@
-//! Mesh pairs that stay free: buffers, and the one submission.
+//! Has the GPU prove which pairs of meshes do not meet in a step: its buffers, and the one submission of a batch.
 
 use super::clock::Clock;
 use super::context::{Context, Growing};

@@ -1,4 +1,4 @@
-//! Many elementary tests on straight paths: which of them the device proves free.
+//! Has the GPU prove which of many elementary tests on straight paths find no contact.
 
 use super::clock::Clock;
 use super::context::{Context, Growing};

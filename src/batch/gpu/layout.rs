@@ -1,5 +1,5 @@
-//! What host and shaders exchange, each struct written once: the macro gives the Rust type and the
-//! WGSL text; a test compares the two layouts. Constants go the same way, from their one home.
+//! The data that the CPU and the shaders exchange. Each struct is written once: a macro makes the Rust type and the
+//! WGSL text of it, and a test compares their layouts. Constants for the shaders are generated from Rust too.
 
 use crate::math::lane::Lane;
 use crate::math::tolerance;

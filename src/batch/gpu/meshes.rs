@@ -1,5 +1,5 @@
-//! Meshes that stay on the device: the sphere tree and the primitives of each, one after the other. A
-//! mesh is sent once, whatever the number of its bodies.
+//! The meshes that are kept on the GPU: the sphere tree and the primitives of each, one after the other. A mesh is sent
+//! once, however many bodies have it.
 
 use super::layout::{Node, Primitive};
 use crate::math::fast_hash::FastMap;

@@ -1,9 +1,9 @@
-//! The device proposes, the CPU disposes. The device gets what moves and gives back which pairs are
-//! proven free; nothing else that it computes reaches the physics. Bounds carry a slack for the rounding
-//! of any conforming device ([`crate::math::tolerance::GPU_SLACK_ULPS`]).
+//! Batches on a GPU. The GPU gets meshes and motions, and returns which pairs it has proven not to meet; nothing
+//! else that it computes reaches the physics, and all other pairs are computed on the CPU. Its bounds carry a slack
+//! for the rounding of any device that conforms to WGSL ([`crate::math::tolerance::GPU_SLACK_ULPS`]).
 //!
-//! One submission and one map per batch; nothing is allocated in a step like those before, on the
-//! device or of ours on the host. Whatever goes wrong is a [`GpuError`], and the CPU has the work.
+//! Each batch takes one submission and one map. In steps that are like those before nothing is allocated, neither
+//! on the GPU nor by this crate on the CPU. Every failure is a [`GpuError`], after which the CPU does the work.
 
 mod clock;
 mod context;

@@ -1,5 +1,5 @@
-//! The shaders: one file per stage and per shared maths file, put together without a preprocessor.
-//! They need no GPU to be read, so a test parses, validates and translates each of them.
+//! The source texts of the shaders, put together from one file for each stage and for each shared piece of maths,
+//! without a preprocessor. No GPU is needed for that, so a test parses, validates and translates each of them.
 
 use super::layout::{STRUCTS, constants};
 

@@ -1,4 +1,4 @@
-//! A compute pipeline and what is bound to it.
+//! One stage of the work on the GPU: a compute pipeline and the buffers that are bound to it.
 
 use super::context::Context;
 use super::layout::MAX_GROUPS;

@@ -1,5 +1,5 @@
-//! Two bodies over a step as the device gets them: placed in double precision in the pair's own
-//! frame, so that large coordinates cost no digits, and with a slack for all that is rounded after.
+//! Two bodies and their motion in a step, as they are sent to the GPU: computed in double precision in a frame of the
+//! pair's own, so that large coordinates lose no digits, and with a slack for everything that is rounded later.
 
 use super::layout::{Pair, Side};
 use crate::batch::job::Sweep;

@@ -1,5 +1,5 @@
-//! Records that neighbouring threads read at different places: in a texture of four words a texel, row
-//! after row. See `shaders/texels.wgsl`.
+//! Stores records in a texture, four words to a texel, row after row (`shaders/texels.wgsl` reads them). A texture
+//! suits records that neighbouring threads read at different places.
 
 use super::context::Context;
 use super::layout::TEXELS;

@@ -1,5 +1,5 @@
-//! The way to the device and back: one buffer each, kept from step to step, mapped while the host
-//! has it. `Queue::write_buffer` would allocate one at every call.
+//! Copies data to the GPU and back, through one buffer each way that is kept from step to step and mapped while the CPU
+//! uses it. `Queue::write_buffer` would allocate a buffer at every call.
 
 use super::context::{Context, Growing};
 use super::layout::TEXELS;
