@@ -2,7 +2,7 @@
 //! transform by quadratic error minimization" (2015), §4 and §5.
 //!
 //! Changes versus the paper:
-//! - The stability ratio has a floor ([`STABILITY_FLOOR`]): at 0 a collapse is free, however wrong.
+//! - The stability ratio has a floor (`STABILITY_FLOOR` in `merge.rs`): at 0 a collapse is free, however wrong.
 //! - Topology: the strict link condition stalls far above small targets. An edge that breaks it may
 //!   still collapse when every loop or shell that closes by it has its middle inside the solid: the
 //!   solid has no hole there. When nothing else is left the count wins over the topology.

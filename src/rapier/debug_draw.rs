@@ -26,6 +26,21 @@ const MEDIAL_SHADE: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
 ///
 /// The lines of a mesh are computed when it is first seen, once for all colliders that share its data, and dropped
 /// when no collider with it is drawn any more.
+///
+/// ```
+/// use rapier3d::prelude::*;
+/// use rapier3d_medial::rapier::MedialDebugRender;
+///
+/// fn draw(
+///     world: &PhysicsWorld,
+///     rapier: &DebugRenderPipeline,
+///     medial: &mut MedialDebugRender,
+///     lines: &mut impl DebugRenderBackend,
+/// ) {
+///     // After rapier.render(lines, …):
+///     medial.render(rapier, lines, &world.bodies, &world.colliders, &world.narrow_phase);
+/// }
+/// ```
 pub struct MedialDebugRender {
     /// Whether to draw the surface of the solid. On by default.
     pub envelope: bool,
