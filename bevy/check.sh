@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Compiles the bevy example without building it; `--run` builds and runs it.
+# Tests the bevy plugin; `--run` builds and runs its example.
 set -euo pipefail
 cd "$(dirname "$0")"
 if [ "${1:-}" = --run ]; then
-  cargo run --release
+  cargo run --release --example rings
 else
-  cargo check
+  cargo test
 fi
