@@ -7,6 +7,7 @@
 //! a Delaunay triangle, which names its end, so that neighbouring polygons share it.
 
 use super::bounds::{Bounds, Point, direction};
+use super::crease_samples::CreaseSamples;
 use super::delaunay::{Delaunay, NONE};
 use super::draft::{Ball, Draft};
 use super::inner_balls::{INSIDE, JITTER, buried, circumsphere, vote};
@@ -58,11 +59,12 @@ impl CreasedMesh {
     }
 }
 
-/// The initial medial mesh of samples `spacing` apart.
+/// The initial medial mesh of samples.
 pub fn creased_mesh(
     faces: &Faces,
-    samples: &[Sample],
-    spacing: f64,
+    CreaseSamples {
+        samples, distances, ..
+    }: &CreaseSamples,
     watch: &mut Watch,
 ) -> Result<CreasedMesh, BuildError> {
     watch.begin("delaunay")?;
@@ -74,7 +76,7 @@ pub fn creased_mesh(
     let mut clipper = Clipper {
         faces,
         samples,
-        spacing,
+        distances,
         ball_of: vec![NONE; delaunay.tetrahedra.len()],
         delaunay,
         mesh: CreasedMesh::default(),
@@ -104,7 +106,7 @@ fn with_far_points(samples: &[Sample]) -> Vec<Point> {
 pub struct Clipper<'a> {
     pub(super) faces: &'a Faces<'a>,
     pub(super) samples: &'a [Sample],
-    pub(super) spacing: f64,
+    pub(super) distances: &'a [f64],
     delaunay: Delaunay,
     /// Ball of each tetrahedron inside, or [`NONE`].
     ball_of: Vec<u32>,
@@ -138,7 +140,7 @@ impl Clipper<'_> {
             if bounds.distance_sq(ball.center) > 0.0 || !inside() {
                 continue;
             }
-            if let Some(tangent) = self.settle(ball, around) {
+            if let Some(tangent) = self.settle(ball, corners) {
                 self.ball_of[t] = self.mesh.push(tangent);
             }
         }
@@ -155,8 +157,10 @@ impl Clipper<'_> {
 
     /// The ball of four samples, tangent to their faces if that can be; `None` where it is far from touching
     /// the surface.
-    fn settle(&self, ball: Ball, around: [Sample; 4]) -> Option<Tangent> {
-        let reach = REACH * self.spacing;
+    fn settle(&self, ball: Ball, corners: [u32; 4]) -> Option<Tangent> {
+        let around = corners.map(|v| self.samples[v as usize]);
+        let distances = corners.map(|v| self.distances[v as usize]);
+        let reach = REACH * distances.into_iter().fold(0.0, f64::max);
         let mut triangles = around.map(|s| s.triangle).to_vec();
         if let Some(tangent) = self.faces.tangent(ball, &triangles, reach) {
             return Some(tangent);

@@ -28,8 +28,10 @@ impl Clipper<'_> {
         end
     }
 
-    fn clip_reach(&self, [a, b]: [&Sample; 2]) -> f64 {
-        CLIP_REACH * self.spacing.max((a.point - b.point).length())
+    fn clip_reach(&self, ab: [u32; 2]) -> f64 {
+        let [a, b] = ab.map(|v| self.samples[v as usize].point);
+        let [of_a, of_b] = ab.map(|v| self.distances[v as usize]);
+        CLIP_REACH * of_a.max(of_b).max((a - b).length())
     }
 
     /// The corner nearest to where the samples of three groups are.
@@ -51,7 +53,7 @@ impl Clipper<'_> {
         let (distance, vertex) = corners
             .map(|v| ((at(v) - middle).length(), v))
             .min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)))?;
-        (distance < self.clip_reach([a, b])).then(|| self.corner_ball(vertex))
+        (distance < self.clip_reach(ab)).then(|| self.corner_ball(vertex))
     }
 
     /// The point of the crease between the groups of `ab` that is nearest to the samples.
@@ -66,7 +68,7 @@ impl Clipper<'_> {
             Some((group, p)) if group == group_b => middle(middle(b.point, p), a.point),
             _ => middle(a.point, b.point),
         };
-        let mut best = (self.clip_reach([a, b]), None);
+        let mut best = (self.clip_reach(ab), None);
         for &i in creases.between(group_a, group_b) {
             let edge = &creases.convex[i as usize];
             let [p, q] = edge.vertices.map(|v| surface.vertices[v as usize]);

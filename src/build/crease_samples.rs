@@ -3,8 +3,11 @@
 
 use super::bounds::{Point, direction};
 use super::creases::{Creases, SharpEdge};
+use super::local_spacing::LocalSpacing;
 use super::random::Random;
-use super::samples::{CANDIDATES, Grid, Sample, even_samples, spacing, vertex_samples_where};
+use super::samples::{
+    CANDIDATES, Grid, Sample, dense_samples, even_samples, spacing, vertex_samples_where,
+};
 use super::surface::Surface;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
@@ -28,23 +31,52 @@ const OFF_FACE: f64 = 0.2;
 const REFLEX_STEP: f64 = 0.9;
 const REFLEX_GAP: f64 = 0.6;
 
-/// About `count` samples and more along sharp edges; and the distance between them.
+/// Samples of a body with creases.
+pub struct CreaseSamples {
+    /// The samples.
+    pub samples: Vec<Sample>,
+    /// The distance to the next around each.
+    pub distances: Vec<f64>,
+    /// The same where matter is thick.
+    pub spacing: f64,
+}
+
+/// About `count` samples, and more along sharp edges and where matter is thin.
 pub fn crease_samples(
     surface: &Surface,
     tree: &TriangleTree,
     creases: &Creases,
     count: usize,
     watch: &mut Watch,
-) -> Result<(Vec<Sample>, f64), BuildError> {
+) -> Result<CreaseSamples, BuildError> {
     let distance = spacing(surface, count);
+    let mut on_crease = vec![false; surface.vertices.len()];
+    for v in creases.convex.iter().flat_map(|e| e.vertices) {
+        on_crease[v as usize] = true;
+    }
+    let mut random = Random::new(1);
+    let mut vertices = vertex_samples_where(surface, |v| !on_crease[v]);
+    random.shuffle(&mut vertices);
+    let mut inner = even_samples(surface, CANDIDATES * count, &mut random);
+    let local = LocalSpacing::new(tree, creases, &inner, distance, watch)?;
+    let mut dense = vec![1.0f64; surface.triangles.len()];
+    for sample in &inner {
+        let own = &mut dense[sample.triangle as usize];
+        *own = own.max((distance / local.at(sample)).powi(2));
+    }
+    let share = surface.area / (CANDIDATES * count) as f64;
+    let more = |t: usize| dense[t] - 1.0;
+    inner.extend(dense_samples(surface, share, more, &mut Random::new(6)));
+    random.shuffle(&mut inner);
     let mut sampler = Sampler {
         surface,
         tree,
         creases,
-        distance,
+        local,
         grid: Grid::new(distance),
         on_creases: Grid::new(distance),
         samples: Vec::new(),
+        distances: Vec::new(),
     };
     for (i, edge) in creases.convex.iter().enumerate() {
         if i % 64 == 0 {
@@ -52,50 +84,57 @@ pub fn crease_samples(
         }
         sampler.add_pairs(edge);
     }
-    let mut on_crease = vec![false; surface.vertices.len()];
-    for v in creases.convex.iter().flat_map(|e| e.vertices) {
-        on_crease[v as usize] = true;
-    }
     for edge in &creases.reflex {
         sampler.add_reflex(edge, &on_crease);
     }
-    let mut random = Random::new(1);
-    let mut vertices = vertex_samples_where(surface, |v| !on_crease[v]);
-    random.shuffle(&mut vertices);
-    let mut inner = even_samples(surface, CANDIDATES * count, &mut random);
-    random.shuffle(&mut inner);
     for (i, sample) in vertices.into_iter().chain(inner).enumerate() {
         if i % 4096 == 0 {
             watch.again()?;
         }
+        let distance = sampler.local.at(&sample);
         if !sampler.grid.is_near(sample.point, distance) {
-            sampler.add(sample);
+            sampler.add(sample, distance);
         }
     }
-    Ok((sampler.samples, distance))
+    Ok(CreaseSamples {
+        samples: sampler.samples,
+        distances: sampler.distances,
+        spacing: distance,
+    })
 }
 
 struct Sampler<'a> {
     surface: &'a Surface,
     tree: &'a TriangleTree,
     creases: &'a Creases,
-    distance: f64,
+    local: LocalSpacing<'a>,
     grid: Grid,
     /// Places on creases that have a pair.
     on_creases: Grid,
     samples: Vec<Sample>,
+    distances: Vec<f64>,
 }
 
 impl Sampler<'_> {
-    fn add(&mut self, sample: Sample) {
+    fn add(&mut self, sample: Sample, distance: f64) {
         self.grid.add(sample.point);
         self.samples.push(sample);
+        self.distances.push(distance);
+    }
+
+    /// The distance between samples on either face of an edge.
+    fn distance(&self, edge: &SharpEdge, place: Point) -> f64 {
+        let group = |t: u32| self.creases.group[t as usize];
+        let [one, other] = edge.triangles.map(|t| self.local.at_face(place, group(t)));
+        one.min(other)
     }
 
     fn add_pairs(&mut self, edge: &SharpEdge) {
         let [a, b] = edge.vertices.map(|v| self.surface.vertices[v as usize]);
-        let gap = PAIRS * self.distance;
         let length = (b - a).length();
+        let along = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| self.distance(edge, a + (b - a) * t));
+        let distance = along.into_iter().fold(f64::INFINITY, f64::min);
+        let gap = PAIRS * distance;
         let steps = (length / gap).ceil().max(1.0);
         let step = length / steps;
         for i in 0..steps as usize {
@@ -109,8 +148,8 @@ impl Sampler<'_> {
                 let [one, other] = edge.triangles.map(|t| self.beside(t, a, b, place, offset));
                 if let (Some(one), Some(other)) = (one, other) {
                     self.on_creases.add(place);
-                    self.add(one);
-                    self.add(other);
+                    self.add(one, distance);
+                    self.add(other, distance);
                     break;
                 }
                 offset *= 0.5;
@@ -147,19 +186,23 @@ impl Sampler<'_> {
 
     fn add_reflex(&mut self, edge: &SharpEdge, on_crease: &[bool]) {
         let [a, b] = edge.vertices.map(|v| self.surface.vertices[v as usize]);
-        let steps = ((b - a).length() / (REFLEX_STEP * self.distance)).ceil();
+        let distance = self.distance(edge, (a + b) * 0.5);
+        let steps = ((b - a).length() / (REFLEX_STEP * distance)).ceil();
         let steps = steps.max(1.0) as usize;
         let [at_a, at_b] = edge.vertices.map(|v| on_crease[v as usize]);
         let normals = edge.triangles.map(|t| self.surface.normals[t as usize]);
         for i in 0..=steps {
             let point = a + (b - a) * (i as f64 / steps as f64);
             let at_crease = (i == 0 && at_a) || (i == steps && at_b);
-            if !at_crease && !self.grid.is_near(point, REFLEX_GAP * self.distance) {
-                self.add(Sample {
-                    point,
-                    normal: direction(normals[0] + normals[1]),
-                    triangle: edge.triangles[0],
-                });
+            if !at_crease && !self.grid.is_near(point, REFLEX_GAP * distance) {
+                self.add(
+                    Sample {
+                        point,
+                        normal: direction(normals[0] + normals[1]),
+                        triangle: edge.triangles[0],
+                    },
+                    distance,
+                );
             }
         }
     }

@@ -45,8 +45,9 @@ pub fn creased<'a>(
         tree,
         creases: &creases,
     };
-    let (samples, spacing) = crease_samples(surface, tree, &creases, count, watch)?;
-    let mut mesh = creased_mesh(&faces, &samples, spacing, watch)?;
+    let samples = crease_samples(surface, tree, &creases, count, watch)?;
+    let mut mesh = creased_mesh(&faces, &samples, watch)?;
+    let spacing = samples.spacing;
     refine(&mut mesh, &faces, spacing, watch)?;
     watch.begin("simplify")?;
     let simplifier = Simplifier::creased(mesh, false, tree, watch)?.touching(spacing);

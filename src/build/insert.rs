@@ -307,7 +307,12 @@ impl Inserter<'_> {
 
 /// The largest ball inside the surface that touches `p`, where the inward normal is `n`.
 pub fn shrink(tree: &TriangleTree, p: Point, n: Point) -> Ball {
-    let mut radius = LARGEST_BALL;
+    shrink_from(tree, p, n, LARGEST_BALL)
+}
+
+/// The same, of radius `largest` at most.
+pub fn shrink_from(tree: &TriangleTree, p: Point, n: Point, largest: f64) -> Ball {
+    let mut radius = largest;
     // Thirty steps end all but those that creep, which are near enough by then.
     for _ in 0..30 {
         let center = p + n * radius;

@@ -32,6 +32,7 @@ mod insertion_order;
 mod ladder;
 mod largest;
 mod least_squares;
+mod local_spacing;
 mod mass;
 mod measured;
 mod merge;

@@ -63,12 +63,25 @@ pub fn spacing(surface: &Surface, count: usize) -> f64 {
 /// Points spread by area: one at random in each of `count` equal shares of it.
 pub fn even_samples(surface: &Surface, count: usize, random: &mut Random) -> Vec<Sample> {
     let share = surface.area / count as f64;
-    let mut samples = Vec::with_capacity(count);
+    let mut samples = dense_samples(surface, share, |_| 1.0, random);
+    samples.truncate(count);
+    samples
+}
+
+/// Points spread by area and by how `dense` they are to be on each triangle: one in each `share` of the area where
+/// that is 1.
+pub fn dense_samples(
+    surface: &Surface,
+    share: f64,
+    dense: impl Fn(usize) -> f64,
+    random: &mut Random,
+) -> Vec<Sample> {
+    let mut samples = Vec::new();
     let (mut passed, mut next) = (0.0, share * random.unit());
     for (triangle, &normal) in surface.normals.iter().enumerate() {
         let [a, b, c] = surface.corners(triangle);
-        passed += 0.5 * (b - a).cross(c - a).length();
-        while next < passed && samples.len() < count {
+        passed += 0.5 * (b - a).cross(c - a).length() * dense(triangle);
+        while next < passed {
             // The square root makes the point uniform over the triangle.
             let (s, t) = (random.unit().sqrt(), random.unit());
             let point = a * (1.0 - s) + b * (s * (1.0 - t)) + c * (s * t);

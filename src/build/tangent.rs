@@ -30,6 +30,9 @@ const SAME_NORMAL: f64 = 0.9999;
 const SAME_POINT: f64 = 1e-3;
 const SAME_POINT_SHARE: f64 = 0.05;
 
+/// A ball touches a face from outside where this is above the cosine of the angle between their normals.
+const AWAY: f64 = -0.5;
+
 /// A plane that a ball touches: its outward unit normal, and a point of it.
 #[derive(Clone, Copy, Debug)]
 pub struct TangentPlane {
@@ -73,14 +76,18 @@ impl Faces<'_> {
             }
             let off = |p: &TangentPlane| (p.normal.dot(p.point - ball.center) - ball.radius).abs();
             if planes.iter().map(off).fold(0.0, f64::max) < CONVERGED {
-                let (nearest, triangle) = self.tree.closest_from(ball.center, 0);
-                let reaches_in = ball.radius - (nearest - ball.center).length();
-                if reaches_in > TOUCHES && added < MORE_FACES {
-                    from.push(self.tree.given(triangle));
-                    added += 1;
-                    continue;
+                let clear = ball.radius - TOUCHES;
+                if let Some((distance, triangle)) = self.tree.nearest_within(ball.center, clear) {
+                    if added < MORE_FACES {
+                        from.push(self.tree.given(triangle));
+                        added += 1;
+                        continue;
+                    }
+                    if ball.radius - distance > REACHES_IN {
+                        return None;
+                    }
                 }
-                return (reaches_in <= REACHES_IN).then_some(Tangent {
+                return self.is_behind(&planes, &triangles).then_some(Tangent {
                     ball,
                     planes,
                     triangles,
@@ -100,6 +107,13 @@ impl Faces<'_> {
             }
         }
         None
+    }
+
+    /// Whether a ball that touches planes is behind the faces of `triangles`, as seen from outside, and not before
+    /// them in a groove.
+    fn is_behind(&self, planes: &[TangentPlane], triangles: &[u32]) -> bool {
+        let mut both = planes.iter().zip(triangles);
+        both.all(|(plane, &t)| plane.normal.dot(self.surface.normals[t as usize]) > AWAY)
     }
 
     /// The planes of the faces around a ball, each once, and a triangle of each; `from` follows.

@@ -171,6 +171,12 @@ impl TriangleTree {
         self.some_within(p, distance).is_some()
     }
 
+    /// Distance to the surface, if it is within `limit`, and the triangle that gives it.
+    pub fn nearest_within(&self, p: Point, limit: f64) -> Option<(f64, u32)> {
+        let (distance_sq, triangle) = self.nearest.search(p, limit.max(0.0).powi(2), false);
+        (distance_sq < f64::INFINITY).then(|| (distance_sq.sqrt(), triangle))
+    }
+
     /// The point of the surface nearest to `p`, if it is within `limit`.
     pub fn closest_within(&self, p: Point, limit: f64) -> Option<Point> {
         let (distance_sq, triangle) = self.nearest.search(p, limit * limit, false);

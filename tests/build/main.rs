@@ -11,6 +11,7 @@ mod distance;
 mod enclosure;
 mod fitting;
 mod hidden;
+mod machine;
 mod many;
 mod meshes;
 mod options;
@@ -22,6 +23,7 @@ mod polyhedra;
 mod scale;
 mod shapes;
 mod smallest;
+mod threads;
 mod topology;
 
 use meshes::Mesh;
