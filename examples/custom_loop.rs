@@ -89,8 +89,7 @@ fn main() -> ExitCode {
 fn custom_loop(out: &Path) -> Result<(), String> {
     let torus = MedialMesh::torus(RING.0, RING.1, 40).map_err(|e| e.to_string())?;
     let mut game = Game::default();
-    game.medial
-        .attach_sets(&mut game.parameters, &mut game.narrow_phase);
+    game.medial.attach_sets(&mut game.narrow_phase);
     let ground = ColliderBuilder::cuboid(9.0, 0.5, 9.0).translation(Vector::NEG_Y * 0.5);
     game.colliders.insert(ground);
     let pole = ColliderBuilder::capsule_y(POLE.0, POLE.1).translation(Vector::Y * POLE.0);

@@ -28,12 +28,7 @@ impl MedialWorld {
         simulation: &mut RapierContextSimulation,
     ) -> Self {
         let mut pipeline = MedialPipeline::new(options);
-        let RapierContextSimulation {
-            integration_parameters,
-            narrow_phase,
-            ..
-        } = simulation;
-        pipeline.attach_sets(integration_parameters, narrow_phase);
+        pipeline.attach_sets(&mut simulation.narrow_phase);
         let (report, events, removed) = Default::default();
         Self {
             pipeline,

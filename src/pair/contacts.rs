@@ -290,7 +290,9 @@ impl<'a> PrimitivePair<'a> {
         let point2 = b.0 - normal * b.1;
         let near = SAME_POINT * (a.1 + b.1);
         let seen = found.iter().rev().any(|c| {
-            (Vec3::<f64>::from_vector(c.points[0]) - point1).length_sq() <= near * near
+            let along = f64::from(c.points[0].x) - point1.x;
+            along * along <= near * near
+                && (Vec3::<f64>::from_vector(c.points[0]) - point1).length_sq() <= near * near
                 && Vec3::<f64>::from_vector(c.normal).dot(normal) >= SAME_PATCH
         });
         if !seen {

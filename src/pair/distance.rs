@@ -14,6 +14,15 @@ use crate::medial::tree::Below;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+/// Which sphere pair is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// The nearest one.
+    Nearest,
+    /// Any.
+    Any,
+}
+
 /// The nearest pair of spheres of two bodies at fixed poses, if they are within `max_distance` (a length) of each
 /// other. `pos12` is the pose of the second body in the frame of the first. Computed in double precision. A pose
 /// that is not finite gives `None`.
@@ -22,6 +31,17 @@ pub fn nearest_spheres(
     body2: &impl Volumes,
     pos12: &Pose,
     max_distance: Real,
+) -> (Option<SpherePair>, Counts) {
+    near_spheres(body1, body2, pos12, max_distance, Wanted::Nearest)
+}
+
+/// A sphere pair of two bodies that is within `max_distance`: as [`nearest_spheres`], or any.
+pub fn near_spheres(
+    body1: &impl Volumes,
+    body2: &impl Volumes,
+    pos12: &Pose,
+    max_distance: Real,
+    wanted: Wanted,
 ) -> (Option<SpherePair>, Counts) {
     let mut counts = Counts::default();
     if !pos12.is_finite() || max_distance.is_nan() {
@@ -72,6 +92,9 @@ pub fn nearest_spheres(
                         limit = c.distance.into();
                         best = Some(*c);
                     }
+                }
+                if best.is_some() && wanted == Wanted::Any {
+                    break;
                 }
             }
             (Below::Nodes(c, d), other)

@@ -125,10 +125,20 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
     /// Continues the search until it is proven that nothing meets before a time of at least `until`, a fraction of the
     /// step. Returns that time, rounded down, or `None` if the query is settled; with `until` at 1 it always is.
     pub fn search(&mut self, until: f64) -> Option<Real> {
+        self.search_within(until, u64::MAX)
+    }
+
+    /// The same, but pauses once it has looked at about so many node pairs and tests: at the time before which
+    /// nothing meets, as far as it knows then.
+    pub fn search_within(&mut self, until: f64, work: u64) -> Option<Real> {
         if self.settled {
             return None;
         }
-        let free = self.search.as_mut().and_then(|s| s.run(until));
+        let run = |s: &mut Search<A, B>| {
+            s.pause = s.worked().saturating_add(work);
+            s.run(until)
+        };
+        let free = self.search.as_mut().and_then(run);
         self.settled = free.is_none();
         free.map(rounded_down)
     }

@@ -40,6 +40,11 @@ impl Play {
     /// Whether `c` cannot close while `k` holds.
     fn holds_back(&self, k: &SpherePair, c: &SpherePair) -> bool {
         let [gap_k, gap_c] = [k, c].map(|c| (c.distance - self.skins).max(0.0));
+        // Too far by more than rounding, before any root is taken.
+        let turned = self.turn * self.turn * k.points[0].distance_squared(c.points[0]);
+        if turned > gap_c * gap_c * (1.0 + 64.0 * Real::EPSILON) {
+            return false;
+        }
         let cosine = k.normal.dot(c.normal).clamp(-1.0, 1.0);
         let closed = if gap_k < self.way * cosine {
             let across = (self.way - gap_k) * (self.way + gap_k);

@@ -66,6 +66,8 @@ pub(super) struct Search<'a, A, B> {
     pub(super) proofs: u64,
     /// What [`Self::worked`] may reach.
     pub(super) budget: u64,
+    /// What it may reach before the search pauses, as far as it can.
+    pub(super) pause: u64,
     /// Node pairs looked at.
     pub(super) nodes: u32,
     pub(super) earliest: Earliest<f64>,
@@ -113,6 +115,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             all_pieces: 1.0,
             proofs: 0,
             budget: WORK,
+            pause: WORK,
             nodes: 0,
             earliest: Earliest::new(options_limits(options)),
             deepest: f64::INFINITY,
@@ -189,7 +192,8 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
                 self.give_up(entry.time, Some(entry.candidate));
                 return Reached::Answer;
             }
-            if looked && entry.time > until && self.earliest.found.is_none() {
+            let pauses = entry.time > until || self.worked() >= self.pause;
+            if looked && pauses && self.earliest.found.is_none() {
                 let time = entry.time;
                 self.first = Some(entry);
                 return Reached::Free(time);
@@ -210,7 +214,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         }
     }
 
-    fn worked(&self) -> u64 {
+    pub(super) fn worked(&self) -> u64 {
         // Each takes about 0.3 µs, an iteration twice that.
         let iterations = 2 * u64::from(self.earliest.iterations);
         u64::from(self.nodes) + iterations + self.pieces + self.proofs

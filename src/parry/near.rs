@@ -15,8 +15,9 @@ use crate::math::lane::Vec3;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::tree::Below;
 use crate::medial::{MedialMesh, MedialSphere};
+use crate::pair::distance::{Wanted, near_spheres};
 use crate::pair::first_contact::Counts;
-use crate::pair::{SpherePair, Volumes, nearest_spheres};
+use crate::pair::{SpherePair, Volumes};
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
 use std::cmp::Reverse;
@@ -37,8 +38,30 @@ pub fn nearest(
     pos12: &Pose,
     max_distance: Real,
 ) -> Result<(Option<SpherePair>, Counts), Unsweepable> {
+    near(mesh, other, pos12, max_distance, Wanted::Nearest)
+}
+
+/// Whether the distance of `mesh` and `other` at relative pose `pos12` is at most `max_distance`, and the work it took
+/// to know. Fails as [`nearest`].
+pub fn is_within(
+    mesh: &MedialMesh,
+    other: &dyn Shape,
+    pos12: &Pose,
+    max_distance: Real,
+) -> Result<(bool, Counts), Unsweepable> {
+    let (found, counts) = near(mesh, other, pos12, max_distance, Wanted::Any)?;
+    Ok((found.is_some(), counts))
+}
+
+fn near(
+    mesh: &MedialMesh,
+    other: &dyn Shape,
+    pos12: &Pose,
+    max_distance: Real,
+    wanted: Wanted,
+) -> Result<(Option<SpherePair>, Counts), Unsweepable> {
     if let Some(second) = other.as_shape::<MedialMesh>() {
-        return Ok(nearest_spheres(mesh, second, pos12, max_distance));
+        return Ok(near_spheres(mesh, second, pos12, max_distance, wanted));
     }
     // The inverse of a pose at the end of the numbers is not finite.
     let pos21 = pos12.inverse();
@@ -53,7 +76,10 @@ pub fn nearest(
     if !foreign::add_surface(&mut parts, other, &Pose::IDENTITY, &region) {
         return Err(Unsweepable);
     }
-    let (mut best, mut counts) = nearest_spheres(mesh, &parts.soup, pos12, max_distance);
+    let (mut best, mut counts) = near_spheres(mesh, &parts.soup, pos12, max_distance, wanted);
+    if best.is_some() && wanted == Wanted::Any {
+        return Ok((best, counts));
+    }
     for pair in best.iter_mut() {
         pair.primitives[1] = parts.soup_subshape(pair.primitives[1]);
     }

@@ -11,6 +11,8 @@ pub struct Course {
     pub moved: bool,
     /// Has another velocity.
     pub struck: bool,
+    /// Stands still since the step's budget was spent.
+    pub waits: bool,
     /// Is carried along by a driven body, or by what one carries.
     pub driven: bool,
 }

@@ -9,11 +9,17 @@ pub fn enabled<'a>(
     bodies: &'a RigidBodySet,
     colliders: &'a ColliderSet,
 ) -> impl Iterator<Item = (ColliderHandle, &'a Collider)> + 'a {
-    let takes_part = |c: &Collider| match c.parent().and_then(|h| bodies.get(h)) {
-        Some(body) => body.is_enabled() && (c.is_enabled() || !is_disabled_by_user(c)),
-        None => c.is_enabled(),
-    };
-    colliders.iter().filter(move |(_, c)| takes_part(c))
+    colliders.iter().filter(move |(_, c)| takes_part(bodies, c))
+}
+
+/// Whether a collider will be enabled in the next step.
+pub fn takes_part(bodies: &RigidBodySet, collider: &Collider) -> bool {
+    match collider.parent().and_then(|h| bodies.get(h)) {
+        Some(body) => {
+            body.is_enabled() && (collider.is_enabled() || !is_disabled_by_user(collider))
+        }
+        None => collider.is_enabled(),
+    }
 }
 
 /// Whether the user disabled it, and not its body. rapier tells no difference, but only what the user disabled can

@@ -10,6 +10,7 @@
 //! not even at the current time; so no medial axis crosses another on the motion that is executed.
 
 use super::blow::Blow;
+use super::boxes::Boxes;
 use super::first_contact::{Asker, Hit, Work};
 use super::inquiry::{Inquiry, Known, Meshes};
 use super::motion::Kind;
@@ -19,6 +20,7 @@ use super::placed::Placed;
 use super::response::Response;
 use super::snapshot::Snapshot;
 use super::waiting::Waiting;
+use super::watched::deep;
 use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
@@ -30,11 +32,6 @@ use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 /// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
 /// which grows a little with each meeting of a pair.
 const MARGIN: Real = 5.0e-3;
-
-/// Depth, in units of rapier's length unit, from which a pair that was put into each other may be left to the solver:
-/// twice the gap of a fast pair. Larger, and thin bodies spawned in one place are held there; smaller, and what rests
-/// on a surface without thickness may be taken for put into it.
-const SUNK: Real = 2.0e-3;
 
 /// Shares of a step before and after which the world does not stop: what is left would be no step, and
 /// a stop at the start would change nothing.
@@ -56,8 +53,10 @@ pub struct Outcome {
     pub jobs: usize,
     /// Impacts.
     pub events: usize,
-    /// Bodies that stayed where they were before the step's end.
+    /// Bodies that stayed where they were before the step's end, after too many impacts, and because the budget was spent.
     pub frozen: usize,
+    /// As above.
+    pub waiting: usize,
     /// Pairs that exchanged an impulse.
     pub impulses: Vec<Impulse>,
     /// Bodies to be written back: index, and whether their velocity changed.
@@ -72,31 +71,38 @@ enum Next {
     Impact([usize; 2], Hit),
     /// A piece of the motion of bodies that joints hold ends.
     Piece(Real),
+    /// The budget is spent.
+    Spent,
 }
 
 /// What a pair waits for.
-enum Awaited<'a> {
+pub(super) enum Awaited<'a> {
     Answer(Inquiry<'a>),
     Hit(Hit),
 }
 
-struct Loop<'a> {
-    snapshot: &'a mut Snapshot,
-    asker: Asker<'a>,
-    rules: Rules<'a>,
+/// The loop on its way.
+pub(super) struct Loop<'a> {
+    pub(super) snapshot: &'a mut Snapshot,
+    pub(super) asker: Asker<'a>,
+    pub(super) rules: Rules<'a>,
     /// Slow pairs near enough to their medial axes to be watched.
     deep: FastMap<[usize; 2], Real>,
     /// Whether the user's rules let a pair respond, as far as they were asked.
     allowed: FastMap<[usize; 2], bool>,
-    response: Response,
-    /// Box of each collider from its body's last impact to the end of the step.
-    boxes: Vec<Aabb>,
+    pub(super) response: Response,
+    /// Box of each collider from its body's last impact to the end of the step, once there was one.
+    pub(super) boxes: Boxes,
+    /// Colliders of each body, likewise.
+    pub(super) parts_of: Vec<Vec<usize>>,
     /// The shapes of the colliders.
     shapes: &'a [SharedShape],
-    waiting: Waiting<Awaited<'a>>,
-    outlines: Outlines,
+    pub(super) waiting: Waiting<Awaited<'a>>,
+    pub(super) outlines: Outlines,
     jobs: usize,
     events: usize,
+    /// Whether the budget was spent, so that nothing waits any more but for what a driven body does.
+    pub(super) is_spent: bool,
 }
 
 /// Finds and resolves the impacts on the motions of `snapshot`, which is at the bodies' last poses
@@ -133,12 +139,14 @@ pub fn resolve(
         deep,
         allowed: left.into_iter().map(|pair| (pair, false)).collect(),
         response,
-        boxes: Vec::new(),
+        boxes: Boxes::default(),
+        parts_of: Vec::new(),
         shapes: &shapes,
         waiting: Waiting::default(),
         outlines: Outlines::new(shapes.len(), asker.dt),
         jobs: 0,
         events: 0,
+        is_spent: false,
     };
     let mut known = FastMap::default();
     if batch.has_device() {
@@ -155,51 +163,18 @@ pub fn resolve(
                 events.begin_piece(time, work);
                 continue;
             }
+            Next::Spent => {
+                events.wait(work);
+                continue;
+            }
         };
         if events.stops_at(pair, hit.time) {
             return events.stop(hit.time, narrow_phase);
         }
-        if events.boxes.is_empty() {
-            let parts = 0..events.snapshot.parts.len();
-            events.boxes = parts.map(|k| events.swept_box(k, 0.0)).collect();
-        }
+        events.find_boxes();
         events.impact(pair, hit, work);
     }
     events.finish()
-}
-
-/// Pairs whose contacts in rapier are deep enough that even a slow one may get to the axes; if any is below the floor and
-/// [`SUNK`], with the way from where that one would not count as deep, else with 0.
-fn deep(
-    snapshot: &Snapshot,
-    narrow_phase: &NarrowPhase,
-    asker: &Asker,
-) -> FastMap<[usize; 2], Real> {
-    let tuning = &asker.tuning;
-    let parts = snapshot.parts.iter().enumerate();
-    let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
-    let mut deep = FastMap::default();
-    for found in narrow_phase.contact_pairs() {
-        let places = [found.collider1, found.collider2].map(|h| parts.get(&h));
-        let [Some(&i), Some(&j)] = places else {
-            continue;
-        };
-        let pair = in_order(snapshot, [i, j]);
-        for m in found.manifolds() {
-            let depth = m.points.iter().map(|p| -p.dist).fold(0.0, Real::max);
-            if depth <= 0.0 {
-                continue;
-            }
-            let thickness = snapshot.thickness_at([i, j], [m.subshape1, m.subshape2]);
-            let guarded = tuning.guarded() * thickness;
-            if depth > guarded {
-                let sunk = depth > (tuning.floor * thickness).max(SUNK * asker.unit);
-                let way = deep.entry(pair).or_insert(0.0);
-                *way = Real::max(*way, if sunk { depth - guarded } else { 0.0 });
-            }
-        }
-    }
-    deep
 }
 
 impl Loop<'_> {
@@ -207,6 +182,9 @@ impl Loop<'_> {
     /// another may come first.
     fn earliest(&mut self, work: &mut Work) -> Option<Next> {
         loop {
+            if !self.is_spent && self.asker.left(work) == 0 {
+                return Some(Next::Spent);
+            }
             let piece = self.response.next_piece();
             let waits = self.waiting.first_time();
             if let Some(time) = piece.filter(|time| waits.is_none_or(|first| *time <= first)) {
@@ -256,7 +234,13 @@ impl Loop<'_> {
         pairs.iter().filter_map(job).collect()
     }
 
-    fn ask(&mut self, pair: [usize; 2], time: Real, known: Option<ToiResult>, work: &mut Work) {
+    pub(super) fn ask(
+        &mut self,
+        pair: [usize; 2],
+        time: Real,
+        known: Option<ToiResult>,
+        work: &mut Work,
+    ) {
         self.waiting.remove(pair);
         // The user's filters are asked once per pair and step, and only where it matters.
         if self.allowed.get(&pair) == Some(&false)
@@ -305,34 +289,47 @@ impl Loop<'_> {
 
     /// Asks from `time` on for all pairs of bodies that have another motion.
     fn ask_again(&mut self, bodies: &[usize], time: Real, work: &mut Work) {
-        let changed: Vec<usize> = (0..self.snapshot.parts.len())
-            .filter(|&k| {
-                let body = self.snapshot.parts[k].body;
-                bodies.contains(&body) && self.snapshot.bodies[body].kind == Kind::Free
-            })
-            .collect();
+        let free = |b: &&usize| self.snapshot.bodies[**b].kind == Kind::Free;
+        let parts = bodies.iter().filter(free).map(|b| &self.parts_of[*b]);
+        let mut changed: Vec<usize> = parts.flatten().copied().collect();
+        changed.sort_unstable();
+        changed.dedup();
         for &k in &changed {
-            self.boxes[k] = self.swept_box(k, time);
+            self.boxes.set(k, self.swept_box(k, time));
             self.outlines.forget(k);
         }
         for (n, &i) in changed.iter().enumerate() {
-            for j in 0..self.snapshot.parts.len() {
-                if changed[..n].contains(&j) || !concerned(self.snapshot, [i, j]) {
-                    continue;
+            let meeting = self.boxes.meeting(i);
+            for j in self.waiting.partners(i) {
+                if meeting.binary_search(&j).is_err() {
+                    self.waiting.remove(in_order(self.snapshot, [i, j]));
                 }
-                let both = in_order(self.snapshot, [i, j]);
-                if self.boxes[i].intersects(&self.boxes[j]) {
-                    self.ask(both, time, None, work);
-                } else {
-                    self.waiting.remove(both);
+            }
+            for j in meeting {
+                if !changed[..n].contains(&j) && concerned(self.snapshot, [i, j]) {
+                    self.ask(in_order(self.snapshot, [i, j]), time, None, work);
                 }
             }
         }
     }
 
     fn swept_box(&self, part: usize, time: Real) -> Aabb {
-        let swept = self.snapshot.swept_aabb(part, time, self.asker.dt);
-        swept.loosened(self.snapshot.parts[part].skin + MARGIN * self.asker.unit)
+        self.grown(part, self.snapshot.swept_aabb(part, time, self.asker.dt))
+    }
+
+    pub(super) fn grown(&self, part: usize, aabb: Aabb) -> Aabb {
+        aabb.loosened(self.snapshot.parts[part].skin + MARGIN * self.asker.unit)
+    }
+
+    pub(super) fn find_boxes(&mut self) {
+        if self.boxes.is_empty() {
+            let parts = 0..self.snapshot.parts.len();
+            self.boxes = Boxes::new(parts.map(|k| self.swept_box(k, 0.0)).collect());
+            self.parts_of = vec![Vec::new(); self.snapshot.bodies.len()];
+            for (k, part) in self.snapshot.parts.iter().enumerate() {
+                self.parts_of[part.body].push(k);
+            }
+        }
     }
 
     /// Ends here for all bodies. What forces did in the rest of the step they will do again; a velocity
@@ -370,7 +367,8 @@ impl Loop<'_> {
             if !course.moved {
                 continue;
             }
-            outcome.frozen += usize::from(course.frozen);
+            outcome.frozen += usize::from(course.frozen && !course.waits);
+            outcome.waiting += usize::from(course.waits);
             outcome.changed.push((b, course.struck));
             self.snapshot.bodies[b].advance(self.asker.dt);
         }

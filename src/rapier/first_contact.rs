@@ -20,7 +20,7 @@ use crate::medial::MedialMesh;
 use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::Left;
 use crate::parry::cast::Cast;
-use crate::parry::near::nearest;
+use crate::parry::near::is_within;
 use parry3d::query::NonlinearRigidMotion;
 
 /// What a query found, and its price.
@@ -37,6 +37,11 @@ pub struct Work {
 }
 
 impl Work {
+    /// Node pairs and elementary tests.
+    pub fn spent(&self) -> u64 {
+        self.nodes + self.tests
+    }
+
     fn add(&mut self, counts: Counts) {
         self.nodes += u64::from(counts.nodes);
         self.tests += u64::from(counts.tests);
@@ -109,9 +114,16 @@ pub struct Asker<'a> {
     pub tuning: Tuning,
     /// Whether the world may stop once more in this step.
     pub may_stop: bool,
+    /// Node pairs and elementary tests that first contacts may take.
+    pub budget: u64,
 }
 
 impl Asker<'_> {
+    /// What is left of the budget.
+    pub fn left(&self, work: &Work) -> u64 {
+        self.budget.saturating_sub(work.spent())
+    }
+
     /// Gap at which a fast pair counts as in contact, a length.
     pub fn gap(&self, thickness: Real) -> Real {
         let [gap, share] = self.tuning.gap;
@@ -302,10 +314,10 @@ impl Asker<'_> {
             None => (shape2.as_shape(), shape1, start2.inv_mul(&start1)),
         };
         let reach = reach(snapshot, pair, gap);
-        let found = mesh.and_then(|mesh| nearest(mesh, other, &pos12, reach).ok());
-        found.is_some_and(|(nearest, counts)| {
+        let found = mesh.and_then(|mesh| is_within(mesh, other, &pos12, reach).ok());
+        found.is_some_and(|(within, counts)| {
             work.add(counts);
-            nearest.is_some()
+            within
         })
     }
 }

@@ -62,8 +62,8 @@ impl<'m> Inquiry<'m> {
         }
     }
 
-    /// Looks on, at least until `until`, in seconds into the step. Pairs with another shape are looked at
-    /// to the end.
+    /// Looks on, at least until `until`, in seconds into the step, or until the budget is spent. Pairs with another
+    /// shape are looked at to the end.
     pub fn pursue(
         &mut self,
         asker: &Asker,
@@ -94,7 +94,8 @@ impl<'m> Inquiry<'m> {
         };
         let look_on = |query: &mut MeshQuery, work: &mut Work| {
             let before = query.counts();
-            let free = query.search(f64::from(until - from) / f64::from(seconds));
+            let share = f64::from(until - from) / f64::from(seconds);
+            let free = query.search_within(share, asker.left(work));
             work.add_since(query.counts(), before);
             match free {
                 Some(share) => Known::FreeUntil(from + share * seconds),

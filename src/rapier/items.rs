@@ -55,8 +55,8 @@ pub fn count(colliders: &ColliderSet) -> usize {
 }
 
 /// Gives every medial collider an instance id of its own; colliders that share a shape would share
-/// answers. Returns how many medial colliders there are.
-pub fn make_unique(bodies: &RigidBodySet, colliders: &mut ColliderSet) -> usize {
+/// answers.
+pub fn make_unique(bodies: &RigidBodySet, colliders: &mut ColliderSet) {
     let medial = enabled(bodies, colliders).filter_map(|(handle, collider)| {
         let mesh = collider.shape().as_shape::<MedialMesh>()?;
         Some((mesh.instance_id(), handle))
@@ -72,7 +72,6 @@ pub fn make_unique(bodies: &RigidBodySet, colliders: &mut ColliderSet) -> usize 
             collider.set_shape(own);
         }
     }
-    ids.len()
 }
 
 /// A medial collider.

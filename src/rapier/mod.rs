@@ -3,7 +3,9 @@
 
 mod ahead;
 mod blow;
+mod boxes;
 pub mod candidates;
+mod census;
 pub mod collider;
 mod course;
 #[cfg(feature = "debug-render")]
@@ -27,6 +29,7 @@ mod pairs;
 mod pieces;
 pub mod pipeline;
 mod placed;
+mod prepared;
 mod pushes;
 mod recycled;
 pub mod report;
@@ -36,6 +39,7 @@ pub mod saved_world;
 mod skyline;
 mod snapshot;
 mod speculative;
+mod spent;
 mod substeps;
 mod sweep;
 mod thin_parts;
@@ -43,6 +47,7 @@ mod tied;
 mod tuning;
 mod verdicts;
 mod waiting;
+mod watched;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]

@@ -1,6 +1,7 @@
 //! Chooses the pairs that are kept from rapier's solver and left to the event loop: those that move by more than
 //! their thickness in the step and do not touch yet. Contacts computed at the start of the step would come too late
-//! for them, or lie at places where the bodies never meet.
+//! for them, or lie at places where the bodies never meet. Half of the step's budget may go into
+//! this; without it a pair is left to both.
 
 use super::first_contact::{Asker, Work};
 use super::pairs::{Rules, sweep};
@@ -32,6 +33,7 @@ pub fn muted(
             && !apart(&p.aabb, &q.aabb)
             && asker.is_fast(snapshot, pair, asker.tuning.muted)
             && !asker.speculates(snapshot, pair)
+            && asker.left(work) > asker.budget / 2
             && rules.respond(snapshot, pair)
             && !asker.touches(snapshot, pair, work)
         {

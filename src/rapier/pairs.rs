@@ -28,14 +28,6 @@ pub struct Rules<'a> {
 }
 
 impl Rules<'_> {
-    /// Whether the user modifies any contacts: pairs of such a collider are rapier's.
-    pub fn any_modified(&self) -> bool {
-        let modified = ActiveHooks::MODIFY_SOLVER_CONTACTS;
-        self.colliders
-            .iter()
-            .any(|(_, c)| c.active_hooks().contains(modified))
-    }
-
     /// Whether rapier would let them push each other. Pairs whose contacts the user modifies are left
     /// to rapier.
     pub fn respond(&self, snapshot: &Snapshot, pair: [usize; 2]) -> bool {

@@ -22,6 +22,14 @@ impl Pieces {
         Some(self.0.swap_remove(ended).1)
     }
 
+    /// Bodies leave those in which they are.
+    pub fn end(&mut self, bodies: &[usize]) {
+        self.begin(Piece {
+            until: None,
+            moved: bodies.to_vec(),
+        });
+    }
+
     /// Bodies begin one, and leave those in which they are.
     pub fn begin(&mut self, piece: Piece) {
         for (_, bodies) in &mut self.0 {

@@ -1,20 +1,22 @@
 //! [`MedialPipeline`]: what is done before and after rapier's step, as calls in order. The work itself is in the
 //! other files of this folder.
 
+use super::census::Census;
 use super::effects::{Effect, Effects, MedialOptions, Wanted};
 use super::emit::{Once, Scene, Told};
-use super::first_contact::{Asker, Work};
+use super::events::Outcome;
+use super::first_contact::Work;
 use super::items::{self, Sets};
 use super::pairs::Rules;
 use super::placed::Placed;
-use super::recycled::{RECYCLE_DISTANCE, Recycled};
+use super::prepared::{Prepared, asker, lowered};
+use super::recycled::Recycled;
 use super::report::StepReport;
-use super::snapshot::Snapshot;
 use super::speculative::Speculators;
 use super::substeps::Substeps;
 use super::tuning::Tuning;
 use super::verdicts::Verdicts;
-use super::{candidates, hanging, links, muting};
+use super::{candidates, links};
 use crate::batch::Batch;
 use crate::math::{Real, Vector};
 use crate::parry::{Answers, MedialDispatcher};
@@ -58,13 +60,16 @@ use web_time::Instant;
 /// ```
 #[derive(Default)]
 pub struct MedialPipeline {
-    batch: Batch,
-    answers: Arc<Answers>,
-    recycled: Recycled,
-    effects: Wanted,
-    tuning: Tuning,
+    pub(super) batch: Batch,
+    pub(super) answers: Arc<Answers>,
+    pub(super) recycled: Recycled,
+    pub(super) effects: Wanted,
+    pub(super) tuning: Tuning,
+    pub(super) budget: u64,
     pub(super) told: Told,
-    placed: Placed,
+    pub(super) placed: Placed,
+    /// What the last step was prepared with, if nothing moved in it.
+    pub(super) kept: Option<Prepared>,
 }
 
 impl MedialPipeline {
@@ -82,6 +87,7 @@ impl MedialPipeline {
             ..Self::default()
         };
         pipeline.effects.scene = options.effects;
+        pipeline.budget = options.budget;
         pipeline
     }
 
@@ -101,7 +107,12 @@ impl MedialPipeline {
     /// computed on the CPU. Outside browsers each step does this by itself.
     #[cfg(feature = "gpu")]
     pub async fn prepare(&mut self, world: &PhysicsWorld) {
-        let next = candidates::expect(Sets::of(world), &self.recycled);
+        let parameters = lowered(&world.integration_parameters);
+        let sets = Sets {
+            parameters: &parameters,
+            ..Sets::of(world)
+        };
+        let next = candidates::expect(sets, &self.recycled);
         self.batch.submit_async(&next).await;
         self.batch.ready().await;
     }
@@ -111,39 +122,36 @@ impl MedialPipeline {
     /// `On` wins over `Off`.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
         self.effects.set(collider, effects);
+        self.kept = None;
     }
 
     /// Other constants of the event loop, to measure what they do.
     #[doc(hidden)]
     pub fn set_tuning(&mut self, tuning: Tuning) {
         self.tuning = tuning;
+        self.kept = None;
     }
 
-    /// Prepares a world to be stepped by this pipeline. Call it once, and again after the world was loaded or its
-    /// narrow phase replaced. It changes two things in the world, and no others:
-    /// - The narrow phase (the part of rapier that computes contacts) asks this pipeline first, and parry after that.
-    ///   A query dispatcher that you set yourself is replaced.
-    /// - `integration_parameters.normalized_contact_recycle_distance`, the distance that a pair may move before rapier
-    ///   computes its contacts anew, is lowered to [`RECYCLE_DISTANCE`] if it is larger. This holds for all bodies.
+    /// Prepares a world to be stepped by this pipeline: the narrow phase (the part of rapier that computes contacts)
+    /// asks this pipeline first, and parry after that. A query dispatcher that you set yourself is replaced; nothing else
+    /// of the world changes. Call it once, and again after the world was loaded or its narrow phase replaced.
     pub fn attach(&mut self, world: &mut PhysicsWorld) {
-        self.attach_sets(&mut world.integration_parameters, &mut world.narrow_phase);
+        self.attach_sets(&mut world.narrow_phase);
     }
 
     /// Does the same as [`Self::attach`] for games that keep rapier's sets themselves.
-    pub fn attach_sets(
-        &mut self,
-        parameters: &mut IntegrationParameters,
-        narrow_phase: &mut NarrowPhase,
-    ) {
+    pub fn attach_sets(&mut self, narrow_phase: &mut NarrowPhase) {
         let dispatcher = MedialDispatcher::new(Arc::clone(&self.answers));
         narrow_phase.set_query_dispatcher(dispatcher.chain(DefaultQueryDispatcher));
-        let distance = &mut parameters.normalized_contact_recycle_distance;
-        *distance = distance.min(RECYCLE_DISTANCE);
     }
 
     /// Steps the world by `world.integration_parameters.dt`: call it in place of `world.step()`. The report
     /// counts what was done; [`StepReport::events`], [`StepReport::continuous_queries`] and [`StepReport::frozen`] tell
     /// most.
+    ///
+    /// While there are medial colliders, `integration_parameters.normalized_contact_recycle_distance`, the distance that a
+    /// pair may move before rapier computes its contacts anew, counts as
+    /// [`RECYCLE_DISTANCE`](super::RECYCLE_DISTANCE) if it is larger. This holds for all bodies.
     pub fn step(&mut self, world: &mut PhysicsWorld) -> StepReport {
         self.step_with_events(world, &(), &())
     }
@@ -241,17 +249,6 @@ impl MedialPipeline {
         }
     }
 
-    /// The poses are final: a device has the time until the next step for its contacts.
-    fn send_early(&mut self, sets: Sets, report: &mut StepReport) {
-        if !self.batch.has_device() {
-            return;
-        }
-        let before = self.batch.report().clone();
-        let next = candidates::expect(sets, &self.recycled);
-        self.batch.submit(&next);
-        report.add_sent(&before, self.batch.report());
-    }
-
     /// A step, or what of it comes before the world stops; the second result is when.
     #[expect(clippy::too_many_arguments, reason = "as above")]
     fn part(
@@ -272,78 +269,46 @@ impl MedialPipeline {
         events: &dyn EventHandler,
         may_stop: bool,
     ) -> (StepReport, Option<Real>) {
-        let mut report = StepReport::default();
         let before = self.batch.report().clone();
-        let clock = Instant::now();
-        let medial = items::make_unique(bodies, colliders);
-        self.effects.clean(colliders);
-        let asker = Asker {
-            effects: &self.effects,
-            dt: parameters.dt,
-            unit: parameters.length_unit,
-            tuning: self.tuning,
-            may_stop,
-        };
-        let mut work = Work::default();
-        let joints = (&*impulse_joints, &*multibody_joints);
-        let mut snapshot = if medial == 0 || self.effects.none() {
-            Snapshot::default()
-        } else {
-            Snapshot::take(gravity, parameters.dt, bodies, colliders, joints)
-        };
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         bodies.propagate_modified_body_positions_to_colliders(colliders);
-        self.placed.begin(&snapshot, narrow_phase);
-        let rules = Rules {
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            verdicts,
+        let census = Census::take(bodies, colliders, soft_bodies);
+        let lowered = lowered(parameters);
+        let parameters = if census.medial > 0 {
+            &lowered
+        } else {
+            parameters
         };
-        let prediction = parameters.prediction_distance();
-        let muted = muting::muted(&snapshot, &asker, &rules, prediction, &mut work);
-        report.muted = muted.len();
-        let off = |e: &Effects| e.continuous == Effect::Off;
-        let takes_all = !self.effects.any(off) && !rules.any_modified();
-        report.mute_seconds = clock.elapsed().as_secs_f64();
-
+        let mut report = StepReport::default();
+        let mut work = Work::default();
+        let kept = self.kept.take().filter(|kept| kept.holds_in(&census));
+        let is_kept = kept.is_some();
+        let mut prepared = kept.unwrap_or_else(|| {
+            let joints = (&*impulse_joints, &*multibody_joints);
+            self.prepare_step(
+                (gravity, parameters),
+                (bodies, colliders, narrow_phase),
+                joints,
+                (census, may_stop),
+                verdicts,
+                (&mut report, &mut work),
+            )
+        });
         let clock = Instant::now();
-        let sets = Sets {
-            gravity,
-            parameters,
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            narrow_phase,
-        };
-        let found = candidates::find(sets, &mut self.recycled, &muted);
-        hanging::ask_anew(&found.fresh, colliders);
-        let mut results = self.batch.run(&found.jobs);
-        report.pairs = found.pairs;
-        report.jobs = found.jobs.len();
-        let jobs = found.jobs.iter().zip(&found.ahead);
-        for ((job, ahead), result) in jobs.clone().zip(&mut results) {
-            ahead.bring_back(result);
-            self.recycled.set_touching(job, !result.contacts.is_empty());
-            report.add_contacts(result);
-        }
-        let keys = jobs.map(|(job, ahead)| ahead.key(job));
-        let answers = keys.zip(results);
-        let starts = found.starts;
-        let compute = Box::new(move |job| starts.contacts(job));
-        self.answers.replace(answers, compute);
-        self.answers.mute(muted);
-        self.answers
-            .give_one_point(self.effects.one_point(colliders));
         self.answers.take_counts();
         self.answers.take_depth();
-        let speculators = Speculators::set(&snapshot, &self.effects, asker.unit, bodies);
-        report.speculative = speculators.count();
-        let substeps = Substeps::set(&snapshot, joints, parameters, bodies);
-        report.batch_seconds = clock.elapsed().as_secs_f64();
+        let snapshot = &mut prepared.snapshot;
+        let unit = parameters.length_unit;
+        let joints = (&*impulse_joints, &*multibody_joints);
+        let speculators =
+            (!is_kept).then(|| Speculators::set(snapshot, &self.effects, unit, bodies));
+        let substeps = (!is_kept).then(|| Substeps::set(snapshot, joints, parameters, bodies));
+        report.speculative = speculators.as_ref().map_or(0, Speculators::count);
+        report.batch_seconds += clock.elapsed().as_secs_f64();
 
+        // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
+        let off = |e: &Effects| e.continuous == Effect::Off;
+        let takes_all = !self.effects.any(off) && !census.any_modified;
         // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
         let can_sweep = soft_bodies.is_empty() && multibody_joints.multibodies().next().is_none();
         self.answers.sweep_elsewhere(takes_all && can_sweep);
@@ -366,38 +331,50 @@ impl MedialPipeline {
             &once,
         );
         report.step_seconds = clock.elapsed().as_secs_f64();
-        self.answers.mute(HashSet::new());
         self.answers.sweep_elsewhere(false);
         self.answers.let_none_pass();
-        speculators.restore(bodies);
-        substeps.restore(bodies);
+        self.answers.mute(HashSet::new());
+        speculators.into_iter().for_each(|s| s.restore(bodies));
+        substeps.into_iter().for_each(|s| s.restore(bodies));
 
         let clock = Instant::now();
-        snapshot.follow(parameters, bodies, colliders);
-        let rules = Rules {
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            verdicts,
+        let moved = census.medial > 0 && islands.num_active_bodies() > 0;
+        let outcome = if census.still.is_some() && !moved {
+            Outcome::default()
+        } else {
+            snapshot.follow(parameters, bodies, colliders);
+            let rules = Rules {
+                bodies,
+                colliders,
+                impulse_joints,
+                multibody_joints,
+                verdicts,
+            };
+            super::events::resolve(
+                snapshot,
+                asker(
+                    &self.effects,
+                    (self.tuning, self.budget),
+                    parameters,
+                    may_stop,
+                ),
+                rules,
+                (narrow_phase, prepared.depth.max(self.answers.take_depth())),
+                &mut self.placed,
+                &mut self.batch,
+                &mut work,
+            )
         };
-        let outcome = super::events::resolve(
-            &mut snapshot,
-            asker,
-            rules,
-            (narrow_phase, found.depth.max(self.answers.take_depth())),
-            &mut self.placed,
-            &mut self.batch,
-            &mut work,
-        );
         for &(index, struck) in &outcome.changed {
             snapshot.bodies[index].write_back(struck, bodies);
         }
         if !outcome.changed.is_empty() {
-            links::write_back(&snapshot, &outcome.changed, bodies, multibody_joints);
+            links::write_back(snapshot, &outcome.changed, bodies, multibody_joints);
             bodies.propagate_modified_body_positions_to_colliders(colliders);
         }
-        self.placed.end(&snapshot, colliders);
+        if !is_kept || snapshot.followed {
+            self.placed.end(snapshot, colliders);
+        }
         let scene = Scene {
             dt: parameters.dt,
             bodies,
@@ -405,10 +382,13 @@ impl MedialPipeline {
             narrow_phase,
         };
         once.finish(&mut self.told, &outcome.impulses, scene);
-        report.medial_colliders = items::count(colliders);
+        if census.all > 0 {
+            report.medial_colliders = items::count(colliders);
+        }
         report.continuous_jobs = outcome.jobs;
         report.events = outcome.events;
         report.frozen = outcome.frozen;
+        report.waiting = outcome.waiting;
         report.event_seconds = clock.elapsed().as_secs_f64();
         for ids in self.answers.take_missed() {
             self.recycled.forget(ids);
@@ -416,6 +396,7 @@ impl MedialPipeline {
         report.add_answered(&self.answers.take_counts());
         report.add_searched(&work);
         report.add_sent(&before, self.batch.report());
+        self.kept = (!prepared.snapshot.followed).then_some(prepared);
         (report, outcome.stopped)
     }
 }

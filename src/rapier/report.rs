@@ -66,6 +66,11 @@ pub struct StepReport {
     /// Bodies that stopped before the step's end, or were carried along by what pushed them, after too many impacts
     /// (more than 16).
     pub frozen: usize,
+    /// Node pairs and elementary tests that first contacts took, of [`crate::MedialOptions::budget`].
+    pub spent: u64,
+    /// Bodies that stopped before the step's end because the budget was spent: nothing is known to be free further.
+    /// They go on in the next step, at the speed they had.
+    pub waiting: usize,
     /// Times that the whole world stopped at a first contact ([`crate::Effects::stop`]). Each stop makes another step,
     /// whose work is included in all counters.
     pub stops: usize,
@@ -110,6 +115,7 @@ impl StepReport {
         self.rotating_queries += work.rotating;
         self.culled_nodes += work.nodes;
         self.elementary_tests += work.tests;
+        self.spent += work.spent();
     }
 
     /// Adds what the backend did between two of its reports.
@@ -146,6 +152,8 @@ impl StepReport {
         self.muted += part.muted;
         self.events += part.events;
         self.frozen += part.frozen;
+        self.spent += part.spent;
+        self.waiting += part.waiting;
         self.speculative += part.speculative;
         self.culled_nodes += part.culled_nodes;
         self.elementary_tests += part.elementary_tests;

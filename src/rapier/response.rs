@@ -39,8 +39,8 @@ pub struct Response {
     pub impulses: BTreeMap<Pair, Vec<Blow>>,
     met: Meetings,
     /// Joints, once something was struck.
-    joints: Option<Joints>,
-    pieces: Pieces,
+    pub(super) joints: Option<Joints>,
+    pub(super) pieces: Pieces,
 }
 
 fn bodies(snapshot: &Snapshot, pair: Pair) -> [usize; 2] {
@@ -131,7 +131,7 @@ impl Response {
     }
 
     /// Moves a free body to where it is at `time`; returns whether it is one.
-    fn advance(&mut self, snapshot: &mut Snapshot, body: usize, time: Real) -> bool {
+    pub(super) fn advance(&mut self, snapshot: &mut Snapshot, body: usize, time: Real) -> bool {
         let free = snapshot.bodies[body].kind == Kind::Free;
         if free {
             snapshot.bodies[body].advance(time);
@@ -214,10 +214,7 @@ impl Response {
         hit: &Hit,
     ) -> Vec<usize> {
         let both = bodies(snapshot, pair);
-        let joints = self
-            .joints
-            .take()
-            .unwrap_or_else(|| Joints::new(snapshot, rules.impulse_joints, rules.multibody_joints));
+        let joints = self.joints(snapshot, rules);
         let [c1, c2] = pair.map(|k| &rules.colliders[snapshot.parts[k].handle]);
         let material = Material::of(c1, c2);
         let dominated = |b: usize| {

@@ -14,6 +14,8 @@ pub struct Waiting<T> {
     entries: FastMap<Pair, (u32, u32)>,
     all: Vec<Option<T>>,
     unused: Vec<u32>,
+    /// Of each collider those with which it has waited since [`Waiting::partners`] looked last.
+    partners: FastMap<usize, Vec<usize>>,
 }
 
 impl<T> Default for Waiting<T> {
@@ -23,6 +25,7 @@ impl<T> Default for Waiting<T> {
             entries: FastMap::default(),
             all: Vec::new(),
             unused: Vec::new(),
+            partners: FastMap::default(),
         }
     }
 }
@@ -42,6 +45,21 @@ impl<T> Waiting<T> {
         self.all[place as usize] = Some(what);
         self.entries.insert(pair, (bits(time), place));
         self.order.insert((bits(time), pair, place));
+        for [i, j] in [pair, [pair[1], pair[0]]] {
+            self.partners.entry(i).or_default().push(j);
+        }
+    }
+
+    /// Colliders with which `i` waits.
+    pub fn partners(&mut self, i: usize) -> Vec<usize> {
+        let Some(partners) = self.partners.get_mut(&i) else {
+            return Vec::new();
+        };
+        partners.sort_unstable();
+        partners.dedup();
+        let entries = &self.entries;
+        partners.retain(|&j| entries.contains_key(&[i, j]) || entries.contains_key(&[j, i]));
+        partners.clone()
     }
 
     /// Forgets a pair.
@@ -51,6 +69,11 @@ impl<T> Waiting<T> {
             self.all[place as usize] = None;
             self.unused.push(place);
         }
+    }
+
+    /// All pairs.
+    pub fn pairs(&self) -> impl Iterator<Item = Pair> {
+        self.order.iter().map(|(_, pair, _)| *pair)
     }
 
     /// The time of the first pair, in seconds.

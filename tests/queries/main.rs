@@ -17,6 +17,9 @@ mod bad_input;
 mod batch;
 mod coherence;
 mod deepening;
+mod detail;
+#[path = "../common/detailed.rs"]
+mod detailed;
 mod distance;
 mod effort;
 mod extremes;

@@ -91,8 +91,11 @@ pub fn steps_until_sleep(
     None
 }
 
-/// A world's own pipeline, attached.
+/// A world's own pipeline, attached. Contacts of rapier's own shapes are kept no longer than in steps with medial
+/// colliders, so that scenes of either can be compared.
 pub fn attached(world: &mut PhysicsWorld) -> MedialPipeline {
+    let parameters = &mut world.integration_parameters;
+    parameters.normalized_contact_recycle_distance = rapier3d_medial::rapier::RECYCLE_DISTANCE;
     let mut pipeline = MedialPipeline::new(MedialOptions::default());
     pipeline.attach(world);
     pipeline

@@ -1,6 +1,7 @@
 //! Whole rapier scenes: what rests, what hangs, what must never pass; saving, drawing, repeating.
 
 mod bodies;
+mod budget;
 mod characters;
 mod controls;
 mod creature_walks;
@@ -48,6 +49,7 @@ mod ropes;
 #[cfg(feature = "serde-serialize")]
 mod saving;
 mod spawned;
+mod still;
 mod told;
 mod walls;
 mod wire_heaps;

@@ -1,0 +1,78 @@
+//! What one look at all bodies and colliders tells before a step: whether there is anything to prepare.
+
+use super::enabled::takes_part;
+use crate::math::Vector;
+use crate::math::fast_hash::FastHasher;
+use crate::medial::MedialMesh;
+use rapier3d::dynamics::{RigidBody, RigidBodySet, SoftBodySet};
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
+use rapier3d::pipeline::ActiveHooks;
+use std::hash::Hasher;
+
+/// A world at the start of a step, as far as medial colliders may meet something in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Census {
+    /// Medial colliders, also disabled ones.
+    pub all: usize,
+    /// Those that take part.
+    pub medial: usize,
+    /// Whether the user modifies any contacts.
+    pub any_modified: bool,
+    /// Hash of who is where, if nothing moves that a medial collider could meet; while it stays the same, what was
+    /// prepared for the step before holds.
+    pub still: Option<u64>,
+}
+
+impl Census {
+    /// Of a world whose colliders are where the user put their bodies.
+    pub fn take(bodies: &RigidBodySet, colliders: &ColliderSet, soft: &SoftBodySet) -> Self {
+        let mut census = Self::default();
+        for (_, collider) in colliders.iter() {
+            let hooks = collider.active_hooks();
+            census.any_modified |= hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+            let medial = collider.shape().as_shape::<MedialMesh>().is_some();
+            census.all += usize::from(medial);
+            census.medial += usize::from(medial && takes_part(bodies, collider));
+        }
+        // What sleeps with a speed, or one that is no number, is rapier's to wake or to disable.
+        let has_speed =
+            |body: &RigidBody| body.linvel() != Vector::ZERO || body.angvel() != Vector::ZERO;
+        let moves = |body: &RigidBody| {
+            body.is_enabled() && (has_speed(body) || !(body.is_fixed() || body.is_sleeping()))
+        };
+        census.still = if census.medial == 0 {
+            Some(0)
+        } else if !soft.is_empty() || bodies.iter().any(|(_, body)| moves(body)) {
+            None
+        } else {
+            Some(places(bodies, colliders))
+        };
+        census
+    }
+}
+
+/// Hash of the bodies' kinds, and of the colliders that take part, their shapes and poses.
+fn places(bodies: &RigidBodySet, colliders: &ColliderSet) -> u64 {
+    let mut hash = FastHasher::default();
+    for (_, body) in bodies.iter() {
+        let locked = body.locked_axes().bits();
+        hash.write_u32((body.body_type() as u32) << 8 | u32::from(locked));
+    }
+    let all = colliders.iter().filter(|(_, c)| takes_part(bodies, c));
+    all.for_each(|(handle, collider)| add(&mut hash, handle, collider));
+    hash.finish()
+}
+
+fn add(hash: &mut FastHasher, handle: ColliderHandle, collider: &Collider) {
+    let two = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
+    let (index, generation) = handle.into_raw_parts();
+    hash.write_u64(two(index, generation));
+    hash.write_u64(std::ptr::from_ref(collider.shape()).addr() as u64);
+    let pose = collider.position();
+    let (t, r) = (pose.translation, pose.rotation);
+    let [x, y, z, i, j, k, w] = [t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(f32::to_bits);
+    for word in [two(x, y), two(z, i), two(j, k)] {
+        hash.write_u64(word);
+    }
+    hash.write_u64(two(w, collider.is_sensor().into()));
+}
