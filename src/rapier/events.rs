@@ -126,11 +126,18 @@ pub fn resolve(
     let sunk = deep.iter().map(|(pair, way)| (*pair, *way));
     let sunk = sunk.filter(|(_, way)| *way > 0.0);
     let left = placed.leave(snapshot, sunk);
-    if deep.is_empty() && !asker.may_be_fast(snapshot, asker.tuning.fast, thinnest) {
+    let all = snapshot.bodies.iter().enumerate();
+    let taken = all.filter(|(_, body)| body.is_taken_back);
+    let taken: Vec<usize> = taken.map(|(b, _)| b).collect();
+    if taken.is_empty()
+        && deep.is_empty()
+        && !asker.may_be_fast(snapshot, asker.tuning.fast, thinnest)
+    {
         return Outcome::default();
     }
+    let mut response = Response::new(snapshot.bodies.len());
+    response.lead(snapshot, &asker, &rules, &taken);
     let pairs = sweep(snapshot, asker.dt, MARGIN * asker.unit);
-    let response = Response::new(snapshot.bodies.len());
     let shapes: Vec<_> = snapshot.parts.iter().map(|p| p.shape.clone()).collect();
     let mut events = Loop {
         snapshot,
@@ -157,6 +164,7 @@ pub fn resolve(
         events.ask(pair, 0.0, known.remove(&pair), work);
     }
     while let Some(next) = events.earliest(work) {
+        events.find_boxes();
         let (pair, hit) = match next {
             Next::Impact(pair, hit) => (pair, hit),
             Next::Piece(time) => {
@@ -171,7 +179,6 @@ pub fn resolve(
         if events.stops_at(pair, hit.time) {
             return events.stop(hit.time, narrow_phase);
         }
-        events.find_boxes();
         events.impact(pair, hit, work);
     }
     events.finish()

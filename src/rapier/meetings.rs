@@ -1,7 +1,8 @@
 //! Where pairs of colliders met in the impacts of this step. Most of them still touch there when one of the two is
 //! struck again, and the poses tell how far such a contact has opened since.
 
-use super::first_contact::Hit;
+use super::first_contact::{Asker, Hit};
+use super::motion::Kind;
 use super::snapshot::Snapshot;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
@@ -84,6 +85,40 @@ impl Meetings {
             primitives: meeting.primitives,
         };
         (normal != Vector::ZERO).then_some((hit, opened))
+    }
+
+    /// The contact that a pair of dynamic bodies has left, if it is still there and closes so fast that it
+    /// would be met again in this step.
+    pub fn closing(
+        &self,
+        snapshot: &Snapshot,
+        asker: &Asker,
+        frozen: impl Fn(usize) -> bool,
+        pair: Pair,
+        time: Real,
+    ) -> Option<Hit> {
+        let bodies = pair.map(|k| snapshot.parts[k].body);
+        let free = |b: usize| snapshot.bodies[b].kind == Kind::Free;
+        if !bodies.into_iter().all(free) || bodies.into_iter().all(frozen) {
+            return None;
+        }
+        let (hit, opened) = self.contact(snapshot, pair, time)?;
+        let thickness = snapshot.thickness_at(pair, hit.primitives);
+        let gap = asker.gap(thickness);
+        if opened > gap {
+            return None;
+        }
+        let velocity = |b: usize| {
+            let m = snapshot.bodies[b].motion_from(time);
+            m.linvel + m.angvel.cross(hit.point - m.start * m.local_center)
+        };
+        let [v1, v2] = bodies.map(velocity);
+        let approach = (v1 - v2).dot(hit.normal) * (asker.dt - time);
+        // What touches may sink in before it is met again, above the floor by more than below.
+        let tuning = &asker.tuning;
+        let above = tuning.floor * thickness - hit.depth;
+        let sinks = above.min(tuning.sink * thickness).max(tuning.hair * gap);
+        (approach > opened.max(0.0) + sinks).then_some(hit)
     }
 }
 

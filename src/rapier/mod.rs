@@ -48,6 +48,7 @@ mod tuning;
 mod verdicts;
 mod waiting;
 mod watched;
+mod whirls;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]

@@ -73,6 +73,10 @@ pub struct Body {
     pub locked: LockedAxes,
     /// rapier's dominance group.
     pub dominance: i16,
+    /// Radians per second of the fastest link of its multibody before rapier's step; 0 of a body of none.
+    pub whirl: Real,
+    /// Whether rapier's step is taken back from it.
+    pub is_taken_back: bool,
 }
 
 impl Body {
@@ -105,6 +109,8 @@ impl Body {
             inverse_mass: properties.effective_inv_mass,
             locked: properties.flags,
             dominance: body.effective_dominance_group(),
+            whirl: 0.0,
+            is_taken_back: false,
         }
     }
 
@@ -128,6 +134,8 @@ impl Body {
             inverse_mass: Vector::ZERO,
             locked: LockedAxes::empty(),
             dominance: i16::from(i8::MAX) + 1,
+            whirl: 0.0,
+            is_taken_back: false,
         }
     }
 
@@ -164,6 +172,20 @@ impl Body {
         self.motion.linvel = (end * com - start * com) / dt;
         self.motion.angvel = turn / dt;
         self.awake |= self.motion.linvel != Vector::ZERO || self.motion.angvel != Vector::ZERO;
+    }
+
+    /// Linear velocity that gravity and forces of the user give it in the whole step.
+    pub fn pull(&self) -> Vector {
+        self.pull
+    }
+
+    /// Takes back rapier's step but for what gravity and forces gave it.
+    pub fn take_back(&mut self) {
+        self.velocity = self.velocity_before;
+        self.velocity[0] += self.pull;
+        self.end = self.start;
+        self.go(self.velocity);
+        self.is_taken_back = true;
     }
 
     /// Takes back what forces did to the velocities in the last `share` of rapier's step.

@@ -1,11 +1,14 @@
 //! Chooses the pairs that are kept from rapier's solver and left to the event loop: those that move by more than
 //! their thickness in the step and do not touch yet. Contacts computed at the start of the step would come too late
-//! for them, or lie at places where the bodies never meet. Half of the step's budget may go into
-//! this; without it a pair is left to both.
+//! for them, or lie at places where the bodies never meet. Where both bodies may be moved, and one belongs to a multibody
+//! that turns wildly ([`super::whirls`]), touching pairs are left to the event loop too. Half of the step's budget may go
+//! into this; without it a pair is left to both.
 
 use super::first_contact::{Asker, Work};
+use super::motion::Kind;
 use super::pairs::{Rules, sweep};
 use super::snapshot::Snapshot;
+use super::whirls::is_wild;
 use crate::math::Real;
 use crate::parry::answers::Key;
 use std::collections::HashSet;
@@ -35,11 +38,17 @@ pub fn muted(
             && !asker.speculates(snapshot, pair)
             && asker.left(work) > asker.budget / 2
             && rules.respond(snapshot, pair)
-            && !asker.touches(snapshot, pair, work)
+            && (is_wild_pair(snapshot, asker, pair) || !asker.touches(snapshot, pair, work))
         {
             let [m1, m2] = pair.map(|k| snapshot.motion(k, 0.0).start);
             keys.insert(Key::new(&*p.shape, &*q.shape, &m1.inv_mul(&m2)));
         }
     }
     keys
+}
+
+/// Whether two bodies may be moved, and one is of a multibody that turns wildly.
+fn is_wild_pair(snapshot: &Snapshot, asker: &Asker, pair: [usize; 2]) -> bool {
+    let bodies = pair.map(|k| &snapshot.bodies[snapshot.parts[k].body]);
+    bodies.iter().all(|b| b.kind == Kind::Free) && bodies.iter().any(|b| is_wild(b, asker.dt))
 }

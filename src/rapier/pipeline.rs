@@ -302,7 +302,9 @@ impl MedialPipeline {
         let joints = (&*impulse_joints, &*multibody_joints);
         let speculators =
             (!is_kept).then(|| Speculators::set(snapshot, &self.effects, unit, bodies));
-        let substeps = (!is_kept).then(|| Substeps::set(snapshot, joints, parameters, bodies));
+        let substeps = (!is_kept)
+            .then(|| Substeps::set(snapshot, joints, parameters, &prepared.whirls, bodies));
+        prepared.whirls.bring_to_rest(multibody_joints);
         report.speculative = speculators.as_ref().map_or(0, Speculators::count);
         report.batch_seconds += clock.elapsed().as_secs_f64();
 
@@ -350,6 +352,12 @@ impl MedialPipeline {
                 multibody_joints,
                 verdicts,
             };
+            std::mem::take(&mut prepared.whirls).take_back(
+                snapshot,
+                &rules,
+                narrow_phase,
+                parameters.dt,
+            );
             super::events::resolve(
                 snapshot,
                 asker(

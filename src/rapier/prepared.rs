@@ -12,6 +12,7 @@ use super::report::StepReport;
 use super::snapshot::Snapshot;
 use super::tuning::Tuning;
 use super::verdicts::Verdicts;
+use super::whirls::Whirls;
 use super::{candidates, hanging, muting};
 use crate::math::{Real, Vector};
 use rapier3d::dynamics::{ImpulseJointSet, IntegrationParameters, MultibodyJointSet, RigidBodySet};
@@ -25,6 +26,8 @@ pub struct Prepared {
     pub snapshot: Snapshot,
     /// How deep the deepest contact of all is, a length.
     pub depth: Real,
+    /// Multibodies that whirl.
+    pub whirls: Whirls,
 }
 
 impl MedialPipeline {
@@ -61,6 +64,7 @@ impl MedialPipeline {
             parameters,
             may_stop,
         );
+        let whirls = Whirls::find(&snapshot, &rules, narrow_phase, parameters.dt);
         let prediction = parameters.prediction_distance();
         let muted = muting::muted(&snapshot, &asker, &rules, prediction, work);
         report.muted = muted.len();
@@ -100,6 +104,7 @@ impl MedialPipeline {
             census,
             snapshot,
             depth: found.depth,
+            whirls,
         }
     }
 

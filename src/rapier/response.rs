@@ -112,6 +112,29 @@ impl Response {
         changed
     }
 
+    /// Has joints take bodies through the step from its start.
+    pub fn lead(
+        &mut self,
+        snapshot: &mut Snapshot,
+        asker: &Asker,
+        rules: &Rules,
+        bodies: &[usize],
+    ) {
+        if bodies.is_empty() {
+            return;
+        }
+        self.joints = Some(Joints::new(
+            snapshot,
+            rules.impulse_joints,
+            rules.multibody_joints,
+        ));
+        for &b in bodies {
+            self.courses[b].moved = true;
+            self.courses[b].struck = true;
+        }
+        self.close_joints(snapshot, asker, 0.0, bodies, true);
+    }
+
     /// Seconds into the step at which the first piece of a motion ends that joints give ([`super::joints`]).
     pub fn next_piece(&self) -> Option<Real> {
         self.pieces.first_end()
@@ -155,7 +178,8 @@ impl Response {
         for _ in 0..ROUNDS {
             let mut next = Vec::new();
             for pair in self.met.of(&last) {
-                let Some(hit) = self.closing(snapshot, asker, pair, time) else {
+                let frozen = |b: usize| self.courses[b].frozen;
+                let Some(hit) = self.met.closing(snapshot, asker, frozen, pair, time) else {
                     continue;
                 };
                 for b in self.push(snapshot, asker, rules, pair, &hit) {
@@ -174,33 +198,6 @@ impl Response {
             }
             last = next;
         }
-    }
-
-    /// The contact that a pair of dynamic bodies has left, if it is still there and closes so fast that it
-    /// would be met again in this step.
-    fn closing(&self, snapshot: &Snapshot, asker: &Asker, pair: Pair, time: Real) -> Option<Hit> {
-        let bodies = bodies(snapshot, pair);
-        let free = |b: usize| snapshot.bodies[b].kind == Kind::Free;
-        if !bodies.into_iter().all(free) || bodies.iter().all(|&b| self.courses[b].frozen) {
-            return None;
-        }
-        let (hit, opened) = self.met.contact(snapshot, pair, time)?;
-        let thickness = snapshot.thickness_at(pair, hit.primitives);
-        let gap = asker.gap(thickness);
-        if opened > gap {
-            return None;
-        }
-        let velocity = |b: usize| {
-            let m = snapshot.bodies[b].motion_from(time);
-            m.linvel + m.angvel.cross(hit.point - m.start * m.local_center)
-        };
-        let [v1, v2] = bodies.map(velocity);
-        let approach = (v1 - v2).dot(hit.normal) * (asker.dt - time);
-        // What touches may sink in before it is met again, above the floor by more than below.
-        let tuning = &asker.tuning;
-        let above = tuning.floor * thickness - hit.depth;
-        let sinks = above.min(tuning.sink * thickness).max(tuning.hair * gap);
-        (approach > opened.max(0.0) + sinks).then_some(hit)
     }
 
     /// Gives both bodies the impulses of a contact, and what joints tie to them what they hand on; returns all of

@@ -104,6 +104,16 @@ impl Snapshot {
         for handle in tied.chain(links.map(|l| l.rigid_body_handle())) {
             add(&mut snapshot, handle);
         }
+        for multibody in multibodies.multibodies() {
+            let place = |l: &MultibodyLink| snapshot.index.get(&l.rigid_body_handle()).copied();
+            let links: Vec<usize> = multibody.links().filter_map(place).collect();
+            let turn = |b: &usize| snapshot.bodies[*b].motion.angvel.length();
+            let turns = links.iter().map(turn);
+            let fastest = turns.fold(0.0, Real::max);
+            for b in links {
+                snapshot.bodies[b].whirl = fastest;
+            }
+        }
         snapshot
     }
 

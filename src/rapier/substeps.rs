@@ -5,6 +5,7 @@
 
 use super::motion::Kind;
 use super::snapshot::Snapshot;
+use super::whirls::Whirls;
 use crate::math::Real;
 use rapier3d::dynamics::{
     GenericJoint, ImpulseJointSet, IntegrationParameters, MultibodyJointSet, RigidBodyHandle,
@@ -28,6 +29,7 @@ impl Substeps {
         snapshot: &Snapshot,
         (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
         parameters: &IntegrationParameters,
+        whirls: &Whirls,
         bodies: &mut RigidBodySet,
     ) -> Self {
         let mut medial = vec![false; snapshot.bodies.len()];
@@ -39,7 +41,7 @@ impl Substeps {
             let [Some(&a), Some(&b)] = handles.map(|h| snapshot.index.get(&h)) else {
                 return;
             };
-            if !(medial[a] || medial[b]) || !joint.is_enabled() {
+            if !(medial[a] || medial[b]) || !joint.is_enabled() || whirls.rests(b) {
                 return;
             }
             let needed = needed(snapshot, [a, b], joint, parameters);

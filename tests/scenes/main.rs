@@ -52,5 +52,6 @@ mod spawned;
 mod still;
 mod told;
 mod walls;
+mod whirls;
 mod wire_heaps;
 mod wires;
