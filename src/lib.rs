@@ -24,7 +24,7 @@
 //! # let (vertices, indices) = Cuboid::new(Vector::new(0.5, 0.2, 0.3)).to_trimesh();
 //! let options = BuildOptions { primitives: Some(50), ..Default::default() };
 //! let (mesh, report) = MedialMesh::from_trimesh(&vertices, &indices, &options)?;
-//! let off = report.hausdorff.error() + report.hausdorff.sampling;
+//! let off = report.hausdorff.bound();
 //! println!("at most {off} m from the triangle mesh");
 //!
 //! let mut world = PhysicsWorld::new();
@@ -86,9 +86,9 @@ pub use rapier::{
 /// Everything that a game with rapier usually needs: `use rapier3d_medial::prelude::*;`.
 pub mod prelude {
     pub use crate::{
-        Backend, BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder, MedialMesh,
-        MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, Progress, Quality,
-        StepReport,
+        Backend, BuildError, BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder,
+        MedialMesh, MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, MeshError,
+        Progress, Quality, StepReport,
     };
 }
 

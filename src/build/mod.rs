@@ -4,6 +4,7 @@
 mod ball_quadrics;
 mod blunt_sheets;
 mod bounds;
+mod cached;
 mod candidate;
 mod chunks;
 mod clip;

@@ -146,6 +146,12 @@ impl Hausdorff {
     pub fn error(&self) -> Real {
         self.surface_to_envelope.max(self.envelope_to_surface)
     }
+
+    /// What the surfaces are off by at most, between the points measured as well: [`Self::error`] and
+    /// [`Self::sampling`] together.
+    pub fn bound(&self) -> Real {
+        self.error() + self.sampling
+    }
 }
 
 /// What became of the sharp edges of a triangle mesh.

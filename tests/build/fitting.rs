@@ -132,7 +132,7 @@ fn a_union_of_balls_is_covered_and_not_left() {
         assert!(is_within(&solids, p.to_array().map(f64::from), 1e-6), "{p}");
     }
     // What the solid holds is near the true union: by the error reported, and the mesh's own.
-    let allowed = f64::from(report.hausdorff.error() + report.hausdorff.sampling) + 0.005;
+    let allowed = f64::from(report.hausdorff.bound()) + 0.005;
     for i in 0..20 * 20 * 20 {
         let unit = |k: i32| f64::from(k % 20) / 19.0;
         let p = [

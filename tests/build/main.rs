@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod broken;
+mod cached;
 mod combined;
 mod concave;
 mod corpus;

@@ -21,9 +21,7 @@ struct Told(Vec<(Entity, Result<f32, String>)>);
 
 fn hear(mut told: ResMut<Told>, mut built: MessageReader<MedialBuilt>) {
     for MedialBuilt { entity, outcome } in built.read() {
-        let off = outcome
-            .as_ref()
-            .map(|r| r.hausdorff.error() + r.hausdorff.sampling);
+        let off = outcome.as_ref().map(|r| r.hausdorff.bound());
         told.0.push((*entity, off.map_err(String::clone)));
     }
 }
