@@ -2,8 +2,8 @@
 
 use super::BuildOptions;
 use crate::error::{BuildError, MeshError};
-use crate::medial::MedialMesh;
 use crate::math::Vector;
+use crate::medial::MedialMesh;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
