@@ -228,12 +228,6 @@ pub enum BuildError {
         /// Which values are accepted.
         must: &'static str,
     },
-    /// No part of the surface encloses a volume, so no sphere lies inside.
-    #[error("no inside found: {message}")]
-    NoInside {
-        /// What was found instead.
-        message: String,
-    },
     /// The progress callback returned `Break`.
     #[error("cancelled during {stage}")]
     Cancelled {

@@ -13,8 +13,8 @@
 //! 1. [`MedialMesh::from_trimesh`] builds a medial mesh from your triangles, once, in seconds.
 //!    [`MedialMesh::save_asset`] and [`MedialMesh::load_asset`] keep it in a file.
 //! 2. [`ColliderBuilder::medial_mesh`](MedialColliderBuilder::medial_mesh) makes a collider of it.
-//! 3. [`MedialPipeline::attach`] prepares a world, and [`MedialPipeline::step`] takes the place of
-//!    `world.step()`.
+//! 3. [`MedialPipeline::step`] takes the place of `world.step()`. [`MedialPipeline::attach`] is for worlds that
+//!    were loaded.
 //!
 //! ```
 //! use rapier3d::prelude::*;
@@ -29,7 +29,6 @@
 //!
 //! let mut world = PhysicsWorld::new();
 //! let mut pipeline = MedialPipeline::new(MedialOptions::default());
-//! pipeline.attach(&mut world);
 //! world.insert_collider(ColliderBuilder::cuboid(9.0, 0.1, 9.0), None);
 //! let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 1.0, 0.0));
 //! world.insert(body, ColliderBuilder::medial_mesh(mesh));

@@ -180,11 +180,11 @@ fn numbers(text: &str) -> Vec<String> {
     found
 }
 
-/// `docs/accuracy.md` tells of one run, whose tables are `docs/accuracy.csv`: each of its table rows
+/// `docs/measurements/accuracy.md` tells of one run, whose tables are `accuracy.csv` beside it: each of its table rows
 /// takes its numbers from one row of the run, each number of its text is one of the run's.
 #[test]
 fn accuracy_page_has_only_numbers_of_its_run() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measurements");
     let read = |name: &str| fs::read_to_string(docs.join(name)).expect("a file of docs");
     let run = read("accuracy.csv");
     // Commas part the cells there; those within quotes stay in front of a space.

@@ -100,7 +100,7 @@ impl MedialMesh {
     /// Other damage (cracks, small openings, repeated triangles, overlapping parts) is repaired if possible, and
     /// [`BuildReport::findings`] counts it.
     ///
-    /// A build takes a second to half a minute in optimised code (`docs/medial-mesh-error.md` has a table), and
+    /// A build takes a second to half a minute in optimised code (`docs/measurements/medial-mesh-error.md` has a table), and
     /// many times as long without optimisation. Build once and save the result ([`MedialMesh::save_asset`]).
     ///
     /// # Errors

@@ -47,7 +47,6 @@ use web_time::Instant;
 ///
 /// let mut world = PhysicsWorld::new();
 /// let mut pipeline = MedialPipeline::new(MedialOptions::default());
-/// pipeline.attach(&mut world);
 /// world.insert_collider(ColliderBuilder::cuboid(9.0, 0.1, 9.0), None);
 /// let ring = ColliderBuilder::medial_mesh(MedialMesh::torus(0.5, 0.1, 16)?);
 /// let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 1.0, 0.0));
@@ -70,6 +69,7 @@ pub struct MedialPipeline {
     pub(super) placed: Placed,
     /// What the last step was prepared with, if nothing moved in it.
     pub(super) kept: Option<Prepared>,
+    is_attached: bool,
 }
 
 impl MedialPipeline {
@@ -134,13 +134,15 @@ impl MedialPipeline {
 
     /// Prepares a world to be stepped by this pipeline: the narrow phase (the part of rapier that computes contacts)
     /// asks this pipeline first, and parry after that. A query dispatcher that you set yourself is replaced; nothing else
-    /// of the world changes. Call it once, and again after the world was loaded or its narrow phase replaced.
+    /// of the world changes. A pipeline that was attached to nothing attaches itself in its first step; call this after
+    /// the world was loaded or its narrow phase replaced.
     pub fn attach(&mut self, world: &mut PhysicsWorld) {
         self.attach_sets(&mut world.narrow_phase);
     }
 
     /// Does the same as [`Self::attach`] for games that keep rapier's sets themselves.
     pub fn attach_sets(&mut self, narrow_phase: &mut NarrowPhase) {
+        self.is_attached = true;
         let dispatcher = MedialDispatcher::new(Arc::clone(&self.answers));
         narrow_phase.set_query_dispatcher(dispatcher.chain(DefaultQueryDispatcher));
     }
@@ -205,6 +207,9 @@ impl MedialPipeline {
         hooks: &dyn PhysicsHooks,
         events: &dyn EventHandler,
     ) -> StepReport {
+        if !self.is_attached {
+            self.attach_sets(narrow_phase);
+        }
         let mut rest = *parameters;
         let mut report = StepReport::default();
         // Links and particles cannot be set back to where they were at a stop.
@@ -308,7 +313,6 @@ impl MedialPipeline {
         report.speculative = speculators.as_ref().map_or(0, Speculators::count);
         report.batch_seconds += clock.elapsed().as_secs_f64();
 
-        // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
         let off = |e: &Effects| e.continuous == Effect::Off;
         let takes_all = !self.effects.any(off) && !census.any_modified;
         // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.

@@ -23,8 +23,8 @@ use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 /// Turn of the fastest link in a step, in radians, from which a multibody whirls.
 const WHIRLS: Real = 0.1;
 
-/// The turn from which rapier's step is not asked. Without, 4 of 27 ropes, whose links turned by 10 radians in a step,
-/// left all numbers within one.
+/// The turn from which rapier's step is not asked: links that turn further may leave all numbers within one step, and
+/// then nothing is left to take back.
 const WILD: Real = 4.0;
 
 /// Share of its energy that a multibody may gain in rapier's step: without limits, and with some, which push back what

@@ -98,19 +98,19 @@ fn cleaning_up_reports_in_proportion_to_its_work() {
 }
 
 #[test]
-#[ignore = "seconds in release, minutes in debug: prints time and memory for docs/medial-mesh-error.md"]
+#[ignore = "seconds in release, minutes in debug: prints time and memory for docs/measurements/medial-mesh-error.md"]
 fn a_hundred_thousand_triangles() {
     by_hand(400, 125, false);
 }
 
 #[test]
-#[ignore = "seconds in release, minutes in debug: prints time and memory for docs/medial-mesh-error.md"]
+#[ignore = "seconds in release, minutes in debug: prints time and memory for docs/measurements/medial-mesh-error.md"]
 fn a_million_triangles() {
     by_hand(1000, 500, false);
 }
 
 #[test]
-#[ignore = "seconds in release, minutes in debug: prints time and memory for docs/medial-mesh-error.md"]
+#[ignore = "seconds in release, minutes in debug: prints time and memory for docs/measurements/medial-mesh-error.md"]
 fn a_million_triangles_of_an_open_surface() {
     by_hand(1000, 750, true);
 }
