@@ -16,6 +16,7 @@ pub mod polygon;
 pub mod primitive;
 #[cfg(feature = "serde")]
 mod saved;
+pub(crate) mod scaled;
 mod sheet;
 pub mod shell;
 pub mod simplex;

@@ -227,7 +227,7 @@ impl Shape for MedialPart {
         Box::new(self.clone())
     }
     fn scale_dyn(&self, scale: Vector, _num_subdivisions: u32) -> Option<Box<dyn Shape>> {
-        let factor = super::shape::uniform_factor(scale)?;
+        let factor = crate::medial::scaled::uniform_factor(scale)?;
         let scaled = |s: MedialSphere| MedialSphere::new(s.center * scale, s.radius * factor);
         let primitive = match self.primitive {
             MedialPrimitive::Sphere(s) => MedialPrimitive::Sphere(scaled(s)),

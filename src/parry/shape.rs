@@ -7,7 +7,7 @@
 use super::leaving;
 use super::parts::MedialPart;
 use crate::math::{Pose, Real, Vector};
-use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
+use crate::medial::{MedialMesh, MedialPrimitive};
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::mass_properties::MassProperties;
 use parry3d::partitioning::Bvh;
@@ -17,17 +17,6 @@ use parry3d::shape::{
     Capsule, CompositeShape, CompositeShapeRef, FeatureId, Shape, ShapeType, TypedCompositeShape,
     TypedShape,
 };
-
-/// Relative difference of scale factors that still counts as uniform: rounding of a product.
-const UNIFORM: Real = 4.0 * Real::EPSILON;
-
-/// The factor of a uniform scaling (mirrored axes included); `None` if it is not uniform.
-pub(crate) fn uniform_factor(scale: Vector) -> Option<Real> {
-    let s = scale.abs();
-    let factor = s.x;
-    let near = |other: Real| (other - factor).abs() <= UNIFORM * factor;
-    (factor.is_finite() && factor > 0.0 && near(s.y) && near(s.z)).then_some(factor)
-}
 
 impl CompositeShape for MedialMesh {
     fn map_part_at(
@@ -151,18 +140,9 @@ impl Shape for MedialMesh {
         Box::new(self.clone())
     }
 
-    /// The mesh scaled by the same factor along all axes, exactly; an axis may also be mirrored. `None` for all
-    /// other scalings, which would turn spheres into ellipsoids. The result has the mass properties of the medial
-    /// mesh, even if this one has those of a triangle mesh.
+    /// [`MedialMesh::scaled`].
     fn scale_dyn(&self, scale: Vector, _num_subdivisions: u32) -> Option<Box<dyn Shape>> {
-        let factor = uniform_factor(scale)?;
-        let spheres = self
-            .spheres()
-            .iter()
-            .map(|s| MedialSphere::new(s.center * scale, s.radius * factor))
-            .collect();
-        let mesh = MedialMesh::new(spheres, self.edges().to_vec(), self.faces().to_vec()).ok()?;
-        Some(Box::new(mesh))
+        self.scaled(scale).map(|mesh| Box::new(mesh) as _)
     }
 
     fn mass_properties(&self, density: Real) -> MassProperties {

@@ -281,3 +281,53 @@ fn absurd_sizes_end() {
         "{zeros} of {cases} without mass"
     );
 }
+
+/// A skew tetrahedron's mass, given to a medial mesh that is then scaled, beside that of the scaled tetrahedron.
+#[test]
+fn a_scaled_mesh_keeps_the_mass_of_its_triangles() {
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 2.0, 0.0],
+        [0.3, 0.4, 3.0],
+    ];
+    let corners = corners.map(|[x, y, z]| Vector::new(x, y, z));
+    let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+    let mass = MassProperties::from_trimesh(1.0, &corners, &faces);
+    let mesh = MedialMesh::ball(1.0)
+        .expect("a ball")
+        .with_mass_properties(mass);
+    let signs = [
+        [1, 1, 1],
+        [-1, 1, 1],
+        [1, -1, 1],
+        [1, 1, -1],
+        [-1, -1, 1],
+        [-1, -1, -1],
+    ];
+    for factor in [0.02f32, 0.5, 7.0] {
+        for signs in signs {
+            let scale = Vector::new(signs[0] as f32, signs[1] as f32, signs[2] as f32) * factor;
+            let is_mirrored = signs.iter().product::<i32>() < 0;
+            let turned = faces.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });
+            let wanted = MassProperties::from_trimesh(3.0, &corners.map(|c| c * scale), &turned);
+            let found = mesh.scaled(scale).expect("scaled").mass_properties(3.0);
+            close(found.mass(), wanted.mass().into(), 1e-5, "mass");
+            assert!(
+                (found.local_com - wanted.local_com).length() < 1e-5 * factor,
+                "{scale}"
+            );
+            let [found, wanted] = [found, wanted].map(|m| m.reconstruct_inertia_matrix());
+            let size = wanted
+                .to_cols_array()
+                .iter()
+                .fold(0.0f32, |most, x| most.max(x.abs()));
+            let off = (found - wanted).to_cols_array();
+            assert!(
+                off.iter().all(|x| x.abs() < 1e-4 * size),
+                "{scale}: {found} is not {wanted}"
+            );
+        }
+    }
+    assert!(mesh.scaled(Vector::new(1.0, 2.0, 1.0)).is_none());
+}
