@@ -37,7 +37,9 @@ fn a_pipeline_attaches_itself_in_its_first_step() {
         if attach {
             pipeline.attach(&mut world);
         }
-        (0..200).for_each(|_| drop(pipeline.step(&mut world)));
+        for _ in 0..200 {
+            pipeline.step(&mut world);
+        }
         let poses = world.bodies.iter().map(|(_, body)| *body.position());
         poses.collect::<Vec<_>>()
     };
