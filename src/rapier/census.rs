@@ -1,10 +1,13 @@
 //! What one look at all bodies and colliders tells before a step: whether there is anything to prepare.
 
 use super::enabled::takes_part;
-use crate::math::Vector;
 use crate::math::fast_hash::FastHasher;
+use crate::math::{Pose, Vector};
 use crate::medial::MedialMesh;
-use rapier3d::dynamics::{RigidBody, RigidBodySet, SoftBodySet};
+use rapier3d::dynamics::{
+    GenericJoint, ImpulseJointSet, MultibodyJointSet, RigidBody, RigidBodyHandle, RigidBodySet,
+    SoftBodySet,
+};
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
 use rapier3d::pipeline::ActiveHooks;
 use std::hash::Hasher;
@@ -25,7 +28,12 @@ pub struct Census {
 
 impl Census {
     /// Of a world whose colliders are where the user put their bodies.
-    pub fn take(bodies: &RigidBodySet, colliders: &ColliderSet, soft: &SoftBodySet) -> Self {
+    pub fn take(
+        bodies: &RigidBodySet,
+        colliders: &ColliderSet,
+        (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
+        soft: &SoftBodySet,
+    ) -> Self {
         let mut census = Self::default();
         for (_, collider) in colliders.iter() {
             let hooks = collider.active_hooks();
@@ -45,17 +53,38 @@ impl Census {
         } else if !soft.is_empty() || bodies.iter().any(|(_, body)| moves(body)) {
             None
         } else {
-            Some(places(bodies, colliders))
+            Some(places(bodies, colliders, (joints, multibodies)))
         };
         census
     }
 }
 
-/// Hash of the bodies' kinds, and of the colliders that take part, their shapes and poses.
-fn places(bodies: &RigidBodySet, colliders: &ColliderSet) -> u64 {
+/// Hash of the bodies' kinds, of the colliders that take part, their shapes and poses, and of what joints tie together:
+/// rapier itself may wake any of them within its step.
+fn places(
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+    (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
+) -> u64 {
     let mut hash = FastHasher::default();
-    for (_, body) in bodies.iter() {
+    let mut tie = |a: RigidBodyHandle, b: RigidBodyHandle, joint: &GenericJoint| {
+        hash.write_u64(whole(a.into_raw_parts()));
+        hash.write_u64(whole(b.into_raw_parts()));
+        hash.write_u32(u32::from(joint.contacts_enabled()) << 1 | u32::from(joint.is_enabled()));
+    };
+    for (_, joint) in joints.iter() {
+        tie(joint.body1(), joint.body2(), &joint.data);
+    }
+    for multibody in multibodies.multibodies() {
+        for link in multibody.links() {
+            let parent = link.parent_id().and_then(|id| multibody.link(id));
+            let parent = parent.map_or(link.rigid_body_handle(), |l| l.rigid_body_handle());
+            tie(parent, link.rigid_body_handle(), &link.joint.data);
+        }
+    }
+    for (handle, body) in bodies.iter() {
         let locked = body.locked_axes().bits();
+        hash.write_u64(whole(handle.into_raw_parts()));
         hash.write_u32((body.body_type() as u32) << 8 | u32::from(locked));
     }
     let all = colliders.iter().filter(|(_, c)| takes_part(bodies, c));
@@ -64,15 +93,22 @@ fn places(bodies: &RigidBodySet, colliders: &ColliderSet) -> u64 {
 }
 
 fn add(hash: &mut FastHasher, handle: ColliderHandle, collider: &Collider) {
-    let two = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
-    let (index, generation) = handle.into_raw_parts();
-    hash.write_u64(two(index, generation));
+    hash.write_u64(whole(handle.into_raw_parts()));
     hash.write_u64(std::ptr::from_ref(collider.shape()).addr() as u64);
-    let pose = collider.position();
-    let (t, r) = (pose.translation, pose.rotation);
-    let [x, y, z, i, j, k, w] = [t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(f32::to_bits);
-    for word in [two(x, y), two(z, i), two(j, k)] {
-        hash.write_u64(word);
+    // The place beside its body is the user's until rapier's step moves the collider there.
+    for pose in [Some(collider.position()), collider.position_wrt_parent()] {
+        let pose = pose.copied().unwrap_or(Pose::IDENTITY);
+        let (t, r) = (pose.translation, pose.rotation);
+        let [x, y, z, i, j, k, w] = [t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(f32::to_bits);
+        for word in [(x, y), (z, i), (j, k), (w, 0)] {
+            hash.write_u64(whole(word));
+        }
     }
-    hash.write_u64(two(w, collider.is_sensor().into()));
+    let skin = collider.contact_skin().to_bits();
+    hash.write_u64(whole((skin, collider.is_sensor().into())));
+}
+
+/// Two words as one.
+fn whole((a, b): (u32, u32)) -> u64 {
+    u64::from(a) << 32 | u64::from(b)
 }

@@ -7,6 +7,7 @@ use super::emit::{Once, Scene, Told};
 use super::events::Outcome;
 use super::first_contact::Work;
 use super::items::{self, Sets};
+use super::links;
 use super::pairs::Rules;
 use super::placed::Placed;
 use super::prepared::{Prepared, asker, lowered};
@@ -16,7 +17,6 @@ use super::speculative::Speculators;
 use super::substeps::Substeps;
 use super::tuning::Tuning;
 use super::verdicts::Verdicts;
-use super::{candidates, links};
 use crate::batch::Batch;
 use crate::math::{Real, Vector};
 use crate::parry::{Answers, MedialDispatcher};
@@ -112,7 +112,7 @@ impl MedialPipeline {
             parameters: &parameters,
             ..Sets::of(world)
         };
-        let next = candidates::expect(sets, &self.recycled);
+        let next = super::candidates::expect(sets, &self.recycled);
         self.batch.submit_async(&next).await;
         self.batch.ready().await;
     }
@@ -277,7 +277,8 @@ impl MedialPipeline {
         let before = self.batch.report().clone();
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         bodies.propagate_modified_body_positions_to_colliders(colliders);
-        let census = Census::take(bodies, colliders, soft_bodies);
+        let joints = (&*impulse_joints, &*multibody_joints);
+        let census = Census::take(bodies, colliders, joints, soft_bodies);
         let lowered = lowered(parameters);
         let parameters = if census.medial > 0 {
             &lowered
