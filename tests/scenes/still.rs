@@ -184,3 +184,108 @@ fn the_first_medial_colliders_of_a_world_are_met() {
         assert!(world.bodies[ball].translation().y > 0.0, "it passed");
     }
 }
+
+/// A fixed wire along x, on a body, and one along z that sleeps 0.1 m above it: both of radius 4 mm, in a world that stood
+/// still for three steps. From then on things weigh so much that the upper one falls past the lower one in a step.
+struct Wires {
+    world: PhysicsWorld,
+    pipeline: MedialPipeline,
+    lower: ColliderHandle,
+    upper: RigidBodyHandle,
+    /// Holds nothing; rapier wakes the upper wire in the step after somebody has asked to change it.
+    joint: ImpulseJointHandle,
+    /// Sleeps where the upper wire does, and has no collider.
+    bare: RigidBodyHandle,
+}
+
+fn wires() -> Wires {
+    let mut world = PhysicsWorld::new();
+    let mut pipeline = attached(&mut world);
+    let wire = |along: Vector| {
+        let ends = [-0.5, 0.5].map(|x| MedialSphere::new(along * x, 0.004));
+        let wire = MedialMesh::new(ends.to_vec(), vec![[0, 1]], vec![]).expect("a wire");
+        ColliderBuilder::medial_mesh(wire).density(1000.0)
+    };
+    let (hook, lower) = world.insert(RigidBodyBuilder::fixed(), wire(Vector::X));
+    let asleep = || {
+        RigidBodyBuilder::dynamic()
+            .translation(Vector::Y * 0.1)
+            .sleeping(true)
+    };
+    let (upper, _) = world.insert(asleep(), wire(Vector::Z));
+    let mass = MassProperties::new(Vector::ZERO, 5.0, Vector::ONE);
+    let bare = world.insert_body(asleep().additional_mass_properties(mass));
+    let free = GenericJointBuilder::new(JointAxesMask::empty());
+    let joint = world.insert_impulse_joint(hook, upper, free);
+    // The new joint wakes it, once.
+    let gravity = std::mem::replace(&mut world.gravity, Vector::ZERO);
+    pipeline.step(&mut world);
+    world.bodies[upper].sleep();
+    for _ in 0..3 {
+        pipeline.step(&mut world);
+    }
+    assert!(world.bodies[upper].is_sleeping() && world.bodies[bare].is_sleeping());
+    world.gravity = gravity * 500.0;
+    Wires {
+        world,
+        pipeline,
+        lower,
+        upper,
+        joint,
+        bare,
+    }
+}
+
+impl Wires {
+    /// Height of the upper wire after a step.
+    fn step(&mut self) -> Real {
+        self.pipeline.step(&mut self.world);
+        self.world.bodies[self.upper].translation().y
+    }
+}
+
+/// Symptom: bodies that rapier itself woke within its step were where the last step had left them. Cause: what a still
+/// world was prepared with was kept although joints, contact skins or places of colliders on their bodies had changed.
+#[test]
+fn what_rapier_wakes_within_its_step_is_met_as_it_is_then() {
+    let mut skin = wires();
+    skin.world.colliders[skin.lower].set_contact_skin(0.05);
+    assert!(
+        skin.world
+            .impulse_joints
+            .get_mut(skin.joint, true)
+            .is_some()
+    );
+    let height = skin.step();
+    assert!(
+        (0.05..0.07).contains(&height),
+        "with a skin of 0.05 it is at {height}"
+    );
+
+    let mut raised = wires();
+    raised.world.colliders[raised.lower].set_translation_wrt_parent(Vector::Y * 0.05);
+    assert!(
+        raised
+            .world
+            .impulse_joints
+            .get_mut(raised.joint, true)
+            .is_some()
+    );
+    let height = raised.step();
+    assert!(
+        (0.05..0.07).contains(&height),
+        "over a wire at 0.05 it is at {height}"
+    );
+
+    let mut joined = wires();
+    let (upper, bare) = (joined.upper, joined.bare);
+    joined
+        .world
+        .insert_impulse_joint(upper, bare, FixedJointBuilder::new());
+    let height = joined.step();
+    let opens = joined.world.bodies[bare].translation().y - height;
+    assert!(
+        height > 0.0 && opens.abs() < 1.0e-3,
+        "the wire is at {height}, the joint open by {opens}"
+    );
+}
