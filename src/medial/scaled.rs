@@ -18,8 +18,9 @@ pub fn uniform_factor(scale: Vector) -> Option<Real> {
 
 impl MedialMesh {
     /// The mesh scaled about the origin by the same factor along all axes; an axis may also be mirrored (a negative
-    /// number). Mass properties that it has of a triangle mesh are scaled with it. `None` for all other scalings, which
-    /// would turn spheres into ellipsoids, and for a result that [`MedialMesh::new`] refuses.
+    /// number). Mass properties that it has of a triangle mesh are scaled with it; where `f32` cannot hold them, the
+    /// result has those of its spheres, cones and slabs. `None` for all other scalings, which would turn spheres into
+    /// ellipsoids, and for a result that [`MedialMesh::new`] refuses.
     ///
     /// ```
     /// use rapier3d::math::Vector;
@@ -36,16 +37,19 @@ impl MedialMesh {
         let spheres = self.spheres().iter().map(sphere).collect();
         let mesh = Self::new(spheres, self.edges().to_vec(), self.faces().to_vec()).ok()?;
         let source = self.parts().source_mass.as_ref();
-        Some(match source.map(|mass| scaled_mass(mass, scale, factor)) {
-            Some(mass) => mesh.with_mass_properties(mass),
-            None => mesh,
-        })
+        Some(
+            match source.and_then(|mass| scaled_mass(mass, scale, factor)) {
+                Some(mass) => mesh.with_mass_properties(mass),
+                None => mesh,
+            },
+        )
     }
 }
 
 /// Mass properties at the same density: masses grow by the third power of the factor, inertia by the fifth. Mirroring
-/// all three axes changes no inertia, so one that is mirrored alone is a half turn about it.
-fn scaled_mass(mass: &MassProperties, scale: Vector, factor: Real) -> MassProperties {
+/// all three axes changes no inertia, so one that is mirrored alone is a half turn about it. `None` where `f32` cannot
+/// hold them.
+fn scaled_mass(mass: &MassProperties, scale: Vector, factor: Real) -> Option<MassProperties> {
     let power = |n: i32| f64::from(factor).powi(n);
     let divided = |x: Real, by: f64| (f64::from(x) / by) as Real;
     let signs = scale.signum();
@@ -56,10 +60,14 @@ fn scaled_mass(mass: &MassProperties, scale: Vector, factor: Real) -> MassProper
         [false, false, true] => Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0),
         _ => Rotation::IDENTITY,
     };
-    MassProperties {
+    let scaled = MassProperties {
         local_com: mass.local_com * scale,
         inv_mass: divided(mass.inv_mass, power(3)),
         inv_principal_inertia: mass.inv_principal_inertia.map(|x| divided(x, power(5))),
         principal_inertia_local_frame: turn * mass.principal_inertia_local_frame,
-    }
+    };
+    let numbers = |m: &MassProperties| m.inv_principal_inertia.extend(m.inv_mass).to_array();
+    let held = |(old, new): (Real, Real)| new.is_normal() || old == 0.0;
+    let all_held = numbers(mass).into_iter().zip(numbers(&scaled)).all(held);
+    all_held.then_some(scaled)
 }

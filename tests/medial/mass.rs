@@ -331,4 +331,15 @@ fn a_scaled_mesh_keeps_the_mass_of_its_triangles() {
         }
     }
     assert!(mesh.scaled(Vector::new(1.0, 2.0, 1.0)).is_none());
+    // Beyond what `f32` holds, mass properties are the medial mesh's own, and no others than without triangles.
+    for factor in [1.0e-12f32, 1.0e-9, 1.0e9] {
+        let bare = MedialMesh::ball(factor)
+            .expect("a ball")
+            .mass_properties(1.0);
+        let scaled = mesh
+            .scaled(Vector::splat(factor))
+            .expect("scaled")
+            .mass_properties(1.0);
+        assert_eq!(scaled.mass(), bare.mass(), "{factor}");
+    }
 }
