@@ -39,11 +39,12 @@ impl MedialMesh {
         if let Ok(mesh) = MedialMesh::load_asset(&path) {
             return Ok(mesh);
         }
-        let (mesh, _) = MedialMesh::from_trimesh(vertices, indices, options)?;
+        // Before the build, which is lost if there is no folder.
         std::fs::create_dir_all(folder).map_err(|source| MeshError::File {
             path: folder.to_owned(),
             source,
         })?;
+        let (mesh, _) = MedialMesh::from_trimesh(vertices, indices, options)?;
         mesh.save_asset(&path)?;
         Ok(mesh)
     }
