@@ -3,12 +3,15 @@
 //! An impulse on one body of a chain moves all of them ([`super::tied`]). After it, bodies do not move along their
 //! velocities, which would open the joints, but to where the joints let them. As a body that turns about a hinge
 //! moves along an arc, this is done in pieces of the step. Impulse joints and joints of multibodies are treated the
-//! same. Limits and motors act in rapier's next step, and joints that the user made soft are left to it.
+//! same. Where a joint would pass a limit in a piece, it stops there ([`super::limits`]). Motors act in rapier's next step,
+//! and joints that the user made soft are left to it.
 
 use super::impulse::Inertia;
+use super::limits::{Limit, Turned};
 use super::motion::Kind;
+use super::rows::{Joint, Twist};
 use super::snapshot::Snapshot;
-use super::tied::{Joint, System, Twist};
+use super::tied::System;
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
 use rapier3d::dynamics::{
@@ -56,21 +59,38 @@ impl Joints {
         for (_, joint) in impulse_joints.iter() {
             let rigid = joint.data.softness == SpringCoefficients::joint_defaults();
             if rigid && joint.data.enabled == JointEnabled::Enabled {
-                joints.add(snapshot, [joint.body1(), joint.body2()], &joint.data);
+                let limits = Limit::of_joint(&joint.data);
+                joints.add(
+                    snapshot,
+                    [joint.body1(), joint.body2()],
+                    &joint.data,
+                    limits,
+                );
             }
         }
         for multibody in multibody_joints.multibodies() {
             for link in multibody.links() {
                 if let Some(parent) = link.parent_id().and_then(|id| multibody.link(id)) {
                     let bodies = [parent.rigid_body_handle(), link.rigid_body_handle()];
-                    joints.add(snapshot, bodies, &link.joint.data);
+                    let Some(b) = snapshot.index.get(&bodies[1]) else {
+                        continue;
+                    };
+                    let turned = Turned::at(link, &snapshot.bodies[*b]);
+                    let limits = Limit::of_link(link, &turned);
+                    joints.add(snapshot, bodies, &link.joint.data, limits);
                 }
             }
         }
         joints
     }
 
-    fn add(&mut self, snapshot: &Snapshot, bodies: [RigidBodyHandle; 2], joint: &GenericJoint) {
+    fn add(
+        &mut self,
+        snapshot: &Snapshot,
+        bodies: [RigidBodyHandle; 2],
+        joint: &GenericJoint,
+        limits: Vec<Limit>,
+    ) {
         let [Some(&a), Some(&b)] = bodies.map(|h| snapshot.index.get(&h)) else {
             return;
         };
@@ -81,6 +101,7 @@ impl Joints {
             bodies: [a, b],
             frames: [joint.local_frame1, joint.local_frame2],
             locked: joint.locked_axes.bits(),
+            limits,
         });
     }
 
@@ -160,9 +181,10 @@ impl Joints {
             .openings()
             .into_iter()
             .zip(system.openings_in_the_end(snapshot));
-        let targets: Vec<f64> = openings
+        let mut targets: Vec<f64> = openings
             .map(|(now, end)| now + (end - now) * share)
             .collect();
+        targets.extend(system.stop_at_limits(&before, seconds));
         let after = system.integrate(&before, seconds, &targets);
         let left = system.openings().into_iter().zip(&targets);
         if !left

@@ -1,12 +1,10 @@
 //! Writes the poses and velocities that impacts gave to links of multibodies back to rapier. rapier computes them from
 //! the coordinates of the joints, so these coordinates are what has to be written.
 
-use super::motion::shortest;
+use super::limits::Turned;
 use super::snapshot::Snapshot;
 use crate::math::{Pose, Real, Vector};
-use rapier3d::dynamics::{
-    Multibody, MultibodyJointSet, MultibodyLink, RigidBodyHandle, RigidBodySet,
-};
+use rapier3d::dynamics::{Multibody, MultibodyJointSet, MultibodyLink, RigidBodySet};
 
 /// Pose, centre of mass in the world, linear and angular velocity of a link.
 #[derive(Clone, Copy)]
@@ -14,6 +12,8 @@ struct State {
     pose: Pose,
     center: Vector,
     velocity: [Vector; 2],
+    /// From where its angles go on.
+    turned: Turned,
 }
 
 /// Sets all multibodies of which a link changed: `changed` has indices in the snapshot, and whether the velocity did.
@@ -47,7 +47,8 @@ fn set(
     bodies: &mut RigidBodySet,
     multibody: &mut Multibody,
 ) {
-    let state = |handle: RigidBodyHandle| {
+    let state = |link: &MultibodyLink| {
+        let handle = link.rigid_body_handle();
         let body = &bodies[handle];
         let moved = snapshot.index.get(&handle);
         let moved = moved.and_then(|i| changed.iter().find(|(b, _)| b == i));
@@ -58,19 +59,22 @@ fn set(
             pose,
             center: pose * body.mass_properties().local_mprops.local_com,
             velocity: struck.map_or([body.linvel(), body.angvel()], |b| b.velocity),
+            turned: ours.map_or_else(|| Turned::of(link), |b| Turned::at(link, b)),
         }
     };
     let links: Vec<MultibodyLink> = multibody.links().copied().collect();
-    let states: Vec<State> = links.iter().map(|l| state(l.rigid_body_handle())).collect();
+    let states: Vec<State> = links.iter().map(state).collect();
     if states.iter().any(|s| !s.pose.is_finite()) {
         return;
     }
-    let mut moves: Vec<Real> = Vec::new();
+    let mut moves: [Vec<Real>; 3] = Default::default();
     let mut speeds: Vec<Real> = Vec::new();
     for (link, state) in links.iter().zip(&states) {
         let parent = link.parent_id().map(|id| states[id]);
-        let [way, speed] = coordinates(link, parent, state);
-        moves.extend(way);
+        let (ways, speed) = coordinates(link, parent, state);
+        for (moves, way) in moves.iter_mut().zip(ways) {
+            moves.extend(way);
+        }
         speeds.extend(speed);
     }
     // The pose of the root is read from its body.
@@ -81,7 +85,9 @@ fn set(
             root.set_position(state.pose, false);
         }
     }
-    multibody.apply_displacements(&moves);
+    for moves in moves.iter().filter(|m| m.iter().any(|x| *x != 0.0)) {
+        multibody.apply_displacements(moves);
+    }
     for (own, speed) in multibody.generalized_velocity_mut().iter_mut().zip(speeds) {
         *own = speed;
     }
@@ -98,13 +104,16 @@ fn set(
     }
 }
 
-/// How far a joint's free coordinates are to go from where they are, and their velocities: linear ones first, as
-/// rapier orders them. A free root has its world velocities.
-fn coordinates(link: &MultibodyLink, parent: Option<State>, own: &State) -> [Vec<Real>; 2] {
+/// How far a joint's free coordinates are to go from where they are, one after the other, and their velocities: linear ones
+/// first, as rapier orders them. A free root has its world velocities.
+fn coordinates(
+    link: &MultibodyLink,
+    parent: Option<State>,
+    own: &State,
+) -> ([Vec<Real>; 3], Vec<Real>) {
     let joint = &link.joint;
     let data = &joint.data;
     let locked = data.locked_axes.bits();
-    let (mut way, mut speed) = (Vec::new(), Vec::new());
     let base = parent.map_or(Pose::IDENTITY, |p| p.pose) * data.local_frame1;
     let between = base.inverse() * own.pose * data.local_frame2;
     let [linear, angular] = match parent {
@@ -117,15 +126,23 @@ fn coordinates(link: &MultibodyLink, parent: Option<State>, own: &State) -> [Vec
             [slide, turn].map(|v| base.rotation.inverse() * v)
         }
     };
+    let free = |from: usize| (0..3).filter(move |i| locked & (1 << (i + from)) == 0);
     let coords = joint.coords();
-    for i in (0..3).filter(|i| locked & (1 << i) == 0) {
-        way.push(between.translation[i] - coords[i]);
-        speed.push(linear[i]);
+    let mut ways: [Vec<Real>; 3] = Default::default();
+    for i in free(0) {
+        let way = between.translation[i] - coords[i];
+        let [first, second, last] = &mut ways;
+        first.push(0.0);
+        second.push(0.0);
+        last.push(way);
     }
-    let turn = shortest(between.rotation * joint.joint_rot().inverse()).to_scaled_axis();
-    for i in (0..3).filter(|i| locked & (1 << (i + 3)) == 0) {
-        way.push(turn[i]);
-        speed.push(angular[i]);
+    let mut turns = free(3);
+    let hinge = turns.next().filter(|_| turns.next().is_none());
+    let now = Turned::of(link);
+    let turns = own.turned.goes_on(&now, between.rotation, hinge);
+    for (way, turn) in ways.iter_mut().zip(turns) {
+        way.extend(free(3).map(|i| turn[i]));
     }
-    [way, speed]
+    let speed = free(0).map(|i| linear[i]);
+    (ways, speed.chain(free(3).map(|i| angular[i])).collect())
 }

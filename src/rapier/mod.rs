@@ -20,6 +20,7 @@ mod impulse;
 mod inquiry;
 mod items;
 mod joints;
+mod limits;
 mod links;
 mod meetings;
 mod motion;
@@ -34,6 +35,7 @@ mod pushes;
 mod recycled;
 pub mod report;
 mod response;
+mod rows;
 #[cfg(feature = "serde-serialize")]
 pub mod saved_world;
 mod skyline;

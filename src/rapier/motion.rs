@@ -3,6 +3,7 @@
 //! rapier turns a body in `n` linearised pieces, so a fast turn ends short of `|ω| dt`. So the motion is taken from the
 //! poses before and after, and from the number of full turns in between.
 
+use super::limits::Turned;
 use crate::math::{Pose, Real, Rotation, Vector};
 use parry3d::mass_properties::MassProperties;
 use parry3d::query::NonlinearRigidMotion;
@@ -75,6 +76,8 @@ pub struct Body {
     pub dominance: i16,
     /// Radians per second of the fastest link of its multibody before rapier's step; 0 of a body of none.
     pub whirl: Real,
+    /// Of a link of a multibody, before rapier's step.
+    pub turned_before: Option<Turned>,
     /// Whether rapier's step is taken back from it.
     pub is_taken_back: bool,
 }
@@ -110,6 +113,7 @@ impl Body {
             locked: properties.flags,
             dominance: body.effective_dominance_group(),
             whirl: 0.0,
+            turned_before: None,
             is_taken_back: false,
         }
     }
@@ -135,6 +139,7 @@ impl Body {
             locked: LockedAxes::empty(),
             dominance: i16::from(i8::MAX) + 1,
             whirl: 0.0,
+            turned_before: None,
             is_taken_back: false,
         }
     }

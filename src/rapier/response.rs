@@ -17,8 +17,9 @@ use super::meetings::Meetings;
 use super::motion::Kind;
 use super::pairs::Rules;
 use super::pieces::Pieces;
+use super::rows::Twist;
 use super::snapshot::Snapshot;
-use super::tied::{System, Twist};
+use super::tied::System;
 use crate::math::{Real, Vector};
 use std::collections::BTreeMap;
 

@@ -3,6 +3,7 @@
 
 use super::enabled::enabled;
 use super::joints::MOST_JOINTS;
+use super::limits::Turned;
 use super::motion::{Body, Kind};
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
@@ -87,6 +88,8 @@ impl Snapshot {
             let multibody = link.and_then(|l| multibodies.get_multibody(l.multibody));
             let mut new = Body::new(h, body, multibody.is_none_or(gives_way));
             new.predict(body, gravity, dt);
+            let link = link.zip(multibody).and_then(|(l, m)| m.link(l.id));
+            new.turned_before = link.map(Turned::of);
             snapshot.bodies.push(new);
             snapshot.index.insert(h, snapshot.bodies.len() - 1);
             Some(snapshot.bodies.len() - 1)
@@ -106,11 +109,6 @@ impl Snapshot {
         }
         for multibody in multibodies.multibodies() {
             let place = |l: &MultibodyLink| snapshot.index.get(&l.rigid_body_handle()).copied();
-            // Joints taken through a step know no limits, and rapier's fling back what is far beyond one.
-            let is_limited = |l: &MultibodyLink| !l.joint.data.limit_axes.is_empty();
-            if multibody.links().any(is_limited) {
-                continue;
-            }
             let links: Vec<usize> = multibody.links().filter_map(place).collect();
             let turn = |b: &usize| snapshot.bodies[*b].motion.angvel.length();
             let turns = links.iter().map(turn);

@@ -9,7 +9,9 @@
 //! scheme (Andersen 1983), which keeps energy while joints turn velocities.
 
 use super::impulse::Inertia;
+use super::limits::Limit;
 use super::motion::shortest;
+use super::rows::{Ends, Joint, Row, Twist, dot};
 use super::skyline::Skyline;
 use super::snapshot::Snapshot;
 use crate::math::{Pose, Real, Rotation, Vector};
@@ -21,32 +23,13 @@ const REGULAR: f64 = 1.0e-4;
 /// Times that joints are closed in a piece of a motion: each leaves about a quarter of the opening.
 const CLOSING_STEPS: usize = 8;
 
+/// Times that joints are asked whether they pass a limit, as a stop of one may have another pass.
+const STOPPING_ROUNDS: usize = 4;
+
 /// Opening that is left, a length or an angle in radians; of bodies far from each other more, by the rounding of their
 /// poses.
 const CLOSED: f64 = 1.0e-5;
 const ROUNDING: f64 = 64.0 * Real::EPSILON as f64;
-
-/// Linear and angular velocity, or force and torque, at a body's centre of mass.
-pub type Twist = [Vector; 2];
-
-/// A joint between two bodies of a [`Snapshot`].
-pub struct Joint {
-    /// Indices in the snapshot.
-    pub bodies: [usize; 2],
-    /// In the frame of each body.
-    pub frames: [Pose; 2],
-    /// Which of the six axes of the first frame are locked, linear ones first.
-    pub locked: u8,
-}
-
-/// A locked axis: the opening of the joint, and its change by the twists of both bodies.
-struct Row {
-    /// Places in [`System::bodies`].
-    bodies: [usize; 2],
-    jacobian: [Twist; 2],
-    /// A length or an angle.
-    opening: Real,
-}
 
 /// Bodies tied by joints, at some poses.
 pub struct System<'a> {
@@ -62,13 +45,11 @@ pub struct System<'a> {
     /// Ways of the centres of mass, and turns, since the start.
     moved: Vec<(Vector, Rotation)>,
     joints: Vec<&'a Joint>,
+    /// Limits at which joints stop in a piece of the motion, and whose.
+    stops: Vec<(&'a Joint, Limit)>,
     rows: Vec<Row>,
     /// Of `G W Gᵀ`.
     factor: Option<Skyline>,
-}
-
-fn dot(a: Twist, b: Twist) -> f64 {
-    f64::from(a[0].dot(b[0]) + a[1].dot(b[1]))
 }
 
 impl<'a> System<'a> {
@@ -93,6 +74,7 @@ impl<'a> System<'a> {
             moved: vec![(Vector::ZERO, Rotation::IDENTITY); bodies.len()],
             bodies,
             joints,
+            stops: Vec::new(),
             rows: Vec::new(),
             factor: None,
         };
@@ -129,11 +111,7 @@ impl<'a> System<'a> {
 
     /// Takes from twists what joints do not let them have.
     pub fn hold(&self, twists: &mut [Twist]) {
-        let along = |row: &Row| {
-            let of = |k: usize| dot(row.jacobian[k], twists[row.bodies[k]]);
-            of(0) + of(1)
-        };
-        let held = self.solve(self.rows.iter().map(along).collect());
+        let held = self.solve(self.rows.iter().map(|r| r.along(twists)).collect());
         self.subtract(&held, twists);
     }
 
@@ -158,8 +136,7 @@ impl<'a> System<'a> {
     }
 
     fn factor(&mut self) {
-        let rows = self.joints.iter().flat_map(|j| self.rows_of(j));
-        self.rows = rows.filter(|r| self.is_movable(r)).collect();
+        self.rows = self.rows_now();
         let mut of_body: Vec<Vec<(usize, Twist)>> = vec![Vec::new(); self.bodies.len()];
         let mut lower = Vec::new();
         for (i, row) in self.rows.iter().enumerate() {
@@ -187,37 +164,57 @@ impl<'a> System<'a> {
             .flatten();
     }
 
-    fn rows_of(&self, joint: &Joint) -> Vec<Row> {
-        let places = joint
-            .bodies
-            .map(|b| self.bodies.iter().position(|o| *o == b));
-        let [Some(a), Some(b)] = places else {
-            return Vec::new();
-        };
-        let frames = [0, 1].map(|k| self.poses[[a, b][k]] * joint.frames[k]);
-        let center = |k: usize| self.poses[k] * self.centers[k];
-        let at = frames[1].translation;
-        let arms = [a, b].map(|k| at - center(k));
-        let locked = |i: u8| joint.locked & (1 << i) != 0;
-        let axis = |i: u8| frames[0].rotation * Vector::AXES[usize::from(i)];
-        let linear = (0..3).filter(|i| locked(*i)).map(|i| {
-            let n = axis(i);
-            Row {
-                bodies: [a, b],
-                jacobian: [[-n, -arms[0].cross(n)], [n, arms[1].cross(n)]],
-                opening: (at - frames[0].translation).dot(n),
+    /// The rows of all joints that hold what moves at the poses now, those of stops last.
+    fn rows_now(&self) -> Vec<Row> {
+        let joints = self.joints.iter();
+        let ends = joints.filter_map(|j| Some((self.ends(j)?, j.locked)));
+        let locked = ends.flat_map(|(ends, locked)| ends.locked(locked));
+        let stops = self.stops.iter();
+        let stops = stops.filter_map(|(j, limit)| Some(self.ends(j)?.limited(limit)));
+        let rows = locked.chain(stops);
+        rows.filter(|r| self.is_movable(r)).collect()
+    }
+
+    /// Both ends of a joint at the poses now.
+    fn ends(&self, joint: &Joint) -> Option<Ends> {
+        let place = |body: usize| self.bodies.iter().position(|o| *o == body);
+        let bodies = [place(joint.bodies[0])?, place(joint.bodies[1])?];
+        Some(Ends {
+            bodies,
+            frames: [0, 1].map(|k| self.poses[bodies[k]] * joint.frames[k]),
+            centers: bodies.map(|k| self.poses[k] * self.centers[k]),
+        })
+    }
+
+    /// Has joints stop at the limits that they would pass in some seconds at some velocities, and returns where.
+    pub fn stop_at_limits(&mut self, twists: &[Twist], seconds: Real) -> Vec<f64> {
+        let mut targets = Vec::new();
+        for _ in 0..STOPPING_ROUNDS {
+            let mut held = twists.to_vec();
+            self.hold(&mut held);
+            let known = self.stops.len();
+            for &joint in self.joints.iter().filter(|j| !j.limits.is_empty()) {
+                let Some(ends) = self.ends(joint) else {
+                    continue;
+                };
+                for limit in &joint.limits {
+                    let row = ends.limited(limit);
+                    let is_this = |(j, l): &(&Joint, Limit)| std::ptr::eq(*j, joint) && l == limit;
+                    if self.is_movable(&row)
+                        && !self.stops[..known].iter().any(is_this)
+                        && let Some(at) = limit.stop(row.opening, row.along(&held) as Real, seconds)
+                    {
+                        self.stops.push((joint, *limit));
+                        targets.push(f64::from(at));
+                    }
+                }
             }
-        });
-        let turned = turned(frames.map(|f| f.rotation), joint.locked >> 3);
-        let angular = (0..3).filter(|i| locked(i + 3)).map(|i| {
-            let n = axis(i);
-            Row {
-                bodies: [a, b],
-                jacobian: [[Vector::ZERO, -n], [Vector::ZERO, n]],
-                opening: turned.dot(n),
+            if self.stops.len() == known {
+                break;
             }
-        });
-        linear.chain(angular).collect()
+            self.factor();
+        }
+        targets
     }
 
     /// Moves the bodies by some velocities for some seconds, until joints are open by `targets`, and returns the
@@ -258,9 +255,8 @@ impl<'a> System<'a> {
 
     /// How far each locked axis is open at the poses now.
     pub fn openings(&self) -> Vec<f64> {
-        let rows = self.joints.iter().flat_map(|j| self.rows_of(j));
-        let openings = rows.filter(|r| self.is_movable(r));
-        openings.map(|r| f64::from(r.opening)).collect()
+        let rows = self.rows_now();
+        rows.iter().map(|r| f64::from(r.opening)).collect()
     }
 
     /// How far each is where rapier's step ended.
@@ -344,17 +340,4 @@ impl<'a> System<'a> {
 fn add(twist: &mut Twist, more: Twist, factor: Real) {
     twist[0] += more[0] * factor;
     twist[1] += more[1] * factor;
-}
-
-/// By how much the second frame is turned against the first round the locked axes, world frame, for small turns.
-fn turned(rotations: [Rotation; 2], locked: u8) -> Vector {
-    let [first, second] = rotations;
-    if (locked & 7).count_ones() == 2 {
-        let free = (0..3).find(|i| locked & (1 << i) == 0).unwrap_or(0);
-        let axis = Vector::AXES[free];
-        return (first * axis).cross(second * axis);
-    }
-    let between = first.inverse() * second;
-    let sign = if between.w < 0.0 { -2.0 } else { 2.0 };
-    first * (Vector::new(between.x, between.y, between.z) * sign)
 }

@@ -6,8 +6,8 @@
 //! step from its start, which gains none ([`super::joints`]), less what damping takes. One that turns wildly rapier has at
 //! rest for its step, and what it touches is the event loop's ([`super::muting`]).
 //!
-//! Multibodies with limits, motors or springs, those that other joints hold, and those that bear on what is held or
-//! pushed by others are left to rapier.
+//! Multibodies with motors or springs, those that other joints hold, and those that bear on what is held or pushed by
+//! others are left to rapier.
 
 use super::impulse::Inertia;
 use super::motion::{Body, Kind};

@@ -32,6 +32,7 @@ mod heaps;
 mod held;
 mod impacts;
 mod knots;
+mod limits;
 mod linking;
 mod local_thickness;
 mod modified;
