@@ -51,6 +51,7 @@ mod verdicts;
 mod waiting;
 mod watched;
 mod whirls;
+mod world;
 
 pub use collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]

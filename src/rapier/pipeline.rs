@@ -1,14 +1,12 @@
 //! [`MedialPipeline`]: what is done before and after rapier's step, as calls in order. The work itself is in the
 //! other files of this folder.
 
-use super::census::Census;
 use super::effects::{Effect, Effects, MedialOptions, Wanted};
 use super::emit::{Once, Scene, Told};
 use super::events::Outcome;
 use super::first_contact::Work;
 use super::items::{self, Sets};
 use super::links;
-use super::pairs::Rules;
 use super::placed::Placed;
 use super::prepared::{Prepared, asker, lowered};
 use super::recycled::Recycled;
@@ -17,6 +15,7 @@ use super::speculative::Speculators;
 use super::substeps::Substeps;
 use super::tuning::Tuning;
 use super::verdicts::Verdicts;
+use super::world::World;
 use crate::batch::Batch;
 use crate::math::{Real, Vector};
 use crate::parry::{Answers, MedialDispatcher};
@@ -210,43 +209,30 @@ impl MedialPipeline {
         if !self.is_attached {
             self.attach_sets(narrow_phase);
         }
+        let mut world = World {
+            pipeline,
+            gravity,
+            islands,
+            broad_phase,
+            narrow_phase,
+            bodies,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            soft_bodies,
+            ccd_solver,
+        };
         let mut rest = *parameters;
         let mut report = StepReport::default();
-        // Links and particles cannot be set back to where they were at a stop.
         let answers = Arc::clone(&self.answers);
         let verdicts = Verdicts::new(hooks, &answers);
-        let can_stop = multibody_joints.multibodies().next().is_none() && soft_bodies.is_empty();
+        let can_stop = !world.has_links_or_particles();
         loop {
             let may_stop = can_stop && report.stops < self.tuning.max_stops;
-            let (done, stopped) = self.part(
-                pipeline,
-                gravity,
-                &rest,
-                islands,
-                broad_phase,
-                narrow_phase,
-                bodies,
-                colliders,
-                impulse_joints,
-                multibody_joints,
-                soft_bodies,
-                ccd_solver,
-                &verdicts,
-                events,
-                may_stop,
-            );
+            let (done, stopped) = self.part(&mut world, &rest, &verdicts, events, may_stop);
             report.add(&done);
             let Some(time) = stopped else {
-                let sets = Sets {
-                    gravity,
-                    parameters,
-                    bodies,
-                    colliders,
-                    impulse_joints,
-                    multibody_joints,
-                    narrow_phase,
-                };
-                self.send_early(sets, &mut report);
+                self.send_early(world.sets(parameters), &mut report);
                 return report;
             };
             report.stops += 1;
@@ -255,30 +241,20 @@ impl MedialPipeline {
     }
 
     /// A step, or what of it comes before the world stops; the second result is when.
-    #[expect(clippy::too_many_arguments, reason = "as above")]
     fn part(
         &mut self,
-        pipeline: &mut PhysicsPipeline,
-        gravity: Vector,
+        world: &mut World,
         parameters: &IntegrationParameters,
-        islands: &mut IslandManager,
-        broad_phase: &mut BroadPhaseBvh,
-        narrow_phase: &mut NarrowPhase,
-        bodies: &mut RigidBodySet,
-        colliders: &mut ColliderSet,
-        impulse_joints: &mut ImpulseJointSet,
-        multibody_joints: &mut MultibodyJointSet,
-        soft_bodies: &mut SoftBodySet,
-        ccd_solver: &mut CCDSolver,
         verdicts: &Verdicts,
         events: &dyn EventHandler,
         may_stop: bool,
     ) -> (StepReport, Option<Real>) {
         let before = self.batch.report().clone();
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
-        bodies.propagate_modified_body_positions_to_colliders(colliders);
-        let joints = (&*impulse_joints, &*multibody_joints);
-        let census = Census::take(bodies, colliders, joints, soft_bodies);
+        world
+            .bodies
+            .propagate_modified_body_positions_to_colliders(world.colliders);
+        let census = world.census();
         let lowered = lowered(parameters);
         let parameters = if census.medial > 0 {
             &lowered
@@ -290,11 +266,9 @@ impl MedialPipeline {
         let kept = self.kept.take().filter(|kept| kept.holds_in(&census));
         let is_kept = kept.is_some();
         let mut prepared = kept.unwrap_or_else(|| {
-            let joints = (&*impulse_joints, &*multibody_joints);
             self.prepare_step(
-                (gravity, parameters),
-                (bodies, colliders, narrow_phase),
-                joints,
+                world,
+                parameters,
                 (census, may_stop),
                 verdicts,
                 (&mut report, &mut work),
@@ -305,64 +279,43 @@ impl MedialPipeline {
         self.answers.take_depth();
         let snapshot = &mut prepared.snapshot;
         let unit = parameters.length_unit;
-        let joints = (&*impulse_joints, &*multibody_joints);
         let speculators =
-            (!is_kept).then(|| Speculators::set(snapshot, &self.effects, unit, bodies));
-        let substeps = (!is_kept)
-            .then(|| Substeps::set(snapshot, joints, parameters, &prepared.whirls, bodies));
-        prepared.whirls.bring_to_rest(multibody_joints);
+            (!is_kept).then(|| Speculators::set(snapshot, &self.effects, unit, world.bodies));
+        let substeps = (!is_kept).then(|| {
+            let joints = (&*world.impulse_joints, &*world.multibody_joints);
+            Substeps::set(snapshot, joints, parameters, &prepared.whirls, world.bodies)
+        });
+        prepared.whirls.bring_to_rest(world.multibody_joints);
         report.speculative = speculators.as_ref().map_or(0, Speculators::count);
         report.batch_seconds += clock.elapsed().as_secs_f64();
 
         let off = |e: &Effects| e.continuous == Effect::Off;
         let takes_all = !self.effects.any(off) && !census.any_modified;
         // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
-        let can_sweep = soft_bodies.is_empty() && multibody_joints.multibodies().next().is_none();
-        self.answers.sweep_elsewhere(takes_all && can_sweep);
+        let sweeps = takes_all && !world.has_links_or_particles();
+        self.answers.sweep_elsewhere(sweeps);
 
         let clock = Instant::now();
         let once = Once::new(events, &mut self.told);
-        pipeline.step(
-            gravity,
-            parameters,
-            islands,
-            broad_phase,
-            narrow_phase,
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            soft_bodies,
-            ccd_solver,
-            verdicts,
-            &once,
-        );
+        world.step(parameters, verdicts, &once);
         report.step_seconds = clock.elapsed().as_secs_f64();
         self.answers.sweep_elsewhere(false);
         self.answers.let_none_pass();
         self.answers.mute(HashSet::new());
-        speculators.into_iter().for_each(|s| s.restore(bodies));
-        substeps.into_iter().for_each(|s| s.restore(bodies));
+        speculators
+            .into_iter()
+            .for_each(|s| s.restore(world.bodies));
+        substeps.into_iter().for_each(|s| s.restore(world.bodies));
 
         let clock = Instant::now();
-        let moved = census.medial > 0 && islands.num_active_bodies() > 0;
+        let moved = census.medial > 0 && world.islands.num_active_bodies() > 0;
         let outcome = if census.still.is_some() && !moved {
             Outcome::default()
         } else {
-            snapshot.follow(parameters, bodies, colliders);
-            let rules = Rules {
-                bodies,
-                colliders,
-                impulse_joints,
-                multibody_joints,
-                verdicts,
-            };
-            std::mem::take(&mut prepared.whirls).take_back(
-                snapshot,
-                &rules,
-                narrow_phase,
-                parameters.dt,
-            );
+            snapshot.follow(parameters, world.bodies, world.colliders);
+            let rules = world.rules(verdicts);
+            let whirls = std::mem::take(&mut prepared.whirls);
+            whirls.take_back(snapshot, &rules, world.narrow_phase, parameters.dt);
             super::events::resolve(
                 snapshot,
                 asker(
@@ -372,31 +325,41 @@ impl MedialPipeline {
                     may_stop,
                 ),
                 rules,
-                (narrow_phase, prepared.depth.max(self.answers.take_depth())),
+                (
+                    world.narrow_phase,
+                    prepared.depth.max(self.answers.take_depth()),
+                ),
                 &mut self.placed,
                 &mut self.batch,
                 &mut work,
             )
         };
         for &(index, struck) in &outcome.changed {
-            snapshot.bodies[index].write_back(struck, bodies);
+            snapshot.bodies[index].write_back(struck, world.bodies);
         }
         if !outcome.changed.is_empty() {
-            links::write_back(snapshot, &outcome.changed, bodies, multibody_joints);
-            bodies.propagate_modified_body_positions_to_colliders(colliders);
+            links::write_back(
+                snapshot,
+                &outcome.changed,
+                world.bodies,
+                world.multibody_joints,
+            );
+            world
+                .bodies
+                .propagate_modified_body_positions_to_colliders(world.colliders);
         }
         if !is_kept || snapshot.followed {
-            self.placed.end(snapshot, colliders);
+            self.placed.end(snapshot, world.colliders);
         }
         let scene = Scene {
             dt: parameters.dt,
-            bodies,
-            colliders,
-            narrow_phase,
+            bodies: world.bodies,
+            colliders: world.colliders,
+            narrow_phase: world.narrow_phase,
         };
         once.finish(&mut self.told, &outcome.impulses, scene);
         if census.all > 0 {
-            report.medial_colliders = items::count(colliders);
+            report.medial_colliders = items::count(world.colliders);
         }
         report.continuous_jobs = outcome.jobs;
         report.events = outcome.events;

@@ -5,7 +5,6 @@ use super::census::Census;
 use super::effects::Wanted;
 use super::first_contact::{Asker, Work};
 use super::items::{self, Sets};
-use super::pairs::Rules;
 use super::pipeline::MedialPipeline;
 use super::recycled::RECYCLE_DISTANCE;
 use super::report::StepReport;
@@ -13,10 +12,10 @@ use super::snapshot::Snapshot;
 use super::tuning::Tuning;
 use super::verdicts::Verdicts;
 use super::whirls::Whirls;
+use super::world::World;
 use super::{candidates, hanging, muting};
-use crate::math::{Real, Vector};
-use rapier3d::dynamics::{ImpulseJointSet, IntegrationParameters, MultibodyJointSet, RigidBodySet};
-use rapier3d::geometry::{ColliderSet, NarrowPhase};
+use crate::math::Real;
+use rapier3d::dynamics::IntegrationParameters;
 use web_time::Instant;
 
 /// What is known before rapier's step.
@@ -34,54 +33,44 @@ impl MedialPipeline {
     /// Prepares a step, and hands the contacts to come to the narrow phase.
     pub(super) fn prepare_step(
         &mut self,
-        (gravity, parameters): (Vector, &IntegrationParameters),
-        (bodies, colliders, narrow_phase): (&RigidBodySet, &mut ColliderSet, &NarrowPhase),
-        joints: (&ImpulseJointSet, &MultibodyJointSet),
+        world: &mut World,
+        parameters: &IntegrationParameters,
         (census, may_stop): (Census, bool),
         verdicts: &Verdicts,
         (report, work): (&mut StepReport, &mut Work),
     ) -> Prepared {
         let clock = Instant::now();
-        items::make_unique(bodies, colliders);
-        self.effects.clean(colliders);
+        items::make_unique(world.bodies, world.colliders);
+        self.effects.clean(world.colliders);
         let snapshot = if census.medial == 0 || self.effects.none() {
             Snapshot::default()
         } else {
-            Snapshot::take(gravity, parameters.dt, bodies, colliders, joints)
+            let (bodies, colliders) = (&*world.bodies, &*world.colliders);
+            Snapshot::take(
+                world.gravity,
+                parameters.dt,
+                bodies,
+                colliders,
+                world.joints(),
+            )
         };
-        self.placed.begin(&snapshot, narrow_phase);
-        let (impulse_joints, multibody_joints) = joints;
-        let rules = Rules {
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            verdicts,
-        };
+        self.placed.begin(&snapshot, world.narrow_phase);
+        let rules = world.rules(verdicts);
         let asker = asker(
             &self.effects,
             (self.tuning, self.budget),
             parameters,
             may_stop,
         );
-        let whirls = Whirls::find(&snapshot, &rules, narrow_phase, parameters.dt);
+        let whirls = Whirls::find(&snapshot, &rules, world.narrow_phase, parameters.dt);
         let prediction = parameters.prediction_distance();
         let muted = muting::muted(&snapshot, &asker, &rules, prediction, work);
         report.muted = muted.len();
         report.mute_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
-        let sets = Sets {
-            gravity,
-            parameters,
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            narrow_phase,
-        };
-        let found = candidates::find(sets, &mut self.recycled, &muted);
-        hanging::ask_anew(&found.fresh, colliders);
+        let found = candidates::find(world.sets(parameters), &mut self.recycled, &muted);
+        hanging::ask_anew(&found.fresh, world.colliders);
         let mut results = self.batch.run(&found.jobs);
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();
@@ -98,7 +87,7 @@ impl MedialPipeline {
         self.answers.replace(answers, compute);
         self.answers.mute(muted);
         self.answers
-            .give_one_point(self.effects.one_point(colliders));
+            .give_one_point(self.effects.one_point(world.colliders));
         report.batch_seconds = clock.elapsed().as_secs_f64();
         Prepared {
             census,
