@@ -5,7 +5,7 @@ use super::effects::{Effect, Effects, MedialOptions, Wanted};
 use super::emit::{Once, Scene, Told};
 use super::events::Outcome;
 use super::first_contact::Work;
-use super::items::{self, Sets};
+use super::items;
 use super::links;
 use super::placed::Placed;
 use super::prepared::{Prepared, asker, lowered};
@@ -107,9 +107,9 @@ impl MedialPipeline {
     #[cfg(feature = "gpu")]
     pub async fn prepare(&mut self, world: &PhysicsWorld) {
         let parameters = lowered(&world.integration_parameters);
-        let sets = Sets {
+        let sets = items::Sets {
             parameters: &parameters,
-            ..Sets::of(world)
+            ..items::Sets::of(world)
         };
         let next = super::candidates::expect(sets, &self.recycled);
         self.batch.submit_async(&next).await;
