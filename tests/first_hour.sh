@@ -48,7 +48,7 @@ awk 'BEGIN {
     print "f", k, k+4, n+4, n; print "f", k+8, n+8, n+12, k+12; print "f", k, n, n+8, k+8; print "f", k+4, k+12, n+12, n+4
   } }' > "$work/body.obj"
 cargo build --quiet --release --features cli --bin medial --manifest-path "$repo/Cargo.toml"
-medial="$repo/target/release/medial"
+medial="${CARGO_TARGET_DIR:-$repo/target}/release/medial"
 {
   sed -n 's/^cargo run --release --features cli --bin medial -- //p' "$repo/docs/guide.md"
   grep -o '`medial [^`]*body\.obj[^`]*`' "$repo/docs/guide.md" | sed 's/`medial \(.*\)`/\1/'

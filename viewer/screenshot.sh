@@ -20,7 +20,7 @@ read -r number <&"${display[0]}"
 export DISPLAY=":$number" VK_ICD_FILENAMES=${VK_ICD_FILENAMES:-/usr/share/vulkan/icd.d/lvp_icd.x86_64.json}
 viewer=
 trap 'kill $viewer $screen 2>/dev/null || true; rm -f "$log"' EXIT
-target/release/medial-viewer --steps 150 "$@" >"$log" 2>&1 &
+"${CARGO_TARGET_DIR:-target}/release/medial-viewer" --steps 150 "$@" >"$log" 2>&1 &
 viewer=$!
 for _ in $(seq 600); do
   grep -q '^ready' "$log" && break
