@@ -10,6 +10,8 @@ mod early;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod job;
+#[cfg(feature = "gpu")]
+mod on_device;
 
 pub use backend::{Backend, Batch, BatchReport};
 #[cfg(feature = "gpu")]

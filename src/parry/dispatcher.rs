@@ -2,10 +2,7 @@
 //! answer falls through to parry's default dispatcher, which treats a medial mesh as a compound of convex parts.
 
 use super::answers::Answers;
-use super::bearing;
 use super::cast::Cast;
-use super::flat;
-use super::manifolds::{self, ensure_workspace, write_one_point};
 use super::near;
 use crate::batch::PairResult;
 use crate::math::{Pose, Real, Vector};
@@ -13,8 +10,7 @@ use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
 use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{
-    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
-    NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance,
+    ClosestPoints, Contact, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeDistance,
     ShapeIntersection, Unsupported,
 };
 use parry3d::shape::Shape;
@@ -41,7 +37,7 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Default)]
 pub struct MedialDispatcher {
-    answers: Arc<Answers>,
+    pub(super) answers: Arc<Answers>,
 }
 
 impl MedialDispatcher {
@@ -79,9 +75,7 @@ impl MedialDispatcher {
         self.answers.count_cast(counts.nodes, counts.tests);
         Ok(hit.map(|h| if flipped { h.swapped() } else { h }))
     }
-}
 
-impl MedialDispatcher {
     fn nearest(
         &self,
         pos12: &Pose,
@@ -99,11 +93,9 @@ impl MedialDispatcher {
         self.answers.count(counts.nodes, counts.tests);
         Ok(found)
     }
-}
 
-impl MedialDispatcher {
     /// The deepest contact: of the batch where both are medial.
-    fn deepest(
+    pub(super) fn deepest(
         &self,
         pos12: &Pose,
         g1: &dyn Shape,
@@ -162,7 +154,8 @@ fn flipped(pair: SpherePair, pos12: &Pose) -> SpherePair {
     }
 }
 
-fn medial(shape: &dyn Shape) -> Option<&MedialMesh> {
+/// The medial mesh that a shape is, if it is one.
+pub(super) fn medial(shape: &dyn Shape) -> Option<&MedialMesh> {
     shape.as_shape::<MedialMesh>()
 }
 
@@ -291,154 +284,5 @@ impl QueryDispatcher for MedialDispatcher {
             0.0,
             [stop_at_penetration, false],
         )
-    }
-}
-
-impl MedialDispatcher {
-    /// The manifolds of two shapes, of which one at least is medial.
-    fn write_manifolds<M, C>(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        prediction: Real,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-        workspace: &mut Option<ContactManifoldsWorkspace>,
-    ) -> Result<(), Unsupported>
-    where
-        DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
-        M: Default + Clone,
-        C: Default + Copy,
-    {
-        if self.answers.is_muted(g1, g2, pos12) {
-            // parry's workspace holds indices into the list that is emptied here.
-            *workspace = None;
-            ensure_workspace::<M, C>(g1, g2, workspace);
-            manifolds.clear();
-            return Ok(());
-        }
-        let meshes = (medial(g1), medial(g2));
-        if self.answers.has_one_point(g1, g2) {
-            let deepest = self.deepest(pos12, g1, g2, prediction)?;
-            // As above.
-            *workspace = None;
-            ensure_workspace::<M, C>(g1, g2, workspace);
-            write_one_point(deepest, pos12, manifolds);
-            self.answers.count_manifolds(manifolds.len());
-            return Ok(());
-        }
-        // Every place where a soft surface touches has a load of its own.
-        let soft = |g: &dyn Shape| g.as_composite_shape().is_some_and(|c| c.is_deformable());
-        if soft(g1) || soft(g2) {
-            return Err(Unsupported);
-        }
-        // What a load on one body is above: of two medial meshes the lighter lies on the other.
-        // (Their masses are known, where the volume of a solid would have to be measured first.)
-        let weight = |mesh: &MedialMesh| mesh.unit_mass_properties().mass();
-        let (side, mesh) = match meshes {
-            (Some(mesh1), Some(mesh2)) if weight(mesh1) > weight(mesh2) => (1, mesh2),
-            (Some(mesh1), _) => (0, mesh1),
-            (None, Some(mesh2)) => (1, mesh2),
-            (None, None) => return Err(Unsupported),
-        };
-        let center = mesh.unit_mass_properties().local_com;
-        let center = if side == 0 { center } else { pos12 * center };
-        let borne = bearing::borne(manifolds, side);
-        let (Some(mesh1), Some(mesh2)) = meshes else {
-            let (other, pose) = if side == 0 {
-                (g2, *pos12)
-            } else {
-                (g1, pos12.inverse())
-            };
-            if let Some(face) = flat::face(mesh, other, &pose, prediction) {
-                let parrys = !flat::wrote(manifolds);
-                if parrys {
-                    // As above.
-                    *workspace = None;
-                }
-                ensure_workspace::<M, C>(g1, g2, workspace);
-                flat::write_manifolds(mesh, &face, &pose, side, prediction, manifolds);
-                if parrys {
-                    bearing::hand_on(manifolds, &borne, prediction, side);
-                }
-                bearing::choose(manifolds, center, prediction, &borne, side);
-                manifolds.retain(|m| !m.points.is_empty());
-                return Ok(());
-            }
-            bearing::look_again(manifolds);
-            // parry knows its own manifolds again; those of a flat face it would begin anew, without what the
-            // user's hooks keep in them.
-            let flat = if !manifolds.is_empty() && flat::wrote(manifolds) {
-                manifolds.clone()
-            } else {
-                Vec::new()
-            };
-            let found = DefaultQueryDispatcher
-                .contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
-            for manifold in manifolds.iter_mut() {
-                let ids = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2];
-                if let Some(before) = flat.iter().find(|m| ids(m) == ids(manifold)) {
-                    manifold.data = before.data.clone();
-                }
-            }
-            bearing::hand_on(manifolds, &borne, prediction, side);
-            bearing::choose(manifolds, center, prediction, &borne, side);
-            return found;
-        };
-        ensure_workspace::<M, C>(mesh1, mesh2, workspace);
-        self.answers
-            .contacts(mesh1, mesh2, pos12, prediction, |found| {
-                manifolds::write_manifolds(
-                    [mesh1, mesh2],
-                    &found.contacts,
-                    pos12,
-                    prediction,
-                    manifolds,
-                );
-            });
-        bearing::choose(manifolds, center, prediction, &borne, side);
-        self.answers.count_manifolds(manifolds.len());
-        Ok(())
-    }
-}
-
-impl<M, C> PersistentQueryDispatcher<M, C> for MedialDispatcher
-where
-    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
-    M: Default + Clone,
-    C: Default + Copy,
-{
-    fn contact_manifolds(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        prediction: Real,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-        workspace: &mut Option<ContactManifoldsWorkspace>,
-    ) -> Result<(), Unsupported> {
-        if medial(g1).is_none() && medial(g2).is_none() {
-            return Err(Unsupported);
-        }
-        let written = self.write_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
-        let points = manifolds.iter().flat_map(|m| &m.points);
-        let depth = points.map(|p| -p.dist).fold(0.0, Real::max);
-        // What somebody else will write is unknown.
-        self.answers
-            .note_depth(written.map_or(Real::MAX, |()| depth));
-        written
-    }
-
-    fn contact_manifold_convex_convex(
-        &self,
-        _pos12: &Pose,
-        _g1: &dyn Shape,
-        _g2: &dyn Shape,
-        _constraints1: Option<&dyn parry3d::query::details::NormalConstraints>,
-        _constraints2: Option<&dyn parry3d::query::details::NormalConstraints>,
-        _prediction: Real,
-        _manifold: &mut ContactManifold<M, C>,
-    ) -> Result<(), Unsupported> {
-        Err(Unsupported)
     }
 }

@@ -5,6 +5,7 @@ pub mod advance;
 pub mod answers;
 pub mod bearing;
 pub mod cast;
+mod contact_manifolds;
 pub mod dispatcher;
 pub mod flat;
 pub mod follow;

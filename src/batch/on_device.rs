@@ -1,0 +1,258 @@
+//! What of a batch a GPU is asked: whether it pays, what it said, and what is left for the CPU.
+
+use super::backend::{Backend, Batch};
+use super::calibration::Calibration;
+use super::cpu;
+use super::early::Key;
+use super::gpu::{Gpu, GpuCounts, GpuOptions, Proposal};
+use super::job::{Job, Sweep};
+use crate::elementary::bracket::{Bracket, Limits};
+use crate::elementary::path::LinearPath;
+use crate::elementary::test_list::Domain;
+use crate::error::GpuError;
+
+/// Fewest jobs, and elementary tests, for which [`Backend::Auto`] asks a GPU before it is told by a
+/// [`Calibration`]. Estimated, not measured on one: the way there and back should take some 100 µs,
+/// as a few first contacts do, and a test takes 0.2 µs on one core. Wrong, it costs time only.
+const ESTIMATED: Least = Least {
+    jobs: Some(64),
+    tests: Some(1 << 14),
+};
+
+/// Sizes from which a GPU is asked; `None`: never.
+#[derive(Clone, Copy)]
+pub struct Least {
+    jobs: Option<usize>,
+    tests: Option<usize>,
+}
+
+impl Batch {
+    /// Opens a backend without blocking, with options for the choice of the GPU.
+    pub async fn open_async(backend: Backend, options: GpuOptions) -> Self {
+        let mut batch = Self {
+            backend,
+            ..Self::default()
+        };
+        if backend != Backend::Cpu {
+            match Gpu::open(options).await {
+                Ok(gpu) => batch.gpu = Some(gpu),
+                Err(error) => batch.report.error = Some(error),
+            }
+        }
+        batch
+    }
+
+    /// The GPU, as long as it works.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.gpu.as_ref()
+    }
+
+    /// The GPU, to drop meshes that are no longer used.
+    pub fn gpu_mut(&mut self) -> Option<&mut Gpu> {
+        self.gpu.as_mut()
+    }
+
+    /// What the GPU has done.
+    pub fn gpu_counts(&self) -> GpuCounts {
+        self.gpu.as_ref().map(Gpu::counts).unwrap_or_default()
+    }
+
+    /// Has [`Backend::Auto`] use the GPU from the sizes of batches of this calibration on. Returns false, and changes
+    /// nothing, if it was measured on another GPU than this, or if there is none.
+    pub fn calibrate(&mut self, calibration: &Calibration) -> bool {
+        let Calibration {
+            adapter,
+            jobs,
+            tests,
+        } = calibration;
+        let same = self.gpu.as_ref().is_some_and(|gpu| gpu.name() == adapter);
+        if same {
+            let (jobs, tests) = (*jobs, *tests);
+            self.calibrated = Some(Least { jobs, tests });
+        }
+        same
+    }
+
+    fn asks_gpu(&self, size: usize, least: fn(Least) -> Option<usize>) -> bool {
+        let least = least(self.calibrated.unwrap_or(ESTIMATED));
+        let large = self.backend == Backend::Gpu || least.is_some_and(|n| size >= n);
+        self.gpu.is_some() && large && size > 0
+    }
+
+    /// Adds what the device did since it had counted so much.
+    fn count(&mut self, before: GpuCounts) {
+        let now = self.gpu_counts();
+        self.report.submissions += now.submissions - before.submissions;
+        self.report.maps += now.maps - before.maps;
+        self.report.given_up += now.given_up - before.given_up;
+    }
+
+    /// The batch goes to the CPU; a device that may still serve is kept.
+    fn fall_back(&mut self, error: GpuError) {
+        self.report.fallbacks += 1;
+        if !matches!(error, GpuError::TooLarge { .. }) {
+            self.gpu = None;
+        }
+        self.report.error = Some(error);
+    }
+
+    /// Does the same as [`Self::submit`] without blocking.
+    pub async fn submit_async<J: Job>(&mut self, jobs: &[J]) {
+        self.early.forget();
+        if !self.asks_gpu(jobs.len(), |least| least.jobs) {
+            return;
+        }
+        let mut sweeps = emptied(std::mem::take(&mut self.sweeps));
+        sweeps.extend(jobs.iter().filter_map(Job::sweep));
+        let before = self.gpu_counts();
+        let outcome = match &mut self.gpu {
+            Some(gpu) => gpu.submit(&sweeps).await,
+            None => return,
+        };
+        self.count(before);
+        match outcome {
+            Ok(()) => {
+                let keys = sweeps.iter().map(Key::of);
+                self.early.sent.extend(keys.zip(0..));
+                self.early.pending = true;
+            }
+            Err(error) => self.fall_back(error),
+        }
+        self.sweeps = emptied(sweeps);
+    }
+
+    /// Waits without blocking until the answers to [`Self::submit_async`] have come back. [`Self::run`] waits for them
+    /// itself, except in a browser, where it uses only what has come back.
+    pub async fn ready(&mut self) {
+        if !std::mem::take(&mut self.early.pending) {
+            return;
+        }
+        let mut proposals = std::mem::take(&mut self.early.proposals);
+        let before = self.gpu_counts();
+        let outcome = match &mut self.gpu {
+            Some(gpu) => gpu.collect(&mut proposals).await,
+            None => Ok(()),
+        };
+        self.count(before);
+        match outcome {
+            Ok(()) => self.early.proposals = proposals,
+            Err(error) => self.fall_back(error),
+        }
+    }
+
+    /// Whether what was sent before is of any use for these jobs; where not, it is forgotten.
+    fn sent_early<J: Job>(&mut self, jobs: &[J]) -> bool {
+        let sent = &self.early.sent;
+        let known = |s: Sweep<'_>| sent.contains_key(&Key::of(&s));
+        let known = jobs.iter().filter(|job| job.sweep().is_some_and(known));
+        let known = known.count();
+        self.report.sent_early += known as u64;
+        if known == 0 {
+            self.early.forget();
+        }
+        known > 0
+    }
+
+    /// Answers jobs of which some were sent before and are back.
+    fn settle_early<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
+        let mut early = std::mem::take(&mut self.early);
+        let answers = self.settle(jobs, |sweep| early.proposal(sweep));
+        early.forget();
+        self.early = early;
+        answers
+    }
+
+    /// Does the same as [`Self::run`] without blocking while the GPU works.
+    pub async fn run_async<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
+        if self.sent_early(jobs) {
+            self.ready().await;
+            return self.settle_early(jobs);
+        }
+        if !self.asks_gpu(jobs.len(), |least| least.jobs) {
+            return self.run_on_cpu(jobs);
+        }
+        let mut sweeps = emptied(std::mem::take(&mut self.sweeps));
+        sweeps.extend(jobs.iter().filter_map(Job::sweep));
+        let mut proposals = std::mem::take(&mut self.proposals);
+        let before = self.gpu_counts();
+        let outcome = match &mut self.gpu {
+            Some(gpu) => gpu.propose(&sweeps, &mut proposals).await,
+            None => Ok(()),
+        };
+        self.count(before);
+        self.sweeps = emptied(sweeps);
+        if let Err(error) = outcome {
+            proposals.clear();
+            self.fall_back(error);
+        }
+        let mut each = proposals.iter().copied();
+        let answers = self.settle(jobs, |_| each.next());
+        self.proposals = proposals;
+        answers
+    }
+
+    /// Answers what the device proves free, and has the rest from the CPU. `proposal` is asked in the
+    /// order of the jobs that a device may have.
+    fn settle<J: Job>(
+        &mut self,
+        jobs: &[J],
+        mut proposal: impl FnMut(&Sweep<'_>) -> Option<Proposal>,
+    ) -> Vec<J::Answer> {
+        self.free.clear();
+        for job in jobs {
+            let said = job.sweep().map(|sweep| proposal(&sweep));
+            let unfit = matches!(said, None | Some(Some(Proposal::Unfit)));
+            self.report.unfit += u64::from(unfit);
+            self.free.push(said == Some(Some(Proposal::Free)));
+        }
+        let settled = self.free.iter().filter(|free| **free).count();
+        self.report.settled_by_gpu += settled as u64;
+        self.report.settled_by_cpu += (jobs.len() - settled) as u64;
+        cpu::run_but_free(jobs, &self.free)
+    }
+
+    /// Does the same as [`Self::brackets`] without blocking while the GPU works.
+    pub async fn brackets_async(
+        &mut self,
+        paths: &[LinearPath<f32>],
+        domain: Domain,
+        limits: &Limits<f32>,
+    ) -> Vec<Bracket<f32>> {
+        let whole = limits.start == 0.0 && limits.horizon == 1.0 && limits.tolerance.is_finite();
+        if !whole || !self.asks_gpu(paths.len(), |least| least.tests) {
+            return self.brackets_on_cpu(paths, domain, limits);
+        }
+        let mut free = std::mem::take(&mut self.free);
+        let before = self.gpu_counts();
+        let outcome = match &mut self.gpu {
+            Some(gpu) => gpu.prove(paths, domain, limits.tolerance, &mut free).await,
+            None => Ok(()),
+        };
+        self.count(before);
+        if let Err(error) = outcome {
+            self.fall_back(error);
+            return self.brackets_on_cpu(paths, domain, limits);
+        }
+        let mut open = std::mem::take(&mut self.open);
+        open.clear();
+        let left = paths.iter().zip(&free).filter(|(_, free)| !**free);
+        open.extend(left.map(|(path, _)| *path));
+        self.report.settled_by_gpu += (paths.len() - open.len()) as u64;
+        let mut rest = self.brackets_on_cpu(&open, domain, limits).into_iter();
+        self.open = open;
+        let answers = free
+            .iter()
+            .filter_map(|free| match free {
+                true => Some(Bracket::free(limits)),
+                false => rest.next(),
+            })
+            .collect();
+        self.free = free;
+        answers
+    }
+}
+
+/// The same room for sweeps that borrow from elsewhere: collected in place, nothing is allocated.
+fn emptied<'a>(sweeps: Vec<Sweep<'_>>) -> Vec<Sweep<'a>> {
+    sweeps.into_iter().map_while(|_| None).collect()
+}

@@ -1,0 +1,200 @@
+//! Contact manifolds with medial meshes, as parry asks for them from step to step: from the batch's answers for two
+//! meshes, from our own clipping for a mesh and a flat face, and from parry for a mesh and all other shapes.
+
+use super::bearing;
+use super::dispatcher::{MedialDispatcher, medial};
+use super::flat;
+use super::manifolds::{self, ensure_workspace, write_one_point};
+use crate::math::{Pose, Real};
+use crate::medial::MedialMesh;
+use parry3d::query::{
+    ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
+    Unsupported,
+};
+use parry3d::shape::Shape;
+
+impl MedialDispatcher {
+    /// The manifolds of two shapes, of which one at least is medial.
+    fn write_manifolds<M, C>(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported>
+    where
+        DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+        M: Default + Clone,
+        C: Default + Copy,
+    {
+        if self.answers.is_muted(g1, g2, pos12) {
+            // parry's workspace holds indices into the list that is emptied here.
+            *workspace = None;
+            ensure_workspace::<M, C>(g1, g2, workspace);
+            manifolds.clear();
+            return Ok(());
+        }
+        let meshes = (medial(g1), medial(g2));
+        if self.answers.has_one_point(g1, g2) {
+            let deepest = self.deepest(pos12, g1, g2, prediction)?;
+            // As above.
+            *workspace = None;
+            ensure_workspace::<M, C>(g1, g2, workspace);
+            write_one_point(deepest, pos12, manifolds);
+            self.answers.count_manifolds(manifolds.len());
+            return Ok(());
+        }
+        // Every place where a soft surface touches has a load of its own.
+        let soft = |g: &dyn Shape| g.as_composite_shape().is_some_and(|c| c.is_deformable());
+        if soft(g1) || soft(g2) {
+            return Err(Unsupported);
+        }
+        // What a load on one body is above: of two medial meshes the lighter lies on the other.
+        // (Their masses are known, where the volume of a solid would have to be measured first.)
+        let weight = |mesh: &MedialMesh| mesh.unit_mass_properties().mass();
+        let (side, mesh) = match meshes {
+            (Some(mesh1), Some(mesh2)) if weight(mesh1) > weight(mesh2) => (1, mesh2),
+            (Some(mesh1), _) => (0, mesh1),
+            (None, Some(mesh2)) => (1, mesh2),
+            (None, None) => return Err(Unsupported),
+        };
+        let center = mesh.unit_mass_properties().local_com;
+        let center = if side == 0 { center } else { pos12 * center };
+        let borne = bearing::borne(manifolds, side);
+        let (Some(mesh1), Some(mesh2)) = meshes else {
+            let pair = ((mesh, side), pos12, [g1, g2]);
+            let goes_on = write_on_flat(pair, prediction, manifolds, workspace);
+            let written = match goes_on {
+                Some(_) => Ok(()),
+                None => write_by_parry(pair, prediction, manifolds, workspace),
+            };
+            if goes_on != Some(true) {
+                bearing::hand_on(manifolds, &borne, prediction, side);
+            }
+            bearing::choose(manifolds, center, prediction, &borne, side);
+            if goes_on.is_some() {
+                manifolds.retain(|m| !m.points.is_empty());
+            }
+            return written;
+        };
+        ensure_workspace::<M, C>(mesh1, mesh2, workspace);
+        self.answers
+            .contacts(mesh1, mesh2, pos12, prediction, |found| {
+                manifolds::write_manifolds(
+                    [mesh1, mesh2],
+                    &found.contacts,
+                    pos12,
+                    prediction,
+                    manifolds,
+                );
+            });
+        bearing::choose(manifolds, center, prediction, &borne, side);
+        self.answers.count_manifolds(manifolds.len());
+        Ok(())
+    }
+}
+
+/// A mesh and which of the two shapes it is, the pose of the second shape in the frame of the first, and both shapes.
+type Pair<'a> = ((&'a MedialMesh, usize), &'a Pose, [&'a dyn Shape; 2]);
+
+/// The manifolds of a mesh and a shape with a flat face under it, if it has one, and whether they go on from those of the
+/// step before: manifolds of parry's have to hand their impulses on.
+fn write_on_flat<M, C>(
+    ((mesh, side), pos12, [g1, g2]): Pair,
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> Option<bool>
+where
+    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    let (other, pose) = if side == 0 {
+        (g2, *pos12)
+    } else {
+        (g1, pos12.inverse())
+    };
+    let face = flat::face(mesh, other, &pose, prediction)?;
+    let goes_on = flat::wrote(manifolds);
+    if !goes_on {
+        // parry's workspace holds indices into the list that is written anew here.
+        *workspace = None;
+    }
+    ensure_workspace::<M, C>(g1, g2, workspace);
+    flat::write_manifolds(mesh, &face, &pose, side, prediction, manifolds);
+    Some(goes_on)
+}
+
+/// parry's manifolds of a mesh and another shape. It knows its own again; those of a flat face it would begin anew, without
+/// what the user's hooks keep in them.
+fn write_by_parry<M, C>(
+    (_, pos12, [g1, g2]): Pair,
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> Result<(), Unsupported>
+where
+    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    bearing::look_again(manifolds);
+    let flat = if !manifolds.is_empty() && flat::wrote(manifolds) {
+        manifolds.clone()
+    } else {
+        Vec::new()
+    };
+    let parry = DefaultQueryDispatcher;
+    let found = parry.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+    for manifold in manifolds.iter_mut() {
+        let ids = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2];
+        if let Some(before) = flat.iter().find(|m| ids(m) == ids(manifold)) {
+            manifold.data = before.data.clone();
+        }
+    }
+    found
+}
+
+impl<M, C> PersistentQueryDispatcher<M, C> for MedialDispatcher
+where
+    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        if medial(g1).is_none() && medial(g2).is_none() {
+            return Err(Unsupported);
+        }
+        let written = self.write_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+        let points = manifolds.iter().flat_map(|m| &m.points);
+        let depth = points.map(|p| -p.dist).fold(0.0, Real::max);
+        // What somebody else will write is unknown.
+        self.answers
+            .note_depth(written.map_or(Real::MAX, |()| depth));
+        written
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        _pos12: &Pose,
+        _g1: &dyn Shape,
+        _g2: &dyn Shape,
+        _constraints1: Option<&dyn parry3d::query::details::NormalConstraints>,
+        _constraints2: Option<&dyn parry3d::query::details::NormalConstraints>,
+        _prediction: Real,
+        _manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        Err(Unsupported)
+    }
+}
