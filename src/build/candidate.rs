@@ -7,7 +7,9 @@ use super::hausdorff::measure;
 use super::largest::Effort;
 use super::options::{Hausdorff, Quality, Variant};
 use super::pipeline::Source;
+use super::refit::Target;
 use super::surface::Surface;
+use super::tightened::GAIN_OF_TIGHT;
 use super::triangle_tree::TriangleTree;
 use super::watch::Watch;
 use crate::error::BuildError;
@@ -43,13 +45,17 @@ impl Candidate {
 pub struct Enclosed {
     pub draft: Draft,
     pub hausdorff: Hausdorff,
-    before: Option<Draft>,
+    pub before: Option<Draft>,
     /// The least error so far without [`Quality::Best`]: it decides which counts are tried, so that
     /// they are the same for both.
     pub lower_quality: f64,
 }
 
 impl Enclosed {
+    pub fn error(&self) -> f64 {
+        self.hausdorff.error().into()
+    }
+
     pub fn counted_for_lower_quality(mut self) -> Self {
         let error = f64::from(self.hausdorff.error());
         self.lower_quality = self.lower_quality.min(error);
@@ -73,14 +79,28 @@ impl Source {
         effort: Effort,
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
+        let (draft, before) = self.covering(draft, watch)?;
+        self.measured(draft, before, effort, watch)
+    }
+
+    /// A draft that covers the surface when asked to, and what it was before.
+    pub fn covering(
+        &self,
+        mut draft: Draft,
+        watch: &mut Watch,
+    ) -> Result<(Draft, Option<Draft>), BuildError> {
         if !self.limits.enclose {
-            return self.measured(draft, None, effort, watch);
+            return Ok((draft, None));
         }
         watch.begin("enclose")?;
         let before = draft.clone();
-        let (mut draft, allowed) = (draft, self.limits.allow_uncovered);
-        enclose(&mut draft, &self.surface, allowed, watch)?;
-        self.measured(draft, Some(before), effort, watch)
+        enclose(
+            &mut draft,
+            &self.surface,
+            self.limits.allow_uncovered,
+            watch,
+        )?;
+        Ok((draft, Some(before)))
     }
 
     /// Measures a draft; `before` is what it was before enclosure.
@@ -120,29 +140,45 @@ impl Source {
         }
     }
 
-    /// The better of two; the second is measured only until it is worse.
+    /// The better of two; the second is measured only until it is worse. Where a target is given, what covers the
+    /// surface more closely than the second does is tried as well.
     pub fn or_better(
         &self,
-        best: Option<Enclosed>,
+        mut best: Option<Enclosed>,
         other: Draft,
+        target: Option<&Target>,
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
-        let Some(best) = best else {
-            return self.enclosed(other, self.effort(), watch);
-        };
-        let error = best.hausdorff.error();
+        let (loose, before) = self.covering(other, watch)?;
+        let least = best.as_ref().map_or(f64::INFINITY, Enclosed::error);
+        if let Some(target) = target
+            && let Some(tight) = self.tightened(&loose, GAIN_OF_TIGHT * least, target, watch)?
+        {
+            best = Some(self.or_covering(best, tight, before.clone(), watch)?);
+        }
+        self.or_covering(best, loose, before, watch)
+    }
+
+    /// The better of two, of which the second is enclosed already.
+    fn or_covering(
+        &self,
+        best: Option<Enclosed>,
+        draft: Draft,
+        before: Option<Draft>,
+        watch: &mut Watch,
+    ) -> Result<Enclosed, BuildError> {
         let effort = Effort {
-            enough: error.into(),
+            enough: best.as_ref().map_or(f64::INFINITY, Enclosed::error),
             ..self.effort()
         };
-        let other = self.enclosed(other, effort, watch)?;
-        Ok(if other.hausdorff.error() < error {
-            Enclosed {
+        let next = self.measured(draft, before, effort, watch)?;
+        Ok(match best {
+            None => next,
+            Some(best) if next.error() >= best.error() => best,
+            Some(best) => Enclosed {
                 lower_quality: best.lower_quality,
-                ..other
-            }
-        } else {
-            best
+                ..next
+            },
         })
     }
 

@@ -120,7 +120,7 @@ impl Source {
                 let may_win = rough.largest_below(&other.plain, balanced, watch)?;
                 if may_win.is_some() {
                     let plain = other.plain.clone();
-                    let with_plain = self.or_better(Some(best), plain, watch)?;
+                    let with_plain = self.or_better(Some(best), plain, None, watch)?;
                     best = with_plain.counted_for_lower_quality();
                 }
             }
@@ -185,26 +185,26 @@ impl Source {
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
         if !self.fits() {
-            let best = self.or_better(best, collapsed.plain.clone(), watch)?;
+            let best = self.or_better(best, collapsed.plain.clone(), None, watch)?;
             return Ok(best.counted_for_lower_quality());
         }
         let mut target = self.target(collapsed.most);
         target.creases = creases;
         let balanced = fit::balanced(collapsed, &target, watch)?;
-        let mut best = self.or_better(best, balanced.0.clone(), watch)?;
+        let mut best = self.or_better(best, balanced.0.clone(), Some(&target), watch)?;
         let clear = target.residuals(&balanced.0, watch)?.largest / CLEARLY_BETTER;
         // Next to creases much lies between samples.
         let unsure = !creases.is_empty();
         let plain = &collapsed.plain;
         if unsure || target.largest_below(plain, clear, watch)?.is_some() {
-            best = self.or_better(Some(best), plain.clone(), watch)?;
+            best = self.or_better(Some(best), plain.clone(), Some(&target), watch)?;
         }
         best = best.counted_for_lower_quality();
         if self.limits.quality == Quality::Best {
             // The first is the balanced one itself.
             let drafts = fit::more(balanced, collapsed, &target, watch)?;
             for (draft, _) in drafts.into_iter().skip(1) {
-                best = self.or_better(Some(best), draft, watch)?;
+                best = self.or_better(Some(best), draft, Some(&target), watch)?;
             }
         }
         Ok(best)

@@ -51,6 +51,7 @@ pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> Tar
         samples,
         spacing: ENVELOPE_SPACING[over_small + over_large],
         creases: &[],
+        beyond: 0.0,
     }
 }
 

@@ -88,8 +88,9 @@ pub struct BuildOptions {
     pub max_error: Option<Real>,
     /// How much work to spend on making the error small.
     pub quality: Quality,
-    /// Whether to enlarge radii until the solid provably covers the whole triangle mesh. Without this, the
-    /// error is about six tenths as large, and parts of the triangle mesh stick out of the solid.
+    /// Whether the solid provably covers the whole triangle mesh: spheres are moved and enlarged until it does
+    /// ([`Quality::Fast`] only enlarges them). Without this, the error is about seven tenths as large, and parts of the
+    /// triangle mesh stick out of the solid.
     pub enclose: bool,
     /// With `enclose`: how far the triangle mesh may stick out of the solid nevertheless, as a fraction of the
     /// longest side of the bounding box. The solid becomes thinner by up to as much.
@@ -179,7 +180,7 @@ pub enum Variant {
 pub struct BuildReport {
     /// How far the result is from the triangle mesh, in the user's unit.
     pub hausdorff: Hausdorff,
-    /// The same before radii were enlarged to cover the triangle mesh; `None` without [`BuildOptions::enclose`].
+    /// The same before spheres were moved and enlarged to cover the triangle mesh; `None` without [`BuildOptions::enclose`].
     pub hausdorff_before_enclosure: Option<Hausdorff>,
     /// Longest side of the triangle mesh's bounding box, in the user's unit. Errors are often given as fractions of it.
     pub longest_side: Real,

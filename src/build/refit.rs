@@ -53,6 +53,9 @@ pub struct Target<'a> {
     pub spacing: f64,
     /// Convex creases of it that are kept.
     pub creases: &'a [[Point; 2]],
+    /// How far the solid may reach beyond the surface without being wrong (longest side 1): 0 but where it is to
+    /// cover the surface.
+    pub beyond: f64,
 }
 
 impl Target<'_> {
@@ -106,7 +109,15 @@ impl Target<'_> {
         envelope: &mut [EnvelopeSample],
         watch: &mut Watch,
     ) -> Result<Residuals, BuildError> {
-        residuals(draft, self.tree, &self.samples, hints, envelope, watch)
+        residuals(
+            draft,
+            self.tree,
+            &self.samples,
+            hints,
+            envelope,
+            self.beyond,
+            watch,
+        )
     }
 }
 

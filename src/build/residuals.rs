@@ -13,7 +13,9 @@
 
 use super::bounds::{Point, direction};
 use super::chunks::map_chunks;
+use super::cloud::Cloud;
 use super::draft::{Ball, Corners, Draft};
+use super::primitive_tree::Nearest;
 use super::samples::Sample;
 use super::solid::{Cell, Solid};
 use super::triangle_tree::TriangleTree;
@@ -121,31 +123,46 @@ pub fn envelope_samples(
 }
 
 /// Examines a draft at surface samples, each with the primitive it had last, and at envelope
-/// samples.
+/// samples. Where the solid may reach `beyond` the surface, residuals are what it reaches farther (negative) and
+/// what it does not cover.
 pub fn residuals(
     draft: &Draft,
     tree: &TriangleTree,
     samples: &[Sample],
     hints: &mut [u32],
     envelope: &mut [EnvelopeSample],
+    beyond: f64,
     watch: &mut Watch,
 ) -> Result<Residuals, BuildError> {
     let solid = Solid::new(draft);
-    let paired: Vec<(Point, u32)> = samples
-        .iter()
-        .map(|s| s.point)
-        .zip(hints.iter().copied())
-        .collect();
+    let paired: Vec<(Sample, u32)> = samples.iter().copied().zip(hints.iter().copied()).collect();
+    let boundary = match beyond > 0.0 {
+        true => envelope.iter().map(|e| e.at(draft, &solid).0).collect(),
+        false => Vec::new(),
+    };
+    let boundary = Cloud::new(boundary);
     let mut rows = map_chunks(&paired, watch, |chunk| {
         let mut last = 0;
-        let row = |&(point, hint): &(Point, u32)| {
-            let near = solid.nearest(point, if hint == UNKNOWN { last } else { hint });
+        let row = |&(sample, hint): &(Sample, u32)| {
+            let point = sample.point;
+            let mut near = solid.nearest(point, if hint == UNKNOWN { last } else { hint });
             last = near.primitive;
+            let mut residual = near.signed.distance;
+            let mut on_boundary = point;
+            if beyond > 0.0 && residual < 0.0 {
+                if let Some(exit) = far_exit(&solid, &sample, &near, beyond, &boundary) {
+                    residual = -(exit - point).length();
+                    // Shrinking the ball there shortens the way.
+                    near = solid.nearest(exit, last);
+                    on_boundary = exit;
+                }
+                residual = (residual + beyond).min(0.0);
+            }
             Row {
                 corners: solid.primitives()[near.primitive as usize],
                 weights: near.signed.weights,
-                normal: direction(point - solid.ball(&near).center),
-                residual: near.signed.distance,
+                normal: direction(on_boundary - solid.ball(&near).center),
+                residual,
                 weight: 1.0,
                 point,
                 primitive: near.primitive,
@@ -169,6 +186,10 @@ pub fn residuals(
             hint = triangle;
             let off = point - nearest;
             let (distance, along) = (off.length(), off.dot(sample.normal));
+            let mut residual = if along > 0.0 { -distance } else { distance };
+            if beyond > 0.0 {
+                residual = (residual + beyond).min(0.0);
+            }
             // Where the way to the surface is across the normal, growing does not help.
             let cosine = if distance > 1e-9 {
                 along / distance
@@ -179,7 +200,7 @@ pub fn residuals(
                 corners,
                 weights: sample.weights,
                 normal: sample.normal,
-                residual: if along > 0.0 { -distance } else { distance },
+                residual,
                 weight: share * cosine * cosine,
                 point,
                 primitive: sample.primitive,
@@ -203,4 +224,22 @@ pub fn residuals(
         largest,
         score: largest + 2.0 * rms,
     })
+}
+
+/// Where the way out of the solid from a sample within it is likely shortest, if it is longer than `beyond` and leads
+/// past the primitive that is deepest there. `boundary` are points of the solid's boundary.
+fn far_exit(
+    solid: &Solid,
+    sample: &Sample,
+    near: &Nearest,
+    beyond: f64,
+    boundary: &Cloud,
+) -> Option<Point> {
+    let (p, hint) = (sample.point, near.primitive);
+    if solid.is_out(p + sample.normal * beyond, hint) || solid.onto_boundary(p, near).is_some() {
+        return None;
+    }
+    let way = solid.way_out(p, sample.normal, hint);
+    let straight = way.is_finite().then(|| p + sample.normal * way);
+    boundary.nearer(p, way).or(straight)
 }

@@ -14,6 +14,8 @@ use super::ladder::Ladder;
 use super::largest::Effort;
 use super::options::Quality;
 use super::pipeline::{GAVE_UP, Source};
+use super::refit::Target;
+use super::tightened::GAIN_OF_TIGHT;
 use super::watch::Watch;
 use crate::error::BuildError;
 use crate::math::Real;
@@ -242,19 +244,19 @@ impl Search<'_, '_> {
                 let balanced = fit::balanced(&collapsed, &target, watch)?;
                 let largest = target.residuals(&balanced.0, watch)?.largest;
                 self.residual = self.residual.min(largest);
-                keeping = self.keeping(balanced.0.clone(), watch)?;
+                keeping = self.keeping(balanced.0.clone(), Some(&target), watch)?;
                 if keeping.is_none() && self.source.limits.quality == Quality::Best {
                     let drafts = fit::more(balanced, &collapsed, &target, watch)?;
                     for (draft, _) in drafts.into_iter().skip(1) {
                         keeping = match keeping {
-                            None => self.keeping(draft, watch)?,
+                            None => self.keeping(draft, Some(&target), watch)?,
                             found => found,
                         };
                     }
                 }
             }
             if keeping.is_none() {
-                keeping = self.keeping(collapsed.plain, watch)?;
+                keeping = self.keeping(collapsed.plain, None, watch)?;
             }
             if let Some(enclosed) = keeping {
                 return Ok(Some(Found {
@@ -268,14 +270,33 @@ impl Search<'_, '_> {
         Ok(None)
     }
 
-    /// A draft, enclosed if asked for, if it keeps the limit.
-    fn keeping(&self, draft: Draft, watch: &mut Watch) -> Result<Option<Enclosed>, BuildError> {
+    /// A draft, enclosed if asked for, if it keeps the limit, or where a target is given if it does once it covers the
+    /// surface more closely.
+    fn keeping(
+        &self,
+        draft: Draft,
+        target: Option<&Target>,
+        watch: &mut Watch,
+    ) -> Result<Option<Enclosed>, BuildError> {
+        let (source, limit) = (self.source, self.limit);
         let effort = Effort {
-            enough: self.limit,
+            enough: limit,
             ..Effort::CLOSE
         };
-        let enclosed = self.source.enclosed(draft, effort, watch)?;
-        Ok(Some(enclosed).filter(|e| f64::from(e.hausdorff.error()) <= self.limit))
+        let keeps = |e: &Enclosed| e.error() <= limit;
+        let loose = source.enclosed(draft, effort, watch)?;
+        if keeps(&loose) {
+            return Ok(Some(loose));
+        }
+        let Some(target) = target else {
+            return Ok(None);
+        };
+        let tight = source.tightened(&loose.draft, GAIN_OF_TIGHT * limit, target, watch)?;
+        let Some(tight) = tight else {
+            return Ok(None);
+        };
+        let tight = source.measured(tight, loose.before, effort, watch)?;
+        Ok(Some(tight).filter(keeps))
     }
 }
 
