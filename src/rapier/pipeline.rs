@@ -56,7 +56,6 @@ use web_time::Instant;
 /// # assert!((0.1..0.4).contains(&world.bodies[body].translation().y));
 /// # Ok::<(), rapier3d_medial::MeshError>(())
 /// ```
-#[derive(Default)]
 pub struct MedialPipeline {
     pub(super) batch: Batch,
     pub(super) answers: Arc<Answers>,
@@ -71,6 +70,13 @@ pub struct MedialPipeline {
     is_attached: bool,
 }
 
+impl Default for MedialPipeline {
+    /// A pipeline with the default options.
+    fn default() -> Self {
+        Self::new(MedialOptions::default())
+    }
+}
+
 impl MedialPipeline {
     /// A pipeline for one world. Opens a GPU if [`MedialOptions::backend`] asks for one. If there is none, the CPU
     /// does its work, and [`BatchReport::error`](crate::batch::BatchReport::error) of [`Self::batch`] says why. In a
@@ -81,13 +87,20 @@ impl MedialPipeline {
 
     /// A pipeline that uses a backend opened before; [`MedialOptions::backend`] is ignored.
     pub fn with_batch(options: MedialOptions, batch: Batch) -> Self {
-        let mut pipeline = Self {
+        let mut effects = Wanted::default();
+        effects.scene = options.effects;
+        Self {
             batch,
-            ..Self::default()
-        };
-        pipeline.effects.scene = options.effects;
-        pipeline.budget = options.budget;
-        pipeline
+            answers: Arc::default(),
+            recycled: Recycled::default(),
+            effects,
+            tuning: Tuning::default(),
+            budget: options.budget,
+            told: Told::default(),
+            placed: Placed::default(),
+            kept: None,
+            is_attached: false,
+        }
     }
 
     /// The backend, whose report says what it has done, and why a GPU was not used.

@@ -73,6 +73,33 @@ fn the_default_budget_changes_nothing() {
     assert!(10 * free.most < options.budget, "{}", free.most);
 }
 
+/// Symptom: bodies hung in the air before their first contact. Cause: `MedialPipeline::default()` had a budget of 0. What
+/// must be so: it steps as with the default options.
+#[test]
+fn a_default_pipeline_has_the_default_budget() {
+    let fallen = |mut pipeline: MedialPipeline| {
+        let mut world = PhysicsWorld::new();
+        let ground = ColliderBuilder::cuboid(5.0, 0.5, 5.0).translation(Vector::NEG_Y * 0.5);
+        world.insert_collider(ground, None);
+        let body = RigidBodyBuilder::dynamic().translation(Vector::Y);
+        let mesh = MedialMesh::torus(0.3, 0.1, 12).expect("a ring");
+        let (body, _) = world.insert(body, ColliderBuilder::medial_mesh(mesh));
+        let waiting: u32 = (0..60)
+            .map(|_| pipeline.step(&mut world).waiting as u32)
+            .sum();
+        (world.bodies[body].translation().y, waiting)
+    };
+    let (height, waiting) = fallen(MedialPipeline::default());
+    assert!(
+        (height - 0.1).abs() < 0.01 && waiting == 0,
+        "{height} {waiting}"
+    );
+    assert_eq!(
+        fallen(MedialPipeline::new(MedialOptions::default())).0,
+        height
+    );
+}
+
 /// Nothing stops a kinematic bar: what it pushes is searched and carried along, without any budget. Beside it rings lie
 /// against each other.
 #[test]
