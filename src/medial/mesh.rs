@@ -4,6 +4,7 @@
 use super::check::check;
 use super::mass;
 use super::primitive::{MedialPrimitive, MedialSphere};
+use super::rectangle::SweptRectangles;
 use super::shell::Shell;
 use super::simplex::{primitive_of, primitives_of, sorted};
 use super::thickness::{self, Thicknesses};
@@ -39,6 +40,7 @@ struct MedialData {
     solid_mass: OnceLock<MassProperties>,
     boxes: OnceLock<Bvh>,
     shell: OnceLock<Arc<Shell>>,
+    rectangles: OnceLock<SweptRectangles>,
     thicknesses: OnceLock<Thicknesses>,
 }
 
@@ -128,6 +130,7 @@ impl MedialMesh {
             solid_mass,
             boxes: OnceLock::new(),
             shell: OnceLock::new(),
+            rectangles: OnceLock::new(),
             thicknesses: OnceLock::new(),
         };
         Self {
@@ -214,6 +217,18 @@ impl MedialMesh {
     pub(crate) fn shell(&self) -> &Arc<Shell> {
         let shell = &self.data.shell;
         shell.get_or_init(|| Arc::new(Shell::of_mesh(self)))
+    }
+
+    /// Swept rectangles round what is below the inner nodes of its tree. Made at the first call.
+    pub(crate) fn rectangles(&self) -> &SweptRectangles {
+        let Parts {
+            spheres,
+            primitives,
+            tree,
+            ..
+        } = &self.data.parts;
+        let rectangles = &self.data.rectangles;
+        rectangles.get_or_init(|| SweptRectangles::new(spheres, primitives, tree))
     }
 
     /// Bounding box of the solid, in the body's frame.

@@ -14,6 +14,7 @@ pub mod mass;
 pub mod mesh;
 pub mod polygon;
 pub mod primitive;
+pub mod rectangle;
 #[cfg(feature = "serde")]
 mod saved;
 pub(crate) mod scaled;

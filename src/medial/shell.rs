@@ -18,6 +18,8 @@ pub struct Shell {
     pub primitives: Vec<u64>,
     /// Primitives that meet each node of the mesh's tree.
     pub nodes: Vec<u64>,
+    /// Whether these are the mesh's own spheres and primitives.
+    pub is_exact: bool,
 }
 
 impl Shell {
@@ -30,6 +32,7 @@ impl Shell {
             ..Self::default()
         };
         if spheres.len() <= MOST && simplices.len() <= MOST {
+            shell.is_exact = true;
             let bits = |vertices: &[u32]| vertices.iter().fold(0, |m, &v| m | 1 << v);
             shell.balls = spheres.iter().map(|s| (s.center, s.radius)).collect();
             shell.primitives = simplices.iter().map(|s| bits(&s.vertices)).collect();
@@ -69,6 +72,7 @@ impl Shell {
             balls: points.iter().map(|p| (*p, 0.0)).take(MOST).collect(),
             primitives: vec![(0..count).fold(0, |m, k| m | 1 << k)],
             nodes: Vec::new(),
+            is_exact: false,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How long two primitives are certainly apart, because one direction after another separates them while they move
+//! How long two primitives, or the hulls of two nodes, are certainly apart, because one direction after another separates them while they move
 //! along the chords of their paths. This cheap bound decides which primitives are worth an elementary test.
 
 use crate::math::lane::Vec3;
@@ -7,20 +7,20 @@ use crate::math::lane::Vec3;
 type Ball = (Vec3<f64>, Vec3<f64>, f64);
 
 /// Spheres of one primitive, or of one side of an elementary test, over a piece: position at the
-/// start, chord, and radius grown by the sagitta; the last again where there are fewer than three.
+/// start, chord, and radius grown by the sagitta; the last again where there are fewer than four.
 #[derive(Clone, Copy)]
 pub(super) struct Balls {
-    spheres: [Ball; 3],
+    spheres: [Ball; 4],
     len: usize,
     /// Bound of the coordinates in play.
     size: f64,
 }
 
 impl Balls {
-    /// One to three of them; `terms`: sizes of the numbers that their positions are sums of, beyond those.
+    /// One to four of them; `terms`: sizes of the numbers that their positions are sums of, beyond those.
     pub(super) fn new(balls: impl ExactSizeIterator<Item = Ball>, terms: f64) -> Self {
         let len = balls.len();
-        let mut spheres = [(Vec3::zero(), Vec3::zero(), 0.0); 3];
+        let mut spheres = [(Vec3::zero(), Vec3::zero(), 0.0); 4];
         let mut size = terms;
         for (k, ball) in balls.enumerate() {
             spheres[k..].fill(ball);
@@ -31,7 +31,7 @@ impl Balls {
 
     /// The same with radii less these.
     pub(super) fn less(mut self, losses: [f64; 3]) -> Self {
-        for (sphere, loss) in self.spheres.iter_mut().zip(losses) {
+        for (sphere, loss) in self.spheres[..self.len].iter_mut().zip(losses) {
             sphere.2 -= loss;
         }
         self
@@ -63,17 +63,42 @@ impl Balls {
         [at(1) - at(0), at(2) - at(0)]
     }
 
+    /// The plane of the first three centres at a time.
+    fn plane(&self, t: f64) -> Plane {
+        let edges = self.edges(t);
+        let used = [self.len > 1, self.len > 2];
+        let inverse = [0, 1].map(|k| match (used[k], edges[k].length_sq()) {
+            (true, square) if square > 0.0 => 1.0 / square,
+            _ => 0.0,
+        });
+        let share = [0.0, 0.5, 1.0 / 3.0, 0.5][self.len - 1];
+        Plane {
+            edges,
+            inverse,
+            place: used.map(|used| if used { share } else { 0.0 }),
+            is_triangle: self.len == 3,
+        }
+    }
+
     /// Where each ball ends along `n` at the start of the piece, and how fast that changes, in units of
     /// the length of `n`: on its far side where `length` is that, on its near side where it is the
     /// negative of that.
-    fn along(&self, n: Vec3<f64>, length: f64) -> [(f64, f64); 3] {
-        self.spheres
-            .map(|(center, chord, radius)| (n.dot(center) + length * radius, n.dot(chord)))
+    fn along(&self, n: Vec3<f64>, length: f64) -> [(f64, f64); 4] {
+        let mut ends = [(0.0, 0.0); 4];
+        for (end, (center, chord, radius)) in ends.iter_mut().zip(self.all()) {
+            *end = (n.dot(*center) + length * radius, n.dot(*chord));
+        }
+        ends
     }
 
     fn middle(&self, t: f64) -> Vec3<f64> {
         let sum = (self.all().iter()).fold(Vec3::zero(), |m, s| m + s.0 + s.1 * t);
         sum * (1.0 / self.len as f64)
+    }
+
+    /// Radius of a ball round the middle that is within the hull.
+    fn core(&self) -> f64 {
+        self.all().iter().map(|s| s.2).sum::<f64>() / self.len as f64
     }
 }
 
@@ -85,7 +110,7 @@ const ENOUGH: f64 = 0.02;
 /// `until`, or at that moment where there is no other.
 /// Along chords a direction's bound is concave and piecewise linear in time
 /// ([`crate::elementary::certificate`]): its first root follows from those of all sphere pairs.
-/// The middles now and later give directions first, then edges and normals.
+/// The middles now and later give directions first, then edges and normals. Nodes have one direction.
 ///
 /// What comes within `tolerance` of the target and no nearer may be called free, but not for a while:
 /// where primitives come within the tolerance, their tests begin, and say that they touch.
@@ -98,15 +123,27 @@ pub(super) fn free_until(
     let ([a, b], [from, until]) = (balls, span);
     // Rounding: a few ulps of the numbers in play.
     let least = target + 64.0 * f64::EPSILON * (a.size + b.size);
+    // Nodes are split instead of tried along more directions. What is below them may touch, and is told only by
+    // tests: with nodes within the tolerance free for good, rods get out of boxes that turn.
+    let is_node = a.len > 3 || b.len > 3;
+    let free_for_good = if is_node { least + tolerance } else { least };
     let mut free = Some(from);
     let enough = from + ENOUGH * (until - from);
     let mut attempt = |n: Vec3<f64>| {
-        let held = holds(balls, n, span, least, least + tolerance);
+        let held = holds(balls, n, span, free_for_good, least + tolerance);
         free = free.zip(held).map(|(a, b)| a.max(b));
         free.is_none_or(|free| free >= enough && free > from)
     };
+    let y = b.middle(from) - a.middle(from);
+    let overlap = a.core() + b.core() + least;
+    if overlap > 0.0 && y.length_sq() <= overlap * overlap {
+        return free;
+    }
+    if is_node {
+        attempt(between(balls, from, y));
+        return free;
+    }
     let toward = |t: f64| b.middle(t) - a.middle(t);
-    let y = toward(from);
     let _ = attempt(y)
         || attempt(toward(0.5 * (from + until)))
         || attempt(toward(until))
@@ -137,6 +174,68 @@ fn across(a: [Vec3<f64>; 2], b: [Vec3<f64>; 2], y: Vec3<f64>) -> [Option<Vec3<f6
     ]
 }
 
+/// A lower bound of the distance of two hulls at rest; as soon as it is more than `enough` no better one is looked for.
+pub(super) fn gap([a, b]: [&Balls; 2], enough: f64) -> f64 {
+    let rounding = 64.0 * f64::EPSILON * (a.size + b.size);
+    let y = b.middle(0.0) - a.middle(0.0);
+    // No direction says more.
+    if y.length() - a.core() - b.core() <= enough {
+        return f64::MIN;
+    }
+    let along = |n: Vec3<f64>| {
+        let length = n.length();
+        if length <= 0.0 {
+            return f64::MIN;
+        }
+        let far = a.all().iter().map(|s| n.dot(s.0) + length * s.2);
+        let near = b.all().iter().map(|s| n.dot(s.0) - length * s.2);
+        let gap = near.fold(f64::MAX, f64::min) - far.fold(f64::MIN, f64::max);
+        gap / length - rounding
+    };
+    along(between([a, b], 0.0, y))
+}
+
+/// A point in the plane of a hull's centres, by its shares of two edges.
+struct Plane {
+    edges: [Vec3<f64>; 2],
+    /// 1 over the squared lengths; 0 where there is none.
+    inverse: [f64; 2],
+    place: [f64; 2],
+    is_triangle: bool,
+}
+
+impl Plane {
+    /// Moves the point nearer to another, `y` away, along one edge after the other; returns what is left.
+    fn approach(&mut self, mut y: Vec3<f64>) -> Vec3<f64> {
+        for k in 0..2 {
+            let most = if self.is_triangle {
+                1.0 - self.place[1 - k]
+            } else {
+                1.0
+            };
+            let step = y.dot(self.edges[k]) * self.inverse[k];
+            let place = (self.place[k] + step).min(most).max(0.0);
+            y = y - self.edges[k] * (place - self.place[k]);
+            self.place[k] = place;
+        }
+        y
+    }
+}
+
+/// Times that each side of [`between`] approaches the other.
+const ROUNDS: usize = 2;
+
+/// From one of two hulls to the other at a time, about as between the nearest points of the polygons of their centres,
+/// found by solving for one parameter after the other. `y`: from middle to middle.
+fn between([a, b]: [&Balls; 2], t: f64, mut y: Vec3<f64>) -> Vec3<f64> {
+    let (mut first, mut second) = (a.plane(t), b.plane(t));
+    for _ in 0..ROUNDS {
+        y = first.approach(y);
+        y = -second.approach(-y);
+    }
+    y
+}
+
 /// Until when all of the second primitive stays beyond all of the first along `n`, of any length:
 /// `None`, for good, where it is further than `least` until the end of the span, else as long as it is
 /// further than `contact`; `from` if it is not. In a span without length, where a contact is known already,
@@ -152,6 +251,7 @@ fn holds(
     let length = n.length();
     let (least, contact) = (least * length, contact * length);
     let (far, near) = (a.along(n, length), b.along(n, -length));
+    let (far, near) = (&far[..a.len], &near[..b.len]);
     // The least distance of two of them: concave in time.
     let gap = |t: f64| {
         let at = |s: &(f64, f64)| s.0 + s.1 * t;
@@ -168,8 +268,8 @@ fn holds(
         return Some(from);
     }
     let mut step = until - from;
-    for (far, far_rate) in far {
-        for (near, near_rate) in near {
+    for &(far, far_rate) in far {
+        for &(near, near_rate) in near {
             let closing = far_rate - near_rate;
             let room = near - far - closing * from - contact;
             if closing * step > room {

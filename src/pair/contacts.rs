@@ -7,6 +7,7 @@
 //! parallel cones get a second pair, so that they can rest on a line.
 
 use super::first_contact::Counts;
+use super::hulls::Hulls;
 use super::outline;
 use super::volumes::Volumes;
 use crate::elementary::certificate::ActiveFace;
@@ -73,6 +74,7 @@ pub fn contacts(
         stack.extend((0..body2.roots()).map(|j| [i, j]));
     }
     let margin = f64::from(prediction);
+    let mut hulls = Hulls::new((body1, body2), &place);
     while let Some([i, j]) = stack.pop() {
         if !near.meet([i, j]) {
             continue;
@@ -84,6 +86,9 @@ pub fn contacts(
         let reach = ra + rb + margin;
         // Bounds carry their own rounding; what is left is that of this subtraction.
         if y.length_sq() > reach * reach * (1.0 + 1.0e-12) {
+            continue;
+        }
+        if !near.is_exact() && hulls.gap([i, j], margin) > margin {
             continue;
         }
         match (body1.below(i), body2.below(j)) {

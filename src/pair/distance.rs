@@ -6,6 +6,7 @@
 
 use super::contacts::{Placement, PrimitivePair, SpherePair};
 use super::first_contact::Counts;
+use super::hulls::Hulls;
 use super::outline;
 use super::volumes::Volumes;
 use crate::math::lane::Vec3;
@@ -67,13 +68,15 @@ pub fn near_spheres(
             bound: y.length() * (1.0 - 1.0e-12) - f64::from(a.1) - f64::from(b.1),
             nodes: [i, j],
             first_is_larger: a.1 >= b.1,
+            of_hulls: false,
         }
     };
     for i in 0..body1.roots() {
         heap.extend((0..body2.roots()).map(|j| entry(i, j)));
     }
     let mut found = Vec::new();
-    while let Some(e) = heap.pop() {
+    let mut hulls = Hulls::new((body1, body2), &place);
+    while let Some(mut e) = heap.pop() {
         if e.bound > limit {
             break;
         }
@@ -81,7 +84,18 @@ pub fn near_spheres(
         if !near.meet([i, j]) {
             continue;
         }
-        counts.nodes += 1;
+        if !e.of_hulls {
+            counts.nodes += 1;
+            e.bound = e.bound.max(hulls.gap(e.nodes, limit));
+            e.of_hulls = true;
+            if heap.peek().is_some_and(|next| *next > e) {
+                heap.push(e);
+                continue;
+            }
+            if e.bound > limit {
+                break;
+            }
+        }
         match (body1.below(i), body2.below(j)) {
             (Below::Primitive(p), Below::Primitive(q)) => {
                 found.clear();
@@ -114,6 +128,8 @@ struct Entry {
     bound: f64,
     nodes: [u32; 2],
     first_is_larger: bool,
+    /// Whether the bound is that of the hulls, not only of the balls.
+    of_hulls: bool,
 }
 
 impl PartialEq for Entry {

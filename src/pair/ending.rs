@@ -99,16 +99,20 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         ]
     }
 
+    /// Makes the [`Self::hulls`] of two nodes.
+    pub(super) fn sweep_hulls(&mut self, [i, j]: [u32; 2]) {
+        self.sides.0.sweep_hull(i);
+        self.sides.1.sweep_hull(j);
+    }
+
+    /// Hulls of two nodes over the piece.
+    pub(super) fn hulls(&self, [i, j]: [u32; 2]) -> [&Balls; 2] {
+        [self.sides.0.hull(i), self.sides.1.hull(j)]
+    }
+
     /// Spheres of two primitives over the piece, or of their cores.
-    pub(super) fn swept(&mut self, nodes: [u32; 2], [p, q]: [u32; 2]) -> [Balls; 2] {
-        let places = [
-            self.sides.0.sweep_leaf(nodes[0], p),
-            self.sides.1.sweep_leaf(nodes[1], q),
-        ];
-        let balls = [
-            *self.sides.0.balls(places[0]),
-            *self.sides.1.balls(places[1]),
-        ];
+    pub(super) fn swept(&self, nodes: [u32; 2], [p, q]: [u32; 2]) -> [Balls; 2] {
+        let balls = self.hulls(nodes).map(|hull| *hull);
         if self.cores.is_none() {
             return balls;
         }

@@ -11,6 +11,7 @@ pub mod distance;
 mod ending;
 pub mod first_contact;
 pub mod held;
+mod hulls;
 mod leaves;
 pub mod outline;
 mod queue;

@@ -188,6 +188,12 @@ impl Near {
         let left = self.0.as_ref();
         left.is_none_or(|[a, b]| a.meets(i) && b.meets(j))
     }
+
+    /// Whether directions were tried on every primitive, so that others would hardly tell more.
+    pub fn is_exact(&self) -> bool {
+        let left = self.0.as_ref();
+        left.is_some_and(|left| left.iter().all(|left| left.shell.is_exact))
+    }
 }
 
 /// The primitives of two bodies at rest that may be within `reach` (a length) of each other; `None` if there are none.

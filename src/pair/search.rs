@@ -5,6 +5,8 @@
 //! - A node is a ball, which keeps its radius when it turns. Its centre stays within the sagitta `A/8` of the chord of
 //!   its path ([`crate::math::motion`]). So two nodes cannot meet before the two balls, enlarged by both sagittas and
 //!   moved along the chords, touch: the smaller root of a quadratic.
+//! - Two nodes cannot meet while a direction keeps their hulls apart: swept rectangles, which fit better than balls
+//!   ([`crate::medial::rectangle`]).
 //! - Two primitives cannot meet while a direction keeps them apart ([`super::apart`]), nor can the spheres of one of
 //!   their elementary tests. "Meet" here means to come within the tolerance, so that what touches at the start is
 //!   found there.
@@ -279,41 +281,30 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         }
     }
 
-    /// Replaces two nodes by what is below the larger; two primitives wait until directions no
-    /// longer keep them apart. Returns whether an earlier contact is still possible.
+    /// Two nodes wait until directions no longer keep their hulls apart; then they are replaced by what is below the
+    /// larger, and of primitives by their elementary tests. Returns whether an earlier contact is still possible.
     fn expand(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
         let (a, b) = (*self.sides.0.node(i), *self.sides.1.node(j));
-        if let (Below::Primitive(p), Below::Primitive(q)) = (a.below, b.below) {
-            self.proofs += 1;
-            let balls = self.swept([i, j], [p, q]);
-            return match self.free_until(balls.each_ref(), time) {
-                None => true,
-                Some(free) if self.soon(free, time) => self.list_tests([i, j], free),
-                Some(free) => self.wait([i, j], free),
-            };
-        }
-        // A ball round a large primitive, such as a triangle of the ground, holds all that is near it.
-        // Directions tell how far the node's ball is from the primitive itself.
-        let large = match (a.below, b.below) {
-            (Below::Nodes(..), Below::Primitive(q)) if a.radius * SIMILAR < b.radius => {
-                let ball = Balls::new([(a.start, a.chord, a.radius)].into_iter(), 0.0);
-                let place = self.sides.1.sweep_leaf(j, q);
-                Some([ball, *self.sides.1.balls(place)])
-            }
-            (Below::Primitive(p), Below::Nodes(..)) if b.radius * SIMILAR < a.radius => {
-                let ball = Balls::new([(b.start, b.chord, b.radius)].into_iter(), 0.0);
-                let place = self.sides.0.sweep_leaf(i, p);
-                Some([*self.sides.0.balls(place), ball])
-            }
+        self.proofs += 1;
+        let primitives = match (a.below, b.below) {
+            (Below::Primitive(p), Below::Primitive(q)) => Some([p, q]),
             _ => None,
         };
-        if let Some([first, second]) = large {
-            self.proofs += 1;
-            match self.free_until([&first, &second], time) {
-                None => return true,
-                Some(free) if !self.soon(free, time) => return self.wait([i, j], free),
-                Some(_) => {}
+        self.sweep_hulls([i, j]);
+        let free = match primitives {
+            Some(pair) if self.cores.is_some() => {
+                self.free_until(self.swept([i, j], pair).each_ref(), time)
             }
+            _ => self.free_until(self.hulls([i, j]), time),
+        };
+        let Some(free) = free else {
+            return true;
+        };
+        if !self.soon(free, time) {
+            return self.wait([i, j], free);
+        }
+        if primitives.is_some() {
+            return self.list_tests([i, j], free);
         }
         // Both at once where they are about as large: the pairs in between would be looked at only to
         // be split. Below that, the larger one.
@@ -323,7 +314,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         let parts_of_b = self.sides.1.parts(j, !(large && inner[0]));
         for a in parts_of_a.clone() {
             for b in parts_of_b.clone() {
-                self.push([a, b], time);
+                self.push([a, b], free);
             }
         }
         true

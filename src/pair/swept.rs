@@ -20,9 +20,12 @@ pub(super) struct Swept {
     pub(super) below: Below,
     /// Whether anything of it may meet the other side.
     pub(super) wanted: bool,
-    /// Where the first of its swept children is, or the balls of its primitive; [`NOT_YET`] before
-    /// they are wanted.
+    /// The body's node.
+    node: u32,
+    /// Where the first of its swept children is; [`NOT_YET`] before they are wanted.
     next: u32,
+    /// Where the balls of its hull are; [`NOT_YET`] before they are wanted.
+    hull: u32,
 }
 
 const NOT_YET: u32 = u32::MAX;
@@ -92,26 +95,25 @@ impl<'a, V: Volumes> Side<'a, V> {
         new..new + 2
     }
 
-    /// Sweeps the spheres of a leaf's primitive; where they are for [`Self::balls`].
-    pub(super) fn sweep_leaf(&mut self, at: u32, primitive: u32) -> u32 {
-        let place = &mut self.nodes[at as usize].next;
-        if *place != NOT_YET {
-            return *place;
+    /// Sweeps the spheres of a node's hull, for [`Self::hull`].
+    pub(super) fn sweep_hull(&mut self, at: u32) {
+        let Swept { node, hull, .. } = &mut self.nodes[at as usize];
+        if *hull != NOT_YET {
+            return;
         }
-        let new = self.balls.len() as u32;
-        *place = new;
-        let (spheres, share) = self.body.primitive(primitive);
-        let balls = spheres[..share.spheres].iter().map(|s| {
+        *hull = self.balls.len() as u32;
+        let (spheres, len) = self.body.hull(*node);
+        let balls = spheres[..len].iter().map(|s| {
             let (from, chord, sagitta) = self.chord(Vec3::from_vector(s.center));
             (from, chord, f64::from(s.radius) + sagitta)
         });
         let balls = Balls::new(balls, self.motion.terms());
         self.balls.push(balls);
-        new
     }
 
-    pub(super) fn balls(&self, place: u32) -> &Balls {
-        &self.balls[place as usize]
+    /// The spheres of a node's hull, which are swept.
+    pub(super) fn hull(&self, at: u32) -> &Balls {
+        &self.balls[self.node(at).hull as usize]
     }
 
     /// Position of a point at the start of the piece, the chord of its path, and the sagitta with what
@@ -145,7 +147,9 @@ impl<'a, V: Volumes> Side<'a, V> {
             radius: radius + 64.0 * f64::EPSILON * size,
             below: self.body.below(node),
             wanted: self.left.as_ref().is_none_or(|left| left.meets(node)),
+            node,
             next: NOT_YET,
+            hull: NOT_YET,
         }
     }
 }

@@ -11,6 +11,14 @@ use crate::medial::{MedialMesh, MedialSphere};
 use std::ops::Range;
 use std::sync::Arc;
 
+/// One to four spheres, by their number; unused entries repeat the last one.
+pub type Hull = ([MedialSphere; 4], usize);
+
+/// The spheres of a primitive as a hull.
+fn hull_of([a, b, c]: [MedialSphere; 3], len: usize) -> Hull {
+    ([a, b, c, c], len)
+}
+
 /// A body made of primitives, in its own frame.
 pub trait Volumes {
     /// Number of root nodes; they are the nodes `0..roots()`.
@@ -19,6 +27,12 @@ pub trait Volumes {
     fn bound(&self, node: u32) -> (Vector, Real);
     /// What is below a node.
     fn below(&self, node: u32) -> Below;
+    /// One to four spheres whose hull holds what is below a node, a tighter bound than its sphere: those of its
+    /// primitive, or the corners of a swept rectangle. By default the node's sphere.
+    fn hull(&self, node: u32) -> Hull {
+        let (center, radius) = self.bound(node);
+        ([MedialSphere::new(center, radius); 4], 1)
+    }
     /// Spheres of a primitive (unused entries repeat the last one), and which edges and spheres it tests.
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share);
     /// Thickness of a primitive, a length ([`crate::medial::thickness`]). Infinite for surfaces, and for solids
@@ -46,6 +60,15 @@ impl Volumes for MedialMesh {
     }
     fn below(&self, node: u32) -> Below {
         self.tree().nodes()[node as usize].below()
+    }
+    fn hull(&self, node: u32) -> Hull {
+        match self.tree().nodes()[node as usize].below() {
+            Below::Nodes(first, _) => (self.rectangles().of(first).corners, 4),
+            Below::Primitive(index) => {
+                let (spheres, share) = Volumes::primitive(self, index);
+                hull_of(spheres, share.spheres)
+            }
+        }
     }
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share) {
         let s: &Simplex = &self.simplices()[index as usize];
@@ -123,6 +146,10 @@ impl Volumes for Soup {
     }
     fn below(&self, node: u32) -> Below {
         Below::Primitive(node)
+    }
+    fn hull(&self, node: u32) -> Hull {
+        let (spheres, len) = self.primitives[node as usize];
+        hull_of(spheres, len)
     }
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share) {
         let (spheres, n) = self.primitives[index as usize];

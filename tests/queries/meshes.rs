@@ -2,6 +2,7 @@
 //! the elementary queries that the oracle judges.
 
 use crate::ccd::rng::Rng;
+use crate::detailed::{Form, detailed};
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::elementary::distance::signed_distance;
 use rapier3d_medial::elementary::test_list::Share;
@@ -303,5 +304,49 @@ fn first_contact_on_straight_paths_is_that_of_brute_force() {
     assert!(
         hits >= 60 && others >= 30,
         "{hits} hits, {others} off the rigid paths"
+    );
+}
+
+/// A hull holds a sphere if it reaches as far along every direction: judged in double precision along many.
+#[test]
+fn hulls_hold_what_is_below_their_nodes() {
+    let mut rng = Rng::new(83);
+    let (mut looked, mut touched) = (0, 0);
+    for form in [Form::Ring, Form::Spider, Form::Bear, Form::Sheet] {
+        for mesh in [detailed(form, 40), mesh(&mut rng)] {
+            let below = |node: u32| {
+                let (mut all, mut stack) = (Vec::new(), vec![node]);
+                while let Some(node) = stack.pop() {
+                    match mesh.below(node) {
+                        Below::Primitive(p) => all.extend(Volumes::primitive(&mesh, p).0),
+                        Below::Nodes(a, b) => stack.extend([a, b]),
+                    }
+                }
+                all
+            };
+            for node in 0..mesh.tree().nodes().len() as u32 {
+                let (spheres, len) = mesh.hull(node);
+                let held = below(node);
+                for _ in 0..60 {
+                    let n = Vec3::<f64>::from_vector(vector(&mut rng));
+                    let n = n * (1.0 / n.length());
+                    let reach = |s: &[MedialSphere]| {
+                        let of = |s: &MedialSphere| {
+                            n.dot(Vec3::from_vector(s.center)) + f64::from(s.radius)
+                        };
+                        s.iter().map(of).fold(f64::MIN, f64::max)
+                    };
+                    let room = reach(&spheres[..len]) - reach(&held);
+                    // Both are sums of a few numbers below 2.
+                    assert!(room > -1.0e-15, "{form:?}, node {node}: {room}");
+                    looked += 1;
+                    touched += usize::from(room < 1.0e-3);
+                }
+            }
+        }
+    }
+    assert!(
+        10 * touched > looked,
+        "{touched} of {looked} fit within a millimetre"
     );
 }

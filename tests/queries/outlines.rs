@@ -211,7 +211,7 @@ fn a_query_that_pauses_gives_the_same_answer() {
             }
         }
     }
-    assert!(pauses > 400 && less > 15, "{pauses}, {less}");
+    assert!(pauses > 400 && less > 10, "{pauses}, {less}");
 }
 
 /// A sheet of slabs with bumps, so many spheres wide.
@@ -232,16 +232,16 @@ fn sheet(wide: u32) -> MedialMesh {
     MedialMesh::new(spheres, vec![], slabs).expect("a sheet")
 }
 
-/// Two sheets that slide along each other use up all work: where a pause falls does not matter, and nothing
+/// A sheet that spins above another uses up all work: where a pause falls does not matter, and nothing
 /// told free is taken back.
 #[test]
 fn a_query_that_pauses_gives_up_where_it_would_have() {
-    let mesh = sheet(60);
+    let mesh = sheet(20);
     let still = NonlinearRigidMotion::constant_position(Pose::IDENTITY);
     for speed in [0.5, 1.0] {
-        let start = Pose::translation(-0.5 * speed, 0.003, 0.02);
+        let start = Pose::translation(0.0, 0.003, 0.02);
         let moving = NonlinearRigidMotion {
-            linvel: Vector::new(speed, 0.1 * speed, 0.0),
+            angvel: Vector::Z * 1.0e6 * speed,
             ..NonlinearRigidMotion::constant_position(start)
         };
         let options = ToiOptions {

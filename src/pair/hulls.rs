@@ -1,0 +1,72 @@
+//! The hulls of the nodes of two bodies at fixed poses, each placed once, and a lower bound of the distance of two.
+
+use super::apart::{Balls, gap};
+use super::contacts::Placement;
+use super::volumes::Volumes;
+use crate::math::Vector;
+use crate::math::lane::Vec3;
+use crate::medial::MedialSphere;
+use crate::medial::tree::Below;
+
+/// Hulls of two bodies' nodes in the frame of the first.
+pub(super) struct Hulls<'a, A, B> {
+    bodies: (&'a A, &'a B),
+    place: &'a Placement,
+    placed: [Placed; 2],
+}
+
+/// The hulls of one body that were asked for.
+#[derive(Default)]
+struct Placed {
+    /// One more than the place of each node's hull; 0 where it was not asked for.
+    places: Vec<u32>,
+    hulls: Vec<Balls>,
+}
+
+impl Placed {
+    fn get(&mut self, body: &impl Volumes, node: u32, place: impl Fn(Vector) -> Vec3<f64>) -> u32 {
+        let at = node as usize;
+        if self.places.len() <= at {
+            self.places.resize(at + 1, 0);
+        }
+        if self.places[at] == 0 {
+            let (spheres, len) = body.hull(node);
+            let ball = |s: &MedialSphere| (place(s.center), Vec3::zero(), f64::from(s.radius));
+            let hull = Balls::new(spheres[..len].iter().map(ball), 0.0);
+            self.hulls.push(hull);
+            self.places[at] = self.hulls.len() as u32;
+        }
+        self.places[at] - 1
+    }
+}
+
+impl<'a, A: Volumes, B: Volumes> Hulls<'a, A, B> {
+    pub(super) fn new(bodies: (&'a A, &'a B), place: &'a Placement) -> Self {
+        Self {
+            bodies,
+            place,
+            placed: Default::default(),
+        }
+    }
+
+    /// A lower bound of the distance of what is below two nodes, as [`gap`]. Two cones are not looked at: their one
+    /// elementary test takes no longer.
+    pub(super) fn gap(&mut self, [i, j]: [u32; 2], enough: f64) -> f64 {
+        let (first, second) = self.bodies;
+        if let (Below::Primitive(p), Below::Primitive(q)) = (first.below(i), second.below(j))
+            && first
+                .primitive(p)
+                .1
+                .spheres
+                .max(second.primitive(q).1.spheres)
+                < 3
+        {
+            return f64::MIN;
+        }
+        let place = self.place;
+        let [a, b] = &mut self.placed;
+        let p = a.get(first, i, Vec3::from_vector) as usize;
+        let q = b.get(second, j, |point| place.point(point)) as usize;
+        gap([&a.hulls[p], &b.hulls[q]], enough)
+    }
+}
