@@ -57,7 +57,7 @@ fn hull_of_capsule(a: Vector, b: Vector, radius: Real) -> SharedShape {
     for i in 0..64 {
         let (sin, cos) = (i as Real / 64.0 * std::f32::consts::TAU).sin_cos();
         let out = (side * cos + other * sin) * radius;
-        let cap = out * 0.5 + along * (0.75 as Real).sqrt() * radius;
+        let cap = out * 0.5 + along * 0.75_f32.sqrt() * radius;
         points.extend([a + out, b + out, b + cap, a + cap.reflect(along)]);
     }
     SharedShape::convex_hull(&points).expect("a hull")
