@@ -1,5 +1,5 @@
-//! How long two primitives, or the hulls of two nodes, are certainly apart, because one direction after another separates them while they move
-//! along the chords of their paths. This cheap bound decides which primitives are worth an elementary test.
+//! How long two primitives, or the hulls of two nodes, are certainly apart, because one direction after another separates
+//! them while they move along the chords of their paths. This cheap bound decides which primitives are worth an elementary test.
 
 use crate::math::lane::Vec3;
 
