@@ -53,6 +53,10 @@ impl Node {
     }
 }
 
+/// Depth of the deepest node of a tree that is loaded: what is built here splits off an eighth at least, so that no tree of
+/// fewer than 2³² primitives is deeper, and what goes down one recursively has room.
+const DEEPEST: u32 = 192;
+
 /// Bounding spheres over primitives; node 0 is the root.
 #[derive(Clone, Debug)]
 pub struct SphereTree {
@@ -88,10 +92,11 @@ impl SphereTree {
 
     /// Takes the nodes of a tree built before over `primitives` primitives. Each node but the root has to
     /// be below exactly one that comes before it, and each primitive below exactly one: then every walk
-    /// ends. Otherwise gives the first node that is wrong.
+    /// ends. No node may be deeper than [`DEEPEST`]. Otherwise gives the first node that is wrong.
     pub(super) fn from_nodes(nodes: Vec<Node>, primitives: usize) -> Result<Self, usize> {
         let mut seen = vec![false; nodes.len() + primitives];
         let mut first = |index: usize| !std::mem::replace(&mut seen[index], true);
+        let mut depths = vec![0u32; nodes.len()];
         for (i, node) in nodes.iter().enumerate() {
             let numbers = node.center.is_finite() && node.radius.is_finite() && node.radius >= 0.0;
             let index = node.index as usize;
@@ -100,7 +105,11 @@ impl SphereTree {
             } else {
                 index > i && index + 1 < nodes.len() && first(index) && first(index + 1)
             };
-            if !(numbers && sound) {
+            if sound && !node.leaf {
+                let depth = depths[i] + 1;
+                depths[index..index + 2].fill(depth);
+            }
+            if !(numbers && sound && depths[i] <= DEEPEST) {
                 return Err(i);
             }
         }

@@ -354,6 +354,30 @@ fn forged_trees_are_refused() {
     }
 }
 
+/// A tree that splits off one primitive at a time is as deep as it has primitives: what goes down it recursively would need
+/// a stack without end.
+#[test]
+fn forged_trees_that_are_too_deep_are_refused() {
+    let comb = |count: usize| {
+        let spheres = (0..count).map(|k| MedialSphere::new(Vector::X * k as f32, 0.2));
+        let mesh = MedialMesh::new(spheres.collect(), vec![], vec![]).expect("spheres");
+        let mut bytes = mesh.to_bytes();
+        for node in 0..2 * count - 1 {
+            let word = match node % 2 {
+                0 if node + 1 < 2 * count - 1 => node as u32 + 1 << 1,
+                _ => (node as u32 / 2) << 1 | 1,
+            };
+            let at = 128 + count * 32 + node * 20 + 16;
+            bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
+        }
+        seal(&mut bytes);
+        MedialMesh::from_bytes(&bytes)
+    };
+    assert!(comb(190).is_ok());
+    let error = comb(300).expect_err("a comb").to_string();
+    assert!(error.starts_with("node "), "{error}");
+}
+
 proptest! {
     #[test]
     fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..600)) {
