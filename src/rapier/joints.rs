@@ -181,16 +181,24 @@ impl Joints {
             .openings()
             .into_iter()
             .zip(system.openings_in_the_end(snapshot));
-        let mut targets: Vec<f64> = openings
+        let locked: Vec<f64> = openings
             .map(|(now, end)| now + (end - now) * share)
             .collect();
+        let mut targets = locked.clone();
         targets.extend(system.stop_at_limits(&before, seconds));
-        let after = system.integrate(&before, seconds, &targets);
-        let left = system.openings().into_iter().zip(&targets);
-        if !left
-            .into_iter()
-            .all(|(now, target)| (now - target).abs() <= UNCLOSED)
-        {
+        let stops = targets.len() > locked.len();
+        let is_closed = |system: &System, targets: &[f64]| {
+            let mut left = system.openings().into_iter().zip(targets);
+            left.all(|(now, target)| (now - target).abs() <= UNCLOSED)
+        };
+        let mut after = system.integrate(&before, seconds, &targets);
+        if stops && !is_closed(&system, &targets) {
+            // Joints pass limits rather than open.
+            system = self.system(snapshot, &[from], time, |b| inertia(snapshot, b));
+            after = system.integrate(&before, seconds, &locked);
+            targets = locked;
+        }
+        if !is_closed(&system, &targets) {
             return Piece::default();
         }
         let own: Vec<Twist> = system

@@ -233,9 +233,9 @@ impl Response {
                 Inertia::INFINITE
             }
         };
-        let system = joints.system(snapshot, &both, hit.time, |b| inertia(snapshot, b, false));
+        let mut system = joints.system(snapshot, &both, hit.time, |b| inertia(snapshot, b, false));
         let free = system.bodies.iter().all(|b| !self.courses[*b].frozen);
-        let moving = (!free).then(|| {
+        let mut moving = (!free).then(|| {
             let frozen = |b: usize| self.courses[b].frozen;
             joints.system(snapshot, &both, hit.time, |b| {
                 inertia(snapshot, b, frozen(b))
@@ -259,6 +259,12 @@ impl Response {
             let on = |k: usize, j: Vector| (both[k], [j, arms[k].cross(j)]);
             [on(0, -j), on(1, j)]
         };
+        // What stands at its limit resists as the stop does.
+        for system in [Some(&mut system), moving.as_mut()].into_iter().flatten() {
+            let of = |b: &usize| snapshot.bodies[*b].velocity;
+            let twists: Vec<Twist> = system.bodies.iter().map(of).collect();
+            system.stand_at_limits(&twists, |system| system.change(&wrenches(hit.normal)));
+        }
         let impact = |system: &System| Impact {
             normal: hit.normal,
             material,
@@ -296,11 +302,10 @@ impl Response {
             let arm = centers[k] - m.start * m.local_center;
             at([m.linvel + m.angvel.cross(arm), m.angvel], k)
         };
-        let tuning = &asker.tuning;
         // Thin parts are kept as far from each other as the least gap.
         let thickness = snapshot.thickness_at(pair, hit.primitives);
-        let sunk = hit.depth - (tuning.push_from * thickness - asker.least_gap());
-        let out = tuning.push * sunk.max(0.0) / asker.dt;
+        let sunk = hit.depth - (asker.tuning.push_from * thickness - asker.least_gap());
+        let out = asker.tuning.push * sunk.max(0.0) / asker.dt;
         let impact = moving.as_ref().map_or(own, impact);
         let system = moving.unwrap_or(system);
         if let Some(j) = impact.impulse(velocity(1) - velocity(0), out) {

@@ -167,23 +167,65 @@ impl<'a> System<'a> {
     /// The rows of all joints that hold what moves at the poses now, those of stops last.
     fn rows_now(&self) -> Vec<Row> {
         let joints = self.joints.iter();
-        let ends = joints.filter_map(|j| Some((self.ends(j)?, j.locked)));
+        let ends = joints.filter_map(|j| Some((self.ends(j, &self.poses)?, j.locked)));
         let locked = ends.flat_map(|(ends, locked)| ends.locked(locked));
         let stops = self.stops.iter();
-        let stops = stops.filter_map(|(j, limit)| Some(self.ends(j)?.limited(limit)));
+        let stops = stops.filter_map(|(j, limit)| Some(self.ends(j, &self.poses)?.limited(limit)));
         let rows = locked.chain(stops);
         rows.filter(|r| self.is_movable(r)).collect()
     }
 
-    /// Both ends of a joint at the poses now.
-    fn ends(&self, joint: &Joint) -> Option<Ends> {
+    /// Both ends of a joint at some poses.
+    fn ends(&self, joint: &Joint, poses: &[Pose]) -> Option<Ends> {
         let place = |body: usize| self.bodies.iter().position(|o| *o == body);
         let bodies = [place(joint.bodies[0])?, place(joint.bodies[1])?];
         Some(Ends {
             bodies,
-            frames: [0, 1].map(|k| self.poses[bodies[k]] * joint.frames[k]),
-            centers: bodies.map(|k| self.poses[k] * self.centers[k]),
+            frames: [0, 1].map(|k| poses[bodies[k]] * joint.frames[k]),
+            centers: bodies.map(|k| poses[k] * self.centers[k]),
         })
+    }
+
+    /// Has joints that stand at a limit hold it where a push by some changes of velocity would have them pass it.
+    pub fn stand_at_limits(&mut self, twists: &[Twist], push: impl Fn(&Self) -> Vec<Twist>) {
+        for _ in 0..STOPPING_ROUNDS {
+            let pushed = push(self);
+            let stops = self.more_stops(|_, _, limit, row| {
+                let [rate, push] = [twists, &pushed].map(|t| row.along(t) as Real);
+                limit.holds(row.opening, rate, push).then_some(())
+            });
+            if stops.is_empty() {
+                break;
+            }
+        }
+    }
+
+    /// Adds the limits of which `stops` says so, and returns what it said.
+    fn more_stops<T>(
+        &mut self,
+        stops: impl Fn(&Self, &Joint, &Limit, &Row) -> Option<T>,
+    ) -> Vec<T> {
+        let (known, mut found) = (self.stops.len(), Vec::new());
+        for &joint in self.joints.iter().filter(|j| !j.limits.is_empty()) {
+            let Some(ends) = self.ends(joint, &self.poses) else {
+                continue;
+            };
+            for limit in &joint.limits {
+                let row = ends.limited(limit);
+                let is_this = |(j, l): &(&Joint, Limit)| std::ptr::eq(*j, joint) && l == limit;
+                if self.is_movable(&row)
+                    && !self.stops[..known].iter().any(is_this)
+                    && let Some(said) = stops(self, joint, limit, &row)
+                {
+                    self.stops.push((joint, *limit));
+                    found.push(said);
+                }
+            }
+        }
+        if !found.is_empty() {
+            self.factor();
+        }
+        found
     }
 
     /// Has joints stop at the limits that they would pass in some seconds at some velocities, and returns where.
@@ -192,27 +234,18 @@ impl<'a> System<'a> {
         for _ in 0..STOPPING_ROUNDS {
             let mut held = twists.to_vec();
             self.hold(&mut held);
-            let known = self.stops.len();
-            for &joint in self.joints.iter().filter(|j| !j.limits.is_empty()) {
-                let Some(ends) = self.ends(joint) else {
-                    continue;
-                };
-                for limit in &joint.limits {
-                    let row = ends.limited(limit);
-                    let is_this = |(j, l): &(&Joint, Limit)| std::ptr::eq(*j, joint) && l == limit;
-                    if self.is_movable(&row)
-                        && !self.stops[..known].iter().any(is_this)
-                        && let Some(at) = limit.stop(row.opening, row.along(&held) as Real, seconds)
-                    {
-                        self.stops.push((joint, *limit));
-                        targets.push(f64::from(at));
-                    }
-                }
-            }
-            if self.stops.len() == known {
+            let start = (self.poses.clone(), self.moved.clone());
+            self.displace(&held, seconds);
+            let end = std::mem::replace(&mut self.poses, start.0);
+            self.moved = start.1;
+            let stops = self.more_stops(|system, joint, limit, row| {
+                let next = system.ends(joint, &end)?.limited(limit).opening;
+                limit.stop(row.opening, next)
+            });
+            if stops.is_empty() {
                 break;
             }
-            self.factor();
+            targets.extend(stops.into_iter().map(f64::from));
         }
         targets
     }
