@@ -364,8 +364,8 @@ fn forged_trees_that_are_too_deep_are_refused() {
         let mut bytes = mesh.to_bytes();
         for node in 0..2 * count - 1 {
             let word = match node % 2 {
-                0 if node + 1 < 2 * count - 1 => node as u32 + 1 << 1,
-                _ => (node as u32 / 2) << 1 | 1,
+                0 if node + 1 < 2 * count - 1 => (node as u32 + 1) << 1,
+                _ => ((node as u32 / 2) << 1) | 1,
             };
             let at = 128 + count * 32 + node * 20 + 16;
             bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
