@@ -124,7 +124,7 @@ pub(super) fn free_until(
     // Rounding: a few ulps of the numbers in play.
     let least = target + 64.0 * f64::EPSILON * (a.size + b.size);
     // Nodes are split instead of tried along more directions. What is below them may touch, and is told only by
-    // tests: with nodes within the tolerance free for good, rods get out of boxes that turn.
+    // tests, so within the tolerance they are not free for good.
     let is_node = a.len > 3 || b.len > 3;
     let free_for_good = if is_node { least + tolerance } else { least };
     let mut free = Some(from);
