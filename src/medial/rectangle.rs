@@ -3,7 +3,7 @@
 //! with swept sphere volumes" (1999).
 //!
 //! The plane of a rectangle is that of the two larger principal axes of the spheres' centres, its sides the best of
-//! [`TURNS`] directions in that plane. Sides are shortened as far as the swept sphere's roundings still hold
+//! `TURNS` directions in that plane. Sides are shortened as far as the swept sphere's roundings still hold
 //! everything. Only square roots enter, so that rectangles are the same bits on every machine.
 
 use super::mesh::Simplex;
