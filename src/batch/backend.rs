@@ -5,8 +5,10 @@
 use super::cpu;
 #[cfg(feature = "gpu")]
 use super::early::Early;
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+use super::gpu::GpuOptions;
 #[cfg(feature = "gpu")]
-use super::gpu::{Gpu, GpuOptions, Proposal};
+use super::gpu::{Gpu, Proposal};
 use super::job::Job;
 #[cfg(feature = "gpu")]
 use super::job::Sweep;

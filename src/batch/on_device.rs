@@ -141,7 +141,7 @@ impl Batch {
     }
 
     /// Whether what was sent before is of any use for these jobs; where not, it is forgotten.
-    fn sent_early<J: Job>(&mut self, jobs: &[J]) -> bool {
+    pub(super) fn sent_early<J: Job>(&mut self, jobs: &[J]) -> bool {
         let sent = &self.early.sent;
         let known = |s: Sweep<'_>| sent.contains_key(&Key::of(&s));
         let known = jobs.iter().filter(|job| job.sweep().is_some_and(known));
@@ -154,7 +154,7 @@ impl Batch {
     }
 
     /// Answers jobs of which some were sent before and are back.
-    fn settle_early<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
+    pub(super) fn settle_early<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
         let mut early = std::mem::take(&mut self.early);
         let answers = self.settle(jobs, |sweep| early.proposal(sweep));
         early.forget();
