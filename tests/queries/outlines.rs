@@ -166,7 +166,7 @@ fn outlines_of_large_meshes_call_free_what_is_free() {
 fn a_query_that_pauses_gives_the_same_answer() {
     let mut rng = Rng::new(4413);
     let (mut pauses, mut less) = (0, 0);
-    for k in 0..200 {
+    for k in 0..400 {
         let (a, b) = (mesh(&mut rng), mesh(&mut rng));
         let still = motion(&mut rng, 0.0, 0.0, (k % 3) as Real * 0.4);
         let moving = motion(&mut rng, 0.5 + (k % 7) as Real * 0.2, 2.0, (k % 5) as Real);
@@ -211,7 +211,8 @@ fn a_query_that_pauses_gives_the_same_answer() {
             }
         }
     }
-    assert!(pauses > 400 && less > 10, "{pauses}, {less}");
+    println!("{pauses} pauses, {less} looked at less");
+    assert!(pauses > 800 && less > 20, "{pauses}, {less}");
 }
 
 /// A sheet of slabs with bumps, so many spheres wide.
