@@ -262,7 +262,7 @@ fn a_shut_door_is_a_wall() {
             }
             let after = -world.bodies[ball].linvel().z / speed;
             assert!(
-                (after - restitution).abs() < 0.02,
+                (after - restitution).abs() < 0.005,
                 "{mass} kg, multibody {multibody}: {after}, restitution {restitution}"
             );
         }

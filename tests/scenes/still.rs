@@ -248,34 +248,23 @@ impl Wires {
 /// world was prepared with was kept although joints, contact skins or places of colliders on their bodies had changed.
 #[test]
 fn what_rapier_wakes_within_its_step_is_met_as_it_is_then() {
-    let mut skin = wires();
-    skin.world.colliders[skin.lower].set_contact_skin(0.05);
-    assert!(
-        skin.world
-            .impulse_joints
-            .get_mut(skin.joint, true)
-            .is_some()
-    );
-    let height = skin.step();
-    assert!(
-        (0.05..0.07).contains(&height),
-        "with a skin of 0.05 it is at {height}"
-    );
-
-    let mut raised = wires();
-    raised.world.colliders[raised.lower].set_translation_wrt_parent(Vector::Y * 0.05);
-    assert!(
-        raised
-            .world
-            .impulse_joints
-            .get_mut(raised.joint, true)
-            .is_some()
-    );
-    let height = raised.step();
-    assert!(
-        (0.05..0.07).contains(&height),
-        "over a wire at 0.05 it is at {height}"
-    );
+    let changes: [(&str, fn(&mut Collider)); 2] = [
+        ("a skin of 0.05", |c| c.set_contact_skin(0.05)),
+        ("a place 0.05 higher", |c| {
+            c.set_translation_wrt_parent(Vector::Y * 0.05);
+        }),
+    ];
+    for (what, change) in changes {
+        let mut wires = wires();
+        change(&mut wires.world.colliders[wires.lower]);
+        let joint = wires.world.impulse_joints.get_mut(wires.joint, true);
+        assert!(joint.is_some());
+        let height = wires.step();
+        assert!(
+            (0.05..0.07).contains(&height),
+            "with {what} it is at {height}"
+        );
+    }
 
     let mut joined = wires();
     let (upper, bare) = (joined.upper, joined.bare);
