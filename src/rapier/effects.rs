@@ -77,17 +77,17 @@ pub struct MedialOptions {
     pub effects: Effects,
     /// Where contacts and first contacts of many pairs are computed. The results are the same on each, bit by bit.
     pub backend: Backend,
-    /// Node pairs and elementary tests that the search for first contacts may take in a step, each about half a
-    /// microsecond. Once it is spent, bodies of which more would have to be asked wait until the next step where they
+    /// Node pairs and elementary tests that the search for first contacts may take in a step, each half a
+    /// microsecond to one. Once it is spent, bodies of which more would have to be asked wait until the next step where they
     /// are proven free ([`crate::StepReport::waiting`]), and keep their speed: they lose time, and pass through nothing.
     pub budget: u64,
 }
 
-/// What [`MedialOptions::budget`] is by default: seconds of work. Heaps thrown together take a hundredth of it, sixty
-/// rings of 200 cones dropped into a pen a third.
+/// What [`MedialOptions::budget`] is by default: seconds of work. Heaps of 48 bodies thrown together take a thirtieth of
+/// it, thirty rings of 200 cones dropped into a pen an eighth.
 const BUDGET: u64 = 1 << 22;
 
-/// The same for games: half a frame's work.
+/// The same for games: a frame's work.
 const BUDGET_OF_GAMES: u64 = 1 << 14;
 
 impl Default for MedialOptions {
@@ -161,7 +161,7 @@ impl MedialOptions {
         self
     }
 
-    /// For games: all effects, and a budget that keeps the search for first contacts to about half a frame. What is lost
+    /// For games: all effects, and a budget that keeps the search for first contacts to about a frame. What is lost
     /// where it does not suffice is time: bodies wait, and nothing passes through anything.
     pub fn games() -> Self {
         Self::default().budget(BUDGET_OF_GAMES)
