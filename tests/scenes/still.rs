@@ -248,13 +248,10 @@ impl Wires {
 /// world was prepared with was kept although joints, contact skins or places of colliders on their bodies had changed.
 #[test]
 fn what_rapier_wakes_within_its_step_is_met_as_it_is_then() {
-    let changes: [(&str, fn(&mut Collider)); 2] = [
-        ("a skin of 0.05", |c| c.set_contact_skin(0.05)),
-        ("a place 0.05 higher", |c| {
-            c.set_translation_wrt_parent(Vector::Y * 0.05);
-        }),
-    ];
-    for (what, change) in changes {
+    type Change = fn(&mut Collider);
+    let higher: Change = |c| c.set_translation_wrt_parent(Vector::Y * 0.05);
+    let thicker: Change = |c| c.set_contact_skin(0.05);
+    for (what, change) in [("a skin of 0.05", thicker), ("a place 0.05 higher", higher)] {
         let mut wires = wires();
         change(&mut wires.world.colliders[wires.lower]);
         let joint = wires.world.impulse_joints.get_mut(wires.joint, true);
