@@ -57,25 +57,25 @@
 //! | [`batch`] | contacts or first contacts of many pairs at once, on the CPU or a GPU |
 //! | [`pair`] | two medial meshes: which primitives can meet, first contact, contacts |
 //! | [`elementary`] | two primitives: distance and first contact, certified; the paper's own method beside it |
-//! | [`build`] | from a triangle mesh to a medial mesh |
+//! | [`meshing`] | from a triangle mesh to a medial mesh |
 //! | [`medial`] | the medial mesh itself, its trees, mass, surface and files |
 //! | [`math`] | SIMD lanes, closed forms, rigid motion, constants |
 
 pub mod batch;
-pub mod build;
 pub mod elementary;
 pub mod error;
 pub mod math;
 pub mod medial;
+pub mod meshing;
 pub mod pair;
 pub mod parry;
 pub mod rapier;
 
 pub use batch::Backend;
-pub use build::{BuildOptions, BuildReport, Progress, Quality};
 pub use elementary::{AlternatingStart, InitialContact, Toi, ToiOptions, ToiStatus};
 pub use error::{AssetError, BuildError, CalibrationError, GpuError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
+pub use meshing::{BuildOptions, BuildReport, Progress, Quality};
 pub use parry::MedialDispatcher;
 pub use rapier::{
     Effect, Effects, MedialColliderBuilder, MedialOptions, MedialPipeline, MedialSharedShape,

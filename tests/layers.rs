@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: [(&str, &[&str]); 8] = [
     ("math", &["math"]),
     ("medial", &["medial", "math", "error"]),
-    ("build", &["build", "medial", "math", "error"]),
+    ("meshing", &["meshing", "medial", "math", "error"]),
     ("elementary", &["elementary", "medial", "math"]),
     ("pair", &["pair", "elementary", "medial", "math"]),
     (
@@ -37,7 +37,7 @@ const LAYERS: [(&str, &[&str]); 8] = [
 const CONFINED: [(&str, &str); 4] = [
     ("rapier3d", "src/rapier"),
     ("wgpu", "src/batch/gpu"),
-    ("robust", "src/build"),
+    ("robust", "src/meshing"),
     ("QueryDispatcher", "src/parry"),
 ];
 

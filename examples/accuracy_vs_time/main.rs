@@ -45,7 +45,7 @@ use common::progress::bar;
 use crash::Crash;
 use peak_alloc::PeakAlloc;
 use rapier3d_medial::Quality;
-use rapier3d_medial::build::mesh_file;
+use rapier3d_medial::meshing::mesh_file;
 use report::Section;
 use std::error::Error;
 use std::fs;

@@ -1,7 +1,7 @@
 //! Closed triangle meshes made in code.
 
 use rapier3d::prelude::{Real, Rotation, TriMesh, Vector};
-use rapier3d_medial::build::mesh_file;
+use rapier3d_medial::meshing::mesh_file;
 use std::collections::HashMap;
 use std::f32::consts::TAU;
 use std::path::Path;

@@ -4,7 +4,7 @@
 use crate::mesh_file::{assert_valid, good_files, load, ply_binary, stl_binary};
 use proptest::prelude::*;
 use rapier3d_medial::BuildError;
-use rapier3d_medial::build::mesh_file::MeshFormat;
+use rapier3d_medial::meshing::mesh_file::MeshFormat;
 use std::path::Path;
 
 /// Places and words that the errors of broken text files must name.

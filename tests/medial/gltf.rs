@@ -1,7 +1,7 @@
 //! glTF scenes: nodes that move, turn over and repeat a mesh, strips and fans, and scenes that lie.
 
 use crate::mesh_file::{CORNERS, QUADS, load, volume};
-use rapier3d_medial::build::mesh_file::{MeshFormat, read};
+use rapier3d_medial::meshing::mesh_file::{MeshFormat, read};
 
 /// The box as positions and triangles of indices of one byte.
 fn bytes_of_box() -> Vec<u8> {

@@ -1,7 +1,7 @@
 //! Mesh files: the same solid in every format, and variants in the wild.
 
 use rapier3d_medial::BuildError;
-use rapier3d_medial::build::mesh_file::{MeshFormat, TriangleMesh, read, read_bytes};
+use rapier3d_medial::meshing::mesh_file::{MeshFormat, TriangleMesh, read, read_bytes};
 use std::path::Path;
 
 pub fn load(bytes: &[u8], format: MeshFormat) -> Result<TriangleMesh, BuildError> {

@@ -2,8 +2,8 @@
 
 use crate::mesh_file::{assert_valid, lines, load};
 use crate::oracle::Random;
-use rapier3d_medial::build::mesh_file::MeshFormat;
 use rapier3d_medial::math::Vector;
+use rapier3d_medial::meshing::mesh_file::MeshFormat;
 
 /// Areas of a planar polygon by the shoelace formula, and of its triangles, all of which must
 /// face as the polygon does: then the triangles cover it exactly once.

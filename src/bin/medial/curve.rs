@@ -7,8 +7,8 @@ use crate::failure::Failure;
 use crate::info::InfoArguments;
 use crate::output::print;
 use rapier3d_medial::BuildOptions;
-use rapier3d_medial::build::error_curve;
-use rapier3d_medial::build::mesh_file::{self, MeshFormat};
+use rapier3d_medial::meshing::error_curve;
+use rapier3d_medial::meshing::mesh_file::{self, MeshFormat};
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
@@ -61,7 +61,7 @@ pub fn curve(arguments: &InfoArguments) -> Result<(), Failure> {
     )
     .map_err(|e| Failure::from(e).of(path))?;
     bar.finish_and_clear();
-    let point = |at: &rapier3d_medial::build::ErrorAt| Point {
+    let point = |at: &rapier3d_medial::meshing::ErrorAt| Point {
         asked: at.asked,
         primitives: at.primitives,
         error: at.hausdorff.error() / side,

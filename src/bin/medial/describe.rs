@@ -1,6 +1,6 @@
 //! What the program says of a medial mesh and of its errors.
 
-use rapier3d_medial::build::Hausdorff;
+use rapier3d_medial::meshing::Hausdorff;
 use rapier3d_medial::{MedialMesh, MedialPrimitive};
 use serde::Serialize;
 

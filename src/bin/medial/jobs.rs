@@ -1,7 +1,7 @@
 //! What `medial build` is to do: which triangle meshes, and where each result goes. Everything that
 //! can be refused is refused before minutes of work.
 
-use rapier3d_medial::build::mesh_file::MeshFormat;
+use rapier3d_medial::meshing::mesh_file::MeshFormat;
 use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};

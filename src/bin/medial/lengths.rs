@@ -1,7 +1,7 @@
 //! Lengths given with a unit or without, and the units that files are in.
 
-use rapier3d_medial::build::mesh_file::{MeshFormat, TriangleMesh};
 use rapier3d_medial::math::Vector;
+use rapier3d_medial::meshing::mesh_file::{MeshFormat, TriangleMesh};
 use std::path::Path;
 use std::str::FromStr;
 

@@ -5,7 +5,7 @@ use super::queries;
 use crate::asset::{meshes, seal, walk};
 use crate::mesh_file::{assert_valid, good_files, load};
 use rapier3d_medial::MedialMesh;
-use rapier3d_medial::build::mesh_file::MeshFormat;
+use rapier3d_medial::meshing::mesh_file::MeshFormat;
 use std::path::Path;
 use std::sync::LazyLock;
 

@@ -1,0 +1,18 @@
+//! The medial mesh to start from: the medial axis of samples of the surface, or of flat faces exactly.
+
+pub(crate) mod blunt_sheets;
+pub(crate) mod clip;
+pub(crate) mod crease_ends;
+pub(crate) mod crease_samples;
+pub(crate) mod crease_splits;
+pub(crate) mod creased;
+pub mod delaunay;
+pub(crate) mod flat_axis;
+pub(crate) mod inner_balls;
+pub(crate) mod insertion_order;
+pub(crate) mod local_spacing;
+pub(crate) mod roof;
+pub(crate) mod sheet_triangles;
+pub(crate) mod sheets;
+pub(crate) mod shrinking_ball;
+pub(crate) mod start;

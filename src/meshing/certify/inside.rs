@@ -1,0 +1,243 @@
+//! The union of a draft's primitives and its boundary.
+//!
+//! The signed distance `S(p)`, the smallest over all primitives, changes by at most the way one
+//! moves. Outside it is the distance to the solid, so the boundary point `S` towards the nearest
+//! ball is exact. Inside it is minus the depth in the deepest ball: a lower bound of the depth in
+//! the solid, which is what marching steps need.
+
+use crate::meshing::certify::primitive_tree::{Nearest, PrimitiveTree};
+use crate::meshing::draft::{Ball, Corners, Draft};
+use crate::meshing::geometry::bounds::{Bounds, Point, direction};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Depth (longest side 1) up to which a point counts as on the boundary: far above rounding, far
+/// below any error.
+const ON_BOUNDARY: f64 = 1e-7;
+
+/// Share of the distance by which a way out of the solid may be overstated.
+const WAY_OUT: f64 = 0.05;
+
+/// A cube of space.
+#[derive(Clone, Copy)]
+pub struct Cell {
+    /// Its middle.
+    pub center: Point,
+    half_side: f64,
+}
+
+impl Cell {
+    /// Distance from the middle to a corner.
+    pub fn radius(&self) -> f64 {
+        self.half_side * 3f64.sqrt()
+    }
+
+    /// Length of a side.
+    pub fn side(&self) -> f64 {
+        2.0 * self.half_side
+    }
+
+    /// The cube of another side about the same middle.
+    pub fn with_side(&self, side: f64) -> Self {
+        Self {
+            center: self.center,
+            half_side: 0.5 * side,
+        }
+    }
+
+    /// The eight cubes of half the side.
+    pub fn children(&self) -> impl Iterator<Item = Cell> + use<> {
+        let Cell { center, half_side } = *self;
+        let quarter = 0.5 * half_side;
+        (0..8u32).map(move |child| {
+            let way = |bit: u32| {
+                if child >> bit & 1 == 0 {
+                    quarter
+                } else {
+                    -quarter
+                }
+            };
+            Cell {
+                center: center + Point::new(way(0), way(1), way(2)),
+                half_side: quarter,
+            }
+        })
+    }
+
+    fn distance(&self, p: Point) -> f64 {
+        let half = Point::new(self.half_side, self.half_side, self.half_side);
+        let (lo, hi) = (self.center - half, self.center + half);
+        Bounds { lo, hi }.distance_sq(p).sqrt()
+    }
+}
+
+/// The union of the primitives of a draft, which must have at least one.
+pub struct Solid<'a> {
+    tree: PrimitiveTree<'a>,
+    bounds: Bounds,
+}
+
+impl<'a> Solid<'a> {
+    /// The solid of a draft.
+    pub fn new(draft: &'a Draft) -> Self {
+        let boxes = draft
+            .balls
+            .iter()
+            .map(|b| Bounds::of_ball(b.center, b.radius));
+        Self {
+            tree: PrimitiveTree::new(draft),
+            bounds: boxes.fold(Bounds::EMPTY, Bounds::union),
+        }
+    }
+
+    /// A cube around the solid.
+    pub fn whole(&self) -> Cell {
+        Cell {
+            center: self.bounds.center(),
+            half_side: 0.5 * self.bounds.longest_side(),
+        }
+    }
+
+    /// The primitive nearest to `p`; see [`PrimitiveTree::nearest`].
+    pub fn nearest(&self, p: Point, hint: u32) -> Nearest {
+        self.tree.nearest(p, hint)
+    }
+
+    /// Its primitives, in the order of the indices that [`Self::nearest`] gives.
+    pub fn primitives(&self) -> &[Corners] {
+        self.tree.primitives()
+    }
+
+    /// The ball of a primitive that is nearest to the point asked for.
+    pub fn ball(&self, near: &Nearest) -> Ball {
+        self.tree.ball(near)
+    }
+
+    /// As [`Self::nearest`], if its signed distance is at most `limit` on either side.
+    pub fn nearest_if_near(&self, p: Point, limit: f64, hint: u32) -> Option<Nearest> {
+        let near = self.tree.nearest_between(p, -limit, limit, hint);
+        (near.signed.distance.abs() <= limit).then_some(near)
+    }
+
+    /// Signed distance of `p` to one primitive.
+    pub fn distance_to(&self, primitive: u32, p: Point) -> f64 {
+        self.tree.distance_to(primitive, p).distance
+    }
+
+    /// Whether `p` is outside or on the boundary; `hint` is a primitive that may hold it.
+    pub fn is_out(&self, p: Point, hint: u32) -> bool {
+        !self.tree.any_below(p, -ON_BOUNDARY, hint)
+    }
+
+    /// Whether a triangle of middle `middle` is proven to be outside or on the boundary.
+    ///
+    /// The signed distance to a primitive is convex, so at each point it is at least its tangent plane at
+    /// the middle, which is least at a corner. That is second order in the triangle's size, where the
+    /// distance at the middle alone is first order.
+    pub fn is_all_out(&self, corners: &[Point; 3], middle: Point, hint: u32) -> bool {
+        let from_middle = corners.map(|c| c - middle);
+        let far = from_middle.iter().map(|c| c.length_sq());
+        let radius = far.fold(0.0, f64::max).sqrt();
+        self.tree.all_below(middle, radius, hint, |near| {
+            let outward = direction(middle - self.tree.ball(near).center);
+            let heights = from_middle.iter().map(|c| c.dot(outward));
+            near.signed.distance + heights.fold(f64::INFINITY, f64::min) >= -ON_BOUNDARY
+        })
+    }
+
+    /// The point of the nearest ball's surface that is nearest to `p`.
+    pub fn towards_boundary(&self, p: Point, near: &Nearest) -> Point {
+        p - direction(p - self.ball(near).center) * near.signed.distance
+    }
+
+    /// Whether a point that [`Self::towards_boundary`] gave is on the boundary; from outside it always is.
+    pub fn is_on_boundary(&self, moved: Point, near: &Nearest) -> bool {
+        near.signed.distance >= 0.0 || self.is_out(moved, near.primitive)
+    }
+
+    /// [`Self::towards_boundary`], if it is on the boundary.
+    pub fn onto_boundary(&self, p: Point, near: &Nearest) -> Option<Point> {
+        let moved = self.towards_boundary(p, near);
+        self.is_on_boundary(moved, near).then_some(moved)
+    }
+
+    /// Length of the way from `p`, inside, along a unit vector to the boundary; infinite where it
+    /// only grazes it.
+    pub fn way_out(&self, p: Point, towards: Point, hint: u32) -> f64 {
+        let mut way = 0.0;
+        // 64 steps end all but grazing ways, and 2 is beyond any solid.
+        for _ in 0..64 {
+            let depth = -self.nearest(p + towards * way, hint).signed.distance;
+            if depth <= ON_BOUNDARY {
+                return way;
+            }
+            way += depth;
+            if way > 2.0 {
+                break;
+            }
+        }
+        f64::INFINITY
+    }
+
+    /// Distance from `p`, inside, to the boundary, overstated by at most [`WAY_OUT`] of it; at most
+    /// `way`. Cells around `p` that the boundary may cross are searched, nearest first, until an exit is
+    /// found within `enough`.
+    pub fn nearest_exit(&self, p: Point, way: f64, enough: f64) -> f64 {
+        let mut best = way.min(2.0);
+        let mut waiting = BinaryHeap::from([Waiting {
+            bound: 0.0,
+            cell: Cell {
+                center: p,
+                half_side: best,
+            },
+        }]);
+        let mut hint = 0;
+        while let Some(Waiting { bound, cell }) = waiting.pop() {
+            if best <= enough || bound >= (1.0 - WAY_OUT) * best {
+                break;
+            }
+            let near = self.nearest(cell.center, hint);
+            hint = near.primitive;
+            if near.signed.distance.abs() > cell.radius() {
+                continue;
+            }
+            if let Some(exit) = self.onto_boundary(cell.center, &near) {
+                best = best.min((exit - p).length());
+            }
+            if cell.radius() > 0.5 * WAY_OUT * best {
+                waiting.extend(cell.children().map(|cell| Waiting {
+                    bound: cell.distance(p),
+                    cell,
+                }));
+            }
+        }
+        best
+    }
+}
+
+/// A cell to be searched, and its distance.
+struct Waiting {
+    bound: f64,
+    cell: Cell,
+}
+
+impl PartialEq for Waiting {
+    fn eq(&self, o: &Self) -> bool {
+        self.cmp(o).is_eq()
+    }
+}
+
+impl Eq for Waiting {}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
+        Some(self.cmp(o))
+    }
+}
+
+impl Ord for Waiting {
+    /// The nearest is the greatest, for it leaves the heap first.
+    fn cmp(&self, o: &Self) -> Ordering {
+        o.bound.total_cmp(&self.bound)
+    }
+}

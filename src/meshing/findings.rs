@@ -1,0 +1,178 @@
+//! What was found wrong in a triangle mesh and what was done about it, as numbers and in words.
+
+use std::fmt::Write as _;
+
+/// What a build found in its triangle mesh and did about it, as numbers. [`crate::meshing::BuildReport::notes`] says the
+/// same in words.
+///
+/// A *patch* is a set of triangles that are joined across edges of exactly two triangles. It is *solid* if it
+/// bounds a volume, alone or together with others, else it is a *sheet*.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Findings {
+    /// Vertices that no triangle uses; ignored.
+    pub vertices_unused: usize,
+    /// Vertices that were welded to another at the same place (within 1e-6 of the longest side).
+    pub vertices_welded: usize,
+    /// Triangles of which two corners are one vertex. The medial mesh covers the segments or points that they are, and
+    /// the error includes how far they stick out; for all else they are ignored.
+    pub triangles_collapsed: usize,
+    /// Triangles dropped because another has the same corners, in any order.
+    pub triangles_repeated: usize,
+    /// Triangles without area. They join their neighbours and are covered; for all else they are ignored.
+    pub triangles_without_area: usize,
+    /// Triangles whose orientation was reversed, to face outward.
+    pub triangles_turned: usize,
+    /// Triangles without area that were added to close seams, where one long edge meets several short ones.
+    pub slivers: usize,
+    /// Edges of only one triangle.
+    pub edges_open: usize,
+    /// Edges of more than two triangles.
+    pub edges_crowded: usize,
+    /// Edges whose triangles cannot be made to face the same way.
+    pub edges_twisted: usize,
+    /// Patches.
+    pub patches: usize,
+    /// Solid patches.
+    pub patches_solid: usize,
+    /// Solid patches with openings that were taken for damage and closed.
+    pub patches_mended: usize,
+    /// Solid patches that bound a cavity: closed, and facing inward.
+    pub patches_cavity: usize,
+    /// Patches that were built as sheets.
+    pub patches_sheet: usize,
+    /// Sheets that are closed but enclose no volume.
+    pub patches_flat: usize,
+    /// Triangles of solid patches that were built as sheets, because the solid is too thin there to hold spheres.
+    pub triangles_thin: usize,
+    /// Triangles of sheets (after long edges were halved) that were left out because they lie inside a solid.
+    pub triangles_buried: usize,
+    /// Triangles that lie entirely inside a solid. They do not count in the error.
+    pub triangles_hidden: usize,
+    /// Patches of which all triangles lie entirely inside a solid.
+    pub patches_hidden: usize,
+    /// Whether solid patches overlap, or one passes through itself.
+    pub overlapping: bool,
+    /// How the mass properties were computed.
+    pub mass: MassSource,
+}
+
+/// How the mass properties of a built mesh were computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MassSource {
+    /// From the closed surface of the triangle mesh, exactly.
+    #[default]
+    Surface,
+    /// From the solid patches of the triangle mesh, with overlaps counted once, by integration along lines: exact to
+    /// about a thousandth.
+    Lines,
+    /// From the medial mesh, because the triangle mesh encloses nothing.
+    MedialMesh,
+}
+
+impl Findings {
+    /// What a user should know, a sentence each.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        let counts = [
+            (self.vertices_unused, "vertices are used by no triangle"),
+            (
+                self.vertices_welded,
+                "vertices welded to another at the same place",
+            ),
+            (
+                self.triangles_collapsed,
+                "triangles of fewer than three points: kept as segments only",
+            ),
+            (self.triangles_repeated, "repeated triangles dropped"),
+            (
+                self.triangles_without_area,
+                "triangles without area: kept as seams only",
+            ),
+            (
+                self.slivers,
+                "slivers added along seams where one edge meets several",
+            ),
+            (self.edges_open, "open edges (edges of one triangle)"),
+            (
+                self.edges_crowded,
+                "non-manifold edges (edges of more than two triangles)",
+            ),
+            (
+                self.edges_twisted,
+                "edges whose triangles cannot be made to face the same way",
+            ),
+            (self.triangles_turned, "triangles turned to face outward"),
+        ];
+        let say = |&(count, what): &(usize, &str)| format!("{count} {what}");
+        let mut notes: Vec<String> = counts.iter().filter(|c| c.0 > 0).map(say).collect();
+        let sheets = self.patches_sheet > 0;
+        if sheets || self.patches_mended > 0 || self.patches > 1 {
+            notes.push(self.patches_in_words());
+        }
+        if self.triangles_thin > 0 {
+            let count = self.triangles_thin;
+            notes.push(format!(
+                "{count} triangles where matter is too thin for balls: built as sheets"
+            ));
+        }
+        if self.triangles_buried > 0 {
+            notes.push("parts of sheets that lie inside solid matter are left out".into());
+        }
+        if self.overlapping {
+            notes.push("solid patches overlap or pass through themselves: built as one".into());
+        }
+        match self.mass {
+            MassSource::Surface => {}
+            MassSource::Lines => notes.push(
+                "mass properties are within about a thousandth: the solid part's surface overlaps \
+                 or has openings, so that they are summed along lines"
+                    .into(),
+            ),
+            MassSource::MedialMesh => notes.push(
+                "mass properties are those of the medial mesh: the source encloses nothing".into(),
+            ),
+        }
+        if sheets && self.mass != MassSource::MedialMesh {
+            notes.push("sheets count nothing in the mass properties: they have no volume".into());
+        }
+        notes
+    }
+
+    /// What is hidden inside matter: `share` of the area.
+    pub(crate) fn hidden_in_words(&self, share: f64) -> String {
+        let mut text = format!(
+            "{:.1} % of the source's area lies inside solid matter, and counts for nothing in the error: {} triangles \
+             and parts of others",
+            100.0 * share,
+            self.triangles_hidden
+        );
+        if self.patches_hidden > 0 {
+            // Writing to a string does not fail.
+            let _ = write!(text, "; {} patches are hidden whole", self.patches_hidden);
+        }
+        text
+    }
+
+    fn patches_in_words(&self) -> String {
+        let mut text = format!("{} patches: {} solid", self.patches, self.patches_solid);
+        // Writing to a string does not fail.
+        if self.patches_mended > 0 {
+            let _ = write!(
+                text,
+                " ({} with small openings, closed)",
+                self.patches_mended
+            );
+        }
+        if self.patches_cavity > 0 {
+            let _ = write!(text, " ({} cavities)", self.patches_cavity);
+        }
+        if self.patches_sheet > 0 {
+            let _ = write!(text, ", {} built as sheets", self.patches_sheet);
+        }
+        if self.patches_flat > 0 {
+            let _ = write!(text, " ({} closed but without volume)", self.patches_flat);
+        }
+        text
+    }
+}

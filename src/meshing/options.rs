@@ -1,0 +1,282 @@
+//! The options of a build, its progress, and its report.
+
+use crate::error::BuildError;
+use crate::math::Real;
+use crate::meshing::findings::Findings;
+
+/// How much work a build spends on making the error small.
+///
+/// A higher quality never gives a larger error ([`Hausdorff::error`], up to its `sampling`), because a build
+/// also makes the result of the lower quality and keeps the better one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quality {
+    /// A fifth of the time of [`Self::Balanced`], and one and a half to three times its error: edges are
+    /// collapsed by an error estimate (the quadric error of Q-MAT), and that is all.
+    Fast,
+    /// The default. After that, edges are collapsed by the measured error, primitives are inserted where the error is
+    /// largest, and centres and radii are fitted by least squares.
+    #[default]
+    Balanced,
+    /// Three times the time of [`Self::Balanced`] for little gain: more rounds in which primitives are removed in one
+    /// place and inserted in another and, if their number is small, a second start.
+    Best,
+}
+
+/// Which edges of the triangle mesh count as sharp. Convex sharp edges may be kept, by spheres of radius 0 that lie
+/// on them; all other edges are rounded.
+///
+/// Convex bodies with flat faces, alone or several apart, become their own medial axis if the number of primitives
+/// allows it, and are then exact. Of other closed bodies whose surface does not overlap itself one medial mesh is
+/// made with sharp edges and one without, and the one of smaller error is returned ([`Quality::Fast`] makes only
+/// the one without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Creases {
+    /// Edges at which the surface bends by more than 25°, unless most of these edges end within a face, as on a
+    /// coarse mesh of an animal. On a convex body with flat faces, all edges.
+    #[default]
+    Auto,
+    /// Edges at which the normals of the two faces differ by more than this angle, in radians.
+    Keep(Real),
+    /// No edges: all are rounded.
+    None,
+}
+
+impl Creases {
+    /// The angle (rad) above which an edge is sharp; `None` where none is kept.
+    pub(crate) fn angle(self) -> Option<f64> {
+        /// 25°: above what facets bend a curved face by.
+        const SHARP: f64 = 0.4363;
+        self.angle_or(SHARP)
+    }
+
+    /// The same between flat faces.
+    pub(crate) fn angle_of_flat(self) -> Option<f64> {
+        /// Above the rounding of normals only: faces are told apart by their vertices.
+        const SHARP: f64 = 1e-6;
+        self.angle_or(SHARP)
+    }
+
+    fn angle_or(self, sharp: f64) -> Option<f64> {
+        match self {
+            Self::Auto => Some(sharp),
+            Self::Keep(angle) => Some(angle.into()),
+            Self::None => None,
+        }
+    }
+}
+
+/// What [`crate::MedialMesh::from_trimesh`] should build. The defaults are 500 primitives, balanced quality, and
+/// a solid that covers the triangle mesh.
+///
+/// ```
+/// use rapier3d_medial::prelude::*;
+/// // At most 100 primitives:
+/// let by_count = BuildOptions { primitives: Some(100), ..Default::default() };
+/// // As few primitives as keep the error below 1 % of the mesh's longest side:
+/// let by_error = BuildOptions { primitives: None, max_error: Some(0.01), ..Default::default() };
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct BuildOptions {
+    /// Largest number of primitives (slabs, cones that belong to no slab, lone spheres): what the collider costs.
+    /// `None` leaves it to `max_error`; without that either, it is 500.
+    pub primitives: Option<usize>,
+    /// Largest error ([`Hausdorff::error`] of the result), as a fraction of the longest side of the bounding box.
+    /// The smallest mesh that keeps to it is built, among the numbers of primitives that were tried
+    /// ([`BuildReport::notes`]); with `primitives` set as well, it has at most that many. If no mesh
+    /// keeps to it, the best one found is returned, and [`BuildReport::target_reached`] is false. Such a build takes
+    /// five to fifteen times as long as one for a given number of primitives.
+    pub max_error: Option<Real>,
+    /// How much work to spend on making the error small.
+    pub quality: Quality,
+    /// Whether the solid provably covers the whole triangle mesh: spheres are moved and enlarged until it does
+    /// ([`Quality::Fast`] only enlarges them). Without this, the error is about seven tenths as large, and parts of the
+    /// triangle mesh stick out of the solid.
+    pub enclose: bool,
+    /// With `enclose`: how far the triangle mesh may stick out of the solid nevertheless, as a fraction of the
+    /// longest side of the bounding box. The solid becomes thinner by up to as much.
+    pub allow_uncovered: Real,
+    /// Which edges of the triangle mesh count as sharp.
+    pub creases: Creases,
+}
+
+impl Default for BuildOptions {
+    fn default() -> Self {
+        Self {
+            primitives: Some(500),
+            max_error: None,
+            quality: Quality::default(),
+            enclose: true,
+            allow_uncovered: 0.0,
+            creases: Creases::Auto,
+        }
+    }
+}
+
+/// How far a build has got, as its callback is told
+/// ([`MedialMesh::from_trimesh_with_progress`](crate::MedialMesh::from_trimesh_with_progress)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Name of the running stage: `"simplify"`, `"refit"`, ….
+    pub stage: &'static str,
+    /// Share of the whole build that is done, from 0 to 1. It is estimated, and never falls.
+    pub fraction: Real,
+}
+
+/// How far a medial mesh is from the triangle mesh: the Hausdorff distance of the two surfaces, that is the largest
+/// distance from a point of either surface to the nearest point of the other. All fields are lengths in the
+/// user's unit. Triangles that lie inside the solid that all parts of the triangle mesh make together do not count.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hausdorff {
+    /// Largest distance from a point of the triangle mesh to the surface of the medial mesh.
+    pub surface_to_envelope: Real,
+    /// Largest distance from a point on the surface of the medial mesh to the triangle mesh.
+    pub envelope_to_surface: Real,
+    /// How far the triangle mesh sticks out of the medial mesh, at most.
+    pub uncovered: Real,
+    /// How far the medial mesh sticks out of the triangle mesh, at the points that were looked at.
+    pub bloat: Real,
+    /// Uncertainty of [`Self::error`], since only some points were looked at: no point of either surface is farther from
+    /// the other than `error() + sampling`. It is a quarter of the error (half with [`Quality::Fast`] and no
+    /// [`BuildOptions::max_error`]), or more if the error is below two thousandths of the size or the
+    /// search ran out of its budget.
+    pub sampling: Real,
+}
+
+impl Hausdorff {
+    /// The Hausdorff distance: the larger of [`Self::surface_to_envelope`] and [`Self::envelope_to_surface`].
+    pub fn error(&self) -> Real {
+        self.surface_to_envelope.max(self.envelope_to_surface)
+    }
+
+    /// What the surfaces are off by at most, between the points measured as well: [`Self::error`] and
+    /// [`Self::sampling`] together.
+    pub fn bound(&self) -> Real {
+        self.error() + self.sampling
+    }
+}
+
+/// What became of the sharp edges of a triangle mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Variant {
+    /// All edges are rounded.
+    #[default]
+    Rounded,
+    /// Sharp convex edges are kept where that makes the error smaller, by spheres of radius 0 on them.
+    Creased {
+        /// Number of edges of the triangle mesh that could be kept.
+        edges: usize,
+    },
+    /// The medial mesh is the medial axis of convex bodies with flat faces, and exact.
+    Exact,
+}
+
+/// What a build made, how far it is from the triangle mesh, and what was repaired.
+///
+/// Look first at [`Self::hausdorff`] (the error), [`Self::target_reached`] (whether you got what you
+/// asked for) and [`Self::notes`] (what you should know, in sentences).
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct BuildReport {
+    /// How far the result is from the triangle mesh, in the user's unit.
+    pub hausdorff: Hausdorff,
+    /// The same before spheres were moved and enlarged to cover the triangle mesh; `None` without [`BuildOptions::enclose`].
+    pub hausdorff_before_enclosure: Option<Hausdorff>,
+    /// Longest side of the triangle mesh's bounding box, in the user's unit. Errors are often given as fractions of it.
+    pub longest_side: Real,
+    /// Number of primitives of the result.
+    pub primitives: usize,
+    /// What became of sharp edges.
+    pub variant: Variant,
+    /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring.
+    pub euler: i64,
+    /// Whether the result keeps to [`BuildOptions::max_error`]; true if none was asked for. The number of primitives
+    /// is always kept to.
+    pub target_reached: bool,
+    /// What was found wrong in the triangle mesh and what was done about it, as numbers.
+    pub findings: Findings,
+    /// Area of the triangle mesh that lies inside the solid, hidden by other parts, in the user's unit squared. It
+    /// does not count in the error.
+    pub hidden_area: Real,
+    /// What you should know about the triangle mesh and the result, a sentence each.
+    pub notes: Vec<String>,
+    /// Bytes that the builder's large arrays held at most at any time. Small lists, overhead of the allocator and
+    /// your own mesh are not included, so the true number is larger.
+    pub memory: usize,
+    /// Seconds that each stage took, in order.
+    pub seconds: Vec<(&'static str, f64)>,
+}
+
+/// The options, checked, in double precision.
+pub(crate) struct Limits {
+    pub primitives: Option<usize>,
+    pub max_error: Option<f64>,
+    pub quality: Quality,
+    pub enclose: bool,
+    pub allow_uncovered: f64,
+    pub creases: Creases,
+}
+
+impl Limits {
+    pub fn new(options: &BuildOptions) -> Result<Self, BuildError> {
+        if options.primitives == Some(0) {
+            return Err(BuildError::Option {
+                option: "primitives",
+                value: 0.0,
+                must: "at least 1",
+            });
+        }
+        let max_error = options.max_error.map(f64::from);
+        if let Some(value) = max_error.filter(|e| !(*e > 0.0 && e.is_finite())) {
+            return Err(BuildError::Option {
+                option: "max_error",
+                value,
+                must: "above 0 and finite",
+            });
+        }
+        let allow_uncovered = f64::from(options.allow_uncovered);
+        if !(allow_uncovered >= 0.0 && allow_uncovered.is_finite()) {
+            return Err(BuildError::Option {
+                option: "allow_uncovered",
+                value: allow_uncovered,
+                must: "at least 0 and finite",
+            });
+        }
+        if let Creases::Keep(angle) = options.creases
+            && !(angle > 0.0 && angle.is_finite())
+        {
+            return Err(BuildError::Option {
+                option: "creases",
+                value: angle.into(),
+                must: "an angle above 0 and finite",
+            });
+        }
+        let unlimited = options.primitives.is_none() && max_error.is_none();
+        let default = BuildOptions::default().primitives;
+        Ok(Self {
+            primitives: if unlimited {
+                default
+            } else {
+                options.primitives
+            },
+            max_error,
+            quality: options.quality,
+            enclose: options.enclose,
+            allow_uncovered,
+            creases: options.creases,
+        })
+    }
+
+    /// Samples of the surface that the medial mesh starts from: two for each primitive wanted, or
+    /// neighbours at about twice the error allowed. Measured up to 5,000 primitives: eight for each give
+    /// nothing more; half of the least loses a third at 500.
+    pub fn samples(&self, area: f64) -> usize {
+        const LEAST: usize = 10_000;
+        const MOST: usize = 200_000;
+        let by_count = self.primitives.map_or(0, |n| n.saturating_mul(2));
+        let by_error = self.max_error.map_or(0.0, |e| area / (4.0 * e * e));
+        by_count
+            .max((by_error as usize).min(2 * LEAST))
+            .clamp(LEAST, MOST)
+    }
+}

@@ -1,0 +1,191 @@
+//! The pipeline: from a checked surface to the best draft that the limits allow, stage by stage.
+
+use crate::error::BuildError;
+use crate::math::Real;
+use crate::meshing::axis::creased::{Creased, creased};
+use crate::meshing::axis::start::{Start, start};
+use crate::meshing::recipe::candidate::Candidate;
+use crate::meshing::recipe::counts::{Collapses, LARGEST_GAIN};
+use crate::meshing::recipe::ladder::Ladder;
+use crate::meshing::recipe::polyhedron::polyhedra;
+use crate::meshing::recipe::smallest::Smallest;
+use crate::meshing::recipe::source::Source;
+use crate::meshing::simplify::shared_count::Parts;
+use crate::meshing::surface::boundary::solid_boundary;
+use crate::meshing::watch::Watch;
+
+/// The plain collapses of two medial meshes of one body are compared by few samples: the one whose largest
+/// residual is above this many of the other's is not fitted.
+const HOPELESS: f64 = 2.0;
+
+/// Samples for tens of primitives.
+const FEW_SAMPLES: usize = 2_000;
+
+impl Source {
+    /// What the limits allow: balls inside where the surface bounds matter, slabs where it is a sheet.
+    pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
+        let exact = self.polyhedra(watch)?;
+        if self.limits.max_error.is_none()
+            && let Some(exact) = exact
+        {
+            return Ok(exact);
+        }
+        let (start, samples) = self.start(exact.is_some(), watch)?;
+        match self.limits.max_error {
+            None => self.rounded_or_creased(start, samples, watch),
+            Some(limit) => self.within(limit, start, samples, exact, watch),
+        }
+    }
+
+    /// The medial mesh of balls inside and of slabs, and from how many samples it is: few where it is only to be
+    /// smaller than one that is exact.
+    pub fn start(&mut self, few: bool, watch: &mut Watch) -> Result<(Start, usize), BuildError> {
+        let count = match few {
+            true => FEW_SAMPLES,
+            false => self.limits.samples(self.surface.area),
+        };
+        let mut findings = std::mem::take(&mut self.surface.findings);
+        let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
+        watch.begin("surface")?;
+        self.boundary = solid_boundary(&self.surface, &self.tree, &mut findings, watch)?;
+        self.surface.findings = findings;
+        Ok((start, count))
+    }
+
+    /// The medial mesh whose ends are rounded, and one that keeps creases, if there are any, to be asked for many
+    /// counts.
+    pub fn ladders(
+        &self,
+        start: Start,
+        samples: usize,
+        watch: &mut Watch,
+    ) -> Result<(Ladder<'_>, Option<Ladder<'_>>), BuildError> {
+        watch.begin("simplify")?;
+        let rounded = Parts::new(start, &self.tree, watch)?;
+        let creased = self.creased(samples, watch)?;
+        let creased = creased.map(|c| Ladder::new(Parts::solid(c.simplifier), c.creases));
+        Ok((Ladder::new(rounded, Vec::new()), creased))
+    }
+
+    /// The medial axis of convex polyhedra itself, if that is within the limit on the count.
+    pub fn polyhedra(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+        let most = self.limits.primitives.unwrap_or(usize::MAX);
+        let Some(angle) = self.limits.creases.angle_of_flat() else {
+            return Ok(None);
+        };
+        watch.begin("samples")?;
+        let axis = polyhedra(&self.surface, &self.tree, angle, most, watch)?;
+        Ok(axis.map(|axis| axis.candidate(&self.limits)))
+    }
+
+    /// The better, within the limit on the count, of a medial mesh whose ends are rounded, and one that keeps
+    /// creases, if there are any.
+    fn rounded_or_creased(
+        &self,
+        start: Start,
+        samples: usize,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
+        watch.begin("simplify")?;
+        let rounded = Parts::new(start, &self.tree, watch)?;
+        let most = self.limits.primitives.unwrap_or(usize::MAX);
+        let most = most.min(rounded.primitives());
+        let rounded = self.collapses(rounded, Vec::new(), most, watch)?;
+        let creased = match self.creased(samples, watch)? {
+            None => None,
+            Some(Creased {
+                simplifier,
+                creases,
+            }) => Some(self.collapses(Parts::solid(simplifier), creases, most, watch)?),
+        };
+        self.better(rounded, creased, watch)
+    }
+
+    /// A medial mesh that keeps creases, if any are wanted, and there are any.
+    fn creased(
+        &self,
+        samples: usize,
+        watch: &mut Watch,
+    ) -> Result<Option<Creased<'_>>, BuildError> {
+        let keeps = self.fits() && self.surface.simple && !self.surface.sheet.contains(&true);
+        match self.limits.creases.angle().filter(|_| keeps) {
+            Some(angle) => creased(&self.surface, &self.tree, angle, samples, watch),
+            None => Ok(None),
+        }
+    }
+
+    /// The better of two medial meshes of one body, fitted and measured.
+    fn better(
+        &self,
+        rounded: Collapses,
+        creased: Option<Collapses>,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
+        let Some(creased) = creased else {
+            return self.best_of(&rounded, None, watch);
+        };
+        let sharp_first = creased.rough_error <= rounded.rough_error;
+        let (first, second) = match sharp_first {
+            true => (&creased, &rounded),
+            false => (&rounded, &creased),
+        };
+        let mut best = self.best_of(first, Some(f64::INFINITY), watch)?;
+        let mut is_sharp = sharp_first;
+        // The other has that error to beat, and no fit gains more than so much.
+        let bar = LARGEST_GAIN * best.error();
+        if second.rough_error <= bar.min(HOPELESS * first.rough_error) {
+            let other = self.best_of(second, Some(best.error()), watch)?;
+            if other.error() < best.error() || (sharp_first && other.error() == best.error()) {
+                (best, is_sharp) = (other, !sharp_first);
+            }
+        }
+        if is_sharp {
+            best.keeps_creases(creased.creases());
+        }
+        Ok(best)
+    }
+
+    /// The smallest medial mesh whose error is at most `limit`, or the best that there is; `exact` is one that may
+    /// be larger than it takes.
+    fn within(
+        &self,
+        limit: f64,
+        start: Start,
+        samples: usize,
+        exact: Option<Candidate>,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
+        let (mut rounded, mut creased) = self.ladders(start, samples, watch)?;
+        let ladders = std::iter::once(&mut rounded)
+            .chain(creased.as_mut())
+            .collect();
+        let asked = self.limits.primitives;
+        let below = exact.as_ref().map(|e| e.draft.primitives().len() - 1);
+        let top = match self.smallest(ladders, limit, below.or(asked), watch)? {
+            Smallest::Found(candidate) => return Ok(*candidate),
+            Smallest::OutOfReach(top) => top,
+        };
+        if let Some(exact) = exact {
+            return Ok(exact);
+        }
+        watch.attempt();
+        let rounded = self.collapses(rounded.finest, rounded.creases, top, watch)?;
+        let creased = match creased {
+            None => None,
+            Some(creased) => Some(self.collapses(creased.finest, creased.creases, top, watch)?),
+        };
+        let mut candidate = self.better(rounded, creased, watch)?;
+        let (count, error) = (candidate.draft.primitives().len(), candidate.error());
+        candidate.notes.push(match asked.filter(|most| *most <= top) {
+            Some(most) => format!(
+                "primitives {most} bound first: the least error {error:.6}, with {count}, is above max_error {}",
+                limit as Real
+            ),
+            None => format!(
+                "max_error {} is out of reach: the least error is {error:.6}, with {count} primitives",
+                limit as Real
+            ),
+        });
+        Ok(candidate)
+    }
+}

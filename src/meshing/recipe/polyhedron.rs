@@ -1,0 +1,174 @@
+//! The medial mesh of a convex polyhedron: its medial axis itself, which is of flat sheets, with radii linear
+//! on each, and so exact.
+//!
+//! The axis is that of the roof over the body (`roof.rs`, `flat_axis.rs`). How short an edge of the roof must be to
+//! count as a point is tried, from long to short, until what comes out is exact.
+
+use crate::error::BuildError;
+use crate::math::Real;
+use crate::meshing::axis::flat_axis::{Axis, Body};
+use crate::meshing::axis::roof::{FIRST, GROUND, Plane, roof};
+use crate::meshing::draft::Draft;
+use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::options::{Hausdorff, Limits, Variant};
+use crate::meshing::recipe::candidate::Candidate;
+use crate::meshing::surface::flat_faces::{FlatFaces, flat_faces};
+use crate::meshing::surface::surface::Surface;
+use crate::meshing::watch::Watch;
+
+/// A medial mesh is exact when it is nowhere farther off than this (longest side 1), of which half is left to the
+/// rounding of its balls to `f32`.
+pub const EXACT: f64 = 1e-6;
+const EXACT_HERE: f64 = 0.6 * EXACT;
+
+/// Corners of the roof this near are one (longest side 1): tried in order.
+const SAME: [f64; 7] = [1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-9, 0.0];
+
+/// Orders in which the roof is cut, should rounding spoil it.
+const SEEDS: u64 = 4;
+
+/// Corners of the roof for each primitive allowed, at most: boxes and random hulls have .5 to .7.
+const CORNERS: usize = 8;
+
+/// The source's triangles and the faces have the same area but for this share, by rounding.
+const SAME_AREA: f64 = 1e-5;
+
+/// Primitives at most, where no fewer are asked for: faces are compared each with each.
+const MOST: usize = 2_000;
+
+impl Axis {
+    /// The axis as a build returns it, grown if asked to. Its errors are bounds, not samples.
+    pub fn candidate(self, limits: &Limits) -> Candidate {
+        let Self {
+            mut draft,
+            growth,
+            bulge,
+            ..
+        } = self;
+        let error = |uncovered: f64, bloat: f64| Hausdorff {
+            surface_to_envelope: uncovered.max(bloat) as Real,
+            envelope_to_surface: uncovered.max(bloat) as Real,
+            uncovered: uncovered as Real,
+            bloat: bloat as Real,
+            sampling: 0.0,
+        };
+        let before = error(growth, bulge);
+        let count = draft.faces.len();
+        let note = format!(
+            "a convex polyhedron: its own medial axis has {count} primitives, and is exact"
+        );
+        let grown = match limits.enclose {
+            true => (growth - limits.allow_uncovered).max(0.0),
+            false => 0.0,
+        };
+        draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
+        Candidate {
+            draft,
+            hausdorff: error(growth - grown, bulge + grown),
+            before: limits.enclose.then_some(before),
+            notes: vec![note],
+            variant: Variant::Exact,
+        }
+    }
+}
+
+/// The medial axes of a surface's bodies, of at most `most` primitives together; `None` where one of them is no
+/// convex polyhedron, or where its axis has a sheet between faces whose normals differ by less than `angle` (rad).
+pub fn polyhedra(
+    surface: &Surface,
+    tree: &TriangleTree,
+    angle: f64,
+    most: usize,
+    watch: &mut Watch,
+) -> Result<Option<Axis>, BuildError> {
+    if surface.sheet.contains(&true) {
+        return Ok(None);
+    }
+    let most = most.min(MOST);
+    let patches = surface.patch_of.iter().max();
+    let mut bodies = vec![Vec::new(); patches.map_or(0, |&p| p as usize + 1)];
+    for (t, &patch) in surface.patch_of.iter().enumerate() {
+        // Patches that are open or overlap may be pieces of one body.
+        let body = if surface.simple { patch } else { 0 };
+        bodies[body as usize].push(t);
+    }
+    bodies.retain(|body| !body.is_empty());
+    let mut all = Axis {
+        draft: Draft::default(),
+        growth: 0.0,
+        bulge: 0.0,
+        area: 0.0,
+    };
+    let mut planes = Vec::new();
+    for body in bodies {
+        let left = most.saturating_sub(all.draft.faces.len());
+        // Three edges or more bound a face, two faces share one, and each has a slab or more.
+        let Some(faces) = flat_faces(surface, body, left - left / 3, watch)? else {
+            return Ok(None);
+        };
+        let Some(axis) = axis(surface, tree, &faces, angle.cos(), left, watch)? else {
+            return Ok(None);
+        };
+        all.area += axis.area;
+        all.draft = all.draft.and(axis.draft);
+        all.growth = all.growth.max(axis.growth);
+        all.bulge = all.bulge.max(axis.bulge);
+        planes.push(faces.planes);
+    }
+    // Where not every edge is of two triangles, some of a face may be missing.
+    if (all.area - surface.area).abs() > SAME_AREA * surface.area {
+        return Ok(None);
+    }
+    // Triangles without area lie in the bodies.
+    let beyond = |p: Point, planes: &Vec<Plane>| {
+        let heights = planes.iter().map(|plane| -plane.depth(p));
+        heights.fold(0.0, f64::max)
+    };
+    for p in surface.needle_corners().flatten() {
+        let least = planes.iter().map(|planes| beyond(p, planes));
+        all.growth = all.growth.max(least.fold(f64::INFINITY, f64::min));
+    }
+    all.growth += surface.welded;
+    Ok((all.growth + all.bulge <= EXACT_HERE).then_some(all))
+}
+
+/// The axis of one body.
+fn axis(
+    surface: &Surface,
+    tree: &TriangleTree,
+    faces: &FlatFaces,
+    least_cosine: f64,
+    most: usize,
+    watch: &mut Watch,
+) -> Result<Option<Axis>, BuildError> {
+    for seed in 0..SEEDS {
+        watch.again()?;
+        let mut planes = faces.planes.clone();
+        let Some(corners) = roof(&mut planes, CORNERS.saturating_mul(most), seed) else {
+            continue;
+        };
+        let body = Body::new(surface, faces, planes, corners);
+        let polygons = body.polygons();
+        let too_blunt = polygons.iter().any(|polygon| {
+            let [a, b] = polygon.sides;
+            a != GROUND && {
+                let [a, b] = [a, b].map(|side| body.planes[(side - FIRST) as usize].normal);
+                a.dot(b) > least_cosine
+            }
+        });
+        if too_blunt {
+            return Ok(None);
+        }
+        for same in SAME {
+            watch.again()?;
+            let found = body.axis(&polygons, same, tree);
+            let count = found.draft.faces.len();
+            if found.growth + found.bulge <= EXACT_HERE && count > 0 {
+                return Ok((count <= most).then_some(found));
+            }
+        }
+        return Ok(None);
+    }
+    Ok(None)
+}

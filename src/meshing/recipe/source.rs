@@ -1,0 +1,30 @@
+//! What a build is made from: the checked surface with its tree, and the limits.
+
+use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::options::Limits;
+use crate::meshing::surface::boundary::Boundary;
+use crate::meshing::surface::surface::Surface;
+
+/// Note on a result that is not what the source was.
+pub const GAVE_UP: &str = "holes or parts were given up to reach the count";
+
+/// The checked surface, its tree, and what to build from it.
+pub struct Source {
+    pub surface: Surface,
+    pub tree: TriangleTree,
+    pub limits: Limits,
+    /// The boundary of the solid, where some of the surface is hidden inside it.
+    pub boundary: Option<Boundary>,
+}
+
+impl Source {
+    /// A surface of which nothing is known to be hidden.
+    pub fn new(surface: Surface, tree: TriangleTree, limits: Limits) -> Self {
+        Self {
+            surface,
+            tree,
+            limits,
+            boundary: None,
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Fits a draft so that it covers the surface, and no farther than it must.
+//!
+//! Enclosure raises radii until all is covered, and a ball that grows for what sticks out on one side grows on all
+//! sides: it doubles the error of a fit that is as much too small here as it is too large there. So what enclosure
+//! made is fitted again, to lie between the surface and an offset of it that is nearer than its error, and enclosed
+//! again, as long as that gains.
+//!
+//! What sticks out lies between the samples: ridges and corners most of all. Points at which the draft was found not to
+//! cover the surface become samples, as violated constraints do in a cutting-plane method (Kelley, "The
+//! cutting-plane method for solving convex programs", 1960).
+
+use crate::error::BuildError;
+use crate::meshing::certify::inside::Solid;
+use crate::meshing::draft::Draft;
+use crate::meshing::geometry::random::Random;
+use crate::meshing::recipe::source::Source;
+use crate::meshing::refine::refit::{Target, refit};
+use crate::meshing::surface::samples::{Sample, even_samples, vertex_samples};
+use crate::meshing::watch::Watch;
+
+/// How many times less an enclosed draft may be off once it is tightened.
+pub const GAIN_OF_TIGHT: f64 = 1.5;
+
+/// The offset that a fit aims at, as a share of the error: below a half there is no fit, and above two thirds
+/// little is gained.
+const OFFSET: f64 = 0.6;
+
+/// Rounds end where one leaves more than this share of the error, or after so many.
+const GAIN: f64 = 0.95;
+const ROUNDS: usize = 4;
+
+/// Fits in a round, and iterations of each; after each but the last, what sticks out is added to the samples.
+const FITS: usize = 2;
+const ITERATIONS: usize = 3;
+
+/// Points that are examined for that, besides vertices, and how far one sticks out to be added, as a share of the
+/// error.
+const POINTS: usize = 30_000;
+const STICKS_OUT: f64 = 0.02;
+
+impl Source {
+    /// A draft that covers the surface more closely than `loose`; `None` where none was found, or where `loose` is off
+    /// by more than `most`, or need not cover it.
+    pub fn tightened(
+        &self,
+        loose: &Draft,
+        most: f64,
+        target: &Target,
+        watch: &mut Watch,
+    ) -> Result<Option<Draft>, BuildError> {
+        if !self.limits.enclose {
+            return Ok(None);
+        }
+        watch.begin("refit")?;
+        let mut target = target.clone();
+        target.beyond = OFFSET * target.residuals(loose, watch)?.largest;
+        let mut error = target.beyond + target.residuals(loose, watch)?.largest;
+        if error > most {
+            return Ok(None);
+        }
+        let surface = self.bounds().0;
+        let mut points = even_samples(surface, POINTS, &mut Random::new(3));
+        points.extend(vertex_samples(surface));
+        let mut best = None;
+        for _ in 0..ROUNDS {
+            target.beyond = OFFSET * error;
+            let mut draft = best.as_ref().unwrap_or(loose).clone();
+            for fit in 0..FITS {
+                if fit > 0 {
+                    let least = STICKS_OUT * error;
+                    add_uncovered(&mut target.samples, &points, &draft, least, watch)?;
+                }
+                watch.begin("refit")?;
+                refit(&mut draft, &target, ITERATIONS, watch)?;
+            }
+            let (draft, _) = self.covering(draft, watch)?;
+            let now = target.beyond + target.residuals(&draft, watch)?.largest;
+            let gains = now < GAIN * error;
+            if now < error {
+                (best, error) = (Some(draft), now);
+            }
+            if !gains {
+                break;
+            }
+        }
+        Ok(best)
+    }
+}
+
+/// Adds the points that stick out of a draft by more than `least` to the samples.
+fn add_uncovered(
+    samples: &mut Vec<Sample>,
+    points: &[Sample],
+    draft: &Draft,
+    least: f64,
+    watch: &mut Watch,
+) -> Result<(), BuildError> {
+    let solid = Solid::new(draft);
+    let mut hint = 0;
+    for (i, sample) in points.iter().enumerate() {
+        if i % 512 == 0 {
+            watch.again()?;
+        }
+        let near = solid.nearest(sample.point, hint);
+        hint = near.primitive;
+        if near.signed.distance > least {
+            samples.push(*sample);
+        }
+    }
+    Ok(())
+}

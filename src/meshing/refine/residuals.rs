@@ -1,0 +1,245 @@
+//! How far a draft is from the surface, sample by sample, and which balls answer for it.
+//!
+//! A surface sample belongs to the primitive nearest to it; its residual is the signed distance.
+//! An envelope sample is a point of the solid's boundary; its residual is minus the signed distance
+//! to the surface: negative where the solid bulges out. To first order
+//! ```text
+//! d(residual) = −Σ αₖ (n·Δcₖ + Δrₖ)
+//! ```
+//! with the weights `α` of the primitive's balls there and the outward normal `n`, because the
+//! derivative of a minimum over `α` is that of its argument at the minimum (envelope theorem).
+//! Sources of the terms: signed distance, paper Eq. (2); one-sided residuals both ways as in Thiery
+//! et al., "Sphere-Meshes" (2013), §5.
+
+use crate::error::BuildError;
+use crate::meshing::certify::inside::{Cell, Solid};
+use crate::meshing::certify::primitive_tree::Nearest;
+use crate::meshing::draft::{Ball, Corners, Draft};
+use crate::meshing::geometry::bounds::{Point, direction};
+use crate::meshing::geometry::chunks::map_chunks;
+use crate::meshing::geometry::sorted_points::Cloud;
+use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::surface::samples::Sample;
+use crate::meshing::watch::{Watch, bytes_of};
+
+/// First guess of an envelope sample's distance (longest side 1); only time depends on it.
+pub const GUESS: f64 = 0.004;
+
+/// A sample, the balls that answer for it, and what is wrong there.
+#[derive(Clone, Copy)]
+pub struct Row {
+    /// Balls of its primitive.
+    pub corners: Corners,
+    /// Their weights; sum 1.
+    pub weights: [f64; 3],
+    /// Outward unit normal of the solid.
+    pub normal: Point,
+    /// By how much the solid should grow there.
+    pub residual: f64,
+    /// Weight of its square.
+    pub weight: f64,
+    /// Where it is.
+    pub point: Point,
+    /// Index of its primitive.
+    pub primitive: u32,
+}
+
+/// A point of the solid's boundary, by the ball that it lies on: it moves with the ball.
+#[derive(Clone, Copy)]
+pub struct EnvelopeSample {
+    primitive: u32,
+    weights: [f64; 3],
+    normal: Point,
+    /// The triangle that was nearest to it, or [`UNKNOWN`].
+    triangle: u32,
+}
+
+/// No triangle yet, or no primitive: the sample before, which is likely near, gives the hint.
+pub const UNKNOWN: u32 = u32::MAX;
+
+impl EnvelopeSample {
+    /// Where it is now, and the corners of its primitive.
+    pub fn at(&self, draft: &Draft, solid: &Solid) -> (Point, Corners) {
+        let corners = solid.primitives()[self.primitive as usize];
+        let ball = Ball::interpolate(draft.balls_of(corners), self.weights);
+        (ball.center + self.normal * ball.radius, corners)
+    }
+}
+
+/// All rows of a draft: surface samples first, then envelope samples.
+pub struct Residuals {
+    /// The rows.
+    pub rows: Vec<Row>,
+    /// How many of them are surface samples.
+    pub surface_rows: usize,
+    /// Largest residual of either kind.
+    pub largest: f64,
+    /// What fits are compared by: the largest residual plus twice the root mean square.
+    pub score: f64,
+}
+
+/// Points of the boundary of the solid, about `spacing` apart.
+pub fn envelope_samples(
+    solid: &Solid,
+    spacing: f64,
+    watch: &mut Watch,
+) -> Result<Vec<EnvelopeSample>, BuildError> {
+    // A shell of cells one radius wide on both sides holds √3 cells per square of their side.
+    let side = spacing * 3f64.sqrt().sqrt();
+    let whole = solid.whole();
+    let mut start = whole.with_side(side);
+    while start.side() < whole.side() {
+        start = start.with_side(2.0 * start.side());
+    }
+    let mut cells: Vec<(Cell, u32)> = vec![(start, 0)];
+    while cells.first().is_some_and(|c| c.0.side() > 1.5 * side) {
+        cells = map_chunks(&cells, watch, |chunk| {
+            let mut children = Vec::new();
+            for &(cell, hint) in chunk {
+                if let Some(near) = solid.nearest_if_near(cell.center, cell.radius(), hint) {
+                    children.extend(cell.children().map(|child| (child, near.primitive)));
+                }
+            }
+            children
+        })?;
+    }
+    map_chunks(&cells, watch, |chunk| {
+        let mut samples = Vec::new();
+        for &(cell, hint) in chunk {
+            let Some(near) = solid.nearest_if_near(cell.center, cell.radius(), hint) else {
+                continue;
+            };
+            if let Some(point) = solid.onto_boundary(cell.center, &near) {
+                samples.push(EnvelopeSample {
+                    primitive: near.primitive,
+                    weights: near.signed.weights,
+                    normal: direction(point - solid.ball(&near).center),
+                    triangle: UNKNOWN,
+                });
+            }
+        }
+        samples
+    })
+}
+
+/// Examines a draft at surface samples, each with the primitive it had last, and at envelope
+/// samples. Where the solid may reach `beyond` the surface, residuals are what it reaches farther (negative) and
+/// what it does not cover.
+pub fn residuals(
+    draft: &Draft,
+    tree: &TriangleTree,
+    samples: &[Sample],
+    hints: &mut [u32],
+    envelope: &mut [EnvelopeSample],
+    beyond: f64,
+    watch: &mut Watch,
+) -> Result<Residuals, BuildError> {
+    let solid = Solid::new(draft);
+    let paired: Vec<(Sample, u32)> = samples.iter().copied().zip(hints.iter().copied()).collect();
+    let boundary = match beyond > 0.0 {
+        true => envelope.iter().map(|e| e.at(draft, &solid).0).collect(),
+        false => Vec::new(),
+    };
+    let boundary = Cloud::new(boundary);
+    let mut rows = map_chunks(&paired, watch, |chunk| {
+        let mut last = 0;
+        let row = |&(sample, hint): &(Sample, u32)| {
+            let point = sample.point;
+            let mut near = solid.nearest(point, if hint == UNKNOWN { last } else { hint });
+            last = near.primitive;
+            let mut residual = near.signed.distance;
+            let mut on_boundary = point;
+            if beyond > 0.0 && residual < 0.0 {
+                if let Some(exit) = far_exit(&solid, &sample, &near, beyond, &boundary) {
+                    residual = -(exit - point).length();
+                    // Shrinking the ball there shortens the way.
+                    near = solid.nearest(exit, last);
+                    on_boundary = exit;
+                }
+                residual = (residual + beyond).min(0.0);
+            }
+            Row {
+                corners: solid.primitives()[near.primitive as usize],
+                weights: near.signed.weights,
+                normal: direction(on_boundary - solid.ball(&near).center),
+                residual,
+                weight: 1.0,
+                point,
+                primitive: near.primitive,
+            }
+        };
+        chunk.iter().map(row).collect()
+    })?;
+    for (hint, row) in hints.iter_mut().zip(&rows) {
+        *hint = row.primitive;
+    }
+    let surface_rows = rows.len();
+    let share = surface_rows as f64 / envelope.len().max(1) as f64;
+    let outer = map_chunks(envelope, watch, |chunk| {
+        let mut hint = 0;
+        let row = |sample: &EnvelopeSample| {
+            let (point, corners) = sample.at(draft, &solid);
+            if sample.triangle != UNKNOWN {
+                hint = sample.triangle;
+            }
+            let (nearest, triangle) = tree.closest_from(point, hint);
+            hint = triangle;
+            let off = point - nearest;
+            let (distance, along) = (off.length(), off.dot(sample.normal));
+            let mut residual = if along > 0.0 { -distance } else { distance };
+            if beyond > 0.0 {
+                residual = (residual + beyond).min(0.0);
+            }
+            // Where the way to the surface is across the normal, growing does not help.
+            let cosine = if distance > 1e-9 {
+                along / distance
+            } else {
+                1.0
+            };
+            let row = Row {
+                corners,
+                weights: sample.weights,
+                normal: sample.normal,
+                residual,
+                weight: share * cosine * cosine,
+                point,
+                primitive: sample.primitive,
+            };
+            (row, triangle)
+        };
+        chunk.iter().map(row).collect()
+    })?;
+    for (sample, (row, triangle)) in envelope.iter_mut().zip(outer) {
+        sample.triangle = triangle;
+        rows.push(row);
+    }
+    watch.hold(bytes_of(&rows) + bytes_of(&paired) + size_of_val(envelope));
+    let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
+    let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();
+    let squares = sum(|r| r.weight * r.residual * r.residual);
+    let rms = (squares / sum(|r| r.weight).max(f64::MIN_POSITIVE)).sqrt();
+    Ok(Residuals {
+        rows,
+        surface_rows,
+        largest,
+        score: largest + 2.0 * rms,
+    })
+}
+
+/// Where the way out of the solid from a sample within it is likely shortest, if it is longer than `beyond` and leads
+/// past the primitive that is deepest there. `boundary` are points of the solid's boundary.
+fn far_exit(
+    solid: &Solid,
+    sample: &Sample,
+    near: &Nearest,
+    beyond: f64,
+    boundary: &Cloud,
+) -> Option<Point> {
+    let (p, hint) = (sample.point, near.primitive);
+    if solid.is_out(p + sample.normal * beyond, hint) || solid.onto_boundary(p, near).is_some() {
+        return None;
+    }
+    let way = solid.way_out(p, sample.normal, hint);
+    let straight = way.is_finite().then(|| p + sample.normal * way);
+    boundary.nearer(p, way).or(straight)
+}

@@ -1,0 +1,100 @@
+//! Collapses in the order of their costs.
+//!
+//! Each collapse changes the costs of a dozen edges, and what was queued before is stale. Most of it
+//! lies far down a heap, where it costs each step time. So only the cheapest are in the heap, and the
+//! others in a list, from which the stale ones are struck when the heap is empty and its cheapest part
+//! moves up. The order is that of one heap.
+
+use crate::meshing::watch::bytes_of;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// The heap takes this share of what waits, and all of it when there is no more than [`FEW`].
+const SHARE: usize = 8;
+const FEW: usize = 512;
+
+/// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).
+#[derive(Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// What it costs.
+    pub cost: f64,
+    /// Its ends.
+    pub a: u32,
+    /// See `a`.
+    pub b: u32,
+    /// Versions of both when the cost was computed; an older one is stale.
+    pub versions: [u32; 2],
+}
+
+impl Eq for Candidate {}
+
+impl Ord for Candidate {
+    /// The cheapest is the greatest, for it leaves the heap first; ties by index.
+    fn cmp(&self, o: &Self) -> Ordering {
+        let tie = (o.a, o.b).cmp(&(self.a, self.b));
+        o.cost.total_cmp(&self.cost).then(tie)
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
+        Some(self.cmp(o))
+    }
+}
+
+/// Candidates, the cheapest first.
+#[derive(Clone)]
+pub struct Queue {
+    heap: BinaryHeap<Candidate>,
+    /// All that cost more than `limit`.
+    later: Vec<Candidate>,
+    limit: f64,
+}
+
+impl Default for Queue {
+    fn default() -> Self {
+        Self {
+            heap: BinaryHeap::new(),
+            later: Vec::new(),
+            limit: f64::NEG_INFINITY,
+        }
+    }
+}
+
+impl Queue {
+    /// Bytes of its arrays.
+    pub fn bytes(&self) -> usize {
+        self.heap.capacity() * size_of::<Candidate>() + bytes_of(&self.later)
+    }
+
+    /// Adds one.
+    pub fn push(&mut self, candidate: Candidate) {
+        if candidate.cost <= self.limit {
+            self.heap.push(candidate);
+        } else {
+            self.later.push(candidate);
+        }
+    }
+
+    /// The cheapest that is `current`.
+    pub fn pop(&mut self, current: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
+        loop {
+            while let Some(candidate) = self.heap.pop() {
+                if current(&candidate) {
+                    return Some(candidate);
+                }
+            }
+            self.later.retain(&current);
+            let last = match self.later.len() {
+                0 => return None,
+                n if n <= FEW => n - 1,
+                n => n / SHARE,
+            };
+            let by_cost = |x: &Candidate, y: &Candidate| x.cost.total_cmp(&y.cost);
+            self.limit = self.later.select_nth_unstable_by(last, by_cost).1.cost;
+            let limit = self.limit;
+            let cheap = |c: &mut Candidate| c.cost.total_cmp(&limit).is_le();
+            self.heap.extend(self.later.extract_if(.., cheap));
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! The faces of a convex polyhedron: its triangles, joined where they lie in one plane.
+
+use crate::error::BuildError;
+use crate::meshing::axis::roof::Plane;
+use crate::meshing::geometry::bounds::{Point, direction};
+use crate::meshing::surface::surface::Surface;
+use crate::meshing::watch::Watch;
+
+/// Corners of a flat face may be off its plane by this (longest side 1): their rounding to `f32`, at a few
+/// sizes from the origin.
+const FLAT: f64 = 5e-7;
+
+/// The faces of a convex body.
+pub struct FlatFaces {
+    /// Their planes.
+    pub planes: Vec<Plane>,
+    /// The face of each of the body's triangles.
+    pub face_of: Vec<(usize, u32)>,
+}
+
+/// A face under collection.
+struct Face {
+    /// Its plane by the largest triangle, and how much it may turn: a height at distance 1.
+    first: Plane,
+    middle: Point,
+    slack: f64,
+    /// Sum of its triangles' normals times their areas, and of their middles times them.
+    area: Point,
+    moment: Point,
+    weight: f64,
+}
+
+/// The faces that the triangles `body` of a surface make; `None` where there are more than `most`, or where they
+/// bound no convex body.
+pub fn flat_faces(
+    surface: &Surface,
+    mut body: Vec<usize>,
+    most: usize,
+    watch: &mut Watch,
+) -> Result<Option<FlatFaces>, BuildError> {
+    let area = |t: usize| {
+        let [a, b, c] = surface.corners(t);
+        0.5 * (b - a).cross(c - a).length()
+    };
+    // The plane of the largest is known best.
+    body.sort_by(|&t, &u| area(u).total_cmp(&area(t)));
+    let mut faces: Vec<Face> = Vec::new();
+    let mut face_of = Vec::with_capacity(body.len());
+    for (i, &t) in body.iter().enumerate() {
+        watch.every(i)?;
+        let corners = surface.corners(t);
+        let normal = surface.normals[t];
+        let is_on = |face: &Face| {
+            face.first.normal.dot(normal) > 0.0
+                && corners.iter().all(|p| {
+                    let turned = face.slack * (*p - face.middle).length();
+                    face.first.depth(*p).abs() <= FLAT + turned
+                })
+        };
+        let middle = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
+        let place = faces.iter().position(is_on).unwrap_or_else(|| {
+            let [a, b, c] = corners;
+            let sides = [b - a, c - b, a - c].map(|side| side.length());
+            faces.push(Face {
+                first: Plane {
+                    normal,
+                    offset: normal.dot(middle),
+                },
+                middle,
+                slack: FLAT * sides.into_iter().fold(0.0, f64::max) / (2.0 * area(t)),
+                area: Point::zero(),
+                moment: Point::zero(),
+                weight: 0.0,
+            });
+            faces.len() - 1
+        });
+        if faces.len() > most {
+            return Ok(None);
+        }
+        let (face, weight) = (&mut faces[place], area(t));
+        face.area = face.area + normal * weight;
+        face.moment = face.moment + middle * weight;
+        face.weight += weight;
+        face_of.push((t, place as u32));
+    }
+    let plane = |face: &Face| {
+        let normal = direction(face.area);
+        let offset = normal.dot(face.moment) / face.weight;
+        Plane { normal, offset }
+    };
+    let planes: Vec<Plane> = faces.iter().map(plane).collect();
+    for (i, &(t, own)) in face_of.iter().enumerate() {
+        watch.every(i)?;
+        for p in surface.corners(t) {
+            let beyond = planes.iter().any(|plane| plane.depth(p) < -FLAT);
+            if beyond || planes[own as usize].depth(p) > FLAT {
+                return Ok(None);
+            }
+        }
+    }
+    Ok((planes.len() >= 4).then_some(FlatFaces { planes, face_of }))
+}

@@ -1,0 +1,266 @@
+//! What each patch of a surface is: the boundary of solid matter, or a sheet.
+//!
+//! The winding number jumps by 1 across a surface (Jacobson et al., "Robust Inside-Outside
+//! Segmentation using Generalized Winding Numbers", 2013). Behind a patch that bounds matter it is
+//! 1 and before it 0; before and behind a sheet it is ∓½, whatever its other side is called; behind
+//! a patch that is inside out it is 0 and before it −1. So patches are looked at together: those
+//! inside out are turned; those that enclose nothing, or have wide openings, are sheets and count
+//! no longer; until nothing changes. A closed shell that faces inward within matter is a cavity,
+//! as the signs say, and one that faces outward within matter is a part stuck into another.
+
+use crate::error::BuildError;
+use crate::meshing::findings::Findings;
+use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::random::Random;
+use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::surface::openings::{Opening, openings};
+use crate::meshing::surface::orient::{Patch, Patches};
+use crate::meshing::surface::samples::even_samples;
+use crate::meshing::surface::surface::Surface;
+use crate::meshing::watch::Watch;
+
+/// Points looked at, by area. A winding number costs about 10 µs.
+const POINTS: usize = 4_096;
+
+/// Points of each patch at least.
+const POINTS_PER_PATCH: u32 = 6;
+
+/// Open patches below this share of the area are judged together: a soup of triangles is either a
+/// body that fell apart or nothing.
+const CRUMB: f64 = 1e-3;
+
+/// Distance behind the surface at which the winding number is asked for (longest side 1): below
+/// any two layers that welding leaves apart.
+const BEHIND: f64 = 1e-7;
+
+/// A patch with less than this behind it, on average, is inside out.
+const INSIDE_OUT: f64 = 0.3;
+
+/// An open patch with less than this behind it, on average, is a sheet: a card has ½.
+const ENCLOSING: f64 = 0.7;
+
+/// More than this behind the surface: it is inside something else.
+const BURIED: f64 = 1.3;
+
+/// A closed patch is flat when its volume over its area is less: that is rounding.
+const FLAT: f64 = 1e-9;
+
+/// Rounds of turning and of taking sheets away; two or three settle all but contrived meshes.
+const ROUNDS: usize = 12;
+
+/// What became of a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// It bounds matter.
+    Solid,
+    /// It encloses nothing.
+    Sheet,
+}
+
+/// A point of the surface to judge its patch by.
+struct Witness {
+    point: Point,
+    normal: Point,
+    patch: u32,
+}
+
+/// Decides what each patch is, turns those that are inside out, and lets the tree count only those
+/// that bound matter.
+pub fn judge(
+    surface: &mut Surface,
+    patches: &mut Patches,
+    tree: &mut TriangleTree,
+    findings: &mut Findings,
+    watch: &mut Watch,
+) -> Result<Vec<Kind>, BuildError> {
+    let total: f64 = patches.list.iter().map(|p| p.area).sum();
+    let crumb = |p: &Patch| p.area < CRUMB * total;
+    let witnesses = witnesses(surface, patches, &crumb, watch)?;
+    let openings = openings(&surface.vertices, patches, watch)?;
+    let mut court = Court {
+        group: groups(&patches.list, &crumb),
+        counts: patches.list.iter().map(|p| i8::from(!is_flat(p))).collect(),
+        patches,
+        witnesses,
+        openings,
+    };
+    let mut turned = vec![false; court.counts.len()];
+    for _ in 0..ROUNDS {
+        let counts = &court.counts;
+        tree.recount(|t| counts[court.patches.of[t as usize] as usize], watch)?;
+        let behind = court.behind(tree, watch)?;
+        let inside_out = |p: usize| behind.mean(court.group[p]).is_some_and(|m| m < INSIDE_OUT);
+        let turn: Vec<usize> = (0..turned.len())
+            .filter(|&p| court.counts[p] != 0 && !turned[p] && inside_out(p))
+            .collect();
+        if !turn.is_empty() {
+            for p in turn {
+                turned[p] = true;
+                court.counts[p] = -1;
+            }
+            continue;
+        }
+        let sheets = court.sheets(&behind, tree, watch)?;
+        if sheets.is_empty() {
+            findings.overlapping = behind.overlapping;
+            break;
+        }
+        sheets.into_iter().for_each(|p| court.counts[p] = 0);
+    }
+    let counts = court.counts;
+    tree.recount(|t| counts[patches.of[t as usize] as usize], watch)?;
+    tree.turn();
+    for (i, triangle) in surface.triangles.iter_mut().enumerate() {
+        watch.every(i)?;
+        if counts[patches.of[i] as usize] < 0 {
+            triangle.swap(1, 2);
+            surface.normals[i] = -surface.normals[i];
+        }
+    }
+    for (patch, &count) in patches.list.iter_mut().zip(&counts) {
+        if count < 0 {
+            patch.turned = patch.triangles - patch.turned;
+            patch.volume = -patch.volume;
+        }
+    }
+    findings.triangles_turned = patches.list.iter().map(|p| p.turned).sum();
+    let kind = |&count: &i8| match count {
+        0 => Kind::Sheet,
+        _ => Kind::Solid,
+    };
+    Ok(counts.iter().map(kind).collect())
+}
+
+/// The patches, and what they are judged by.
+struct Court<'a> {
+    patches: &'a Patches,
+    /// Patches judged together; a patch with none is what it seems.
+    group: Vec<Option<u32>>,
+    /// How each patch counts in the winding number: 1, −1 when turned, 0 as a sheet.
+    counts: Vec<i8>,
+    witnesses: Vec<Witness>,
+    openings: Vec<Opening>,
+}
+
+/// Winding numbers behind the witnesses of each group.
+struct Behind {
+    /// Sum and count over all witnesses, and over those that are not buried.
+    sums: Vec<[(f64, usize); 2]>,
+    overlapping: bool,
+}
+
+impl Behind {
+    fn mean(&self, group: Option<u32>) -> Option<f64> {
+        let (sum, count) = self.sums[group? as usize][0];
+        (count > 0).then(|| sum / count as f64)
+    }
+
+    /// Over witnesses that are not inside something else.
+    fn exposed_mean(&self, group: Option<u32>) -> Option<f64> {
+        let (sum, count) = self.sums[group? as usize][1];
+        (count > 0).then(|| sum / count as f64)
+    }
+}
+
+impl Court<'_> {
+    fn behind(&self, tree: &TriangleTree, watch: &mut Watch) -> Result<Behind, BuildError> {
+        let mut behind = Behind {
+            sums: vec![[(0.0, 0); 2]; self.group.len()],
+            overlapping: false,
+        };
+        for (i, w) in self.witnesses.iter().enumerate() {
+            if i % 64 == 0 {
+                watch.at(0.0)?;
+            }
+            let patch = w.patch as usize;
+            if self.counts[patch] == 0 {
+                continue;
+            }
+            let outward = w.normal * f64::from(self.counts[patch]);
+            let winding = tree.winding(w.point - outward * BEHIND);
+            behind.overlapping |= !(INSIDE_OUT..1.5).contains(&winding);
+            let Some(group) = self.group[patch] else {
+                continue;
+            };
+            let [all, exposed] = &mut behind.sums[group as usize];
+            *all = (all.0 + winding, all.1 + 1);
+            if winding < BURIED {
+                *exposed = (exposed.0 + winding, exposed.1 + 1);
+            }
+        }
+        Ok(behind)
+    }
+
+    /// Patches that turn out to be sheets.
+    fn sheets(
+        &self,
+        behind: &Behind,
+        tree: &TriangleTree,
+        watch: &mut Watch,
+    ) -> Result<Vec<usize>, BuildError> {
+        let mut sheets = vec![false; self.counts.len()];
+        for (p, patch) in self.patches.list.iter().enumerate() {
+            let doubtful = self.counts[p] != 0 && (!patch.closed || patch.twisted);
+            let mean = behind.exposed_mean(self.group[p]);
+            sheets[p] = doubtful && mean.is_none_or(|m| m < ENCLOSING);
+        }
+        for opening in &self.openings {
+            watch.at(0.0)?;
+            let p = opening.patch as usize;
+            sheets[p] |= self.counts[p] != 0 && opening.is_wide(tree);
+        }
+        Ok((0..sheets.len()).filter(|&p| sheets[p]).collect())
+    }
+}
+
+fn is_flat(patch: &Patch) -> bool {
+    patch.closed && patch.volume.abs() < FLAT * patch.area
+}
+
+/// The group of each patch: itself if it is large, or closed and facing inward; all small open
+/// ones together; none for small closed ones that face outward.
+fn groups(list: &[Patch], crumb: &impl Fn(&Patch) -> bool) -> Vec<Option<u32>> {
+    let crumbs = list.iter().position(|p| crumb(p) && !p.closed);
+    let group = |(i, p): (usize, &Patch)| match (crumb(p), p.closed) {
+        (true, false) => crumbs.map(|c| c as u32),
+        (true, true) if p.volume >= 0.0 => None,
+        _ => Some(i as u32),
+    };
+    list.iter().enumerate().map(group).collect()
+}
+
+/// Points spread by area, and some more of patches that have few and are judged for themselves.
+fn witnesses(
+    surface: &Surface,
+    patches: &Patches,
+    crumb: &impl Fn(&Patch) -> bool,
+    watch: &mut Watch,
+) -> Result<Vec<Witness>, BuildError> {
+    let mut have = vec![0u32; patches.list.len()];
+    let mut witnesses = Vec::new();
+    for sample in even_samples(surface, POINTS, &mut Random::new(5)) {
+        let patch = patches.of[sample.triangle as usize];
+        have[patch as usize] += 1;
+        witnesses.push(Witness {
+            point: sample.point,
+            normal: sample.normal,
+            patch,
+        });
+    }
+    for t in 0..surface.triangles.len() {
+        watch.every(t)?;
+        let patch = patches.of[t] as usize;
+        let info = &patches.list[patch];
+        let alone = !crumb(info) || (info.closed && info.volume < 0.0);
+        if alone && have[patch] < POINTS_PER_PATCH {
+            have[patch] += 1;
+            let [a, b, c] = surface.corners(t);
+            witnesses.push(Witness {
+                point: (a + b + c) * (1.0 / 3.0),
+                normal: surface.normals[t],
+                patch: patch as u32,
+            });
+        }
+    }
+    Ok(witnesses)
+}

@@ -1,0 +1,82 @@
+//! Seams: an edge of one triangle along which the edges of others run, cut at more vertices (T-junctions).
+//!
+//! Nothing is missing there but a sliver without area between the edge and the chain of the others. Such
+//! slivers close the surface, and no vertex moves.
+
+use crate::error::BuildError;
+use crate::math::fast_hash::{FastMap, FastSet};
+use crate::meshing::geometry::bounds::Point;
+use crate::meshing::surface::edges::Edges;
+use crate::meshing::watch::Watch;
+
+/// A chain's vertices may be off the edge by this (longest side 1): modellers round to four digits.
+const OFF: f64 = 1e-4;
+
+/// Slivers that close the seams of a surface.
+pub fn seam_slivers(
+    vertices: &[Point],
+    triangles: &[[u32; 3]],
+    watch: &mut Watch,
+) -> Result<Vec<[u32; 3]>, BuildError> {
+    // As their triangles use them.
+    let mut open: Vec<[u32; 2]> = Vec::new();
+    for (i, ([lo, hi], uses)) in Edges::new(vertices.len(), triangles, watch)?
+        .iter()
+        .enumerate()
+    {
+        watch.every(i)?;
+        if let [only] = uses {
+            open.push(if only.forward() { [lo, hi] } else { [hi, lo] });
+        }
+    }
+    let mut joined: FastMap<u32, Vec<u32>> = FastMap::default();
+    for &[a, b] in &open {
+        joined.entry(a).or_default().push(b);
+        joined.entry(b).or_default().push(a);
+    }
+    let mut closed: FastSet<[u32; 2]> = FastSet::default();
+    let mut slivers = Vec::new();
+    for (i, &[a, b]) in open.iter().enumerate() {
+        watch.every(i)?;
+        let Some(chain) = chain(vertices, &joined, [a, b]) else {
+            continue;
+        };
+        let links = || chain.windows(2).map(|link| sorted([link[0], link[1]]));
+        if closed.contains(&sorted([a, b])) || links().any(|link| closed.contains(&link)) {
+            continue;
+        }
+        closed.extend(links().chain([sorted([a, b])]));
+        let inner = &chain[..chain.len() - 1];
+        slivers.extend(inner.windows(2).map(|link| [link[0], link[1], b]));
+    }
+    Ok(slivers)
+}
+
+/// The vertices of open edges that lead from one end of an open edge to the other along it, ends included.
+fn chain(
+    vertices: &[Point],
+    joined: &FastMap<u32, Vec<u32>>,
+    [a, b]: [u32; 2],
+) -> Option<Vec<u32>> {
+    let at = |v: u32| vertices[v as usize];
+    let way = at(b) - at(a);
+    let length = way.length();
+    let along = |v: u32| (at(v) - at(a)).dot(way) / length;
+    let is_on = |v: u32| (at(v) - at(a) - way * (along(v) / length)).length() <= OFF;
+    let mut chain = vec![a];
+    let mut here = a;
+    while here != b {
+        let onward = joined.get(&here)?.iter().copied();
+        let onward = onward.filter(|&v| [here, v] != [a, b] && along(v) > along(here) && is_on(v));
+        here = onward.min_by(|&u, &v| along(u).total_cmp(&along(v)))?;
+        if along(here) > length {
+            return None;
+        }
+        chain.push(here);
+    }
+    Some(chain)
+}
+
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}

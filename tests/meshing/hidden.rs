@@ -1,0 +1,155 @@
+//! The boundary of the solid decides: what other parts hide counts for nothing, and is told.
+
+use crate::broken::*;
+use crate::combined::combined;
+use crate::meshes::*;
+use crate::planted::uncovered;
+use parry3d::math::Vector;
+use rapier3d_medial::meshing::hausdorff::hausdorff;
+use rapier3d_medial::{BuildOptions, BuildReport, MedialMesh, Quality};
+
+fn built(mesh: &Mesh, primitives: usize, quality: Quality) -> (MedialMesh, BuildReport) {
+    let options = BuildOptions {
+        primitives: Some(primitives),
+        quality,
+        ..Default::default()
+    };
+    MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options).expect("built")
+}
+
+fn error(report: &BuildReport) -> f32 {
+    report.hausdorff.error() / report.longest_side
+}
+
+fn area(mesh: &Mesh) -> f32 {
+    let twice = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| mesh.vertices[v as usize]);
+        (b - a).cross(c - a).length()
+    };
+    0.5 * mesh.indices.iter().map(twice).sum::<f32>()
+}
+
+fn cube() -> Mesh {
+    cuboid(Vector::ONE)
+}
+
+/// Of two cubes, one moved by (a, b, c), three faces of each lie in the other: a rectangle of each.
+#[test]
+fn what_two_boxes_hide_of_each_other_is_told() {
+    let (a, b, c) = (0.5, 0.25, 0.375f32);
+    let both = cube().and(cube().map(|v| v + Vector::new(a, b, c)));
+    let (_, report) = built(&both, 60, Quality::Fast);
+    let rectangles = (1.0 - b) * (1.0 - c) + (1.0 - a) * (1.0 - c) + (1.0 - a) * (1.0 - b);
+    let off = report.hidden_area / (2.0 * rectangles) - 1.0;
+    assert!(off.abs() < 0.03, "{off}: {:?}", report.notes);
+    assert_eq!(report.findings.patches_hidden, 0);
+    assert!(
+        report
+            .notes
+            .iter()
+            .any(|n| n.contains("lies inside solid matter"))
+    );
+    let volume = 2.0 - (1.0 - a) * (1.0 - b) * (1.0 - c);
+    assert!((report.hausdorff.uncovered).abs() < 1e-5);
+    let (medial, _) = built(&both, 60, Quality::Fast);
+    let mass = medial.mass_properties(1.0).mass();
+    assert!((mass / volume - 1.0).abs() < 3e-3, "{mass} {volume}");
+}
+
+/// A part inside another changes nothing but what is told, and a copy of a body nothing at all.
+#[test]
+fn what_is_inside_counts_for_nothing() {
+    let outer = capsule(0.6, 0.3, 24, 8);
+    let inner = cuboid(Vector::new(0.2, 0.15, 0.1)).map(|v| v + Vector::new(0.02, 0.03, 0.1));
+    let (_, alone) = built(&outer, 8, Quality::Fast);
+    let (medial, report) = built(&outer.clone().and(inner.clone()), 8, Quality::Fast);
+    assert_eq!(report.findings.patches_hidden, 1);
+    assert_eq!(report.findings.triangles_hidden, 12);
+    assert!((report.hidden_area / area(&inner) - 1.0).abs() < 1e-3);
+    let ratio = error(&report) / error(&alone);
+    assert!((0.7..1.4).contains(&ratio), "{ratio}");
+    let mass = medial.mass_properties(1.0).mass();
+    assert!((mass / volume(&outer) - 1.0).abs() < 3e-3, "{mass}");
+    // Measured from outside, it is the same.
+    let both = outer.clone().and(inner.clone());
+    let again = hausdorff(&medial, &both.vertices, &both.indices).expect("measured");
+    let again = again.error() / report.longest_side;
+    assert!(
+        (again / error(&report) - 1.0).abs() < 0.3,
+        "{again} {}",
+        error(&report)
+    );
+    for same in [repeat(outer.clone()), repeat_turned(outer.clone())] {
+        let (_, report) = built(&same, 8, Quality::Fast);
+        assert_eq!(report.hidden_area, 0.0);
+        assert!((error(&report) / error(&alone) - 1.0).abs() < 1e-3);
+    }
+}
+
+/// The same shape as one surface and as parts that overlap: a capsule of two that share half their length.
+#[test]
+fn parts_that_overlap_are_as_near_as_one() {
+    let half = |z: f32| capsule(0.4, 0.2, 24, 8).map(move |v| v + Vector::new(0.0, 0.0, z));
+    let (_, one) = built(&capsule(0.6, 0.2, 24, 8), 3, Quality::Balanced);
+    let (_, two) = built(&half(0.2).and(half(-0.2)), 3, Quality::Balanced);
+    let (one, two) = (error(&one), error(&two));
+    assert!(two < 1.5 * one + 1e-3, "{two} as parts, {one} as one");
+}
+
+/// A fit mends what a plain collapse leaves, with sheets beside solids too.
+#[test]
+fn sheets_and_thin_matter_are_fitted() {
+    let wings =
+        card(8).map(|v| Vector::new(4.0 * v.x - 2.0, v.y - 0.5, 0.3 * (2.0 * v.x - 1.0).powi(2)));
+    for (name, mesh, primitives) in [
+        ("a ball with wings", ball(0.8).and(wings), 40),
+        ("a body with thin wings", winged(), 40),
+    ] {
+        let (_, fast) = built(&mesh, primitives, Quality::Fast);
+        let (medial, fitted) = built(&mesh, primitives, Quality::Balanced);
+        let (fast, fitted_error) = (error(&fast), error(&fitted));
+        assert!(
+            fitted_error < 0.8 * fast,
+            "{name}: {fitted_error} fitted, {fast} plain"
+        );
+        let (points, out) = uncovered(&medial, &mesh, fitted.longest_side, 4e-6);
+        assert!(
+            out == 0 && points > 100,
+            "{name}: {out} of {points} uncovered"
+        );
+    }
+}
+
+/// Small openings have lids: what lost triangles is as near as what did not.
+#[test]
+fn lost_triangles_change_little() {
+    for (whole, primitives) in [
+        (capsule(0.0, 1.0, 48, 20), 1),
+        (capsule(0.8, 0.3, 24, 8), 6),
+    ] {
+        let torn = lose(whole.clone(), 3, 2);
+        let (_, report) = built(&whole, primitives, Quality::Balanced);
+        let (medial, damaged) = built(&torn, primitives, Quality::Balanced);
+        assert!(damaged.findings.edges_open > 0 && damaged.findings.patches_mended == 1);
+        let (own, other) = (error(&damaged), error(&report));
+        assert!(own < 1.5 * other + 1e-3, "{own} torn, {other} whole");
+        let mass = medial.mass_properties(1.0).mass();
+        assert!((mass / volume(&whole) - 1.0).abs() < 0.01, "{mass}");
+    }
+}
+
+/// 364 patches, most of them crumbs of a body that fell apart and lost pieces, beside an open sheet.
+#[test]
+fn a_mesh_in_hundreds_of_pieces_is_fitted() {
+    let mesh = combined(56);
+    let (medial, report) = built(&mesh, 60, Quality::Balanced);
+    assert!(report.findings.patches > 300);
+    assert!(error(&report) < 0.1, "{}", error(&report));
+    let (points, out) = uncovered(
+        &medial,
+        &mesh,
+        report.longest_side,
+        report.longest_side * 1e-6,
+    );
+    assert!(out == 0 && points > 100, "{out} of {points} uncovered");
+}
