@@ -2,6 +2,7 @@
 //! Source: paper §3 (medial mesh, a non-manifold triangle mesh of medial spheres).
 
 use super::check::check;
+use super::leaf_order::LeafOrder;
 use super::mass;
 use super::primitive::{MedialPrimitive, MedialSphere};
 use super::rectangle::SweptRectangles;
@@ -42,6 +43,7 @@ struct MedialData {
     shell: OnceLock<Arc<Shell>>,
     rectangles: OnceLock<SweptRectangles>,
     thicknesses: OnceLock<Thicknesses>,
+    leaf_order: OnceLock<LeafOrder>,
 }
 
 /// What a mesh is made of and what was computed from it ahead of all queries.
@@ -132,6 +134,7 @@ impl MedialMesh {
             shell: OnceLock::new(),
             rectangles: OnceLock::new(),
             thicknesses: OnceLock::new(),
+            leaf_order: OnceLock::new(),
         };
         Self {
             data: Arc::new(data),
@@ -229,6 +232,12 @@ impl MedialMesh {
         } = &self.data.parts;
         let rectangles = &self.data.rectangles;
         rectangles.get_or_init(|| SweptRectangles::new(spheres, primitives, tree))
+    }
+
+    /// Order of the primitives in its tree. Made at the first call.
+    pub(crate) fn leaf_order(&self) -> &LeafOrder {
+        let leaf_order = &self.data.leaf_order;
+        leaf_order.get_or_init(|| LeafOrder::new(self.tree()))
     }
 
     /// Bounding box of the solid, in the body's frame.

@@ -9,6 +9,7 @@ mod cover;
 pub mod envelope;
 pub mod exact;
 mod files;
+pub(crate) mod leaf_order;
 pub mod ma_file;
 pub mod mass;
 pub mod mesh;

@@ -91,20 +91,38 @@ pub fn contacts(
         if !near.is_exact() && hulls.gap([i, j], margin) > margin {
             continue;
         }
-        match (body1.below(i), body2.below(j)) {
-            (Below::Primitive(p), Below::Primitive(q)) => {
-                let pair = PrimitivePair::new(body1, body2, [p, q], &place);
+        match Step::new([body1.below(i), body2.below(j)], [ra, rb]) {
+            Step::Leaves(primitives) => {
+                let pair = PrimitivePair::new(body1, body2, primitives, &place);
                 pair.contacts(margin, &mut found, &mut counts);
             }
-            (Below::Nodes(c, d), Below::Primitive(_)) => stack.extend([[d, j], [c, j]]),
-            (Below::Primitive(_), Below::Nodes(c, d)) => stack.extend([[i, d], [i, c]]),
-            (Below::Nodes(c, d), Below::Nodes(..)) if ra >= rb => {
-                stack.extend([[d, j], [c, j]]);
-            }
-            (_, Below::Nodes(c, d)) => stack.extend([[i, d], [i, c]]),
+            Step::First([c, d]) => stack.extend([[d, j], [c, j]]),
+            Step::Second([c, d]) => stack.extend([[i, d], [i, c]]),
         }
     }
     (found, counts)
+}
+
+/// The next step of a walk down two trees, given what is below two nodes and their radii. It depends on nothing else, so
+/// all walks of two trees come to primitive pairs in one order.
+pub(super) enum Step {
+    /// Both nodes are leaves, of these primitives.
+    Leaves([u32; 2]),
+    /// The first node is replaced by its children, in this order.
+    First([u32; 2]),
+    /// The second node is.
+    Second([u32; 2]),
+}
+
+impl Step {
+    pub(super) fn new(below: [Below; 2], [ra, rb]: [f64; 2]) -> Self {
+        match below {
+            [Below::Primitive(p), Below::Primitive(q)] => Self::Leaves([p, q]),
+            [Below::Nodes(c, d), Below::Primitive(_)] => Self::First([c, d]),
+            [Below::Nodes(c, d), Below::Nodes(..)] if ra >= rb => Self::First([c, d]),
+            [_, Below::Nodes(c, d)] => Self::Second([c, d]),
+        }
+    }
 }
 
 /// The sphere pair of two overlapping primitives along the normal nearest to `old`, that of the step

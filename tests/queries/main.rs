@@ -29,6 +29,7 @@ mod fuzz;
 mod held;
 mod judge;
 mod lanes;
+mod listed;
 mod meshes;
 mod oracle;
 mod outlines;
