@@ -3,6 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 cargo run --release --example falling_rings -- --out docs/images --animate
-for name in compare convex_hull_comparison chain nut_and_bolt; do
+cargo run --release --features cli --bin medial -- compare -o docs/images/compare.png
+for name in convex_hull_comparison chain nut_and_bolt; do
   cargo run --release --example "$name" -- --out docs/images
 done

@@ -88,6 +88,21 @@ impl Mesh {
         normals.iter().map(|n| n.normalize_or_zero()).collect()
     }
 
+    /// The mesh without the vertices that no triangle uses, which would be part of its hull.
+    pub fn without_unused(self) -> Self {
+        let mut used = Self::default();
+        let mut places = vec![None; self.vertices.len()];
+        for triangle in self.indices {
+            used.indices.push(triangle.map(|v| {
+                *places[v as usize].get_or_insert_with(|| {
+                    used.vertices.push(self.vertices[v as usize]);
+                    used.vertices.len() as u32 - 1
+                })
+            }));
+        }
+        used
+    }
+
     /// The mesh moved and scaled: centred at the origin, its longest side `size`.
     pub fn fitted(mut self, size: Real) -> Self {
         let (low, high) = self.bounds();

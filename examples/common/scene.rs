@@ -85,7 +85,31 @@ impl Kind {
     }
 }
 
+/// Colliders of one kind, each made once for all bodies of a model.
+struct Shapes {
+    kind: Kind,
+    made: Vec<(Arc<Model>, ColliderBuilder)>,
+}
+
+impl Shapes {
+    fn new(kind: Kind) -> Self {
+        let made = Vec::new();
+        Self { kind, made }
+    }
+
+    fn of(&mut self, model: &Arc<Model>) -> ColliderBuilder {
+        let known = self.made.iter().find(|(of, _)| Arc::ptr_eq(of, model));
+        if let Some((_, collider)) = known {
+            return collider.clone();
+        }
+        let collider = self.kind.collider(model);
+        self.made.push((Arc::clone(model), collider.clone()));
+        collider
+    }
+}
+
 /// One body of a scene.
+#[derive(Clone)]
 pub struct Actor {
     /// Its true shape.
     pub model: Arc<Model>,
@@ -195,8 +219,9 @@ impl Scene {
         let mut world = PhysicsWorld::default();
         let ground = ColliderBuilder::cuboid(50.0, 0.5, 50.0).translation(Vector::NEG_Y * 0.5);
         world.insert_collider(ground, None);
-        let place = |actor: &Actor| world.insert(actor.start.clone(), kind.collider(&actor.model));
-        let bodies = self.actors.iter().map(place).collect();
+        let mut shapes = Shapes::new(kind);
+        let mut place = |actor: &Actor| world.insert(actor.start.clone(), shapes.of(&actor.model));
+        let bodies = self.actors.iter().map(&mut place).collect();
         let mut options = MedialOptions::default();
         options.backend = self.backend;
         let mut pipeline = (kind == Kind::Medial).then(|| MedialPipeline::new(options));
@@ -208,6 +233,14 @@ impl Scene {
             bodies,
             pipeline,
         }
+    }
+
+    /// A body more, in a stage of a kind that plays.
+    pub fn add(&mut self, actor: Actor, kind: Kind, stage: &mut Stage) {
+        let collider = kind.collider(&actor.model);
+        let body = stage.world.insert(actor.start.clone(), collider);
+        stage.bodies.push(body);
+        self.actors.push(actor);
     }
 
     /// A world in which the actors collide as told and go on from where they are in another.

@@ -1,5 +1,5 @@
 //! The command line program `medial`: builds medial meshes from triangle meshes, bakes and describes
-//! them.
+//! them, and compares them with the other colliders that rapier has.
 //!
 //! Results go to standard output, progress and errors to standard error. Exit code 1 with one line
 //! on failure, 2 for arguments that make no sense.
@@ -9,6 +9,12 @@ mod build;
 #[cfg(feature = "gpu")]
 #[path = "medial/calibrate.rs"]
 mod calibrate;
+#[path = "../../examples/common/mod.rs"]
+mod common;
+#[path = "medial/compare.rs"]
+mod compare;
+#[path = "medial/compare_picture.rs"]
+mod compare_picture;
 #[path = "medial/curve.rs"]
 mod curve;
 #[path = "medial/describe.rs"]
@@ -26,6 +32,7 @@ mod output;
 
 use build::BuildArguments;
 use clap::{Parser, Subcommand};
+use compare::CompareArguments;
 use info::{BakeArguments, InfoArguments};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,6 +59,8 @@ enum Command {
     Bake(BakeArguments),
     /// Describe a medial mesh (.ma or baked), or the errors by count that a triangle mesh may be built with.
     Info(InfoArguments),
+    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side, with error and cost of each.
+    Compare(CompareArguments),
     /// Measure from which batch sizes on the GPU pays, for `Backend::Auto`.
     #[cfg(feature = "gpu")]
     Calibrate(calibrate::CalibrateArguments),
@@ -62,6 +71,7 @@ fn main() -> ExitCode {
         Command::Build(arguments) => build::build(&arguments),
         Command::Bake(arguments) => info::bake(&arguments),
         Command::Info(arguments) => info::info(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
         #[cfg(feature = "gpu")]
         Command::Calibrate(arguments) => info::load(&arguments.mesh)
             .and_then(|mesh| Ok(calibrate::calibrate(&arguments, &mesh)?))

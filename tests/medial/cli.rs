@@ -134,7 +134,7 @@ fn failures_are_one_line_and_exit_code_1() {
 #[test]
 fn bad_arguments_exit_with_2() {
     let directory = scratch("arguments");
-    let cases: [&[&str]; 10] = [
+    let cases: [&[&str]; 12] = [
         &[],
         &["paint"],
         &["info"],
@@ -145,6 +145,8 @@ fn bad_arguments_exit_with_2() {
         &["build", "in.obj", "-o", "out.ma", "--max-error", "0"],
         &["build", "in.obj", "-o", "out.ma", "--scale", "-1"],
         &["build", "in.obj", "-o", "out.ma", "--quiet", "--json"],
+        &["compare", "in.obj", "--primitives", "0"],
+        &["compare", "in.obj", "--steps", "-1"],
     ];
     for arguments in cases {
         let output = medial(&directory, arguments);
@@ -154,7 +156,7 @@ fn bad_arguments_exit_with_2() {
 }
 
 /// An L-shaped prism of volume 3: closed, concave, with concave polygons.
-const CORNER: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n\
+pub const CORNER: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n\
                       v 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n\
                       f 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\n\
                       f 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";

@@ -5,6 +5,8 @@ mod broken_file;
 #[cfg(feature = "cli")]
 mod cli;
 #[cfg(feature = "cli")]
+mod cli_compare;
+#[cfg(feature = "cli")]
 mod cli_errors;
 mod envelope;
 mod fuzz;

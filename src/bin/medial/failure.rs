@@ -32,6 +32,12 @@ pub enum Failure {
     OfFile { path: PathBuf, source: Box<Failure> },
     #[error("{0} is no triangle mesh, of which --curve tells the errors by count")]
     NoTriangleMesh(PathBuf),
+    #[error("rapier makes no convex hull of this mesh")]
+    NoHull,
+    #[error("{0}")]
+    NoPicture(String),
+    #[error("cancelled during {0}")]
+    Stopped(&'static str),
     #[error("{failed} of {all} meshes failed")]
     SomeFailed { failed: usize, all: usize },
     #[error("standard output: {0}")]

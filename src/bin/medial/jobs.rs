@@ -22,6 +22,8 @@ pub enum PlanError {
     OverInput(PathBuf),
     #[error("{0}: the output is a medial mesh, in a file that ends in .ma or .medial")]
     MeshOutput(PathBuf),
+    #[error("{0}: the output is a picture, in a file that ends in .png")]
+    PictureOutput(PathBuf),
     #[error("{0}: no such directory")]
     NoDirectory(PathBuf),
     #[error("{0}: no triangle mesh in it (obj, stl, ply, off, glb, gltf)")]
@@ -113,6 +115,19 @@ pub fn check_output(input: &Path, output: &Path) -> Result<(), PlanError> {
         return Err(PlanError::MeshOutput(output.to_owned()));
     }
     Ok(())
+}
+
+/// Refuses, before any work, a picture that cannot be or must not be written.
+pub fn check_picture(input: Option<&Path>, output: &Path) -> Result<(), PlanError> {
+    check_parent(output)?;
+    if input.is_some_and(|input| is_same_file(output, input)) {
+        return Err(PlanError::OverInput(output.to_owned()));
+    }
+    let ending = output.extension().and_then(|e| e.to_str());
+    match ending.is_some_and(|e| e.eq_ignore_ascii_case("png")) && !output.is_dir() {
+        true => Ok(()),
+        false => Err(PlanError::PictureOutput(output.to_owned())),
+    }
 }
 
 fn check_parent(output: &Path) -> Result<(), PlanError> {

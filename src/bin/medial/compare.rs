@@ -1,0 +1,299 @@
+//! `medial compare`: a mesh as the colliders that rapier may have of it (medial mesh, convex decomposition, convex
+//! hull), each with its largest error, what it costs to make and to step, and a picture of them side by side.
+
+use crate::STOP;
+use crate::build::{BAR_STEPS, QualityArgument, bar, listen};
+use crate::common::creature::creature;
+use crate::common::mesh::Mesh;
+use crate::common::random::Random;
+use crate::common::scene::{Actor, Kind, Model, Scene};
+use crate::common::shape_error::shape_error;
+use crate::common::skeleton::Skeleton;
+use crate::common::surface_error::surface_error;
+use crate::common::table::Table;
+use crate::compare_picture::{Labels, draw};
+use crate::failure::Failure;
+use crate::jobs;
+use crate::output::print;
+use clap::Args;
+use indicatif::ProgressBar;
+use rapier3d::prelude::*;
+use rapier3d_medial::meshing::mesh_file;
+use rapier3d_medial::{BuildOptions, MedialMesh};
+use serde::Serialize;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Longest side (m) that meshes are scaled to, so that all fall in the same scene.
+pub const SIZE: Real = 1.0;
+/// Points on each surface (a count) at which errors are measured, besides its vertices.
+const POINTS: usize = 20_000;
+/// Bodies in the heap whose steps are timed (a count).
+const BODIES: usize = 12;
+/// Share of the progress bar at which the medial mesh is built.
+const BUILT: f32 = 0.6;
+
+#[derive(Args)]
+pub struct CompareArguments {
+    /// Triangle mesh: obj, stl, ply, off, glb or gltf. Without one, the creature of the README.
+    mesh: Option<PathBuf>,
+    /// Where to draw the picture.
+    #[arg(short, long, value_name = "OUT.png", default_value = "compare.png")]
+    output: PathBuf,
+    /// Largest number of primitives of the medial mesh.
+    #[arg(short, long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..))]
+    primitives: u32,
+    /// How much work to spend on a small error of the medial mesh.
+    #[arg(short, long, value_enum, default_value_t)]
+    quality: QualityArgument,
+    /// Steps to time, of a heap of 12 bodies; 0 times none.
+    #[arg(long, value_name = "N", default_value_t = 240)]
+    steps: usize,
+    /// Print the table as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The colliders of one mesh, with what they cost.
+#[derive(Serialize)]
+struct Comparison {
+    picture: PathBuf,
+    triangles: usize,
+    /// In the unit of the file.
+    longest_side: f32,
+    /// Bodies in the heap, and its steps.
+    bodies: usize,
+    steps: usize,
+    colliders: Vec<Row>,
+}
+
+/// One kind of collider.
+#[derive(Serialize)]
+struct Row {
+    collider: &'static str,
+    /// Primitives, or convex hulls.
+    pieces: usize,
+    /// Largest distance between its surface and the mesh's, in either direction (longest side 1).
+    error: f64,
+    seconds_to_build: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    step_milliseconds: Option<StepTimes>,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct StepTimes {
+    median: f64,
+    longest: f64,
+}
+
+/// The colliders, and the seconds that each took to make.
+struct Made {
+    medial: (MedialMesh, f64),
+    parts: (SharedShape, f64),
+    hull: (SharedShape, f64),
+}
+
+/// Makes the colliders, measures and draws them.
+pub fn compare(arguments: &CompareArguments) -> Result<(), Failure> {
+    jobs::check_picture(arguments.mesh.as_deref(), &arguments.output)?;
+    let source = read(arguments.mesh.as_deref())?;
+    listen();
+    let bar = bar(1, false);
+    let compared = measure(arguments, source, &bar);
+    bar.finish_and_clear();
+    let comparison = compared.map_err(|failure| match &arguments.mesh {
+        Some(path) => failure.of(path),
+        None => failure,
+    })?;
+    print(arguments.json, &comparison, || comparison.text())
+}
+
+fn read(path: Option<&Path>) -> Result<Mesh, Failure> {
+    let Some(path) = path else {
+        return Ok(creature().0);
+    };
+    let read = mesh_file::read(path).map_err(|e| Failure::from(e).of(path))?;
+    let mesh = Mesh {
+        vertices: read.vertices,
+        indices: read.indices,
+    };
+    Ok(mesh.without_unused())
+}
+
+fn measure(
+    arguments: &CompareArguments,
+    source: Mesh,
+    bar: &ProgressBar,
+) -> Result<Comparison, Failure> {
+    let (low, high) = source.bounds();
+    let longest_side = (high - low).max_element();
+    let mesh = source.fitted(SIZE);
+    let made = make(arguments, &mesh, bar)?;
+    go_on(bar, "measuring", 0.7)?;
+    let boundary = surface_error(&made.medial.0, &mesh, 0.005 * SIZE, POINTS);
+    let off = boundary.map_or(0.0, |boundary| f64::from(boundary.largest()));
+    let side = f64::from(SIZE);
+    let errors = [
+        off,
+        shape_error(&*made.parts.0, &mesh),
+        shape_error(&*made.hull.0, &mesh),
+    ]
+    .map(|error| error / side);
+    let hulls = made.parts.0.as_compound().map_or(1, |c| c.shapes().len());
+
+    go_on(bar, "drawing", 0.8)?;
+    let labels = Labels { errors, hulls };
+    let picture = draw(&mesh, &made.medial.0, [&made.parts.0, &made.hull.0], labels)?;
+    picture
+        .save(&arguments.output)
+        .map_err(Failure::NoPicture)?;
+
+    let triangles = mesh.indices.len();
+    let rows = [
+        (
+            Kind::Medial,
+            "medial mesh",
+            made.medial.0.primitive_count(),
+            made.medial.1,
+        ),
+        (Kind::Parts, "convex decomposition", hulls, made.parts.1),
+        (Kind::Hulls, "convex hull", 1, made.hull.1),
+    ];
+    let scene = heap(mesh, made.medial.0);
+    let mut colliders = Vec::new();
+    for ((kind, collider, pieces, seconds_to_build), error) in rows.into_iter().zip(errors) {
+        go_on(bar, "stepping", 0.85 + 0.05 * colliders.len() as f32)?;
+        colliders.push(Row {
+            collider,
+            pieces,
+            error,
+            seconds_to_build,
+            step_milliseconds: step_times(&scene, kind, arguments.steps)?,
+        });
+    }
+    Ok(Comparison {
+        picture: arguments.output.clone(),
+        triangles,
+        longest_side,
+        bodies: BODIES,
+        steps: arguments.steps,
+        colliders,
+    })
+}
+
+fn make(arguments: &CompareArguments, mesh: &Mesh, bar: &ProgressBar) -> Result<Made, Failure> {
+    let (vertices, indices) = (&mesh.vertices, &mesh.indices);
+    let options = BuildOptions {
+        primitives: Some(arguments.primitives as usize),
+        quality: arguments.quality.into(),
+        ..Default::default()
+    };
+    let (medial, medial_seconds) = timed(|| {
+        MedialMesh::from_trimesh_with_progress(vertices, indices, &options, &mut |progress| {
+            match go_on(bar, progress.stage, BUILT * progress.fraction) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(_) => ControlFlow::Break(()),
+            }
+        })
+    });
+    let (medial, _) = medial?;
+    let (hull, hull_seconds) = timed(|| SharedShape::convex_hull(vertices));
+    let hull = hull.ok_or(Failure::NoHull)?;
+    go_on(bar, "convex decomposition", BUILT)?;
+    let (parts, parts_seconds) = timed(|| SharedShape::convex_decomposition(vertices, indices));
+    Ok(Made {
+        medial: (medial, medial_seconds),
+        parts: (parts, parts_seconds),
+        hull: (hull, hull_seconds),
+    })
+}
+
+/// Shows the stage and the part done, unless Ctrl-C ends it here.
+fn go_on(bar: &ProgressBar, stage: &'static str, fraction: f32) -> Result<(), Failure> {
+    bar.set_message(stage);
+    bar.set_position((fraction * BAR_STEPS as f32) as u64);
+    match STOP.load(Ordering::Relaxed) {
+        true => Err(Failure::Stopped(stage)),
+        false => Ok(()),
+    }
+}
+
+/// What the work made, and its seconds.
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let made = work();
+    (made, start.elapsed().as_secs_f64())
+}
+
+/// Bodies above each other, turned at random.
+fn heap(mesh: Mesh, medial: MedialMesh) -> Scene {
+    let skeleton = Skeleton::of_medial(&medial, 0.02 * SIZE);
+    let model: Arc<Model> = Model::new(mesh, skeleton, medial);
+    let mut random = Random(3);
+    let actors = (0..BODIES).map(|k| {
+        let turn = random.direction() * 3.0;
+        let start = RigidBodyBuilder::dynamic()
+            .translation(random.direction() * 0.3 + Vector::Y * (1.0 + 0.8 * k as Real))
+            .rotation(turn);
+        Actor::new(&model, start, Vector::ONE)
+    });
+    Scene::new(actors.collect())
+}
+
+/// The median and the longest of some steps of the falling heap; `None` of none.
+fn step_times(scene: &Scene, kind: Kind, steps: usize) -> Result<Option<StepTimes>, Failure> {
+    if steps == 0 {
+        return Ok(None);
+    }
+    let mut stage = scene.stage(kind);
+    let mut all = Vec::new();
+    for _ in 0..steps {
+        if STOP.load(Ordering::Relaxed) {
+            return Err(Failure::Stopped("stepping"));
+        }
+        all.push(timed(|| stage.step()).1 * 1.0e3);
+    }
+    all.sort_by(f64::total_cmp);
+    Ok(Some(StepTimes {
+        median: all[steps / 2],
+        longest: all[steps - 1],
+    }))
+}
+
+impl Comparison {
+    fn text(&self) -> String {
+        let mut table = Table::default();
+        let timed = self.steps > 0;
+        let mut heading = vec!["pieces", "% off", "s to build"];
+        if timed {
+            heading.extend(["ms a step", "longest"]);
+        }
+        table.row("collider", heading);
+        for row in &self.colliders {
+            let mut cells = vec![
+                row.pieces.to_string(),
+                format!("{:.2}", 100.0 * row.error),
+                format!("{:.2}", row.seconds_to_build),
+            ];
+            if let Some(StepTimes { median, longest }) = row.step_milliseconds {
+                cells.extend([median, longest].map(|ms| format!("{ms:.2}")));
+            }
+            table.row(row.collider, cells);
+        }
+        let mut text = format!(
+            "{}\n\n{table}\n% off: largest distance from the surface of the mesh, of its longest side, {}\n",
+            self.picture.display(),
+            self.longest_side
+        );
+        if timed {
+            text += &format!(
+                "ms a step: median of {} steps, {} bodies fall into a heap\n",
+                self.steps, self.bodies
+            );
+        }
+        text
+    }
+}
