@@ -1,30 +1,44 @@
 //! Falling rings for a page in the browser: the scene of the example `falling_rings` as a class of
-//! JavaScript. A device opened by `open_device` goes from stage to stage. Poses and meshes go out as flat arrays; `site/main.js` draws them.
+//! JavaScript. A device opened by `open_device` goes from stage to stage. Poses and meshes go out as flat arrays, which
+//! `site/renderer.js` draws.
 
 #[path = "../../examples/common/mod.rs"]
 mod common;
+mod dropped;
 mod state;
 
 use common::creature::creature;
 use common::falling::{falling_on, falling_ring};
 use common::mesh::Mesh;
-use common::scene::{Kind, Model, Scene, Stage};
+use common::scene::{Actor, Kind, Model, Scene, Stage};
+use common::scene_strip::rainbow;
+use common::skeleton::Skeleton;
 use common::surfaces::surface;
-use rapier3d::prelude::Vector;
+use dropped::Dropped;
+use rapier3d::prelude::{RigidBodyBuilder, SharedShape, Vector};
 use rapier3d_medial::batch::Batch;
 use rapier3d_medial::batch::gpu::{Gpu, GpuOptions};
 use rapier3d_medial::{
     Backend, BuildOptions, Effect, Effects, MedialMesh, MedialPipeline, StepReport,
 };
 use state::state_hash;
+use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
-const RINGS: usize = 15;
+/// Bodies that fall, at the start.
+const COUNT: usize = 15;
+/// The most that the user may throw besides.
+const THROWN: usize = 40;
+/// Speed (m/s) of what is thrown.
+const SPEED: f32 = 16.0;
 
-/// A world of rings above the creature, the last of its bodies.
+/// A world of rings, or of bodies of the user's, above the creature, and those that the user threw.
 #[wasm_bindgen]
 pub struct Demo {
     scene: Scene,
+    ring: Arc<Model>,
+    /// What falls, and what it falls on.
+    models: [Arc<Model>; 2],
     stage: Stage,
     kind: Kind,
     effects: Effects,
@@ -84,10 +98,12 @@ impl Demo {
         let ring = Model::new(mesh, lines, MedialMesh::from_bytes(ring)?);
         let (mesh, lines) = creature();
         let animal = Model::new(mesh, lines, MedialMesh::from_bytes(animal)?);
-        let scene = falling_on(animal, &ring, RINGS);
+        let scene = falling_on(Arc::clone(&animal), &ring, COUNT);
         Ok(Self {
             stage: scene.stage(kind),
             scene,
+            models: [Arc::clone(&ring), animal],
+            ring,
             kind,
             effects: Effects::default(),
             report: StepReport::default(),
@@ -143,8 +159,55 @@ impl Demo {
         self.settled_by_gpu += self.report.settled_by_gpu;
     }
 
-    /// Back to the start.
+    /// Lets other bodies fall: a mesh as built by `Dropped`.
+    pub fn set_falling(&mut self, dropped: &Dropped) -> Result<(), JsError> {
+        let mesh = dropped.mesh();
+        if SharedShape::convex_hull(&mesh.vertices).is_none() {
+            return Err(JsError::new("rapier makes no convex hull of this mesh"));
+        }
+        let medial = MedialMesh::from_bytes(dropped.medial())?;
+        let skeleton = Skeleton::of_medial(&medial, 0.0);
+        self.models[0] = Model::new(mesh.clone(), skeleton, medial);
+        self.restart();
+        Ok(())
+    }
+
+    /// Lets rings fall again.
+    pub fn set_rings(&mut self) {
+        self.models[0] = Arc::clone(&self.ring);
+        self.restart();
+    }
+
+    /// Throws one more of what falls, from a place along a direction; false when enough have been thrown.
+    pub fn throw(&mut self, from: &[f32], along: &[f32]) -> bool {
+        let (&[x, y, z], &[u, v, w]) = (from, along) else {
+            return false;
+        };
+        let thrown = self.scene.actors.len() - COUNT - 1;
+        let velocity = SPEED * Vector::new(u, v, w).normalize_or_zero();
+        if thrown == THROWN || !velocity.is_finite() {
+            return false;
+        }
+        let start = RigidBodyBuilder::dynamic()
+            .translation(Vector::new(x, y.max(0.7), z))
+            .rotation(Vector::new(0.4, 0.3 * thrown as f32, 0.9))
+            .linvel(velocity)
+            .angvel(Vector::new(2.0, 1.0, 0.5))
+            .angular_damping(0.5);
+        let color = rainbow((0.618_034 * thrown as f32).fract());
+        let actor = Actor::new(&self.models[0], start, color);
+        self.scene.add(actor, self.kind, &mut self.stage);
+        let (_, collider) = self.stage.bodies[self.stage.bodies.len() - 1];
+        if let Some(pipeline) = &mut self.stage.pipeline {
+            pipeline.set_effects(collider, self.effects);
+        }
+        true
+    }
+
+    /// Back to the start; what was thrown is gone.
     pub fn restart(&mut self) {
+        let [falling, animal] = &self.models;
+        self.scene = falling_on(Arc::clone(animal), falling, COUNT);
         self.play(self.scene.stage(self.kind));
         self.settled_by_gpu = 0;
     }
@@ -186,6 +249,11 @@ impl Demo {
     pub fn colors(&self) -> Vec<f32> {
         let colors = self.scene.actors.iter().map(|actor| actor.color);
         flat(&colors.collect::<Vec<_>>())
+    }
+
+    /// The place in `poses` of the creature; all other bodies are alike.
+    pub fn creature(&self) -> usize {
+        COUNT
     }
 
     /// The triangles that a body came as.

@@ -11,7 +11,8 @@ export async function launch(program = process.env.CHROMIUM ?? "chromium") {
     "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
     // WebGPU by SwiftShader, where there is no better.
     "--enable-unsafe-webgpu",
-    "--hide-scrollbars", "--no-first-run", "--disable-dev-shm-usage", "about:blank",
+    "--hide-scrollbars", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync", "--disable-quic", "--disable-dev-shm-usage", "about:blank",
   ], { stdio: ["ignore", "ignore", "pipe", "pipe", "pipe"] });
   const [, , errors, input, output] = browser.stdio;
   let log = "";
@@ -57,6 +58,7 @@ export async function launch(program = process.env.CHROMIUM ?? "chromium") {
     });
     await Promise.all(["Runtime.enable", "Log.enable", "Page.enable"].map((method) => call(method)));
     await call("Emulation.setDeviceMetricsOverride", { width, height, mobile, deviceScaleFactor: mobile ? 2 : 1 });
+    if (mobile) await call("Emulation.setTouchEmulationEnabled", { enabled: true, maxTouchPoints: 2 });
     await call("Page.addScriptToEvaluateOnNewDocument", { source: first });
     await call("Page.navigate", { url });
 
@@ -72,18 +74,55 @@ export async function launch(program = process.env.CHROMIUM ?? "chromium") {
         await new Promise((resolve) => setTimeout(resolve, 100));
       }
     }
-    // A click where the element is, as a user's.
+    const mouse = (type, x, y, more) => call("Input.dispatchMouseEvent", { type, x, y, button: "left", ...more });
+    async function clickAt(x, y) {
+      await mouse("mousePressed", x, y, { clickCount: 1 });
+      await mouse("mouseReleased", x, y, { clickCount: 1 });
+    }
+    // A click where the element is, as a user's: on what is seen there.
     async function click(selector) {
-      const [x, y] = await value(`(() => { const r = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()`);
-      for (const type of ["mousePressed", "mouseReleased"]) {
-        await call("Input.dispatchMouseEvent", { type, x, y, button: "left", clickCount: 1 });
+      const name = JSON.stringify(selector);
+      const [x, y, seen] = await value(`(() => {
+        const element = document.querySelector(${name});
+        element.scrollIntoView({ block: "nearest" });
+        const r = element.getBoundingClientRect();
+        const at = [r.x + r.width / 2, r.y + r.height / 2];
+        const top = document.elementFromPoint(...at);
+        return [...at, r.width > 0 && (element.contains(top) || top?.contains(element))];
+      })()`);
+      if (!seen) throw new Error(`${selector} is not seen at (${x}, ${y})`);
+      await clickAt(x, y);
+    }
+    async function drag([x, y], [toX, toY]) {
+      await mouse("mousePressed", x, y, { clickCount: 1 });
+      for (const part of [0.25, 0.5, 0.75, 1]) {
+        await mouse("mouseMoved", x + part * (toX - x), y + part * (toY - y), { buttons: 1 });
       }
+      await mouse("mouseReleased", toX, toY, { clickCount: 1 });
+    }
+    const wheel = (x, y, deltaY) => call("Input.dispatchMouseEvent", { type: "mouseWheel", x, y, deltaX: 0, deltaY });
+    async function touch(...frames) {
+      for (const [k, points] of frames.entries()) {
+        const touchPoints = points.map(([x, y], id) => ({ x, y, id }));
+        await call("Input.dispatchTouchEvent", { type: k === 0 ? "touchStart" : "touchMove", touchPoints });
+      }
+      await call("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+    }
+    async function key(key) {
+      const text = key.length === 1 ? key : undefined;
+      await call("Input.dispatchKeyEvent", { type: "keyDown", key, text });
+      await call("Input.dispatchKeyEvent", { type: "keyUp", key });
+    }
+    async function choose(selector, file) {
+      const { root } = await call("DOM.getDocument");
+      const { nodeId } = await call("DOM.querySelector", { nodeId: root.nodeId, selector });
+      await call("DOM.setFileInputFiles", { nodeId, files: [file] });
     }
     async function picture() {
       const { data } = await call("Page.captureScreenshot", { format: "png" });
       return Buffer.from(data, "base64");
     }
-    return { value, until, click, picture, errors, close: () => send("Target.closeTarget", { targetId }) };
+    return { value, until, click, clickAt, drag, wheel, touch, key, choose, picture, errors, close: () => send("Target.closeTarget", { targetId }) };
   }
 
   async function close() {

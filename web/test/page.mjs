@@ -1,15 +1,15 @@
 // The page end to end in a headless Chromium: node test/page.mjs FOLDER PICTURES. It loads, the rings fall
-// and come to rest, clicks switch what bodies collide as, and nothing is written as an error. Worlds end
+// and come to rest, clicks switch what bodies collide as, all that the user can do is done (`features.mjs`), and nothing
+// is written as an error. Worlds end
 // the same, bit by bit, on the GPU as on the CPU, and without WebGPU the CPU serves.
 import assert from "node:assert/strict";
 import { mkdir, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { serve } from "../serve.mjs";
 import { launch } from "./chromium.mjs";
+import { PATIENCE, fast, folding, keys, moved, ownMesh, places, poses, pressed, sideBySide, slowMotion, throwing, zooming } from "./features.mjs";
 
 const [folder, pictures] = process.argv.slice(2);
-// Seconds that software rendering on a loaded machine may need.
-const PATIENCE = 240;
 const SIZES = {
   laptop: { width: 1366, height: 768, mobile: false },
   phone: { width: 390, height: 844, mobile: true },
@@ -20,16 +20,7 @@ const url = `http://localhost:${server.address().port}/`;
 await mkdir(pictures, { recursive: true });
 const browser = await launch();
 
-const poses = (page) => page.value("Array.from(state.poses)");
-const places = (poses) => Array.from({ length: poses.length / 7 }, (_, body) => poses.slice(7 * body, 7 * body + 3));
 const heights = (poses) => places(poses).map(([, y]) => y);
-const moved = (a, b) => places(a).map((place, k) => Math.hypot(...place.map((x, i) => x - places(b)[k][i])));
-async function fast(page, steps) {
-  const before = await page.value(`(() => { const button = document.getElementById("step"); for (let k = 0; k < ${steps}; k += 1) button.click(); return state.steps; })()`);
-  await page.until(`state.steps >= ${before + steps}`, PATIENCE);
-  return page.value("state.steps");
-}
-const pressed = (page, selector) => page.value(`document.querySelector("${selector}").getAttribute("aria-pressed")`);
 
 async function drawn(page) {
   // What is on the canvas is no single colour: at least as many as a few bodies, ground and sky have.
@@ -87,6 +78,7 @@ async function backends() {
 async function no_webgpu() {
   const page = await browser.open(url, SIZES.phone, "Object.defineProperty(navigator, 'gpu', { value: undefined })");
   await page.until("window.state?.ready", PATIENCE);
+  await page.click("#fold");
   assert.match(await page.value("document.getElementById('runs').textContent"), /^CPU: no GPU adapter$/);
   assert.ok(await page.value("document.querySelector('[data-backend=gpu]').disabled"));
   await fast(page, 60);
@@ -99,6 +91,11 @@ async function no_webgpu() {
 async function at_size(name) {
   const page = await browser.open(url, SIZES[name]);
   await page.until("window.state?.ready", PATIENCE);
+  assert.ok(await page.value("document.getElementById('loading').hidden && document.getElementById('loading').value === 1"), "all was loaded");
+  await writeFile(join(pictures, `${name}-start.png`), await page.picture());
+  await folding(page, SIZES[name].mobile);
+  await page.click("#restart");
+  await page.until("state.steps < 5", PATIENCE);
   const start = await poses(page);
   assert.equal(start.length, 7 * 16, "fifteen rings and the creature");
   await page.until("state.steps >= 60", PATIENCE);
@@ -140,9 +137,19 @@ async function at_size(name) {
   await page.click("#collider");
   assert.ok((await drawn(page)) > 100, "colliders are drawn");
   await writeFile(join(pictures, `${name}-colliders.png`), await page.picture());
+  assert.equal(await page.value("new Set(performance.getEntriesByType('resource').map((r) => new URL(r.name).origin)).size"), 1, "nothing comes from elsewhere");
+  await page.click("#collider");
+  const size = SIZES[name];
+  const save = async (what) => writeFile(join(pictures, `${name}-${what}.png`), await page.picture());
+  await sideBySide(page, save);
+  await slowMotion(page);
+  await throwing(page, size, save);
+  await keys(page);
+  await zooming(page, size);
+  await ownMesh(page, save);
   assert.deepEqual(page.errors, [], "no error on the console");
   await page.close();
-  console.log(`${name}: ${hung} rings hang, ${pushed} pushed away as hulls`);
+  console.log(`${name}: ${hung} rings hang, ${pushed} pushed away as hulls; compared, thrown, dropped, zoomed`);
 }
 
 try {
