@@ -18,7 +18,7 @@ use creature::creature;
 use pollster::block_on;
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::query::NonlinearRigidMotion;
-use rapier3d_medial::batch::gpu::{Gpu, GpuOptions};
+use rapier3d_medial::batch::gpu::{Gpu, GpuOptions, Proposals};
 use rapier3d_medial::batch::{Calibration, Job, Sweep, ToiJob, cpu};
 use rapier3d_medial::elementary::bracket::{Limits, bracket};
 use rapier3d_medial::elementary::many::{Lanes, brackets};
@@ -268,14 +268,14 @@ fn every_test(devices: &mut Devices) -> Value {
         seconds: 1.0,
         reach: f64::from(LIMITS.tolerance),
     };
-    let mut proposals = Vec::new();
+    let mut proposals = Proposals::default();
     let sweeps = [sweep];
     let culled = (0..ROUNDS).map(|_| {
         let asked = devices.gpu.propose(&sweeps, &mut proposals);
         milliseconds(|| block_on(asked).expect("a proposal"))
     });
     let culled = least(culled.collect());
-    println!("with culling, ms: device {culled:.2}, {proposals:?}");
+    println!("with culling, ms: device {culled:.2}, {:?}", &proposals[..]);
     println!(
         "all {all} elementary tests of two meshes, ms: lanes {on_cpu:.0}, device {on_device:.0}, stage {stage:.0}; {proven} proven free"
     );
@@ -313,7 +313,7 @@ fn mesh_pairs(devices: &mut Devices) -> Vec<Value> {
     let row = |count: usize| {
         let jobs = toi_jobs(&mesh, count);
         let sweeps: Vec<_> = jobs.iter().filter_map(Job::sweep).collect();
-        let mut proposals = Vec::new();
+        let mut proposals = Proposals::default();
         let mut times = [const { Vec::new() }; 5];
         let mut answers = Vec::new();
         let before = devices.gpu.counts().given_up;
@@ -332,14 +332,17 @@ fn mesh_pairs(devices: &mut Devices) -> Vec<Value> {
             let asked = devices.clocked.propose(&sweeps, &mut proposals);
             block_on(asked).expect("proposals");
             times[4].push(devices.shader());
-            let open = jobs.iter().zip(&proposals).filter(|(_, p)| !p.is_free());
+            let open = jobs
+                .iter()
+                .zip(proposals.iter())
+                .filter(|(_, p)| !p.is_free());
             let open: Vec<_> = open.map(|(job, _)| job).collect();
             times[1].push(device);
             times[2].push(device + milliseconds(|| drop(black_box(cpu::run(&open)))));
         }
         let apart = |s: ToiStatus| s == ToiStatus::Separated;
         let free = answers.iter().filter(|a| apart(a.toi.status)).count();
-        let both = answers.iter().zip(&proposals);
+        let both = answers.iter().zip(proposals.iter());
         let wrong = both.filter(|(a, p)| p.is_free() && !apart(a.toi.status));
         assert_eq!(wrong.count(), 0, "free on the device, not on the CPU");
         let proven = proposals.iter().filter(|p| p.is_free()).count();

@@ -1,18 +1,22 @@
-// Mesh pairs that stay free, in two stages. Source: the walk of src/pair/search.rs, in no order,
-// because all that meets has to be looked at. A thread walks down both sphere trees with a stack of its
-// own, and takes its next mesh pair when it is done with one: neighbours that run in step do not
-// wait for the longest walk. Then a thread each proves the primitive pairs whose balls meet. What finds no
-// room, or takes too long, is given up, and the CPU has the pair: nothing is cut.
+// Primitive pairs that may come within reach, of many mesh pairs, in two stages. Source: the walk of
+// src/pair/search.rs, in no order, because all that meets has to be looked at. A thread walks down both
+// sphere trees with a stack of its own, and takes its next mesh pair when it is done with one: neighbours
+// that run in step do not wait for the longest walk. Then a thread each proves the primitive pairs whose
+// balls meet, or lists them. What finds no room, or takes too long, is given up, and the CPU has the pair:
+// nothing is cut. src/batch/gpu/near.rs reads the list and counts it.
 
 @group(0) @binding(0) var<uniform> params: CullParams;
 @group(0) @binding(1) var pairs: texture_2d<u32>;
 @group(0) @binding(2) var nodes: texture_2d<u32>;
 @group(0) @binding(3) var primitives: texture_2d<u32>;
-// Of each two primitives whose balls meet their indices, and that of the mesh pair.
+// Of each two primitives whose balls meet their indices, that of the mesh pair, and the batch's stamp. An entry
+// without it is of a batch before.
 @group(0) @binding(4) var<storage, read_write> meetings: array<vec4<u32>>;
-// What is known of each pair, 0 before; last how many primitive pairs meet, and how many mesh pairs are
-// taken.
-@group(0) @binding(5) var<storage, read_write> answers: array<atomic<u32>>;
+// Those of them that are not proven free, in no order.
+@group(0) @binding(5) var<storage, read_write> near: array<vec4<u32>>;
+// For each pair, 0 before, FREE and how many primitive pairs are not proven free; last how many primitive
+// pairs meet, how many mesh pairs are taken, and how many primitive pairs are listed.
+@group(0) @binding(6) var<storage, read_write> answers: array<atomic<u32>>;
 
 // The first of two neighbouring nodes on either side; which of their four pairs are left to be looked at
 // is in the highest bits of its own. One node that was not split is the first with a neighbour that never
@@ -24,6 +28,8 @@ var<private> left: u32;
 var<private> work: array<vec2<u32>, WALK_ROOM>;
 var<private> open: u32;
 var<private> kept: u32;
+// How many were handed on of this mesh pair.
+var<private> handed_on: u32;
 
 // In a node's `below` the mark of a leaf.
 const MARK = 0x80000000u;
@@ -89,16 +95,17 @@ fn look(a: Side, b: Side, reach: f32) {
   }
 }
 
-// Hands the primitive pairs of a mesh pair on. What fits is written in any case: room that is counted and
-// not written would hold pairs of the batch before.
-fn hand_on(pair: u32, whole: bool) {
-  kept = select(0u, kept, whole);
+// Hands the primitive pairs found so far on; returns whether there was room for all.
+fn hand_on(pair: u32) -> bool {
   let at = atomicAdd(&answers[params.pairs], kept);
   var k = 0u;
   for (; k < kept && at + k < params.room; k++) {
-    meetings[at + k] = vec4<u32>(work[WALK_ROOM - 1u - k], pair, 0u);
+    meetings[at + k] = vec4<u32>(work[WALK_ROOM - 1u - k], pair, params.stamp);
   }
-  atomicStore(&answers[pair], select(GIVEN_UP, FREE + kept, whole && k == kept));
+  let all = k == kept;
+  handed_on += kept;
+  kept = 0u;
+  return all;
 }
 
 @compute @workgroup_size(WALKS)
@@ -112,7 +119,10 @@ fn walk() {
   var taken = 0u;
   loop {
     if (left == 0u && open == 0u) {
-      if (pair < params.pairs) { hand_on(pair, whole); }
+      if (pair < params.pairs) {
+        whole = hand_on(pair) && whole;
+        atomicStore(&answers[pair], select(GIVEN_UP, FREE + handed_on, whole));
+      }
       taken++;
       if (taken > WALK_PAIRS) { break; }
       pair = atomicAdd(&answers[params.pairs + 1u], 1u);
@@ -123,7 +133,7 @@ fn walk() {
       reach = bitcast<f32>(last.z);
       first = last.xy;
       left = 1u;
-      kept = 0u;
+      handed_on = 0u;
       looks = 0u;
       whole = true;
     }
@@ -133,24 +143,29 @@ fn walk() {
       whole = open + kept < WALK_ROOM && looks <= WALK_LOOKS;
       if (whole) { look(a, b, reach); } else { left = 0u; open = 0u; }
     }
+    if (open + kept + WALK_STRETCH >= WALK_ROOM) {
+      let all = hand_on(pair);
+      if (!all || handed_on > WALK_FINDS) { whole = false; left = 0u; open = 0u; }
+    }
   }
 }
 
-// Each proof brings the mesh pair's answer nearer to FREE. Of one that is given up, or of which a primitive
-// pair is not proven, the others are skipped.
+// Each proof brings the mesh pair's answer nearer to FREE; what is not proven is listed. So the answer says how
+// many have to be on the list: a proof that was never begun, or an entry that found no room, is missed there.
 @compute @workgroup_size(WALKS)
 fn prove(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
   let count = min(atomicLoad(&answers[params.pairs]), params.room);
   for (var k = id.x + id.y * groups.x * WALKS; k < count; k += groups.x * groups.y * WALKS) {
     let met = meetings[k];
     let pair = met.z;
-    if (atomicLoad(&answers[pair]) > FREE + WALK_ROOM) { continue; }
+    if (met.w != params.stamp || atomicLoad(&answers[pair]) - FREE > WALK_FINDS + WALK_ROOM) { continue; }
     let a = primitive(side(pair, 0u), met.x);
     let b = primitive(side(pair, 1u), met.y);
     if (stays_free(a, b, bitcast<f32>(roots(pair).z))) {
       atomicSub(&answers[pair], 1u);
     } else {
-      atomicMax(&answers[pair], OPEN);
+      let at = atomicAdd(&answers[params.pairs + 2u], 1u);
+      if (at < params.near_room) { near[at] = vec4<u32>(met.xy, pair, params.stamp); }
     }
   }
 }

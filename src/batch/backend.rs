@@ -1,6 +1,6 @@
-//! Decides whether a batch runs on the CPU or a GPU. A GPU only finds pairs that certainly do not meet; all others are
-//! computed on the CPU as if there were no GPU. So answers are the same on both, except for counts of work, and a
-//! GPU that fails costs nothing but time.
+//! Decides whether a batch runs on the CPU or a GPU. A GPU only finds what certainly does not meet: pairs, and primitives
+//! of other pairs, of which it lists those that may. The CPU computes these, and pairs without a list as if there were
+//! no GPU. So answers are the same on both, except for counts of work, and a GPU that fails costs nothing but time.
 
 use super::cpu;
 #[cfg(feature = "gpu")]
@@ -8,7 +8,7 @@ use super::early::Early;
 #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
 use super::gpu::GpuOptions;
 #[cfg(feature = "gpu")]
-use super::gpu::{Gpu, Proposal};
+use super::gpu::{Gpu, Proposal, Proposals};
 use super::job::Job;
 #[cfg(feature = "gpu")]
 use super::job::Sweep;
@@ -40,6 +40,8 @@ pub struct BatchReport {
     pub settled_by_gpu: u64,
     /// Jobs that the CPU answered, whether the GPU was asked before or not.
     pub settled_by_cpu: u64,
+    /// Those of them for which the GPU listed the primitives that may meet, so that the CPU did not search.
+    pub listed: u64,
     /// Jobs that the GPU could not take, since a pose or size was not finite or too large.
     pub unfit: u64,
     /// Submissions to the GPU: one for each batch.
@@ -50,6 +52,8 @@ pub struct BatchReport {
     pub sent_early: u64,
     /// Jobs, or pieces of their step, of which too many primitives meet to be looked at on the GPU.
     pub given_up: u64,
+    /// Jobs, or pieces of their step, whose list of primitives found no room on the GPU.
+    pub unlisted: u64,
     /// Batches for the GPU that it could not take.
     pub fallbacks: u64,
     /// Why the last of these batches, or the GPU as a whole, was not used.
@@ -65,7 +69,10 @@ pub struct Batch {
     #[cfg(feature = "gpu")]
     pub(super) gpu: Option<Gpu>,
     #[cfg(feature = "gpu")]
-    pub(super) proposals: Vec<Proposal>,
+    pub(super) proposals: Proposals,
+    /// What the device said of each job of a batch.
+    #[cfg(feature = "gpu")]
+    pub(super) said: Vec<Proposal>,
     #[cfg(feature = "gpu")]
     pub(super) early: Early,
     #[cfg(feature = "gpu")]

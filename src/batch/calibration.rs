@@ -86,7 +86,7 @@ impl FromStr for Calibration {
 mod measure {
     use super::Calibration;
     use crate::batch::cpu;
-    use crate::batch::gpu::Gpu;
+    use crate::batch::gpu::{Gpu, Proposals};
     use crate::batch::job::{Job, PairJob};
     use crate::elementary::bracket::Limits;
     use crate::elementary::many::{Lanes, brackets};
@@ -114,7 +114,7 @@ mod measure {
         /// # Errors
         /// [`GpuError`] if the GPU fails.
         pub fn measure(gpu: &mut Gpu, mesh: &MedialMesh) -> Result<Self, GpuError> {
-            let mut proposals = Vec::new();
+            let mut proposals = Proposals::default();
             let jobs = smallest(SIZES[0], |count| {
                 let jobs = pairs(mesh, count);
                 let sweeps: Vec<_> = jobs.iter().filter_map(Job::sweep).collect();
@@ -122,7 +122,10 @@ mod measure {
                     || drop(black_box(cpu::run(&jobs))),
                     || {
                         block_on(gpu.propose(&sweeps, &mut proposals))?;
-                        let open = jobs.iter().zip(&proposals).filter(|(_, p)| !p.is_free());
+                        let open = jobs
+                            .iter()
+                            .zip(proposals.iter())
+                            .filter(|(_, p)| !p.is_free());
                         let open: Vec<_> = open.map(|(job, _)| job).collect();
                         drop(black_box(cpu::run(&open)));
                         Ok(())

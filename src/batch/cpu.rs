@@ -1,6 +1,8 @@
 //! Answers the jobs of a batch on the CPU, on several threads with feature `parallel`. Jobs are independent, so the
 //! answers do not depend on the number of threads.
 
+#[cfg(feature = "gpu")]
+use super::gpu::{Proposal, Proposals};
 use super::job::Job;
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
@@ -18,20 +20,25 @@ pub fn run<J: Job>(jobs: &[J]) -> Vec<J::Answer> {
     jobs.iter().map(Job::answer).collect()
 }
 
-/// As [`run`], but for the jobs that are known to be free.
+/// As [`run`], but with what a GPU said of each job.
 #[cfg(feature = "gpu")]
-pub(super) fn run_but_free<J: Job>(jobs: &[J], free: &[bool]) -> Vec<J::Answer> {
-    let answer = |(job, free): (&J, &bool)| match free {
-        true => job.free(),
-        false => job.answer(),
+pub(super) fn run_told<J: Job>(
+    jobs: &[J],
+    said: &[Proposal],
+    proposals: &Proposals,
+) -> Vec<J::Answer> {
+    let answer = |(job, &said): (&J, &Proposal)| match said {
+        Proposal::Free => job.free(),
+        Proposal::Near { .. } => job.answer_near(proposals.near(said)),
+        Proposal::Open | Proposal::Unfit => job.answer(),
     };
     #[cfg(feature = "parallel")]
     return jobs
         .par_iter()
-        .zip(free)
+        .zip(said)
         .with_min_len(J::PER_THREAD)
         .map(answer)
         .collect();
     #[cfg(not(feature = "parallel"))]
-    jobs.iter().zip(free).map(answer).collect()
+    jobs.iter().zip(said).map(answer).collect()
 }

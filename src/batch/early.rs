@@ -1,7 +1,7 @@
 //! Jobs that were sent to a GPU before their answers were needed: finds the answer to a job that is asked later, if
 //! it is the same bit by bit.
 
-use super::gpu::Proposal;
+use super::gpu::{Proposal, Proposals};
 use super::job::Sweep;
 use parry3d::query::NonlinearRigidMotion;
 use std::collections::HashMap;
@@ -42,7 +42,7 @@ pub(super) struct Early {
     /// Index of each.
     pub(super) sent: HashMap<Key, u32>,
     /// What the device said of them, once they are collected.
-    pub(super) proposals: Vec<Proposal>,
+    pub(super) proposals: Proposals,
     /// Whether the device still has them.
     pub(super) pending: bool,
 }

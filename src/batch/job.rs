@@ -22,6 +22,12 @@ pub trait Job: Sync {
     /// The answer if nothing comes within the sweep's reach: equal to that of [`Self::answer`], except for the
     /// counts of work.
     fn free(&self) -> Self::Answer;
+    /// The answer if of all primitives only these pairs may come within the sweep's reach, in any order, repeatedly or
+    /// not: equal to that of [`Self::answer`], except for the counts of work.
+    fn answer_near(&self, near: &[[u32; 2]]) -> Self::Answer {
+        let _ = near;
+        self.answer()
+    }
 }
 
 impl<J: Job> Job for &J {
@@ -35,6 +41,9 @@ impl<J: Job> Job for &J {
     }
     fn free(&self) -> Self::Answer {
         J::free(self)
+    }
+    fn answer_near(&self, near: &[[u32; 2]]) -> Self::Answer {
+        J::answer_near(self, near)
     }
 }
 
@@ -91,6 +100,17 @@ impl Job for PairJob {
     }
     fn free(&self) -> PairResult {
         PairResult::default()
+    }
+    fn answer_near(&self, near: &[[u32; 2]]) -> PairResult {
+        let (mesh1, mesh2) = (&self.mesh1, &self.mesh2);
+        let (contacts, counts) = crate::pair::contacts_of_listed(
+            mesh1,
+            mesh2,
+            &self.pos12,
+            self.prediction,
+            &mut near.to_vec(),
+        );
+        PairResult { contacts, counts }
     }
 }
 

@@ -4,7 +4,7 @@ use super::backend::{Backend, Batch};
 use super::calibration::Calibration;
 use super::cpu;
 use super::early::Key;
-use super::gpu::{Gpu, GpuCounts, GpuOptions, Proposal};
+use super::gpu::{Gpu, GpuCounts, GpuOptions, Proposal, Proposals};
 use super::job::{Job, Sweep};
 use crate::elementary::bracket::{Bracket, Limits};
 use crate::elementary::path::LinearPath;
@@ -85,6 +85,7 @@ impl Batch {
         self.report.submissions += now.submissions - before.submissions;
         self.report.maps += now.maps - before.maps;
         self.report.given_up += now.given_up - before.given_up;
+        self.report.unlisted += now.unlisted - before.unlisted;
     }
 
     /// The batch goes to the CPU; a device that may still serve is kept.
@@ -156,7 +157,7 @@ impl Batch {
     /// Answers jobs of which some were sent before and are back.
     pub(super) fn settle_early<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
         let mut early = std::mem::take(&mut self.early);
-        let answers = self.settle(jobs, |sweep| early.proposal(sweep));
+        let answers = self.settle(jobs, &early.proposals, |sweep| early.proposal(sweep));
         early.forget();
         self.early = early;
         answers
@@ -186,29 +187,35 @@ impl Batch {
             self.fall_back(error);
         }
         let mut each = proposals.iter().copied();
-        let answers = self.settle(jobs, |_| each.next());
+        let answers = self.settle(jobs, &proposals, |_| each.next());
         self.proposals = proposals;
         answers
     }
 
-    /// Answers what the device proves free, and has the rest from the CPU. `proposal` is asked in the
-    /// order of the jobs that a device may have.
+    /// Answers what the device proves free, and has the rest from the CPU, by the device's lists where there are any.
+    /// `proposal` is asked in the order of the jobs that a device may have.
     fn settle<J: Job>(
         &mut self,
         jobs: &[J],
+        proposals: &Proposals,
         mut proposal: impl FnMut(&Sweep<'_>) -> Option<Proposal>,
     ) -> Vec<J::Answer> {
-        self.free.clear();
+        self.said.clear();
+        let (mut free, mut listed) = (0, 0);
         for job in jobs {
             let said = job.sweep().map(|sweep| proposal(&sweep));
             let unfit = matches!(said, None | Some(Some(Proposal::Unfit)));
             self.report.unfit += u64::from(unfit);
-            self.free.push(said == Some(Some(Proposal::Free)));
+            // Also of jobs that were not sent nothing is known.
+            let said = said.flatten().unwrap_or(Proposal::Open);
+            free += u64::from(said == Proposal::Free);
+            listed += u64::from(matches!(said, Proposal::Near { .. }));
+            self.said.push(said);
         }
-        let settled = self.free.iter().filter(|free| **free).count();
-        self.report.settled_by_gpu += settled as u64;
-        self.report.settled_by_cpu += (jobs.len() - settled) as u64;
-        cpu::run_but_free(jobs, &self.free)
+        self.report.settled_by_gpu += free;
+        self.report.settled_by_cpu += jobs.len() as u64 - free;
+        self.report.listed += listed;
+        cpu::run_told(jobs, &self.said, proposals)
     }
 
     /// Does the same as [`Self::brackets`] without blocking while the GPU works.

@@ -7,8 +7,8 @@ use crate::batch::toi_jobs;
 use crate::scene;
 use allocation_counter::measure;
 use pollster::block_on;
-use rapier3d_medial::batch::gpu::GpuOptions;
 use rapier3d_medial::batch::gpu::shaders::{CULL, ELEMENTARY};
+use rapier3d_medial::batch::gpu::{GpuOptions, Proposals};
 use rapier3d_medial::batch::{Backend, Batch, Job};
 use rapier3d_medial::elementary::path::LinearPath;
 use rapier3d_medial::elementary::test_list::Domain;
@@ -115,7 +115,7 @@ fn mesh_pairs_allocate_nothing_of_ours_but_answers() {
     let library = library(&bare, &[0, 1], true);
     let mut jobs = toi_jobs(500);
     let sweeps: Vec<_> = jobs.iter().filter_map(Job::sweep).collect();
-    let mut said = Vec::new();
+    let mut said = Proposals::default();
     let all = allocations(|| {
         block_on(gpu.submit(&sweeps)).expect("a submission");
         block_on(gpu.collect(&mut said)).expect("proposals");

@@ -80,6 +80,9 @@ fn answers_are_those_of_the_cpu() {
     let settled = batch.report().settled_by_gpu - before.settled_by_gpu;
     println!("{settled} of {free} pairs without contacts settled by the GPU");
     assert!(settled * 10 > free * 9 && settled <= free);
+    let listed = batch.report().listed - before.listed;
+    println!("{listed} of {} others listed", 300 - settled);
+    assert!(listed * 10 > (300 - settled) * 9);
     assert_eq!(batch.report().fallbacks, 0);
     assert_eq!(batch.gpu_counts().submissions, 2);
 }

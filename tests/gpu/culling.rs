@@ -12,7 +12,7 @@ use pollster::block_on;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::batch::Sweep;
 use rapier3d_medial::batch::gpu::layout::MOST_MEETINGS;
-use rapier3d_medial::batch::gpu::{Gpu, GpuOptions, Proposal};
+use rapier3d_medial::batch::gpu::{Gpu, GpuOptions, Proposal, Proposals};
 use rapier3d_medial::error::GpuError;
 use rapier3d_medial::math::{Pose, Real, Vector};
 use rapier3d_medial::{MedialMesh, MedialPrimitive, MedialSphere};
@@ -58,8 +58,8 @@ fn sweeps(drawn: &[Drawn]) -> Vec<Sweep<'_>> {
         .collect()
 }
 
-fn propose(gpu: &mut Gpu, drawn: &[Drawn]) -> Vec<Proposal> {
-    let mut proposals = Vec::new();
+fn propose(gpu: &mut Gpu, drawn: &[Drawn]) -> Proposals {
+    let mut proposals = Proposals::default();
     block_on(gpu.propose(&sweeps(drawn), &mut proposals)).expect("proposals");
     assert_eq!(proposals.len(), drawn.len());
     proposals
@@ -180,8 +180,13 @@ fn long_meshes_lose_no_link() {
     }
     let found = propose(&mut gpu, &drawn);
     for (n, said) in found.chunks(3).enumerate() {
-        let expected = [Proposal::Open, Proposal::Open, Proposal::Free];
-        assert_eq!(said, expected, "{n}");
+        let listed = |k: usize| found.near(said[k]).to_vec();
+        let link = (n * 5999 / 199) as u32;
+        assert!(
+            listed(0).contains(&[link, 0]) && listed(1).contains(&[0, link]),
+            "{n}"
+        );
+        assert!(said[2].is_free(), "{n}");
     }
     assert_eq!(gpu.counts().given_up, 0);
 }
@@ -201,12 +206,12 @@ fn entangled_meshes_are_given_up() {
         at_rest([&long, &short], poses),
     ];
     let expected = [Proposal::Free, Proposal::Open, Proposal::Free];
-    assert_eq!(propose(&mut gpu, &drawn), expected);
+    assert_eq!(*propose(&mut gpu, &drawn), expected);
     assert_eq!(gpu.counts().given_up, 1);
 }
 
 /// More primitive pairs than a batch has room for, of mesh pairs that all meet: those that find none are
-/// given up, and none is called free for want of them.
+/// given up, or left without a list, and none is called free for want of them.
 #[test]
 fn what_finds_no_room_is_given_up() {
     let Some(mut gpu) = scene::gpu(scene::options()) else {
@@ -224,15 +229,28 @@ fn what_finds_no_room_is_given_up() {
     // All balls of one meet all of the other.
     let fit = MOST_MEETINGS / 110;
     let sweeps = vec![sweep; fit + 500];
-    let mut proposals = Vec::new();
-    for asked in [&sweeps[..fit], &sweeps] {
-        let before = gpu.counts().given_up;
+    let mut proposals = Proposals::default();
+    let mut ask = |asked: &[Sweep]| {
+        let before = gpu.counts();
         block_on(gpu.propose(asked, &mut proposals)).expect("proposals");
-        let open = proposals.iter().filter(|p| **p == Proposal::Open).count();
-        let given_up = gpu.counts().given_up - before;
-        assert_eq!(open, asked.len());
-        assert_eq!(given_up as usize, asked.len() - fit);
-    }
+        let after = gpu.counts();
+        let open = proposals.iter().filter(|p| **p == Proposal::Open).count() as u64;
+        assert_eq!(proposals.iter().filter(|p| p.is_free()).count(), 0);
+        for said in proposals.iter().filter(|p| **p != Proposal::Open) {
+            assert_eq!(proposals.near(*said).len(), 110);
+        }
+        let [given_up, unlisted] = [
+            after.given_up - before.given_up,
+            after.unlisted - before.unlisted,
+        ];
+        assert_eq!(open, given_up + unlisted);
+        [given_up, unlisted]
+    };
+    // The list is too short for what nobody expects, and then has its length.
+    let [given_up, unlisted] = ask(&sweeps[..fit]);
+    assert!(given_up == 0 && unlisted as usize > fit / 2, "{unlisted}");
+    assert_eq!(ask(&sweeps[..fit]), [0, 0]);
+    assert_eq!(ask(&sweeps), [500, 0]);
 }
 
 /// Meshes are sent once, shared by their bodies, dropped on request, and found again.
@@ -249,13 +267,13 @@ fn meshes_stay_and_go() {
             meshes: [&instance, &drawn[1].meshes[0]],
             ..sweeps(&drawn)[0]
         };
-        block_on(gpu.propose(&[sweep], &mut Vec::new())).expect("proposals");
+        block_on(gpu.propose(&[sweep], &mut Proposals::default())).expect("proposals");
     }
     assert_eq!(gpu.counts().meshes, 12);
     assert!(gpu.remove(&drawn[0].meshes[0]) && !gpu.remove(&drawn[0].meshes[0]));
     assert!(gpu.remove(&drawn[3].meshes[1]));
     assert_eq!(gpu.counts().meshes, 10);
-    assert_eq!(propose(&mut gpu, &drawn), expected);
+    assert_eq!(*propose(&mut gpu, &drawn), *expected);
     assert_eq!(gpu.counts().meshes, 12);
 }
 
@@ -275,7 +293,7 @@ fn large_coordinates_cost_nothing() {
     for motion in drawn.iter_mut().flat_map(|d| &mut d.motions) {
         motion.start.translation.x += 8192.0;
     }
-    assert_eq!(propose(&mut gpu, &drawn), near);
+    assert_eq!(*propose(&mut gpu, &drawn), *near);
 }
 
 /// A batch that is too large, whose meshes made the nodes' texture grow, and then one that fits: it is told of
@@ -301,9 +319,9 @@ fn what_grew_for_a_batch_that_failed_is_used_by_the_next() {
         seconds: 0.0,
         reach: 0.0,
     };
-    let mut said = Vec::new();
+    let mut said = Proposals::default();
     block_on(gpu.propose(&[sweep(&small)], &mut said)).expect("proposals");
-    assert_eq!(said, [Proposal::Free]);
+    assert_eq!(*said, [Proposal::Free]);
     let many = vec![sweep(&large); 600];
     let refused = block_on(gpu.propose(&many, &mut said));
     assert!(
@@ -311,7 +329,7 @@ fn what_grew_for_a_batch_that_failed_is_used_by_the_next() {
         "{refused:?}"
     );
     block_on(gpu.propose(&many[..1], &mut said)).expect("proposals");
-    assert_ne!(said, [Proposal::Free]);
+    assert_ne!(*said, [Proposal::Free]);
 }
 
 /// The families made to break a certificate: what the device calls free stays apart, by the oracle.
@@ -335,11 +353,11 @@ fn no_extreme_within_reach_is_free() {
                 reach: 0.0,
             })
             .collect();
-        let mut proposals = Vec::new();
+        let mut proposals = Proposals::default();
         block_on(gpu.propose(&sweeps, &mut proposals)).expect("proposals");
         let free = proposals.iter().filter(|p| p.is_free()).count();
         println!("{family:?}: {free} of {} free", drawn.len());
-        for ((query, _), proposal) in drawn.iter().zip(&proposals) {
+        for ((query, _), proposal) in drawn.iter().zip(proposals.iter()) {
             let contact = Truth::new(query, 0.0).contact.contact_at;
             let right = !proposal.is_free() || contact.is_none();
             assert!(right, "{family:?}\n{query:?}");

@@ -10,6 +10,7 @@ use pollster::block_on;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::MedialPrimitive;
 use rapier3d_medial::batch::Sweep;
+use rapier3d_medial::batch::gpu::Proposals;
 use rapier3d_medial::math::{Pose, Real, Vector};
 
 const PAIRS: usize = 256;
@@ -38,12 +39,12 @@ fn motions(rng: &mut Rng, k: usize) -> [NonlinearRigidMotion; 2] {
 }
 
 /// A ball round a primitive on its way: centre at the start and at the end, radius with the sagitta.
-type Ball = (Vector3<f64>, Vector3<f64>, f64);
+pub type Ball = (Vector3<f64>, Vector3<f64>, f64);
 
 /// Balls that share nothing with the product's: round the middle of the spheres' centres, placed by
 /// parry's motion. Its rounding, and what the path bends between the ends (an eighth of the squared
 /// angle, per length of the lever arm), are in the radius.
-fn ball(p: &MedialPrimitive, motion: &NonlinearRigidMotion) -> Ball {
+pub fn ball(p: &MedialPrimitive, motion: &NonlinearRigidMotion, seconds: Real) -> Ball {
     let spheres = p.spheres();
     let count = spheres.len() as Real;
     let middle = spheres.iter().map(|s| s.center).sum::<Vector>() / count;
@@ -55,13 +56,13 @@ fn ball(p: &MedialPrimitive, motion: &NonlinearRigidMotion) -> Ball {
         let p = motion.position_at_time(time) * middle;
         Vector3::new(p.x, p.y, p.z).map(f64::from)
     };
-    let angle = f64::from((motion.angvel * SECONDS).length());
+    let angle = f64::from((motion.angvel * seconds).length());
     let arm = f64::from((middle - motion.local_center).length());
     let slack = 1.0e-4 + 0.125 * angle * angle * arm;
-    (at(0.0), at(SECONDS), f64::from(radius) + slack)
+    (at(0.0), at(seconds), f64::from(radius) + slack)
 }
 
-fn balls_meet(a: &Ball, b: &Ball, reach: f64) -> bool {
+pub fn balls_meet(a: &Ball, b: &Ball, reach: f64) -> bool {
     let (start, end) = (b.0 - a.0, b.1 - a.1);
     let rate = end - start;
     let t = (-start.dot(&rate) / rate.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
@@ -91,12 +92,12 @@ fn large_meshes_lose_no_pair() {
             reach,
         })
         .collect();
-    let mut proposals = Vec::new();
+    let mut proposals = Proposals::default();
     block_on(gpu.propose(&sweeps, &mut proposals)).expect("proposals");
     let (mut all, mut near, mut apart) = (0u64, 0u64, 0);
     for (k, motions) in drawn.iter().enumerate() {
         let [first, second] = [0, 1].map(|side: usize| {
-            let balls = primitives.iter().map(|p| ball(p, &motions[side]));
+            let balls = primitives.iter().map(|p| ball(p, &motions[side], SECONDS));
             balls.collect::<Vec<_>>()
         });
         let mut meet = |i: usize, j: usize| {

@@ -12,6 +12,10 @@ mod ccd;
 #[path = "../common/creature.rs"]
 mod creature;
 
+#[allow(dead_code, reason = "all forms serve other tests")]
+#[path = "../common/detailed.rs"]
+mod detailed;
+
 mod allocations;
 mod bare;
 mod batch;
@@ -21,6 +25,7 @@ mod early;
 mod elementary;
 mod failures;
 mod large;
+mod lists;
 mod scene;
 mod shaders;
 mod worlds;

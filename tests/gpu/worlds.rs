@@ -103,6 +103,9 @@ fn worlds_are_the_same_on_either_backend() {
     assert_eq!(all, made, "after warm-up");
     assert!(early * 20 > contacts * 19, "{early} of {contacts}");
     println!("{early} of {contacts} jobs sent early");
+    let listed = device.batch().report().listed;
+    println!("{listed} jobs with lists");
+    assert!(listed > 1000, "{listed}");
     println!("{jobs} jobs, {settled} settled by the GPU, {events} events, {gpu:?}");
     assert!(
         jobs > 1000 && first_contacts > 10 && settled > 100 && events > 0,

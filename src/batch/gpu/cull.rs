@@ -1,9 +1,11 @@
-//! Has the GPU prove which pairs of meshes do not meet in a step: its buffers, and the one submission of a batch.
+//! Has the GPU prove which pairs of meshes do not meet in a step, and list the primitive pairs of the others that may: its
+//! buffers, and the one submission of a batch.
 
 use super::clock::Clock;
 use super::context::{Context, Growing};
 use super::layout::{
-    CullParams, MOST_MEETINGS, Node, PROOFS, Pair, Primitive, WALK_PAIRS, WALK_ROOM, WALKS,
+    CullParams, LISTED, MOST_MEETINGS, Near, Node, PROOFS, Pair, Primitive, WALK_FINDS, WALK_PAIRS,
+    WALK_ROOM, WALKS,
 };
 use super::meshes::Meshes;
 use super::shaders::CULL;
@@ -13,8 +15,8 @@ use super::transfer::{ALIGNMENT, Target, Transfer};
 use crate::error::GpuError;
 use wgpu::BufferUsages;
 
-/// Words after the answers: meetings found, and pairs taken.
-const COUNTERS: usize = 2;
+/// Words after the answers: meetings found, pairs taken, and primitive pairs listed.
+const COUNTERS: usize = 3;
 
 /// Bytes of a meeting.
 const MEETING: usize = 16;
@@ -27,15 +29,41 @@ pub(super) struct Cull {
     nodes: Texels,
     primitives: Texels,
     meetings: Growing,
+    near: Growing,
     answers: Growing,
     bound: bool,
+    /// Of the last submission.
+    sent: Sent,
+    /// Primitive pairs that the last list had, or would have had with more room.
+    listed: usize,
+    /// The answers that came back last, and what is counted after them.
+    words: Vec<u32>,
+}
+
+/// What is to come back of a submission.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sent {
+    pairs: usize,
+    near_room: usize,
+    stamp: u32,
+}
+
+/// What has come back of a submission.
+pub(super) struct Received<'a> {
+    /// An answer for each mesh pair.
+    pub(super) answers: &'a [u32],
+    /// The list as far as it has room, with entries of batches before.
+    pub(super) list: &'a [[u8; size_of::<Near>()]],
+    /// On the entries of this batch.
+    pub(super) stamp: u32,
 }
 
 impl Cull {
     pub(super) fn new(context: &mut Context) -> Result<Self, GpuError> {
         let params = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
         let meetings = BufferUsages::STORAGE;
-        let answers = meetings | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+        let near = meetings | BufferUsages::COPY_SRC;
+        let answers = near | BufferUsages::COPY_DST;
         let bytes = size_of::<CullParams>() as u64;
         Ok(Self {
             stages: Stage::all(context, &CULL),
@@ -44,8 +72,12 @@ impl Cull {
             nodes: Texels::new(context, "nodes")?,
             primitives: Texels::new(context, "primitives")?,
             meetings: Growing::new(context, "meetings", 1, meetings)?,
+            near: Growing::new(context, "near primitives", 1, near)?,
             answers: Growing::new(context, "answers", 1, answers)?,
             bound: false,
+            sent: Sent::default(),
+            listed: 0,
+            words: Vec::new(),
         })
     }
 
@@ -64,10 +96,12 @@ impl Cull {
         if moved {
             meshes.send_again();
         }
-        let meetings = room(pairs) * MEETING;
-        let answers = answered(pairs) + COUNTERS * size_of::<u32>();
+        let meetings = room(context, pairs) * MEETING;
+        let answers = answered(pairs.len());
+        let near = self.sent.near_room * size_of::<Near>();
         let fresh = self.pairs.reserve(context, size_of_val(pairs))?
             | self.meetings.reserve(context, meetings as u64)?
+            | self.near.reserve(context, near as u64)?
             | self.answers.reserve(context, answers as u64)?;
         if moved || fresh || !bound {
             // As they are bound.
@@ -77,6 +111,7 @@ impl Cull {
                 self.nodes.bound(),
                 self.primitives.bound(),
                 self.meetings.bound(),
+                self.near.bound(),
                 self.answers.bound(),
             ];
             for stage in &mut self.stages {
@@ -95,10 +130,17 @@ impl Cull {
         meshes: &mut Meshes,
         pairs: &[Pair],
     ) -> Result<(), GpuError> {
+        self.sent = Sent {
+            pairs: pairs.len(),
+            near_room: self.near_room(context, pairs),
+            stamp: self.sent.stamp.wrapping_add(1),
+        };
         self.reserve(context, pairs, meshes)?;
         let params = CullParams {
             pairs: pairs.len() as u32,
-            room: room(pairs) as u32,
+            room: room(context, pairs) as u32,
+            near_room: self.sent.near_room as u32,
+            stamp: self.sent.stamp,
         };
         let (nodes, primitives) = meshes.sent;
         let (nodes, nodes_from) = unsent(&meshes.nodes, nodes * size_of::<Node>());
@@ -116,14 +158,15 @@ impl Cull {
         let sizes = items.map(|(bytes, to)| to.room(bytes.len()));
         up.begin(context, &sizes).await?;
         let timed = Clock::bytes(context.clock.as_ref());
-        down.begin(context, &[answered(pairs), timed]).await?;
+        let answers = answered(pairs.len());
+        let near = self.sent.near_room * size_of::<Near>();
+        down.begin(context, &[answers, near, timed]).await?;
         let mut encoder = context.device.create_command_encoder(&Default::default());
         for (bytes, to) in items {
             up.send(&mut encoder, bytes, to)?;
         }
         // What was not looked at is not free, whatever the batch before said.
-        let words = (answered(pairs) + COUNTERS * size_of::<u32>()) as u64;
-        encoder.clear_buffer(&self.answers.buffer, 0, Some(words));
+        encoder.clear_buffer(&self.answers.buffer, 0, Some(answers as u64));
         // No more threads than it has, as far as they may take all: the next mesh pair goes to whichever
         // is done with one.
         let groups = |tasks: usize, each: usize| {
@@ -133,10 +176,11 @@ impl Cull {
         let [walk, prove] = [0, 1].map(|k| &self.stages[k]);
         let stages = [
             (walk, groups(pairs.len(), WALK_PAIRS)),
-            (prove, groups(room(pairs), PROOFS)),
+            (prove, groups(room(context, pairs), PROOFS)),
         ];
         Stage::run(context, &mut encoder, &stages);
-        down.receive(&mut encoder, &self.answers.buffer, answered(pairs));
+        down.receive(&mut encoder, &self.answers.buffer, answers);
+        down.receive(&mut encoder, &self.near.buffer, near);
         if let Some(clock) = &context.clock {
             clock.receive(&mut encoder, down);
         }
@@ -148,25 +192,54 @@ impl Cull {
         Ok(())
     }
 
-    /// Waits for what the last submission found of each pair; returns the seconds of the
-    /// shader.
+    /// Room for a list: for what the last one had and half as much again, so that a list that grows has it.
+    fn near_room(&self, context: &Context, pairs: &[Pair]) -> usize {
+        let [each, least] = LISTED;
+        let expected = (each * pairs.len()).max(self.listed + self.listed / 2);
+        expected.max(least).min(room(context, pairs))
+    }
+
+    /// Waits for what the last submission found, and has it taken; returns the seconds of the shader.
     pub(super) async fn read(
-        &self,
+        &mut self,
         context: &Context,
         down: &Transfer,
-        answers: &mut [u32],
+        take: impl FnOnce(Received),
     ) -> Result<f64, GpuError> {
-        let mut seconds = 0.0;
+        let Sent {
+            pairs,
+            near_room,
+            stamp,
+        } = self.sent;
+        let (mut seconds, mut listed) = (0.0, 0);
+        let mut take = Some(take);
+        let to = &mut self.words;
+        to.clear();
         down.read(context, |bytes| {
-            let to: &mut [u8] = bytemuck::cast_slice_mut(answers);
-            let size = to.len();
-            to.copy_from_slice(&bytes[..size]);
+            let (words, bytes) = bytes.split_at(answered(pairs).next_multiple_of(ALIGNMENT));
+            // Word by word: where the answers lie need not be aligned.
+            to.extend(
+                bytemuck::cast_slice(words)
+                    .iter()
+                    .copied()
+                    .map(u32::from_le_bytes),
+            );
+            let (list, bytes) = bytes.split_at(near_room * size_of::<Near>());
+            listed = (to[pairs + COUNTERS - 1] as usize).min(MOST_MEETINGS);
+            let list: &[[u8; size_of::<Near>()]] = bytemuck::cast_slice(list);
+            if let Some(take) = take.take() {
+                take(Received {
+                    answers: &to[..pairs],
+                    list: &list[..listed.min(near_room)],
+                    stamp,
+                });
+            }
             if let Some(clock) = &context.clock {
-                let at = size.next_multiple_of(ALIGNMENT);
-                seconds = clock.seconds(&bytes[at..]);
+                seconds = clock.seconds(bytes);
             }
         })
         .await?;
+        self.listed = listed;
         Ok(seconds)
     }
 }
@@ -182,12 +255,14 @@ fn unsent<T: bytemuck::NoUninit>(list: &[T], sent: usize) -> (&[u8], usize) {
     (&bytes[from..], from / ROW)
 }
 
-/// Bytes of the answers that come back.
-fn answered(pairs: &[Pair]) -> usize {
-    size_of::<u32>() * pairs.len()
+/// Bytes of the answers to so many mesh pairs, and of what is counted after them.
+fn answered(pairs: usize) -> usize {
+    size_of::<u32>() * (pairs + COUNTERS)
 }
 
-/// How many meetings there is room for: a walk holds so many at most.
-fn room(pairs: &[Pair]) -> usize {
-    (WALK_ROOM as usize * pairs.len()).min(MOST_MEETINGS)
+/// How many meetings there is room for: of few mesh pairs each may have all that a walk finds.
+fn room(context: &Context, pairs: &[Pair]) -> usize {
+    let [least, each] = [WALK_FINDS, WALK_ROOM].map(|n| n as usize);
+    let most = context.options.binding_bytes as usize / MEETING;
+    (least + each * pairs.len()).min(MOST_MEETINGS).min(most)
 }

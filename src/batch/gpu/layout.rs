@@ -95,14 +95,26 @@ twins! {
         pairs: u32 = "u32",
         /// How many meetings there is room for.
         room: u32 = "u32",
+        /// How many primitive pairs there is room for on the list.
+        near_room: u32 = "u32",
+        /// Another number in each batch, on every entry of the list.
+        stamp: u32 = "u32",
+    }
+    /// Two primitives that are not proven free.
+    Near {
+        /// Their indices among all primitives.
+        primitives: [u32; 2] = "vec2<u32>",
+        /// Index of the mesh pair.
+        pair: u32 = "u32",
+        /// That of the batch.
+        stamp: u32 = "u32",
     }
 }
 
 /// A test or a mesh pair that is proven free in the whole step; not 0, which is what no shader has written.
-/// Of a mesh pair it is more by each primitive pair that has not been proven: what is not looked at stays
-/// open.
+/// Of a mesh pair `FREE + n`: `n` primitive pairs are not proven free.
 pub const FREE: u32 = 1;
-/// It is not; or less, by the proofs of other primitive pairs.
+/// A test that is not proven free.
 pub const OPEN: u32 = 1 << 30;
 /// Too much of it meets to be looked at.
 pub const GIVEN_UP: u32 = 1 << 31;
@@ -119,20 +131,23 @@ pub const MAX_GROUPS: u32 = 65_535;
 
 /// Rounds of the search for a direction. Fewer prove less, and nothing wrong.
 const GILBERT_ROUNDS: u32 = 6;
-/// Pairs of split nodes and primitive pairs that a walk down two trees holds at once; a walk that finds
-/// more is given up.
+/// Pairs of split nodes and primitive pairs that a walk down two trees holds at once. Of primitive pairs it hands on those
+/// that it has when that gets too many; a walk with more nodes to split is given up.
 pub const WALK_ROOM: u32 = 128;
+/// Primitive pairs that a walk finds, about, before it is given up: the CPU has what is that entangled.
+pub const WALK_FINDS: u32 = 1024;
 /// Node pairs and primitive pairs that a walk takes up before it is given up.
-const WALK_LOOKS: u32 = 1024;
+const WALK_LOOKS: u32 = 4096;
 /// Node pairs that a walk takes up before it looks whether it is done: less, and the next mesh pair is
 /// fetched for one thread at a time; more, and threads that are done wait longer.
 const WALK_STRETCH: u32 = 12;
 /// Mesh pairs that a thread takes at most: lavapipe ends loops, whatever they do, after 65,535 rounds of
 /// all that a thread runs, or that its neighbours run while it waits.
-pub const WALK_PAIRS: usize = 24;
+pub const WALK_PAIRS: usize = 4;
 const _: () = {
     // Looks, and stretches of them; what it hands on, while neighbours wait, of which each may.
-    let rounds = WALK_LOOKS + 2 * WALK_LOOKS.div_ceil(WALK_STRETCH) + WALKS as u32 * WALK_ROOM;
+    let handed_on = WALKS as u32 * (WALK_FINDS + 2 * WALK_ROOM);
+    let rounds = WALK_LOOKS + 2 * WALK_LOOKS.div_ceil(WALK_STRETCH) + handed_on;
     assert!(WALK_PAIRS as u32 * rounds < 65_535);
 };
 /// Primitive pairs that a thread proves at most, for the same reason.
@@ -144,6 +159,9 @@ const PROOF_ROUNDS: u32 = 6;
 
 /// Most meetings that a batch has room for, 16 bytes each; pairs beyond are given up.
 pub const MOST_MEETINGS: usize = 1 << 20;
+
+/// Primitive pairs that the list of a batch has room for at first, for each mesh pair, and the fewest of all.
+pub const LISTED: [usize; 2] = [8, 1 << 10];
 
 /// Texels of a record.
 const fn texels<T>() -> u32 {
@@ -174,6 +192,7 @@ pub fn constants() -> String {
         ("SIDE", texels::<Side>()),
         ("PAIR", texels::<Pair>()),
         ("WALK_ROOM", WALK_ROOM),
+        ("WALK_FINDS", WALK_FINDS),
         ("WALK_LOOKS", WALK_LOOKS),
         ("WALK_STRETCH", WALK_STRETCH),
         ("WALK_PAIRS", WALK_PAIRS as u32),

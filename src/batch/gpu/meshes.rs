@@ -2,6 +2,7 @@
 //! once, however many bodies have it.
 
 use super::layout::{Node, Primitive};
+use super::near::Range;
 use crate::math::fast_hash::FastMap;
 use crate::medial::tree::Below;
 use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
@@ -12,8 +13,8 @@ const LEAF: u32 = 1 << 31;
 struct Resident {
     /// Keeps the address, by which it is found, from being given to another.
     mesh: MedialMesh,
-    /// Index of the root of its tree.
-    root: u32,
+    /// Index of the root of its tree, and where its primitives are.
+    place: (u32, Range),
     used: u64,
 }
 
@@ -53,21 +54,21 @@ impl Meshes {
         }
     }
 
-    /// Index of the root of the mesh's tree; the mesh is added if it is new.
-    pub(super) fn root(&mut self, mesh: &MedialMesh) -> u32 {
+    /// Index of the root of the mesh's tree, and where its primitives are; the mesh is added if it is new.
+    pub(super) fn place(&mut self, mesh: &MedialMesh) -> (u32, Range) {
         let batch = self.batch;
         if let Some(resident) = self.residents.get_mut(&key(mesh)) {
             resident.used = batch;
-            return resident.root;
+            return resident.place;
         }
-        let root = self.append(mesh);
+        let place = self.append(mesh);
         let resident = Resident {
             mesh: mesh.clone(),
-            root,
+            place,
             used: batch,
         };
         self.residents.insert(key(mesh), resident);
-        root
+        place
     }
 
     /// Drops a mesh; the others move together and are sent again.
@@ -97,12 +98,12 @@ impl Meshes {
         self.send_again();
         let mut residents = std::mem::take(&mut self.residents);
         for resident in residents.values_mut() {
-            resident.root = self.append(&resident.mesh);
+            resident.place = self.append(&resident.mesh);
         }
         self.residents = residents;
     }
 
-    fn append(&mut self, mesh: &MedialMesh) -> u32 {
+    fn append(&mut self, mesh: &MedialMesh) -> (u32, Range) {
         let root = self.nodes.len() as u32;
         let first = self.primitives.len() as u32;
         let nodes = mesh.tree().nodes().iter().map(|node| {
@@ -122,7 +123,8 @@ impl Meshes {
         let primitives = mesh.primitives().map(spheres);
         self.primitives
             .extend(primitives.map(|spheres| Primitive { spheres }));
-        root
+        let count = self.primitives.len() as u32 - first;
+        (root, Range { first, count })
     }
 }
 

@@ -1,6 +1,8 @@
-//! Batches on a GPU. The GPU gets meshes and motions, and returns which pairs it has proven not to meet; nothing
-//! else that it computes reaches the physics, and all other pairs are computed on the CPU. Its bounds carry a slack
-//! for the rounding of any device that conforms to WGSL ([`crate::math::tolerance::GPU_SLACK_ULPS`]).
+//! Batches on a GPU. The GPU gets meshes and motions, and proves primitive pairs not to come within reach. Mesh pairs of
+//! which all are proven are free; of the others it returns the list of those that are not, and the CPU computes these
+//! alone. Nothing else that it computes reaches the physics. Its bounds carry a slack for the rounding of any device
+//! that conforms to WGSL ([`crate::math::tolerance::GPU_SLACK_ULPS`]), so what is not on a list does not come within
+//! reach on any.
 //!
 //! Each batch takes one submission and one map. In steps that are like those before nothing is allocated, neither
 //! on the GPU nor by this crate on the CPU. Every failure is a [`GpuError`], after which the CPU does the work.
@@ -11,6 +13,7 @@ mod cull;
 mod elementary;
 pub mod layout;
 mod meshes;
+pub mod near;
 pub mod shaders;
 mod stage;
 mod sweep;
@@ -18,6 +21,7 @@ mod texels;
 mod transfer;
 
 pub use context::GpuOptions;
+pub use near::Proposals;
 
 use crate::batch::job::Sweep;
 use crate::elementary::path::LinearPath;
@@ -26,10 +30,11 @@ use crate::error::GpuError;
 use crate::math::lane::Vec3;
 use crate::medial::MedialMesh;
 use context::Context;
-use cull::Cull;
+use cull::{Cull, Received};
 use elementary::Elementary;
 use layout::Pair;
 use meshes::Meshes;
+use near::Range;
 use transfer::Transfer;
 
 /// What a GPU has done since it was opened.
@@ -42,6 +47,8 @@ pub struct GpuCounts {
     /// Pairs of meshes, or pieces of their step, of which too many primitives meet to be looked at there, or which were
     /// never begun.
     pub given_up: u64,
+    /// Pairs of meshes, or pieces of their step, whose list of primitive pairs found no room, or is not whole.
+    pub unlisted: u64,
     /// Buffers and textures that were made. It does not grow in steps that are like those before.
     pub buffers_made: u64,
     /// Bind groups that were made. It does not grow in steps that are like those before.
@@ -55,7 +62,14 @@ pub struct GpuCounts {
 pub enum Proposal {
     /// The two meshes are proven free in the whole step.
     Free,
-    /// This was not proven: the CPU has to compute the pair.
+    /// All primitive pairs but those listed are: [`Proposals::near`].
+    Near {
+        /// Place of the first on the batch's list.
+        first: u32,
+        /// How many there are.
+        count: u32,
+    },
+    /// Nothing is known of them: the CPU has to search the pair.
     Open,
     /// The GPU could not take the sweep, since a number was not finite or too large.
     Unfit,
@@ -79,12 +93,12 @@ pub struct Gpu {
     pairs: Vec<Pair>,
     /// The sweep that each pair is a piece of.
     asked: Vec<u32>,
+    /// Where the primitives of each pair are.
+    ranges: Vec<[Range; 2]>,
     /// Mesh pairs asked about and not yet answered, whether or not any of them was fit.
     sweeps: usize,
     /// Whether the device has a batch of which the answers were not read.
     pending: bool,
-    /// What the device says of each pair.
-    answers: Vec<u32>,
     seconds: f64,
     counts: GpuCounts,
 }
@@ -101,9 +115,9 @@ impl Gpu {
             meshes: Meshes::default(),
             pairs: Vec::new(),
             asked: Vec::new(),
+            ranges: Vec::new(),
             sweeps: 0,
             pending: false,
-            answers: Vec::new(),
             seconds: 0.0,
             counts: GpuCounts::default(),
             context,
@@ -135,7 +149,7 @@ impl Gpu {
             seconds: 0.0,
             reach: 0.0,
         };
-        self.propose(&[sweep], &mut Vec::new()).await?;
+        self.propose(&[sweep], &mut Proposals::default()).await?;
         self.meshes.remove(&mesh);
         self.counts = GpuCounts::default();
         self.down.maps = 0;
@@ -220,7 +234,7 @@ impl Gpu {
     pub async fn propose(
         &mut self,
         sweeps: &[Sweep<'_>],
-        proposals: &mut Vec<Proposal>,
+        proposals: &mut Proposals,
     ) -> Result<(), GpuError> {
         self.submit(sweeps).await?;
         self.collect(proposals).await
@@ -248,26 +262,22 @@ impl Gpu {
     }
 
     /// Second half of [`Self::propose`]: waits for what the device says of the mesh pairs sent last.
-    pub async fn collect(&mut self, proposals: &mut Vec<Proposal>) -> Result<(), GpuError> {
-        self.context.check()?;
+    pub async fn collect(&mut self, proposals: &mut Proposals) -> Result<(), GpuError> {
         proposals.clear();
-        proposals.resize(std::mem::take(&mut self.sweeps), Proposal::Unfit);
+        self.context.check()?;
+        let sweeps = std::mem::take(&mut self.sweeps);
+        let pieces = (&self.asked[..], &self.ranges[..]);
         if !std::mem::take(&mut self.pending) {
+            proposals.take(sweeps, (&[], &[]), &[], &[], 0);
             return Ok(());
         }
-        self.answers.clear();
-        self.answers.resize(self.pairs.len(), layout::OPEN);
-        let answers = &mut self.answers;
-        self.seconds = self.cull.read(&self.context, &self.down, answers).await?;
-        for &sweep in &self.asked {
-            proposals[sweep as usize] = Proposal::Free;
-        }
-        for (&sweep, &answer) in self.asked.iter().zip(&self.answers) {
-            if answer != layout::FREE {
-                proposals[sweep as usize] = Proposal::Open;
-            }
-            self.counts.given_up += u64::from([0, layout::GIVEN_UP].contains(&answer));
-        }
+        let mut found = Default::default();
+        let take = |r: Received| {
+            found = proposals.take(sweeps, pieces, r.answers, r.list, r.stamp);
+        };
+        self.seconds = self.cull.read(&self.context, &self.down, take).await?;
+        self.counts.given_up += found.given_up;
+        self.counts.unlisted += found.unlisted;
         Ok(())
     }
 
@@ -295,17 +305,20 @@ impl Gpu {
     fn gather(&mut self, sweeps: &[Sweep<'_>]) {
         self.pairs.clear();
         self.asked.clear();
+        self.ranges.clear();
         for (index, sweep) in sweeps.iter().enumerate() {
-            let roots = sweep.meshes.map(|mesh| self.meshes.root(mesh));
+            let places = sweep.meshes.map(|mesh| self.meshes.place(mesh));
             let kept = self.pairs.len();
-            for pair in sweep.pairs(roots) {
+            for pair in sweep.pairs(places.map(|(root, _)| root)) {
                 let Some(pair) = pair else {
                     self.pairs.truncate(kept);
                     self.asked.truncate(kept);
+                    self.ranges.truncate(kept);
                     break;
                 };
                 self.pairs.push(pair);
                 self.asked.push(index as u32);
+                self.ranges.push(places.map(|(_, range)| range));
             }
         }
     }

@@ -38,7 +38,7 @@ pub const CULL: Module = Module {
         include_str!("../../../shaders/swept.wgsl"),
         include_str!("../../../shaders/cull.wgsl"),
     ],
-    stages: &[("walk", &[0, 1, 2, 4, 5]), ("prove", &[0, 1, 3, 4, 5])],
+    stages: &[("walk", &[0, 1, 2, 4, 6]), ("prove", &[0, 1, 3, 4, 5, 6])],
 };
 
 /// All of them.
