@@ -24,7 +24,7 @@ pub enum Effect {
 /// automatically, and only pairs that move fast, or are deep in each other, cost extra time.
 ///
 /// Set effects for the whole scene by [`MedialOptions::effects`], or for single colliders by
-/// [`MedialPipeline::set_effects`](super::MedialPipeline::set_effects). For each effect of a pair, `On` of either
+/// [`MedialPipeline::set_effects`](crate::rapier::MedialPipeline::set_effects). For each effect of a pair, `On` of either
 /// collider wins, then `Off` of either, then the scene's setting.
 ///
 /// *Thickness* below is that of the thinner of the two parts that may meet, a length: roughly their radius.
@@ -68,7 +68,7 @@ pub struct Effects {
     pub stop: Effect,
 }
 
-/// Settings of a [`MedialPipeline`](super::MedialPipeline). The defaults give up nothing; for games
+/// Settings of a [`MedialPipeline`](crate::rapier::MedialPipeline). The defaults give up nothing; for games
 /// there is [`MedialOptions::games`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -78,7 +78,7 @@ pub struct MedialOptions {
     /// Where contacts and first contacts of many pairs are computed. The results are the same on each, bit by bit.
     pub backend: Backend,
     /// Node pairs and elementary tests that the search for first contacts may take in a step, each half a
-    /// microsecond to one. Once it is spent, bodies of which more would have to be asked wait until the next step where they
+    /// microsecond to one. DedupEventHandler it is spent, bodies of which more would have to be asked wait until the next step where they
     /// are proven free ([`crate::StepReport::waiting`]), and keep their speed: they lose time, and pass through nothing.
     pub budget: u64,
 }
@@ -182,13 +182,13 @@ impl MedialOptions {
 
 /// The effects of a scene and of single colliders.
 #[derive(Clone, Debug, Default)]
-pub struct Wanted {
+pub struct EffectSettings {
     /// Of the scene.
     pub scene: Effects,
     own: HashMap<ColliderHandle, Effects>,
 }
 
-impl Wanted {
+impl EffectSettings {
     /// Sets those of one collider.
     pub fn set(&mut self, collider: ColliderHandle, effects: Effects) {
         if effects == Effects::default() {

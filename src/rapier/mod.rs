@@ -1,66 +1,33 @@
 //! What a user of rapier calls (layer 6), and what is done before and after rapier's step to have medial colliders
 //! collide.
+//!
+//! A step in order: `step.rs` takes a [`StepView`](view) of the world, makes a plan of it (`step_plan.rs`: [contacts]
+//! that rapier will ask for, pairs that are kept from its solver), has rapier step, and resolves the [impacts] within
+//! the step that rapier missed, with their [joints]. [host] has what rapier 0.36 needs to be told in roundabout ways.
 
-mod ahead;
-mod blow;
-mod boxes;
-pub mod candidates;
-mod census;
-pub mod collider;
-mod course;
-#[cfg(feature = "debug-render")]
-pub mod debug_draw;
+mod contacts;
 mod effects;
-mod emit;
-mod enabled;
-mod events;
-mod first_contact;
-mod hanging;
-mod impulse;
-mod inquiry;
-mod items;
+mod host;
+mod impacts;
+mod integration;
 mod joints;
-mod limits;
-mod links;
-mod meetings;
-mod motion;
-mod muting;
-mod outlines;
-mod pairs;
-mod pieces;
-pub mod pipeline;
-mod placed;
-mod prepared;
-mod pushes;
-mod recycled;
-pub mod report;
-mod response;
-mod rows;
-#[cfg(feature = "serde-serialize")]
-pub mod saved_world;
-mod skyline;
-mod snapshot;
-mod speculative;
-mod spent;
-mod substeps;
-mod sweep;
-mod thin_parts;
-mod tied;
+mod pipeline;
+mod report;
+mod state;
+mod step;
+mod step_plan;
 mod tuning;
-mod verdicts;
-mod waiting;
-mod watched;
-mod whirls;
+mod view;
 mod world;
 
-pub use collider::{MedialColliderBuilder, MedialSharedShape};
-#[cfg(feature = "debug-render")]
-pub use debug_draw::MedialDebugRender;
 pub use effects::{Effect, Effects, MedialOptions};
-pub use pipeline::MedialPipeline;
-pub use recycled::RECYCLE_DISTANCE;
-pub use report::StepReport;
+pub use host::recycling::RECYCLE_DISTANCE;
+pub use integration::collider::{MedialColliderBuilder, MedialSharedShape};
+#[cfg(feature = "debug-render")]
+pub use integration::debug_draw::MedialDebugRender;
 #[cfg(feature = "serde-serialize")]
-pub use saved_world::{SavedWorld, SavedWorldError, load_world, save_world};
+pub use integration::saved_world::{SavedWorld, SavedWorldError, load_world, save_world};
+pub use pipeline::MedialPipeline;
+pub use report::StepReport;
 #[doc(hidden)]
 pub use tuning::Tuning;

@@ -1,24 +1,18 @@
-//! [`MedialPipeline`]: what is done before and after rapier's step, as calls in order. The work itself is in the
-//! other files of this folder.
+//! [`MedialPipeline`]: what a user calls in place of rapier's step. `step.rs` has the step itself.
 
-use super::effects::{Effect, Effects, MedialOptions, Wanted};
-use super::emit::{Once, Scene, Told};
-use super::events::Outcome;
-use super::first_contact::Work;
-use super::items;
-use super::links;
-use super::placed::Placed;
-use super::prepared::{Prepared, asker, lowered};
-use super::recycled::Recycled;
-use super::report::StepReport;
-use super::speculative::Speculators;
-use super::substeps::Substeps;
-use super::tuning::Tuning;
-use super::verdicts::Verdicts;
-use super::world::World;
 use crate::batch::Batch;
-use crate::math::{Real, Vector};
-use crate::parry::{Answers, MedialDispatcher};
+use crate::math::Vector;
+use crate::parry::MedialDispatcher;
+use crate::rapier::effects::{EffectSettings, Effects, MedialOptions};
+use crate::rapier::host::events_of_impacts::ReportedStarts;
+use crate::rapier::host::recycling::RecyclingRecord;
+use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
+use crate::rapier::report::StepReport;
+use crate::rapier::state::State;
+use crate::rapier::tuning::Tuning;
+use crate::rapier::world::World;
+#[cfg(feature = "gpu")]
+use crate::rapier::{contacts::candidates, step_plan::lowered, view::medial_colliders::Sets};
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
@@ -26,9 +20,7 @@ use rapier3d::dynamics::{
 };
 use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, PhysicsWorld};
-use std::collections::HashSet;
 use std::sync::Arc;
-use web_time::Instant;
 
 /// Steps a world with medial colliders: call [`Self::step`] in place of `world.step()`. Use one pipeline for
 /// each world.
@@ -57,16 +49,7 @@ use web_time::Instant;
 /// # Ok::<(), rapier3d_medial::MeshError>(())
 /// ```
 pub struct MedialPipeline {
-    pub(super) batch: Batch,
-    pub(super) answers: Arc<Answers>,
-    pub(super) recycled: Recycled,
-    pub(super) effects: Wanted,
-    pub(super) tuning: Tuning,
-    pub(super) budget: u64,
-    pub(super) told: Told,
-    pub(super) placed: Placed,
-    /// What the last step was prepared with, if nothing moved in it.
-    pub(super) kept: Option<Prepared>,
+    pub(crate) state: State,
     is_attached: bool,
 }
 
@@ -87,31 +70,34 @@ impl MedialPipeline {
 
     /// A pipeline that uses a backend opened before; [`MedialOptions::backend`] is ignored.
     pub fn with_batch(options: MedialOptions, batch: Batch) -> Self {
-        let mut effects = Wanted::default();
+        let mut effects = EffectSettings::default();
         effects.scene = options.effects;
-        Self {
+        let state = State {
             batch,
             answers: Arc::default(),
-            recycled: Recycled::default(),
+            recycled: RecyclingRecord::default(),
             effects,
             tuning: Tuning::default(),
             budget: options.budget,
-            told: Told::default(),
-            placed: Placed::default(),
+            reported: ReportedStarts::default(),
+            placed: InitialOverlaps::default(),
             kept: None,
+        };
+        Self {
+            state,
             is_attached: false,
         }
     }
 
     /// The backend, whose report says what it has done, and why a GPU was not used.
     pub fn batch(&self) -> &Batch {
-        &self.batch
+        &self.state.batch
     }
 
     /// Uses another backend from now on, and returns the one used so far. Call it between two steps. The world goes on
     /// in the same way, bit by bit.
     pub fn replace_batch(&mut self, batch: Batch) -> Batch {
-        std::mem::replace(&mut self.batch, batch)
+        std::mem::replace(&mut self.state.batch, batch)
     }
 
     /// Has a GPU in a browser work on the contacts of the next step, and waits for its answers without blocking
@@ -120,28 +106,28 @@ impl MedialPipeline {
     #[cfg(feature = "gpu")]
     pub async fn prepare(&mut self, world: &PhysicsWorld) {
         let parameters = lowered(&world.integration_parameters);
-        let sets = items::Sets {
+        let sets = Sets {
             parameters: &parameters,
-            ..items::Sets::of(world)
+            ..Sets::of(world)
         };
-        let next = super::candidates::expect(sets, &self.recycled);
-        self.batch.submit_async(&next).await;
-        self.batch.ready().await;
+        let next = candidates::expect(sets, &self.state.recycled);
+        self.state.batch.submit_async(&next).await;
+        self.state.batch.ready().await;
     }
 
     /// Sets the effects of one collider. An effect left at [`Effect::Auto`] follows the scene's setting, so
     /// [`Effects::default`] removes the collider's own settings. If two colliders of a pair differ in an effect,
     /// `On` wins over `Off`.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
-        self.effects.set(collider, effects);
-        self.kept = None;
+        self.state.effects.set(collider, effects);
+        self.state.kept = None;
     }
 
     /// Other constants of the event loop, to measure what they do.
     #[doc(hidden)]
     pub fn set_tuning(&mut self, tuning: Tuning) {
-        self.tuning = tuning;
-        self.kept = None;
+        self.state.tuning = tuning;
+        self.state.kept = None;
     }
 
     /// Prepares a world to be stepped by this pipeline: the narrow phase (the part of rapier that computes contacts)
@@ -155,7 +141,7 @@ impl MedialPipeline {
     /// Does the same as [`Self::attach`] for games that keep rapier's sets themselves.
     pub fn attach_sets(&mut self, narrow_phase: &mut NarrowPhase) {
         self.is_attached = true;
-        let dispatcher = MedialDispatcher::new(Arc::clone(&self.answers));
+        let dispatcher = MedialDispatcher::new(Arc::clone(&self.state.answers));
         narrow_phase.set_query_dispatcher(dispatcher.chain(DefaultQueryDispatcher));
     }
 
@@ -165,7 +151,7 @@ impl MedialPipeline {
     ///
     /// While there are medial colliders, `integration_parameters.normalized_contact_recycle_distance`, the distance that a
     /// pair may move before rapier computes its contacts anew, counts as
-    /// [`RECYCLE_DISTANCE`](super::RECYCLE_DISTANCE) if it is larger. This holds for all bodies.
+    /// [`RECYCLE_DISTANCE`](crate::rapier::RECYCLE_DISTANCE) if it is larger. This holds for all bodies.
     pub fn step(&mut self, world: &mut PhysicsWorld) -> StepReport {
         self.step_with_events(world, &(), &())
     }
@@ -235,157 +221,6 @@ impl MedialPipeline {
             soft_bodies,
             ccd_solver,
         };
-        let mut rest = *parameters;
-        let mut report = StepReport::default();
-        let answers = Arc::clone(&self.answers);
-        let verdicts = Verdicts::new(hooks, &answers);
-        let can_stop = !world.has_links_or_particles();
-        loop {
-            let may_stop = can_stop && report.stops < self.tuning.max_stops;
-            let (done, stopped) = self.part(&mut world, &rest, &verdicts, events, may_stop);
-            report.add(&done);
-            let Some(time) = stopped else {
-                self.send_early(world.sets(parameters), &mut report);
-                return report;
-            };
-            report.stops += 1;
-            rest.dt -= time;
-        }
-    }
-
-    /// A step, or what of it comes before the world stops; the second result is when.
-    fn part(
-        &mut self,
-        world: &mut World,
-        parameters: &IntegrationParameters,
-        verdicts: &Verdicts,
-        events: &dyn EventHandler,
-        may_stop: bool,
-    ) -> (StepReport, Option<Real>) {
-        let before = self.batch.report().clone();
-        // Filters are asked before rapier has moved colliders to where the user put their bodies.
-        world
-            .bodies
-            .propagate_modified_body_positions_to_colliders(world.colliders);
-        let census = world.census();
-        let lowered = lowered(parameters);
-        let parameters = if census.medial > 0 {
-            &lowered
-        } else {
-            parameters
-        };
-        let mut report = StepReport::default();
-        let mut work = Work::default();
-        let kept = self.kept.take().filter(|kept| kept.holds_in(&census));
-        let is_kept = kept.is_some();
-        let mut prepared = kept.unwrap_or_else(|| {
-            self.prepare_step(
-                world,
-                parameters,
-                (census, may_stop),
-                verdicts,
-                (&mut report, &mut work),
-            )
-        });
-        let clock = Instant::now();
-        self.answers.take_counts();
-        self.answers.take_depth();
-        let snapshot = &mut prepared.snapshot;
-        let unit = parameters.length_unit;
-        let speculators =
-            (!is_kept).then(|| Speculators::set(snapshot, &self.effects, unit, world.bodies));
-        let substeps = (!is_kept).then(|| {
-            let joints = (&*world.impulse_joints, &*world.multibody_joints);
-            Substeps::set(snapshot, joints, parameters, &prepared.whirls, world.bodies)
-        });
-        prepared.whirls.bring_to_rest(world.multibody_joints);
-        report.speculative = speculators.as_ref().map_or(0, Speculators::count);
-        report.batch_seconds += clock.elapsed().as_secs_f64();
-
-        let off = |e: &Effects| e.continuous == Effect::Off;
-        let takes_all = !self.effects.any(off) && !census.any_modified;
-        // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
-        let sweeps = takes_all && !world.has_links_or_particles();
-        self.answers.sweep_elsewhere(sweeps);
-
-        let clock = Instant::now();
-        let once = Once::new(events, &mut self.told);
-        world.step(parameters, verdicts, &once);
-        report.step_seconds = clock.elapsed().as_secs_f64();
-        self.answers.sweep_elsewhere(false);
-        self.answers.let_none_pass();
-        self.answers.mute(HashSet::new());
-        speculators
-            .into_iter()
-            .for_each(|s| s.restore(world.bodies));
-        substeps.into_iter().for_each(|s| s.restore(world.bodies));
-
-        let clock = Instant::now();
-        let moved = census.medial > 0 && world.islands.num_active_bodies() > 0;
-        let outcome = if census.still.is_some() && !moved {
-            Outcome::default()
-        } else {
-            snapshot.follow(parameters, world.bodies, world.colliders);
-            let rules = world.rules(verdicts);
-            let whirls = std::mem::take(&mut prepared.whirls);
-            whirls.take_back(snapshot, &rules, world.narrow_phase, parameters.dt);
-            super::events::resolve(
-                snapshot,
-                asker(
-                    &self.effects,
-                    (self.tuning, self.budget),
-                    parameters,
-                    may_stop,
-                ),
-                rules,
-                (
-                    world.narrow_phase,
-                    prepared.depth.max(self.answers.take_depth()),
-                ),
-                &mut self.placed,
-                &mut self.batch,
-                &mut work,
-            )
-        };
-        for &(index, struck) in &outcome.changed {
-            snapshot.bodies[index].write_back(struck, world.bodies);
-        }
-        if !outcome.changed.is_empty() {
-            links::write_back(
-                snapshot,
-                &outcome.changed,
-                world.bodies,
-                world.multibody_joints,
-            );
-            world
-                .bodies
-                .propagate_modified_body_positions_to_colliders(world.colliders);
-        }
-        if !is_kept || snapshot.followed {
-            self.placed.end(snapshot, world.colliders);
-        }
-        let scene = Scene {
-            dt: parameters.dt,
-            bodies: world.bodies,
-            colliders: world.colliders,
-            narrow_phase: world.narrow_phase,
-        };
-        once.finish(&mut self.told, &outcome.impulses, scene);
-        if census.all > 0 {
-            report.medial_colliders = items::count(world.colliders);
-        }
-        report.continuous_jobs = outcome.jobs;
-        report.events = outcome.events;
-        report.frozen = outcome.frozen;
-        report.waiting = outcome.waiting;
-        report.event_seconds = clock.elapsed().as_secs_f64();
-        for ids in self.answers.take_missed() {
-            self.recycled.forget(ids);
-        }
-        report.add_answered(&self.answers.take_counts());
-        report.add_searched(&work);
-        report.add_sent(&before, self.batch.report());
-        self.kept = (!prepared.snapshot.followed).then_some(prepared);
-        (report, outcome.stopped)
+        self.state.step(&mut world, parameters, hooks, events)
     }
 }

@@ -1,8 +1,9 @@
 //! [`StepReport`]: what a step did, counted and timed.
 
-use super::first_contact::Work;
 use crate::batch::{BatchReport, PairResult};
 use crate::parry::answers::Counted;
+use crate::rapier::impacts::event_loop::Outcome;
+use crate::rapier::impacts::toi_query::Work;
 
 /// Counters and times of one step of a [`crate::MedialPipeline`], about medial colliders only. Three counters tell
 /// most:
@@ -92,14 +93,14 @@ pub struct StepReport {
 
 impl StepReport {
     /// Adds the contacts of a job of the batch.
-    pub(super) fn add_contacts(&mut self, result: &PairResult) {
+    pub(crate) fn add_contacts(&mut self, result: &PairResult) {
         self.contacts += result.contacts.len();
         self.culled_nodes += u64::from(result.counts.nodes);
         self.elementary_tests += u64::from(result.counts.tests);
     }
 
     /// Adds what the narrow phase asked for besides the batch.
-    pub(super) fn add_answered(&mut self, counted: &Counted) {
+    pub(crate) fn add_answered(&mut self, counted: &Counted) {
         self.cache_hits += counted.hits;
         self.cache_misses += counted.misses;
         self.manifolds += counted.manifolds;
@@ -109,8 +110,16 @@ impl StepReport {
         self.elementary_tests += counted.tests;
     }
 
+    /// Adds what the impacts within the step did.
+    pub(crate) fn add_impacts(&mut self, outcome: &Outcome) {
+        self.continuous_jobs = outcome.jobs;
+        self.events = outcome.events;
+        self.frozen = outcome.frozen;
+        self.waiting = outcome.waiting;
+    }
+
     /// Adds what the searches for first contacts took.
-    pub(super) fn add_searched(&mut self, work: &Work) {
+    pub(crate) fn add_searched(&mut self, work: &Work) {
         self.continuous_queries += work.queries;
         self.rotating_queries += work.rotating;
         self.culled_nodes += work.nodes;
@@ -119,7 +128,7 @@ impl StepReport {
     }
 
     /// Adds what the backend did between two of its reports.
-    pub(super) fn add_sent(&mut self, before: &BatchReport, after: &BatchReport) {
+    pub(crate) fn add_sent(&mut self, before: &BatchReport, after: &BatchReport) {
         self.settled_by_gpu += after.settled_by_gpu - before.settled_by_gpu;
         self.unfit += after.unfit - before.unfit;
         self.submissions += after.submissions - before.submissions;
@@ -130,7 +139,7 @@ impl StepReport {
     }
 
     /// Adds what another part of the same step did.
-    pub(super) fn add(&mut self, part: &Self) {
+    pub(crate) fn add(&mut self, part: &Self) {
         self.medial_colliders = part.medial_colliders;
         self.pairs += part.pairs;
         self.jobs += part.jobs;

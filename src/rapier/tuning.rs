@@ -79,13 +79,13 @@ impl Default for Tuning {
 
 impl Tuning {
     /// Depth of rapier's contacts, in units of the thickness, from which a slow pair is watched.
-    pub(super) fn guarded(&self) -> Real {
+    pub(crate) fn guarded(&self) -> Real {
         self.floor - self.fast
     }
 
     /// Impacts after which a body is no longer carried along either: two that push it from both sides
     /// would go on for ever.
-    pub(super) fn max_carried(&self) -> u32 {
+    pub(crate) fn max_carried(&self) -> u32 {
         2 * self.max_events
     }
 }

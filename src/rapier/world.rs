@@ -1,10 +1,10 @@
 //! rapier's sets of one world, as its step takes them.
 
-use super::census::Census;
-use super::items::Sets;
-use super::pairs::Rules;
-use super::verdicts::Verdicts;
 use crate::math::Vector;
+use crate::rapier::view::census::Census;
+use crate::rapier::view::eligible_pairs::Rules;
+use crate::rapier::view::filter_answers::FilterAnswers;
+use crate::rapier::view::medial_colliders::Sets;
 use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
     RigidBodySet, SoftBodySet,
@@ -42,7 +42,7 @@ impl World<'_> {
     }
 
     /// What decides which colliders respond to each other.
-    pub fn rules<'s>(&'s self, verdicts: &'s Verdicts<'s>) -> Rules<'s> {
+    pub fn rules<'s>(&'s self, verdicts: &'s FilterAnswers<'s>) -> Rules<'s> {
         Rules {
             bodies: self.bodies,
             colliders: self.colliders,

@@ -1,5 +1,5 @@
 //! Chains and rings that hang, and which contacts are computed when: those that can close in a step, and
-//! anew those that a body hangs in (`src/rapier/ahead.rs`, `src/rapier/hanging.rs`).
+//! anew those that a body hangs in (`src/rapier/contacts/predicted_contacts.rs`, `src/rapier/host/forced_updates.rs`).
 //!
 //! The full run: `cargo test --release --test scenes -- --ignored --nocapture full_chain`.
 

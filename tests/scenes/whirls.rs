@@ -93,7 +93,7 @@ impl Rope {
 /// Symptom: a multibody rope of 15 links or more, across which a heavy ball flies at 20 m/s, left all numbers within a
 /// few of rapier's steps; one of 40 links at 5 m/s gained five times the energy. Cause: rapier integrates with the mass
 /// matrix of each sub-step's start, and solves contacts with the Jacobian of the step's start, however far links turn.
-/// A step that adds more than a tenth to the energy of what whirls is taken back (`rapier/whirls.rs`). What rapier's
+/// A step that adds more than a tenth to the energy of what whirls is taken back (`rapier/host/multibody_energy.rs`). What rapier's
 /// solver makes of a ball of 1 m/s, whose rope hardly turns, is compared with its own capsules.
 #[test]
 fn ropes_struck_by_balls_keep_their_numbers_and_gain_little_energy() {

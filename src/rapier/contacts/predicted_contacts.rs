@@ -1,0 +1,362 @@
+//! Contacts of medial pairs in which a body hangs, computed as they will be at the end of the step, as far as
+//! velocities tell at its start. With contacts of the step's start, chains and rings that hang swing ever wider.
+//!
+//! rapier keeps the normals and lever arms of a step's start through all its `s` substeps. A force that turns with its
+//! body (the pull in a chain, the weight of a ring that rolls in another) then lags behind the body, which feeds the
+//! oscillation. With contacts at the time `θ` of the step, as a fraction, an oscillation of angular frequency `ω` grows
+//! in each step of length `h` by the factor
+//!
+//! `√(1 + ((s − 1) / 2s − θ) (ω h)²)`,
+//!
+//! the root of the determinant of one step `v' = v − h ω² (x + θ h v)`, `x' = x + (h / s) Σ_k v_k`, whose
+//! force acts in `s` equal parts. Warm-started impulses lag too, by up to half a step more. With `θ = 0`
+//! a ring that rolls in another swings ever wider, and twenty hanging links tremble for ever. With
+//! `θ = 1`, backward Euler for directions, nothing grows, and they sleep.
+//!
+//! A body that tips over its support is the reverse case. Its force grows with `x`, `ω²` is negative, and contacts
+//! of the step's end would feed the motion: a ring of cones that rolls on a plate tips over one corner after
+//! another. So where no body hangs, contacts are those of the step's start.
+
+use crate::batch::{Job, PairJob, PairResult};
+use crate::math::{Pose, Real, Rotation, Vector};
+use crate::medial::MedialMesh;
+use crate::pair::{Play, SpherePair};
+use crate::parry::answers::Key;
+use crate::rapier::view::motion::velocities;
+use parry3d::math::AngularInertia;
+use parry3d::query::NonlinearRigidMotion;
+use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle};
+
+/// How far ahead contacts of a body that hangs are computed, in steps. Chains of 5 to 40 links slept in 8, 12 and 14 of
+/// 14 cases with 0.5, 0.75 and 1.
+const HANGING: Real = 1.0;
+
+/// The same where it hangs in one that stands still: nothing lags behind that one. A ring that rolls in a fixed one has
+/// 0.66 of its first swing left after 20 s, and 0.33 with 1.
+const HANGING_IN_STILL: Real = 0.6;
+
+/// The same where neither hangs. A ring of 48 cones that rolls on a plate at 0.5 m/s has 0.45 m/s left after 5 s, and
+/// 0.46 if the plate is free; 0.58 and 0.55 with 0.25 and 0.2, 0.74 with 0.6 and 0.5.
+const STANDING: Real = 0.0;
+
+/// Relative travel in that time, in units of the thinner body's thickness and at most rapier's
+/// prediction distance, beyond which contacts are computed less far ahead: a fast body would already be
+/// in the other, or past it.
+const REACH: Real = 0.25;
+
+/// Lever of a contact's normal about the joint of two neighbours in a multibody, in units of the smaller's size, below
+/// which the joint holds the contact itself. Nothing but rounding moves along such a normal, and rapier divides by it:
+/// a rope of 22 links whose neighbours touch end to end left all numbers within three steps of being struck.
+const HELD_LEVER: Real = 0.03;
+
+/// A collider at the start of a step.
+pub struct Start {
+    /// The motion its velocities announce.
+    motion: NonlinearRigidMotion,
+    /// What gravity and the user's forces do to its body, unless something holds it.
+    acceleration: Vector,
+    /// What resists its turning, in the world; zero for what nothing turns.
+    inverse_inertia: AngularInertia,
+    /// Bound on the distance of its points from its origin.
+    extent: Real,
+    /// Its contact skin.
+    skin: Real,
+    /// Whether the user has a hook on its solver contacts.
+    pub modified: bool,
+    /// Whether it hangs in a contact ([`crate::rapier::host::forced_updates`]).
+    pub hangs: bool,
+    /// Speed of what may push it ([`crate::rapier::contacts::neighbor_speeds`]).
+    pub pushed: Real,
+    /// Its body.
+    pub body: Option<RigidBodyHandle>,
+    /// Where a joint of a multibody holds that one to another, in the collider's frame.
+    pub joint: Option<(RigidBodyHandle, Vector)>,
+}
+
+impl Start {
+    /// Of a collider at `pose`, and at `offset` in its body's frame.
+    pub fn new(
+        body: Option<&RigidBody>,
+        [pose, offset]: [Pose; 2],
+        [extent, skin]: [Real; 2],
+        gravity: Vector,
+        dt: Real,
+    ) -> Self {
+        let [linvel, angvel] = body.map_or([Vector::ZERO; 2], |b| velocities(b, dt));
+        let center = |b: &RigidBody| offset.inverse() * b.mass_properties().local_mprops.local_com;
+        let acceleration = |b: &RigidBody| {
+            let inverse_mass = b.mass_properties().local_mprops.inv_mass;
+            gravity * b.gravity_scale() + b.user_force() * inverse_mass
+        };
+        let moved = body.filter(|b| b.is_dynamic());
+        Self {
+            motion: NonlinearRigidMotion {
+                start: pose,
+                local_center: body.map_or(Vector::ZERO, center),
+                linvel,
+                angvel,
+            },
+            acceleration: moved.map_or(Vector::ZERO, acceleration),
+            inverse_inertia: moved.map_or_else(AngularInertia::zero, |b| {
+                b.mass_properties().effective_world_inv_inertia
+            }),
+            extent,
+            skin,
+            modified: false,
+            hangs: false,
+            pushed: 0.0,
+            body: None,
+            joint: None,
+        }
+    }
+
+    /// Bound on the speed at which its points turn about the centre of mass.
+    fn swing(&self) -> Real {
+        self.motion.angvel.length() * (self.motion.local_center.length() + self.extent)
+    }
+
+    /// Bound on the speed of its points.
+    pub fn speed(&self) -> Real {
+        self.motion.linvel.length() + self.swing()
+    }
+}
+
+/// All medial colliders at the start of a step.
+pub struct Starts {
+    /// Their instance ids, sorted.
+    pub ids: Vec<u64>,
+    /// Each of them.
+    pub all: Vec<Start>,
+    /// Of the step.
+    pub parameters: IntegrationParameters,
+}
+
+impl Starts {
+    fn of(&self, id: u64) -> Option<&Start> {
+        Some(&self.all[self.ids.binary_search(&id).ok()?])
+    }
+
+    /// The contacts of a pair that rapier asks for unexpectedly, as the batch would have computed them;
+    /// `None` if it is not at its start, or rapier looks further than usual.
+    pub fn contacts(&self, job: PairJob) -> Option<PairResult> {
+        let [a, b] = [&job.mesh1, &job.mesh2].map(|m| self.of(m.instance_id()));
+        let starts = [a?, b?];
+        let at_start = starts[0].motion.start.inv_mul(&starts[1].motion.start) == job.pos12;
+        let skins = starts[0].skin + starts[1].skin;
+        let usual = job.prediction == self.parameters.prediction_distance() + skins;
+        (at_start && usual).then(|| PredictedMotion::contacts(starts, &self.parameters, job))
+    }
+}
+
+/// Bound on the speed at which two colliders close.
+fn closing([a, b]: [&Start; 2]) -> Real {
+    (a.motion.linvel - b.motion.linvel).length() + a.swing() + b.swing()
+}
+
+/// Gap, without contact skins, that two colliders may close before their contacts are computed again: their
+/// [`way`], at most rapier's prediction distance. Where the user writes into the contacts, all of that distance: a
+/// hook may bring nearer what could not be closed, or take from the solver what holds another back.
+pub fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
+    parameters
+        .prediction_distance()
+        .min(way(starts, parameters))
+}
+
+/// How far two colliders may move against each other before their contacts are computed again, by their
+/// velocities, gravity, forces and what is near them. Beside joints, and where the user writes into their contacts, it
+/// has no bound.
+///
+/// Either in this step, in which something may push them (rapier lets nothing bounce before the poses are
+/// final, so no push is faster than what pushes), or in those in which rapier keeps their contacts. A pair
+/// that is kept, and pushed then, gets further.
+fn way(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
+    if starts.iter().any(|s| s.modified) {
+        return Real::MAX;
+    }
+    let dt = parameters.dt;
+    let [a, b] = starts.map(|s| s.acceleration);
+    // Either may be held by something.
+    let pull = a.length().max(b.length()).max(a.distance(b));
+    let gains = pull * dt * dt;
+    let substeps = parameters.num_solver_iterations.max(1) as Real;
+    let falls = gains * (substeps + 1.0) / (2.0 * substeps);
+    let closes = closing(starts) * dt;
+    let pushed = starts[0].pushed.max(starts[1].pushed) * dt;
+    let kept = parameters.contact_recycle_distance();
+    let unasked = unasked(closes, [gains, falls], kept);
+    (closes + falls + pushed).max(unasked)
+}
+
+/// How far a pair gets while rapier keeps its contacts: until the end of the last step at whose start it has
+/// moved by no more than `kept`. Without forces it closes by at most `closes` in a step; with them by `falls`
+/// more in the first one, and by `gains` more in each than in the one before.
+///
+/// After `n` steps that begin at `c <= closes` it has come `n c + (n (n - 1) / 2) gains + n falls`, and the
+/// next one adds `c + n gains + falls`: the most over all `c` and `n`. Beyond `STEPS` of them `n gains` is at most
+/// `√(2 kept gains)`, since `falls` is half of `gains` or more, and `c` at most `kept / n`.
+fn unasked(closes: Real, [gains, falls]: [Real; 2], kept: Real) -> Real {
+    const STEPS: u8 = 4;
+    let mut furthest = kept;
+    let mut fallen = falls;
+    for n in (1..=STEPS).map(Real::from) {
+        if fallen > kept {
+            return furthest;
+        }
+        let steady = closes.min((kept - fallen) / n);
+        fallen += n * gains + falls;
+        furthest = furthest.max((n + 1.0) * steady + fallen);
+    }
+    let steady = closes.min(kept / Real::from(STEPS));
+    furthest.max(kept + steady + (2.0 * kept * gains).sqrt() + falls)
+}
+
+/// From where contacts computed ahead have to be brought back to.
+pub struct PredictedMotion {
+    /// Relative pose at the start (second in first).
+    pos12: Pose,
+    /// Turn of each body until then, in its own frame.
+    turns: [Rotation; 2],
+    /// Centre of mass of each, in its own frame.
+    centers: [Vector; 2],
+    /// The prediction distance that rapier will ask for.
+    asked: Real,
+    /// Rotation of the first at the start, and what resists the turning of both in the world.
+    rotation: Rotation,
+    inverse_inertias: [AngularInertia; 2],
+    /// How far they may move.
+    play: Play,
+    /// Where a joint of a multibody holds them to each other, in the first's frame at the start, and the lever below
+    /// which it holds a contact too.
+    joint: Option<(Vector, Real)>,
+}
+
+impl PredictedMotion {
+    /// Of the two colliders of `job`, which is at their poses at the start of a step; with the job that
+    /// computes their contacts.
+    ///
+    /// Of these only those within [`reach`] count, and of them those that no nearer one holds back: the others
+    /// of the prediction distance cost the solver as much as those that bear.
+    pub fn new(
+        starts: [&Start; 2],
+        parameters: &IntegrationParameters,
+        job: PairJob,
+    ) -> (Self, PairJob) {
+        let (dt, prediction) = (parameters.dt, parameters.prediction_distance());
+        let thickness = job.mesh1.thickness().min(job.mesh2.thickness());
+        let motions = starts.map(|s| &s.motion);
+        let [a, b] = motions;
+        let speed = closing(starts);
+        let longest = prediction.min(REACH * thickness);
+        let still = motions
+            .iter()
+            .any(|m| m.linvel == Vector::ZERO && m.angvel == Vector::ZERO);
+        let hangs = starts.iter().any(|s| s.hangs);
+        let ahead = match (hangs, still) {
+            (true, false) => HANGING,
+            (true, true) => HANGING_IN_STILL,
+            (false, _) => STANDING,
+        } * dt;
+        let time = if speed * ahead > longest {
+            longest / speed
+        } else {
+            ahead
+        };
+        // At the start, if nothing moves or velocities are not finite.
+        let poses = if speed > 0.0 && time > 0.0 {
+            motions.map(|m| m.position_at_time(time))
+        } else {
+            [a.start, b.start]
+        };
+        let reach = reach(starts, parameters);
+        let way = way(starts, parameters);
+        let skins = job.prediction - prediction;
+        let joint = |k: usize| {
+            let (other, anchor) = starts[k].joint?;
+            let pose = a.start.inv_mul(&motions[k].start);
+            let lever = HELD_LEVER * starts[0].extent.min(starts[1].extent);
+            (starts[1 - k].body == Some(other)).then(|| (pose * anchor, lever))
+        };
+        let turn = |k: usize| motions[k].start.rotation.inverse() * poses[k].rotation;
+        let ahead = Self {
+            pos12: a.start.inv_mul(&b.start),
+            turns: [turn(0), turn(1)],
+            centers: motions.map(|m| m.local_center),
+            rotation: a.start.rotation,
+            inverse_inertias: starts.map(|s| s.inverse_inertia),
+            asked: job.prediction,
+            play: Play {
+                way,
+                turn: way / arm(&job.mesh1).min(arm(&job.mesh2)),
+                skins,
+            },
+            joint: joint(0).or_else(|| joint(1)),
+        };
+        let job = PairJob {
+            pos12: poses[0].inv_mul(&poses[1]),
+            prediction: skins + reach,
+            ..job
+        };
+        (ahead, job)
+    }
+
+    /// The contacts of `job`, as they are handed on from a batch.
+    pub fn contacts(
+        starts: [&Start; 2],
+        parameters: &IntegrationParameters,
+        job: PairJob,
+    ) -> PairResult {
+        let (ahead, job) = Self::new(starts, parameters, job);
+        let mut result = job.answer();
+        ahead.rebase_to_step_start(&mut result);
+        result
+    }
+
+    /// The key under which rapier will ask for the contacts of `job`, and the prediction distance for which
+    /// they serve.
+    pub fn key(&self, job: &PairJob) -> (Key, Real) {
+        (Key::new(&job.mesh1, &job.mesh2, &self.pos12), self.asked)
+    }
+
+    /// Puts both points on one line along the normal.
+    ///
+    /// Each is where its body's lever arm will end, and they part by `t`, the way of the bodies along each other.
+    /// rapier takes the arms of both from the points' midpoint, half of `t` off: under a ball that rolls, the
+    /// ground would push ahead of its centre and brake it. A shift by `s1 t` and `s2 t`, `s1 + s2 = 1`, is least
+    /// for the angular accelerations of both together, `(s1 i1)² + (s2 i2)²`, at `s1 = i2² / (i1² + i2²)`, with
+    /// the inverse inertias `i` about the axis that `t` turns them about.
+    fn align(&self, contact: &mut SpherePair) {
+        let [p1, p2] = contact.points;
+        let apart = self.pos12 * p2 - p1;
+        let t = apart - contact.normal * apart.dot(contact.normal);
+        let axis = self.rotation * contact.normal.cross(t);
+        let [i1, i2] = self.inverse_inertias.map(|i| (i * axis).dot(axis).powi(2));
+        let first = if i1 + i2 > 0.0 { i2 / (i1 + i2) } else { 0.5 };
+        let back = self.pos12.rotation.inverse();
+        contact.points = [p1 + t * first, p2 - back * t * (1.0 - first)];
+    }
+
+    /// Brings contacts back: normals and lever arms point as they will, gaps are those at the start. Of those
+    /// that others hold back none is left.
+    pub fn rebase_to_step_start(&self, result: &mut PairResult) {
+        for contact in &mut result.contacts {
+            let [p1, p2] = contact.points;
+            contact.normal = self.turns[0] * contact.normal;
+            contact.distance = (self.pos12 * p2 - p1).dot(contact.normal);
+            let turned = |k: usize, p| self.centers[k] + self.turns[k] * (p - self.centers[k]);
+            contact.points = [turned(0, p1), turned(1, p2)];
+            self.align(contact);
+        }
+        if let Some((anchor, least)) = self.joint {
+            let lever = |c: &SpherePair| (c.points[0] - anchor).cross(c.normal).length();
+            result.contacts.retain(|c| lever(c) > least);
+        }
+        self.play.drop_held_back(&mut result.contacts);
+    }
+}
+
+/// Second half extent of a mesh: whatever axis it turns about, some point of it is about this far from it, so
+/// that it turns by no more than that point's way over this. (A rod that lies across its frame is thinner.)
+fn arm(mesh: &MedialMesh) -> Real {
+    let h = mesh.aabb().half_extents();
+    (h.x + h.y + h.z) - h.max_element() - h.min_element()
+}

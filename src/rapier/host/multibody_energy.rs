@@ -1,0 +1,246 @@
+//! Multibodies that whirl: rapier's step has them gain energy, until they leave all numbers.
+//!
+//! It integrates with the mass matrix of each sub-step's start, and solves contacts with the Jacobian of the step's
+//! start, however far links turn. So where a multibody of medial links, with what pushed it, has a tenth more energy
+//! after rapier's step than it had before and its forces gave it, its motion is taken back: joints take it through the
+//! step from its start, which gains none ([`crate::rapier::joints::jointed_bodies`]), less what damping takes. One that turns wildly rapier has at
+//! rest for its step, and what it touches is the event loop's ([`crate::rapier::contacts::muting`]).
+//!
+//! Multibodies with motors or springs, those that other joints hold, and those that bear on what is held or pushed by
+//! others are left to rapier.
+
+use crate::math::{Real, Rotation, Vector};
+use crate::rapier::impacts::impulse::Inertia;
+use crate::rapier::view::eligible_pairs::Rules;
+use crate::rapier::view::motion::{Body, Kind};
+use crate::rapier::view::step_view::StepView;
+use rapier3d::dynamics::{
+    Multibody, MultibodyIndex, MultibodyJointSet, MultibodyLink, RigidBody, RigidBodyHandle,
+};
+use rapier3d::geometry::{ColliderHandle, NarrowPhase};
+
+/// Turn of the fastest link in a step, in radians, from which a multibody whirls.
+const WHIRLS: Real = 0.1;
+
+/// The turn from which rapier's step is not asked: links that turn further may leave all numbers within one step, and
+/// then nothing is left to take back.
+const WILD: Real = 4.0;
+
+/// Share of its energy that a multibody may gain in rapier's step. Free ones gain and lose some hundredths by turns; taking
+/// back the gains alone would leave the losses.
+const GAIN: f64 = 0.1;
+
+/// Multibodies that whirl and that nothing drives, in a step.
+#[derive(Default)]
+pub struct WildMultibodies(Vec<WildMultibody>);
+
+struct WildMultibody {
+    handle: MultibodyIndex,
+    /// Free links, in the view.
+    links: Vec<usize>,
+    /// Whether rapier's step has it at rest.
+    wild: bool,
+}
+
+/// Whether a body is a link of a multibody that turns wildly in a step of `dt` seconds.
+pub fn is_wild(body: &Body, dt: Real) -> bool {
+    body.whirl * dt > WILD
+}
+
+impl WildMultibodies {
+    /// Those of a world before rapier's step.
+    pub fn find(view: &StepView, rules: &Rules, narrow_phase: &NarrowPhase, dt: Real) -> Self {
+        let multibodies = rules.multibody_joints;
+        let mut found: Vec<WildMultibody> = Vec::new();
+        for (b, body) in view.bodies.iter().enumerate() {
+            let link = body.handle.filter(|_| body.whirl * dt > WHIRLS);
+            let link = link.and_then(|h| multibodies.rigid_body_link(h));
+            let Some(handle) = link.map(|l| l.multibody) else {
+                continue;
+            };
+            if body.kind != Kind::Free {
+                continue;
+            }
+            match found.iter_mut().find(|w| w.handle == handle) {
+                Some(whirl) => whirl.links.push(b),
+                None => found.push(WildMultibody {
+                    handle,
+                    links: vec![b],
+                    wild: is_wild(body, dt),
+                }),
+            }
+        }
+        found.retain(|whirl| {
+            let medial = |links: &[usize]| {
+                let mut parts = view.parts.iter();
+                parts.any(|p| p.medial().is_some() && links.contains(&p.body))
+            };
+            let multibody = multibodies.get_multibody(whirl.handle);
+            medial(&whirl.links) && multibody.is_some_and(|m| is_left_alone(m, rules))
+        });
+        for whirl in &mut found {
+            whirl.wild &= partners(view, (rules, narrow_phase), &whirl.links).is_some();
+        }
+        Self(found)
+    }
+
+    /// Has rapier's step find wild ones at rest.
+    pub fn bring_to_rest(&self, multibodies: &mut MultibodyJointSet) {
+        for whirl in self.0.iter().filter(|w| w.wild) {
+            if let Some(multibody) = multibodies.get_multibody_mut(whirl.handle) {
+                multibody.generalized_velocity_mut().fill(0.0);
+            }
+        }
+    }
+
+    /// Whether rapier's step has a body at rest.
+    pub fn rests(&self, body: usize) -> bool {
+        self.0.iter().any(|w| w.wild && w.links.contains(&body))
+    }
+
+    /// Takes back what rapier's step did with those that gained energy, and with what pushed them.
+    pub fn take_back(
+        self,
+        view: &mut StepView,
+        rules: &Rules,
+        narrow_phase: &NarrowPhase,
+        dt: Real,
+    ) {
+        for whirl in self.0 {
+            let Some(multibody) = rules.multibody_joints.get_multibody(whirl.handle) else {
+                continue;
+            };
+            let mut bodies = whirl.links;
+            if !whirl.wild {
+                let Some(partners) = partners(view, (rules, narrow_phase), &bodies) else {
+                    continue;
+                };
+                bodies.extend(partners);
+                if gained(view, &bodies) <= GAIN {
+                    continue;
+                }
+            }
+            for &b in &bodies {
+                view.bodies[b].take_back();
+            }
+            damp(view, multibody, dt);
+        }
+    }
+}
+
+/// Whether nothing but gravity, forces and contacts works on a multibody.
+fn is_left_alone(multibody: &Multibody, rules: &Rules) -> bool {
+    let is_free = |link: &MultibodyLink| {
+        let handle = link.rigid_body_handle();
+        let driven = !link.joint.data.motor_axes.is_empty()
+            || (0..6).any(|axis| link.joint.spring(axis).0 != 0.0);
+        let driven_body = |b: &RigidBody| b.user_torque() != Vector::ZERO || b.is_kinematic();
+        !driven
+            && !rules.bodies.get(handle).is_some_and(driven_body)
+            && rules
+                .impulse_joints
+                .attached_joints(handle)
+                .next()
+                .is_none()
+    };
+    multibody.links().all(is_free)
+}
+
+/// The bodies that pushed some links in rapier's last step; `None` if any of these is held or pushed by another.
+fn partners(
+    view: &StepView,
+    (rules, narrow_phase): (&Rules, &NarrowPhase),
+    links: &[usize],
+) -> Option<Vec<usize>> {
+    let place = |h: ColliderHandle| {
+        let body = rules.colliders.get(h)?.parent()?;
+        view.index.get(&body).copied()
+    };
+    let pushing = |b: usize| {
+        let parts = view.parts.iter().filter(move |p| p.body == b);
+        let pairs = parts.flat_map(|p| narrow_phase.contact_pairs_with(p.handle));
+        let pairs = pairs.filter(|pair| pair.total_impulse_magnitude() > 0.0);
+        pairs.flat_map(|pair| [place(pair.collider1), place(pair.collider2)])
+    };
+    let is_loose = |h: RigidBodyHandle| {
+        rules.impulse_joints.attached_joints(h).next().is_none()
+            && rules.multibody_joints.rigid_body_link(h).is_none()
+    };
+    let is_free = |b: usize| {
+        let body = &view.bodies[b];
+        body.kind == Kind::Free && body.handle.is_some_and(is_loose)
+    };
+    let mut partners = Vec::new();
+    for other in links.iter().flat_map(|b| pushing(*b)) {
+        let other = other?;
+        if !links.contains(&other) && !partners.contains(&other) {
+            partners.push(other);
+        }
+    }
+    let known = |b: &Option<usize>| b.is_some_and(|b| links.contains(&b) || partners.contains(&b));
+    let alone = |b: usize| is_free(b) && pushing(b).all(|other| known(&other));
+    partners.iter().all(|b| alone(*b)).then_some(partners)
+}
+
+/// Share of their energy that bodies gained in rapier's step beyond what forces gave them.
+fn gained(view: &StepView, bodies: &[usize]) -> f64 {
+    let (mut had, mut has) = (0.0, 0.0);
+    for body in bodies.iter().map(|b| &view.bodies[*b]) {
+        let inertia = Inertia::of(body);
+        let work = (inertia.masses() * body.pull()).dot(body.motion.linvel);
+        had += inertia.energy(body.velocity_before) + f64::from(work);
+        has += inertia.energy(body.velocity);
+    }
+    let share = has / had.max(f64::MIN_POSITIVE) - 1.0;
+    if share.is_nan() { f64::INFINITY } else { share }
+}
+
+/// Damps the turns of a multibody's joints for the length of a step, one after the other, each implicitly: rapier gives
+/// all of them a little damping.
+fn damp(view: &mut StepView, multibody: &Multibody, dt: Real) {
+    let mut damping = multibody.damping().iter().copied();
+    for link in multibody.links() {
+        let place = |l: &MultibodyLink| view.index.get(&l.rigid_body_handle()).copied();
+        let parent = link.parent_id().and_then(|id| multibody.link(id));
+        let ends = [(parent.and_then(place), -1.0), (place(link), 1.0)];
+        let ends: Vec<(usize, Real)> = ends
+            .into_iter()
+            .filter_map(|(b, sign)| Some((b?, sign)))
+            .collect();
+        let data = &link.joint.data;
+        let base = match parent.and_then(place) {
+            Some(parent) => view.bodies[parent].start.rotation,
+            None => Rotation::IDENTITY,
+        };
+        for axis in (0..6).filter(|i| data.locked_axes.bits() & (1 << i) == 0) {
+            let damping = damping.next().unwrap_or(0.0) * dt;
+            if axis < 3 {
+                continue;
+            }
+            let axis = base * data.local_frame1.rotation * Vector::AXES[axis - 3];
+            let turned = |body: &Body, torque: Vector| {
+                let inertia = if body.kind == Kind::Free {
+                    Inertia::of(body)
+                } else {
+                    Inertia::INFINITE
+                };
+                inertia.apply([Vector::ZERO, torque])[1]
+            };
+            let (mut speed, mut response) = (0.0, 0.0);
+            for &(b, sign) in &ends {
+                let body = &view.bodies[b];
+                speed += sign * body.velocity[1].dot(axis);
+                response += turned(body, axis).dot(axis);
+            }
+            let torque = axis * (-speed * damping / (1.0 + damping * response));
+            for &(b, sign) in &ends {
+                let body = &mut view.bodies[b];
+                let change = turned(body, torque) * sign;
+                body.velocity[1] += change;
+                if body.kind == Kind::Free {
+                    body.go(body.velocity);
+                }
+            }
+        }
+    }
+}

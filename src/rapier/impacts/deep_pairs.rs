@@ -1,0 +1,47 @@
+//! Pairs that are watched however slow they are, since rapier's contacts of them are deep.
+
+use crate::math::Real;
+use crate::math::fast_hash::FastMap;
+use crate::rapier::impacts::toi_query::CcdPolicy;
+use crate::rapier::view::eligible_pairs::in_order;
+use crate::rapier::view::step_view::StepView;
+use rapier3d::geometry::{ColliderHandle, NarrowPhase};
+
+/// Depth, in units of rapier's length unit, from which a pair that was put into each other may be left to the solver:
+/// twice the gap of a fast pair. Larger, and thin bodies spawned in one place are held there; smaller, and what rests
+/// on a surface without thickness may be taken for put into it.
+const SUNK: Real = 2.0e-3;
+
+/// Pairs whose contacts in rapier are deep enough that even a slow one may get to the axes; if any is below the floor and
+/// [`SUNK`], with the way from where that one would not count as deep, else with 0.
+pub fn deep(
+    view: &StepView,
+    narrow_phase: &NarrowPhase,
+    policy: &CcdPolicy,
+) -> FastMap<[usize; 2], Real> {
+    let tuning = &policy.tuning;
+    let parts = view.parts.iter().enumerate();
+    let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
+    let mut deep = FastMap::default();
+    for found in narrow_phase.contact_pairs() {
+        let places = [found.collider1, found.collider2].map(|h| parts.get(&h));
+        let [Some(&i), Some(&j)] = places else {
+            continue;
+        };
+        let pair = in_order(view, [i, j]);
+        for m in found.manifolds() {
+            let depth = m.points.iter().map(|p| -p.dist).fold(0.0, Real::max);
+            if depth <= 0.0 {
+                continue;
+            }
+            let thickness = view.thickness_at([i, j], [m.subshape1, m.subshape2]);
+            let guarded = tuning.guarded() * thickness;
+            if depth > guarded {
+                let sunk = depth > (tuning.floor * thickness).max(SUNK * policy.unit);
+                let way = deep.entry(pair).or_insert(0.0);
+                *way = Real::max(*way, if sunk { depth - guarded } else { 0.0 });
+            }
+        }
+    }
+    deep
+}

@@ -1,0 +1,394 @@
+//! The event loop: after rapier's step it finds the impacts within the step that rapier missed, and resolves them
+//! in the order of their times.
+//!
+//! Each pair waits in a queue at the time before which it is known not to meet. The first in the queue is searched
+//! further until its first contact is known or another pair comes first. An impact moves both bodies to its time
+//! and gives two impulses: one to the velocities that the solver left, so that the next step begins right, and one
+//! to the motion of this step, so that the rest of it is right ([`crate::rapier::impacts::response`]). Then all pairs of the bodies
+//! that changed are searched again. A body with more than [`Tuning::max_events`](crate::rapier::tuning::Tuning) impacts
+//! stays where it is for the rest of the step, or is carried along by what pushes it. No impact is ever dropped,
+//! not even at the current time; so no medial axis crosses another on the motion that is executed.
+
+use crate::batch::{Batch, ToiJob, ToiResult};
+use crate::math::Real;
+use crate::math::fast_hash::FastMap;
+use crate::medial::MedialMesh;
+use crate::rapier::impacts::deep_pairs::deep;
+use crate::rapier::impacts::event_queue::EventQueue;
+use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
+use crate::rapier::impacts::lazy_toi_query::{LazyToiQuery, Meshes, QueryProgress};
+use crate::rapier::impacts::pair_culling::PairCulling;
+use crate::rapier::impacts::reported_impulse::ReportedImpulse;
+use crate::rapier::impacts::response::Response;
+use crate::rapier::impacts::swept_boxes::SweptBoxes;
+use crate::rapier::impacts::toi_query::{CcdPolicy, Hit, Work};
+use crate::rapier::view::eligible_pairs::{Rules, in_order, is_ccd_candidate, sweep};
+use crate::rapier::view::motion::Kind;
+use crate::rapier::view::step_view::StepView;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::shape::SharedShape;
+use rapier3d::geometry::{ColliderHandle, NarrowPhase};
+
+/// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
+/// which grows a little with each meeting of a pair.
+const MARGIN: Real = 5.0e-3;
+
+/// Shares of a step before and after which the world does not stop: what is left would be no step, and
+/// a stop at the start would change nothing.
+const STOPS_WITHIN: [Real; 2] = [1.0e-3, 1.0 - 1.0e-3];
+
+/// What two colliders gave each other in the impacts of a step.
+#[derive(Clone, Debug)]
+pub struct Impulse {
+    /// Both colliders, in the narrow phase's order.
+    pub colliders: [ColliderHandle; 2],
+    /// Where and how much.
+    pub blows: Vec<ReportedImpulse>,
+}
+
+/// What the event loop did.
+#[derive(Default)]
+pub struct Outcome {
+    /// Pairs of medial meshes asked about at the start.
+    pub jobs: usize,
+    /// Impacts.
+    pub events: usize,
+    /// Bodies that stayed where they were before the step's end, after too many impacts, and because the budget was spent.
+    pub frozen: usize,
+    /// As above.
+    pub waiting: usize,
+    /// Pairs that exchanged an impulse.
+    pub impulses: Vec<Impulse>,
+    /// Bodies to be written back: index, and whether their velocity changed.
+    pub changed: Vec<(usize, bool)>,
+    /// Seconds into the step at which the world stopped, all bodies with it.
+    pub stopped: Option<Real>,
+}
+
+/// What comes next.
+enum Next {
+    /// Two colliders meet.
+    Impact([usize; 2], Hit),
+    /// A piece of the motion of bodies that joints hold ends.
+    Piece(Real),
+    /// The budget is spent.
+    Spent,
+}
+
+/// What a pair waits for.
+pub(crate) enum Awaited<'a> {
+    Answer(LazyToiQuery<'a>),
+    Hit(Hit),
+}
+
+/// The loop on its way.
+pub(crate) struct Loop<'a> {
+    pub(crate) view: &'a mut StepView,
+    pub(crate) policy: CcdPolicy<'a>,
+    pub(crate) rules: Rules<'a>,
+    /// Slow pairs near enough to their medial axes to be watched.
+    deep: FastMap<[usize; 2], Real>,
+    /// Whether the user's rules let a pair respond, as far as they were asked.
+    allowed: FastMap<[usize; 2], bool>,
+    pub(crate) response: Response,
+    /// Box of each collider from its body's last impact to the end of the step, once there was one.
+    pub(crate) boxes: SweptBoxes,
+    /// Colliders of each body, likewise.
+    pub(crate) parts_of: Vec<Vec<usize>>,
+    /// The shapes of the colliders.
+    shapes: &'a [SharedShape],
+    pub(crate) waiting: EventQueue<Awaited<'a>>,
+    pub(crate) outlines: PairCulling,
+    jobs: usize,
+    events: usize,
+    /// Whether the budget was spent, so that nothing waits any more but for what a driven body does.
+    pub(crate) is_spent: bool,
+}
+
+/// Finds and resolves the impacts on the motions of `view`, which is at the bodies' last poses
+/// afterwards. No contact of a medial collider in the narrow phase is deeper than `depth`.
+pub fn resolve(
+    view: &mut StepView,
+    policy: CcdPolicy,
+    rules: Rules,
+    (narrow_phase, depth): (&NarrowPhase, Real),
+    placed: &mut InitialOverlaps,
+    batch: &mut Batch,
+    work: &mut Work,
+) -> Outcome {
+    let guarded = policy.tuning.guarded();
+    let thinnest = view.thinnest_part();
+    let deep = if depth > guarded * thinnest {
+        deep(view, narrow_phase, &policy)
+    } else {
+        FastMap::default()
+    };
+    let sunk = deep.iter().map(|(pair, way)| (*pair, *way));
+    let sunk = sunk.filter(|(_, way)| *way > 0.0);
+    let left = placed.leave(view, sunk);
+    let all = view.bodies.iter().enumerate();
+    let taken = all.filter(|(_, body)| body.is_taken_back);
+    let taken: Vec<usize> = taken.map(|(b, _)| b).collect();
+    if taken.is_empty()
+        && deep.is_empty()
+        && !policy.may_be_fast(view, policy.tuning.fast, thinnest)
+    {
+        return Outcome::default();
+    }
+    let mut response = Response::new(view.bodies.len());
+    response.lead(view, &policy, &rules, &taken);
+    let pairs = sweep(view, policy.dt, MARGIN * policy.unit);
+    let shapes: Vec<_> = view.parts.iter().map(|p| p.shape.clone()).collect();
+    let mut events = Loop {
+        view,
+        policy,
+        rules,
+        deep,
+        allowed: left.into_iter().map(|pair| (pair, false)).collect(),
+        response,
+        boxes: SweptBoxes::default(),
+        parts_of: Vec::new(),
+        shapes: &shapes,
+        waiting: EventQueue::default(),
+        outlines: PairCulling::new(shapes.len(), policy.dt),
+        jobs: 0,
+        events: 0,
+        is_spent: false,
+    };
+    let mut known = FastMap::default();
+    if batch.has_device() {
+        let (asked, jobs): (Vec<_>, Vec<_>) = events.first_queries(&pairs).into_iter().unzip();
+        known.extend(asked.into_iter().zip(batch.run(&jobs)));
+    }
+    for pair in pairs {
+        events.ask(pair, 0.0, known.remove(&pair), work);
+    }
+    while let Some(next) = events.earliest(work) {
+        events.find_boxes();
+        let (pair, hit) = match next {
+            Next::Impact(pair, hit) => (pair, hit),
+            Next::Piece(time) => {
+                events.begin_piece(time, work);
+                continue;
+            }
+            Next::Spent => {
+                events.wait(work);
+                continue;
+            }
+        };
+        if events.stops_at(pair, hit.time) {
+            return events.stop(hit.time, narrow_phase);
+        }
+        events.impact(pair, hit, work);
+    }
+    events.finish()
+}
+
+impl Loop<'_> {
+    /// Looks for the earliest impact, or end of a piece: always where the next may be, and no further than to where
+    /// another may come first.
+    fn earliest(&mut self, work: &mut Work) -> Option<Next> {
+        loop {
+            if !self.is_spent && self.policy.left(work) == 0 {
+                return Some(Next::Spent);
+            }
+            let piece = self.response.next_piece();
+            let waits = self.waiting.first_time();
+            if let Some(time) = piece.filter(|time| waits.is_none_or(|first| *time <= first)) {
+                return Some(Next::Piece(time));
+            }
+            let (pair, first, next) = self.waiting.first()?;
+            let inquiry = match first {
+                Awaited::Hit(hit) => return Some(Next::Impact(pair, *hit)),
+                Awaited::Answer(inquiry) => inquiry,
+            };
+            let until = next
+                .into_iter()
+                .chain(piece)
+                .fold(self.policy.dt, Real::min);
+            let shapes = self.shapes;
+            let meshes: Meshes = pair.map(|k| shapes[k].as_shape::<MedialMesh>());
+            match inquiry.advance_to(&self.policy, self.view, pair, meshes, until, work) {
+                QueryProgress::FreeUntil(time) => self.waiting.reschedule_first(time),
+                QueryProgress::Hit(hit) => self.expect(pair, hit),
+                QueryProgress::Never => self.waiting.remove(pair),
+            }
+        }
+    }
+
+    /// Has a hit wait for its time, where the user's rules allow it.
+    fn expect(&mut self, pair: [usize; 2], hit: Hit) {
+        self.waiting.remove(pair);
+        let (view, rules) = (&*self.view, self.rules);
+        let allowed = self.allowed.entry(pair);
+        if *allowed.or_insert_with(|| rules.respond(view, pair)) {
+            self.waiting.insert(pair, hit.time, Awaited::Hit(hit));
+        }
+    }
+
+    fn stops_at(&self, pair: [usize; 2], time: Real) -> bool {
+        let [first, last] = STOPS_WITHIN.map(|share| share * self.policy.dt);
+        (first..=last).contains(&time) && self.policy.stops(self.view, pair)
+    }
+
+    fn is_deep(&self, pair: [usize; 2]) -> bool {
+        self.deep.contains_key(&pair)
+    }
+
+    /// The first queries of all pairs of medial meshes.
+    fn first_queries(&self, pairs: &[[usize; 2]]) -> Vec<([usize; 2], ToiJob)> {
+        let job = |pair: &[usize; 2]| {
+            let job = self.policy.job(self.view, *pair, self.is_deep(*pair))?;
+            Some((*pair, job))
+        };
+        pairs.iter().filter_map(job).collect()
+    }
+
+    pub(crate) fn ask(
+        &mut self,
+        pair: [usize; 2],
+        time: Real,
+        known: Option<ToiResult>,
+        work: &mut Work,
+    ) {
+        self.waiting.remove(pair);
+        // The user's filters are asked once per pair and step, and only where it matters.
+        if self.allowed.get(&pair) == Some(&false)
+            || !self.response.is_movable(self.view, &self.policy, pair)
+        {
+            return;
+        }
+        let met = self.response.met(pair);
+        let (policy, deep) = (self.policy, self.is_deep(pair));
+        let Some(mut query_options) = policy.query_options(self.view, pair, time, met, deep) else {
+            return;
+        };
+        let medial = |k: &usize| self.view.parts[*k].medial().is_some();
+        self.jobs += usize::from(self.events == 0 && pair.iter().all(medial));
+        if known.is_some() {
+            let hit = policy.first_contact(self.view, pair, time, &query_options, known, work);
+            if let Some(hit) = hit {
+                self.expect(pair, hit);
+            }
+            return;
+        }
+        let reach = query_options.first.target_distance + query_options.first.tolerance;
+        let outlines = &mut self.outlines;
+        if let Some((until, left)) = outlines.apart_until(self.view, pair, time, reach) {
+            query_options.left = left;
+            let inquiry = Awaited::Answer(LazyToiQuery::new(time, query_options));
+            self.waiting.insert(pair, until, inquiry);
+        }
+    }
+
+    /// Lets two colliders meet.
+    fn impact(&mut self, pair: [usize; 2], hit: Hit, work: &mut Work) {
+        self.events += 1;
+        let (policy, rules) = (self.policy, self.rules);
+        let bodies = self.response.impact(self.view, &policy, &rules, pair, hit);
+        self.ask_again(&bodies, hit.time, work);
+    }
+
+    fn begin_piece(&mut self, time: Real, work: &mut Work) {
+        let policy = self.policy;
+        let bodies = self.response.begin_piece(self.view, &policy, time);
+        self.ask_again(&bodies, time, work);
+    }
+
+    /// Asks from `time` on for all pairs of bodies that have another motion.
+    fn ask_again(&mut self, bodies: &[usize], time: Real, work: &mut Work) {
+        let free = |b: &&usize| self.view.bodies[**b].kind == Kind::Free;
+        let parts = bodies.iter().filter(free).map(|b| &self.parts_of[*b]);
+        let mut changed: Vec<usize> = parts.flatten().copied().collect();
+        changed.sort_unstable();
+        changed.dedup();
+        for &k in &changed {
+            self.boxes.set(k, self.swept_box(k, time));
+            self.outlines.forget(k);
+        }
+        for (n, &i) in changed.iter().enumerate() {
+            let meeting = self.boxes.meeting(i);
+            for j in self.waiting.partners(i) {
+                if meeting.binary_search(&j).is_err() {
+                    self.waiting.remove(in_order(self.view, [i, j]));
+                }
+            }
+            for j in meeting {
+                if !changed[..n].contains(&j) && is_ccd_candidate(self.view, [i, j]) {
+                    self.ask(in_order(self.view, [i, j]), time, None, work);
+                }
+            }
+        }
+    }
+
+    fn swept_box(&self, part: usize, time: Real) -> Aabb {
+        self.grown(part, self.view.swept_aabb(part, time, self.policy.dt))
+    }
+
+    pub(crate) fn grown(&self, part: usize, aabb: Aabb) -> Aabb {
+        aabb.loosened(self.view.parts[part].skin + MARGIN * self.policy.unit)
+    }
+
+    pub(crate) fn find_boxes(&mut self) {
+        if self.boxes.is_empty() {
+            let parts = 0..self.view.parts.len();
+            self.boxes = SweptBoxes::new(parts.map(|k| self.swept_box(k, 0.0)).collect());
+            self.parts_of = vec![Vec::new(); self.view.bodies.len()];
+            for (k, part) in self.view.parts.iter().enumerate() {
+                self.parts_of[part.body].push(k);
+            }
+        }
+    }
+
+    /// Ends here for all bodies. What forces did in the rest of the step they will do again; a velocity
+    /// that contacts of the solver made is taken for theirs from the start of the step on.
+    fn stop(mut self, time: Real, narrow_phase: &NarrowPhase) -> Outcome {
+        let left = 1.0 - time / self.policy.dt;
+        let courses = &mut self.response.courses;
+        let mut pushed: Vec<bool> = courses.iter().map(|c| c.struck).collect();
+        for part in &self.view.parts {
+            let mut contacts = narrow_phase.contact_pairs_with(part.handle);
+            pushed[part.body] |= contacts.any(|c| c.total_impulse_magnitude() > 0.0);
+        }
+        for (b, body) in self.view.bodies.iter_mut().enumerate() {
+            if body.kind != Kind::Fixed && body.awake {
+                courses[b].moved = true;
+                if body.kind == Kind::Free && !pushed[b] {
+                    body.undo_forces(left);
+                    courses[b].struck = true;
+                }
+            }
+        }
+        let dt = std::mem::replace(&mut self.policy.dt, time);
+        let mut outcome = self.finish();
+        outcome.stopped = (time < dt).then_some(time);
+        outcome
+    }
+
+    fn finish(self) -> Outcome {
+        let mut outcome = Outcome {
+            jobs: self.jobs,
+            events: self.events,
+            ..Outcome::default()
+        };
+        for (b, course) in self.response.courses.iter().enumerate() {
+            if !course.moved {
+                continue;
+            }
+            outcome.frozen += usize::from(course.frozen && !course.waits);
+            outcome.waiting += usize::from(course.waits);
+            outcome.changed.push((b, course.struck));
+            self.view.bodies[b].advance(self.policy.dt);
+        }
+        outcome.impulses = self
+            .response
+            .impulses
+            .iter()
+            .map(|(pair, blows)| Impulse {
+                colliders: pair.map(|k| self.view.parts[k].handle),
+                blows: blows.clone(),
+            })
+            .collect();
+        outcome
+    }
+}

@@ -1,0 +1,17 @@
+//! Impacts within a step: the queue of pairs, their first contacts, and what an impact does to bodies.
+
+pub(crate) mod body_state;
+pub(crate) mod deep_pairs;
+pub(crate) mod event_loop;
+pub(crate) mod event_queue;
+pub(crate) mod impact_history;
+pub(crate) mod impulse;
+pub(crate) mod initial_overlaps;
+pub(crate) mod lazy_toi_query;
+pub(crate) mod pair_culling;
+pub(crate) mod reported_impulse;
+pub(crate) mod response;
+pub(crate) mod spent_budget;
+pub(crate) mod swept_boxes;
+pub(crate) mod thin_parts;
+pub(crate) mod toi_query;

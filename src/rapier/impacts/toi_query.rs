@@ -1,0 +1,370 @@
+//! First contact of two colliders on the motions of a [`StepView`]: at which distance a pair counts as in contact, and
+//! the certified query that finds when.
+//!
+//! - A fast pair stops a small gap before it touches. If it touches already, it may sink in by a tenth of the thickness
+//!   more, but not deeper than [`Tuning::floor`]; if it is deeper than that already, by a hair.
+//! - A slow pair is left to rapier's solver down to that floor. At the floor the cores of the bodies meet
+//!   ([`crate::elementary::Cores`]), at every place half way to the medial axes, so that no axis crosses another.
+//!
+//! A pair is fast in relation to the thickness of the parts that may meet: one that is slow for two thick bodies is
+//! fast where thin parts of them are near each other ([`Thin`]).
+
+use crate::batch::ToiJob;
+use crate::elementary::{Cores, InitialContact, Paths, Toi, ToiOptions, ToiStatus};
+use crate::math::{Real, Vector};
+use crate::medial::MedialMesh;
+use crate::pair::first_contact::{Counts, Query, ToiResult};
+use crate::pair::outline::Left;
+use crate::parry::cast::Cast;
+use crate::parry::near::is_within;
+use crate::rapier::effects::{Effect, EffectSettings, Effects};
+use crate::rapier::impacts::thin_parts::Thin;
+use crate::rapier::tuning::Tuning;
+use crate::rapier::view::step_view::StepView;
+use parry3d::query::NonlinearRigidMotion;
+
+/// What a query found, and its price.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Continuous queries.
+    pub queries: u64,
+    /// Those of them in exact rotation.
+    pub rotating: u64,
+    /// Node pairs.
+    pub nodes: u64,
+    /// Elementary tests.
+    pub tests: u64,
+}
+
+impl Work {
+    /// Node pairs and elementary tests.
+    pub fn spent(&self) -> u64 {
+        self.nodes + self.tests
+    }
+
+    fn add(&mut self, counts: Counts) {
+        self.nodes += u64::from(counts.nodes);
+        self.tests += u64::from(counts.tests);
+    }
+
+    /// Adds what a query did since it had counted so much.
+    pub fn add_since(&mut self, now: Counts, before: Counts) {
+        self.add(Counts {
+            nodes: now.nodes - before.nodes,
+            tests: now.tests - before.tests,
+        });
+    }
+
+    /// Counts a query.
+    pub fn begin(&mut self, motions: &[NonlinearRigidMotion; 2], options: &ToiOptions) {
+        self.queries += 1;
+        let turning = motions.iter().any(|m| m.angvel != Vector::ZERO);
+        self.rotating += u64::from(turning && options.paths == Paths::Exact);
+    }
+}
+
+/// First contact of two colliders.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    /// Seconds into the step, at the contact's lower bound.
+    pub time: Real,
+    /// Unit normal from the first to the second, zero where unknown.
+    pub normal: Vector,
+    /// Middle of the nearest points, world frame.
+    pub point: Vector,
+    /// Depth below the surfaces, a length; < 0 above them.
+    pub depth: Real,
+    /// The primitives that meet; 0 of a shape that is not medial.
+    pub primitives: [u32; 2],
+}
+
+impl Hit {
+    /// The hit of a query over `seconds` from `time` on; `None` if it found none.
+    pub fn of(toi: &Toi, time: Real, seconds: Real) -> Option<Self> {
+        (toi.status != ToiStatus::Separated).then(|| Self {
+            time: time + toi.lower * seconds,
+            normal: toi.normal,
+            point: (toi.points[0] + toi.points[1]) * 0.5,
+            depth: (toi.points[0] - toi.points[1]).dot(toi.normal),
+            primitives: toi.primitives,
+        })
+    }
+}
+
+/// What a pair is asked for.
+pub struct QueryOptions {
+    /// The first contact.
+    pub first: ToiOptions,
+    /// Asked for too where the pair is deep: what it must not sink below.
+    pub floor: Option<ToiOptions>,
+    /// All of both that may come as near as is asked, where that is known.
+    pub left: Option<[Left; 2]>,
+}
+
+/// Asks for first contacts in a step of `dt` seconds.
+#[derive(Clone, Copy)]
+pub struct CcdPolicy<'a> {
+    /// What the pairs call for.
+    pub effects: &'a EffectSettings,
+    /// Length of the step in seconds.
+    pub dt: Real,
+    /// rapier's length unit.
+    pub unit: Real,
+    /// Constants.
+    pub tuning: Tuning,
+    /// Whether the world may stop once more in this step.
+    pub may_stop: bool,
+    /// Node pairs and elementary tests that first contacts may take.
+    pub budget: u64,
+}
+
+impl CcdPolicy<'_> {
+    /// What is left of the budget.
+    pub fn left(&self, work: &Work) -> u64 {
+        self.budget.saturating_sub(work.spent())
+    }
+
+    /// Gap at which a fast pair counts as in contact, a length.
+    pub fn gap(&self, thickness: Real) -> Real {
+        let [gap, share] = self.tuning.gap;
+        (gap * self.unit)
+            .min(share * thickness)
+            .max(self.least_gap())
+    }
+
+    /// The least of all gaps, a length.
+    pub fn least_gap(&self) -> Real {
+        (self.tuning.least_gap * self.unit).max(Real::MIN_POSITIVE)
+    }
+
+    fn effects_of(&self, view: &StepView, pair: [usize; 2]) -> Effects {
+        self.effects.of(pair.map(|k| view.parts[k].handle))
+    }
+
+    /// Whether the pair as a whole is fast: by default, when it travels more than `share` of its thickness
+    /// in the whole step.
+    pub fn is_fast(&self, view: &StepView, pair: [usize; 2], share: Real) -> bool {
+        match self.effects_of(view, pair).continuous {
+            Effect::On => true,
+            Effect::Off => false,
+            Effect::Auto => view.travel(pair, self.dt) > share * view.thickness(pair),
+        }
+    }
+
+    /// Whether first contacts of the pair are wanted from `time` on: of a fast pair, and by default where parts
+    /// may meet that are so thin that the pair is fast for them.
+    fn is_searched(&self, view: &StepView, pair: [usize; 2], time: Real) -> bool {
+        if self.is_fast(view, pair, self.tuning.fast) {
+            return true;
+        }
+        if self.effects_of(view, pair).continuous != Effect::Auto {
+            return false;
+        }
+        let skins: Real = pair.iter().map(|k| view.parts[*k].skin).sum();
+        let gap = 2.0 * self.gap(view.thickness(pair));
+        let thin = Thin {
+            thickness: view.travel(pair, self.dt) / self.tuning.fast,
+            reach: view.travel(pair, self.dt - time) + skins + gap,
+        };
+        thin.may_meet(view, pair, time)
+    }
+
+    /// Whether a pair can travel more than `share` of this thickness, or is watched whatever it does. In a
+    /// scene at rest none does, and no pair need be looked for.
+    pub fn may_be_fast(&self, view: &StepView, share: Real, thickness: Real) -> bool {
+        let asked = |e: &Effects| e.continuous == Effect::On || e.guard == Effect::On;
+        self.effects.any(asked) || 2.0 * view.most_travel(self.dt) > share * thickness
+    }
+
+    /// Whether the solver gets contacts of the pair for all that it may reach in the step.
+    pub fn speculates(&self, view: &StepView, pair: [usize; 2]) -> bool {
+        self.effects_of(view, pair).speculative == Effect::On
+    }
+
+    /// Whether the world stops at the pair's first contact.
+    pub fn stops(&self, view: &StepView, pair: [usize; 2]) -> bool {
+        self.may_stop && self.effects_of(view, pair).stop == Effect::On
+    }
+
+    /// What a pair that has met so often in this step is asked from `time` on; `None`: nothing. `deep`:
+    /// rapier's contacts are, so that even a slow pair is kept above the floor.
+    pub fn query_options(
+        &self,
+        view: &StepView,
+        pair: [usize; 2],
+        time: Real,
+        met: u32,
+        deep: bool,
+    ) -> Option<QueryOptions> {
+        if time >= self.dt || view.travel(pair, self.dt - time) <= 0.0 {
+            return None;
+        }
+        let fast = self.is_searched(view, pair, time);
+        let effects = self.effects_of(view, pair);
+        let watched = match effects.guard {
+            Effect::On => true,
+            Effect::Off => false,
+            Effect::Auto => deep,
+        };
+        if !(fast || watched) {
+            return None;
+        }
+        let tuning = &self.tuning;
+        let thickness = view.thickness(pair);
+        let gap = self.gap(thickness);
+        let skin = view.parts[pair[0]].skin + view.parts[pair[1]].skin;
+        let paths = match effects.exact_rotation {
+            Effect::Off => Paths::Straight,
+            Effect::On | Effect::Auto => Paths::Exact,
+        };
+        let at_most = view.foreign_thickness(pair);
+        let options = |target: Real, by: Real, share: Real| ToiOptions {
+            paths,
+            target_distance: skin + target,
+            tolerance: tuning.tolerance * gap,
+            initial_contact: InitialContact::Deepen { by },
+            cores: Some(Cores { share, at_most }),
+            ..ToiOptions::default()
+        };
+        let hair = tuning.hair * gap;
+        let floor = options(0.5 * self.least_gap(), hair, tuning.floor);
+        // Where a meeting was, the gap is that of the target to within the tolerance: a larger target
+        // makes it count as touching.
+        let target = if self.stops(view, pair) {
+            tuning.stopping * gap
+        } else {
+            gap * (1.0 + 2.0 * tuning.tolerance * met as Real)
+        };
+        Some(if fast {
+            QueryOptions {
+                first: options(target, (tuning.sink * thickness).max(hair), 0.0),
+                floor: Some(floor),
+                left: None,
+            }
+        } else {
+            QueryOptions {
+                first: floor,
+                floor: None,
+                left: None,
+            }
+        })
+    }
+
+    /// The first query of a pair of medial meshes at the start of the step, as a job of a batch; `None`
+    /// for other pairs, and where nothing is to be asked.
+    pub fn job(&self, view: &StepView, pair: [usize; 2], deep: bool) -> Option<ToiJob> {
+        let [Some(mesh1), Some(mesh2)] = pair.map(|k| view.parts[k].medial()) else {
+            return None;
+        };
+        let query_options = self.query_options(view, pair, 0.0, 0, deep)?;
+        let [motion1, motion2] = pair.map(|k| view.motion(k, 0.0));
+        Some(ToiJob {
+            mesh1: mesh1.clone(),
+            mesh2: mesh2.clone(),
+            motion1,
+            motion2,
+            seconds: self.dt,
+            options: query_options.first,
+        })
+    }
+
+    /// First contact from `time` on; `known` is the answer to the first query where it was asked before.
+    pub fn first_contact(
+        &self,
+        view: &StepView,
+        pair: [usize; 2],
+        time: Real,
+        query_options: &QueryOptions,
+        known: Option<ToiResult>,
+        work: &mut Work,
+    ) -> Option<Hit> {
+        let motions = pair.map(|k| view.motion(k, time));
+        let seconds = self.dt - time;
+        let mut query = |options: &ToiOptions, known: Option<ToiResult>| {
+            let left = query_options.left.as_ref();
+            let asked = || ask(view, pair, &motions, seconds, options, left);
+            let found = known.or_else(asked)?;
+            work.begin(&motions, options);
+            work.add(found.counts);
+            Some((Hit::of(&found.toi, time, seconds), found.deepest))
+        };
+        let (hit, deepest) = query(&query_options.first, known)?;
+        let goes_on = hit.is_none_or(|h| h.time > time);
+        let deep = goes_on && self.is_deep(deepest);
+        let floor = query_options.floor.as_ref().filter(|_| deep);
+        match (hit, floor.and_then(|options| query(options, None)?.0)) {
+            (Some(a), Some(b)) if a.time <= b.time => Some(a),
+            (a, b) => b.or(a),
+        }
+    }
+
+    /// Whether what touches is so deep ([`Query::deepest`]) that the floor is asked for: what is less deep meets
+    /// its own deeper target first.
+    pub fn is_deep(&self, deepest: f64) -> bool {
+        deepest <= f64::from(self.tuning.sink - self.tuning.floor)
+    }
+
+    /// Whether the pair touches at the start of the step, so that the solver has it.
+    pub fn touches(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> bool {
+        let gap = self.tuning.touching * self.gap(view.thickness(pair));
+        let [start1, start2] = pair.map(|k| view.motion(k, 0.0).start);
+        let [shape1, shape2] = pair.map(|k| &*view.parts[k].shape);
+        let (mesh, other, pos12) = match shape1.as_shape::<MedialMesh>() {
+            Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2)),
+            None => (shape2.as_shape(), shape1, start2.inv_mul(&start1)),
+        };
+        let reach = reach(view, pair, gap);
+        let found = mesh.and_then(|mesh| is_within(mesh, other, &pos12, reach).ok());
+        found.is_some_and(|(within, counts)| {
+            work.add(counts);
+            within
+        })
+    }
+}
+
+/// Distance between two shapes, a length, up to which their surfaces count as `distance` apart, skins
+/// included.
+fn reach(view: &StepView, [i, j]: [usize; 2], distance: Real) -> Real {
+    let skins = view.parts[i].skin + view.parts[j].skin;
+    distance + skins + ToiOptions::default().tolerance
+}
+
+/// The certified query for two colliders, one of them medial. `None` for shapes that cannot be swept.
+fn ask(
+    view: &StepView,
+    pair: [usize; 2],
+    motions: &[NonlinearRigidMotion; 2],
+    seconds: Real,
+    options: &ToiOptions,
+    left: Option<&[Left; 2]>,
+) -> Option<ToiResult> {
+    let [p, q] = pair.map(|k| &view.parts[k]);
+    if let (Some(a), Some(b)) = (p.medial(), q.medial()) {
+        let query = Query::new(motions.each_ref(), (a, b), seconds, options, left.cloned());
+        return Some(query.settle());
+    }
+    let flipped = p.medial().is_none();
+    let order = if flipped { [1, 0] } else { [0, 1] };
+    let [mesh, other] = order.map(|k| [p, q][k]);
+    let [motion1, motion2] = order.map(|k| &motions[k]);
+    let cast = Cast {
+        motion1,
+        mesh: mesh.medial()?,
+        motion2,
+        other: &*other.shape,
+        times: [0.0, seconds],
+        target_distance: options.target_distance,
+        stop_at_penetration: true,
+        stop_approach: false,
+    };
+    let left = left.map(|left| order.map(|k| left[k].clone()));
+    let mut found = cast.toi(options, left).ok()?;
+    if flipped {
+        let toi = &mut found.toi;
+        toi.normal = -toi.normal;
+        toi.points.swap(0, 1);
+        toi.spheres.swap(0, 1);
+        toi.primitives.swap(0, 1);
+    }
+    Some(found)
+}

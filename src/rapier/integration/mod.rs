@@ -1,0 +1,7 @@
+//! What users of rapier meet elsewhere than in the step: builders, debug lines, saved worlds.
+
+pub(crate) mod collider;
+#[cfg(feature = "debug-render")]
+pub(crate) mod debug_draw;
+#[cfg(feature = "serde-serialize")]
+pub(crate) mod saved_world;

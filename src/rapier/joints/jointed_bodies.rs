@@ -1,0 +1,260 @@
+//! Joints in an impact within the step: bodies that they hold together take the impulse together, at once.
+//!
+//! An impulse on one body of a chain moves all of them ([`crate::rapier::joints::tied_system`]). After it, bodies do not move along their
+//! velocities, which would open the joints, but to where the joints let them. As a body that turns about a hinge
+//! moves along an arc, this is done in pieces of the step. Impulse joints and joints of multibodies are treated the
+//! same. Where a joint would pass a limit in a piece, it stops there ([`crate::rapier::joints::limits`]). Motors act in rapier's next step,
+//! and joints that the user made soft are left to it.
+
+use crate::math::Real;
+use crate::math::fast_hash::FastMap;
+use crate::rapier::impacts::impulse::Inertia;
+use crate::rapier::joints::limits::Limit;
+use crate::rapier::joints::rows::{Joint, Twist};
+use crate::rapier::joints::tied_system::System;
+use crate::rapier::view::motion::Kind;
+use crate::rapier::view::step_view::{MOST_JOINTS, StepView};
+use rapier3d::dynamics::{
+    GenericJoint, ImpulseJointSet, JointEnabled, MultibodyJointSet, RigidBodyHandle,
+    SpringCoefficients,
+};
+
+/// Turn of the fastest body, in radians, in one piece of its motion, and the most pieces of a step if nothing else is
+/// met.
+const PIECE_TURN: Real = 0.125;
+const MOST_PIECES: Real = 64.0;
+
+/// Opening that joints may gain, a length or an angle, from which they count as not closed: what is this far off says
+/// nothing of where bodies go, which then go straight, and rapier's next step closes the joints.
+const UNCLOSED: f64 = 1.0e-2;
+
+/// What closing joints gave bodies.
+#[derive(Default)]
+pub struct Piece {
+    /// Bodies whose motion it changed.
+    pub moved: Vec<usize>,
+    /// Seconds into the step at which their motion ends, if before the step.
+    pub until: Option<Real>,
+}
+
+/// The joints of a world.
+#[derive(Default)]
+pub struct Joints {
+    all: Vec<Joint>,
+    of_body: FastMap<usize, Vec<usize>>,
+}
+
+impl Joints {
+    /// Those between bodies of a view.
+    pub fn new(
+        view: &StepView,
+        impulse_joints: &ImpulseJointSet,
+        multibody_joints: &MultibodyJointSet,
+    ) -> Self {
+        let mut joints = Self::default();
+        for (_, joint) in impulse_joints.iter() {
+            let rigid = joint.data.softness == SpringCoefficients::joint_defaults();
+            if rigid && joint.data.enabled == JointEnabled::Enabled {
+                let limits = Limit::of_joint(&joint.data);
+                joints.add(view, [joint.body1(), joint.body2()], &joint.data, limits);
+            }
+        }
+        for multibody in multibody_joints.multibodies() {
+            for link in multibody.links() {
+                if let Some(parent) = link.parent_id().and_then(|id| multibody.link(id)) {
+                    let bodies = [parent.rigid_body_handle(), link.rigid_body_handle()];
+                    let Some(b) = view.index.get(&bodies[1]) else {
+                        continue;
+                    };
+                    let turned = view.bodies[*b].turned(link);
+                    let limits = Limit::of_link(link, &turned);
+                    joints.add(view, bodies, &link.joint.data, limits);
+                }
+            }
+        }
+        joints
+    }
+
+    fn add(
+        &mut self,
+        view: &StepView,
+        bodies: [RigidBodyHandle; 2],
+        joint: &GenericJoint,
+        limits: Vec<Limit>,
+    ) {
+        let [Some(&a), Some(&b)] = bodies.map(|h| view.index.get(&h)) else {
+            return;
+        };
+        for body in [a, b] {
+            self.of_body.entry(body).or_default().push(self.all.len());
+        }
+        self.all.push(Joint {
+            bodies: [a, b],
+            frames: [joint.local_frame1, joint.local_frame2],
+            locked: joint.locked_axes.bits(),
+            limits,
+        });
+    }
+
+    /// The free bodies that joints tie to some bodies, these first, and the joints between them.
+    fn tied(&self, view: &StepView, from: &[usize]) -> (Vec<usize>, Vec<&Joint>) {
+        let (mut bodies, mut joints) = (from.to_vec(), Vec::new());
+        let mut next = 0;
+        while next < bodies.len() {
+            let body = bodies[next];
+            next += 1;
+            if view.bodies[body].kind != Kind::Free {
+                continue;
+            }
+            for &j in self.of_body.get(&body).into_iter().flatten() {
+                if joints.len() < MOST_JOINTS && !joints.contains(&j) {
+                    joints.push(j);
+                    let far = self.all[j].bodies.into_iter().find(|b| *b != body);
+                    bodies.extend(far.filter(|b| !bodies.contains(b)));
+                }
+            }
+        }
+        (bodies, joints.into_iter().map(|j| &self.all[j]).collect())
+    }
+
+    /// What moves when some bodies are struck at `time`, with the inertia of each.
+    pub fn system(
+        &self,
+        view: &StepView,
+        from: &[usize],
+        time: Real,
+        inertia: impl Fn(usize) -> Inertia,
+    ) -> System<'_> {
+        let (bodies, joints) = self.tied(view, from);
+        let inertias = bodies.iter().map(|b| inertia(*b)).collect();
+        System::new(view, time, (bodies, inertias), joints)
+    }
+
+    /// All bodies that joints tie to some bodies, these first.
+    pub fn tied_to(&self, view: &StepView, from: &[usize]) -> Vec<usize> {
+        self.tied(view, from).0
+    }
+
+    /// Gives a body and what joints tie to it the motions from `time` on that joints let them make, and lets
+    /// their velocities follow, which together gain no energy. At the end of the step, `dt`, joints are to be as open
+    /// as rapier's step left them. `inertia`: of each body, infinite where nothing moves it. `goes_on`: nothing was
+    /// struck; a piece of their motion has ended.
+    pub fn close(
+        &self,
+        view: &mut StepView,
+        from: usize,
+        [time, dt]: [Real; 2],
+        goes_on: bool,
+        inertia: impl Fn(&StepView, usize) -> Inertia,
+    ) -> Piece {
+        if !self.of_body.contains_key(&from) || time >= dt {
+            return Piece::default();
+        }
+        let mut system = self.system(view, &[from], time, |b| inertia(view, b));
+        for &b in &system.bodies {
+            if view.bodies[b].kind == Kind::Free {
+                view.bodies[b].advance(time);
+            }
+        }
+        let twist = |b: &usize| view.bodies[*b].twist(time);
+        let mut before: Vec<Twist> = system.bodies.iter().map(twist).collect();
+        if goes_on {
+            // What was executed is a chord; from here on it is the next one's tangent.
+            system.hold(&mut before);
+        }
+        let rest = dt - time;
+        let fastest = before.iter().map(|t| t[1].length()).fold(0.0, Real::max);
+        let piece = (PIECE_TURN / fastest).max(dt / MOST_PIECES);
+        let until = (piece < 0.75 * rest).then_some(time + piece);
+        let seconds = if until.is_some() { piece } else { rest };
+        let share = f64::from(seconds / rest);
+        let openings = system
+            .openings()
+            .into_iter()
+            .zip(system.openings_in_the_end(view));
+        let locked: Vec<f64> = openings
+            .map(|(now, end)| now + (end - now) * share)
+            .collect();
+        let mut targets = locked.clone();
+        targets.extend(system.stop_at_limits(&before, seconds));
+        let stops = targets.len() > locked.len();
+        let is_closed = |system: &System, targets: &[f64]| {
+            let mut left = system.openings().into_iter().zip(targets);
+            left.all(|(now, target)| (now - target).abs() <= UNCLOSED)
+        };
+        let mut after = system.integrate(&before, seconds, &targets);
+        if stops && !is_closed(&system, &targets) {
+            // Joints pass limits rather than open.
+            system = self.system(view, &[from], time, |b| inertia(view, b));
+            after = system.integrate(&before, seconds, &locked);
+            targets = locked;
+        }
+        if !is_closed(&system, &targets) {
+            return Piece::default();
+        }
+        let own: Vec<Twist> = system
+            .bodies
+            .iter()
+            .map(|b| view.bodies[*b].velocity)
+            .collect();
+        let mut end = own.clone();
+        for (k, end) in end.iter_mut().enumerate() {
+            *end = [0, 1].map(|i| own[k][i] + after[k][i] - before[k][i]);
+        }
+        if until.is_none() {
+            // A multibody has no others.
+            system.hold(&mut end);
+        }
+        system.take_no_energy(&own, &mut end);
+        let mut moved = Vec::new();
+        for (k, &b) in system.bodies.iter().enumerate() {
+            if !system.is_infinite(k) {
+                let gained = [0, 1].map(|i| end[k][i] - own[k][i]);
+                view.bodies[b].aim(system.moved(k), [before[k], gained], seconds);
+                moved.push(b);
+            }
+        }
+        Piece { moved, until }
+    }
+}
+
+/// Gives bodies, where they are at `time`, the velocities and motions that their joints let them have: what was
+/// executed of a path is a chord, and an impact needs its tangent. `moving`: the system of the motions, where bodies
+/// keep theirs; `last`: that of the velocities at the end of the step.
+pub fn settle(
+    view: &mut StepView,
+    time: Real,
+    system: &System,
+    moving: Option<&System>,
+    last: impl Fn(&StepView) -> Vec<Twist>,
+) {
+    if !system.holds() {
+        return;
+    }
+    let bodies = || system.bodies.iter().map(|b| &view.bodies[*b]);
+    let mut tangents: Vec<Twist> = bodies().map(|b| b.twist(time)).collect();
+    let mut velocities: Vec<Twist> = bodies().map(|b| b.velocity).collect();
+    if bodies().any(|b| b.is_rapiers) {
+        let mut held = tangents.clone();
+        system.hold(&mut held);
+        for (k, end) in last(view).into_iter().enumerate() {
+            let body = &view.bodies[system.bodies[k]];
+            if body.is_rapiers {
+                let back = body.motion.start.rotation * body.end.rotation.inverse();
+                velocities[k][0] += held[k][0] - end[0];
+                velocities[k][1] += held[k][1] - back * end[1];
+            }
+        }
+    }
+    moving.unwrap_or(system).hold(&mut tangents);
+    system.hold(&mut velocities);
+    for (k, &b) in system.bodies.iter().enumerate() {
+        let body = &mut view.bodies[b];
+        if !system.is_infinite(k) {
+            body.velocity = velocities[k];
+        }
+        if !moving.unwrap_or(system).is_infinite(k) {
+            body.go(tangents[k]);
+        }
+    }
+}

@@ -1,0 +1,376 @@
+//! Bodies tied together by joints, to which an impulse is given as a whole, and which move on as a whole.
+//!
+//! With the inverse masses `W` of the free bodies and the Jacobian `G` of the locked axes of their joints, a wrench `f`
+//! changes velocities by
+//!
+//! `W f − W Gᵀ (G W Gᵀ)⁻¹ G W f`,
+//!
+//! which keeps `G v` (Featherstone, Rigid Body Dynamics Algorithms, 2008, 3.2). The motion in time follows the RATTLE
+//! scheme (Andersen 1983), which keeps energy while joints turn velocities.
+
+use crate::math::{Pose, Real, Rotation, Vector};
+use crate::rapier::impacts::impulse::Inertia;
+use crate::rapier::joints::limits::Limit;
+use crate::rapier::joints::rows::{Ends, Joint, Row, Twist, dot};
+use crate::rapier::joints::skyline::Skyline;
+use crate::rapier::view::step_view::StepView;
+use crate::rapier::view::turned::shortest;
+
+/// Relative addition to the diagonal of `G W Gᵀ`, which is singular where joints close a loop: above the rounding of
+/// the Jacobians in single precision.
+const REGULAR: f64 = 1.0e-4;
+
+/// Times that joints are closed in a piece of a motion: each leaves about a quarter of the opening.
+const CLOSING_STEPS: usize = 8;
+
+/// Times that joints are asked whether they pass a limit, as a stop of one may have another pass.
+const STOPPING_ROUNDS: usize = 4;
+
+/// Opening that is left, a length or an angle in radians; of bodies far from each other more, by the rounding of their
+/// poses.
+const CLOSED: f64 = 1.0e-5;
+const ROUNDING: f64 = 64.0 * Real::EPSILON as f64;
+
+/// Bodies tied by joints, at some poses.
+pub struct System<'a> {
+    /// Indices in the view.
+    pub bodies: Vec<usize>,
+    inertias: Vec<Inertia>,
+    /// Centres of mass in the frames of the bodies.
+    centers: Vec<Vector>,
+    /// What is taken from all positions, which are the more exact for it.
+    origin: Vector,
+    start: Vec<Pose>,
+    poses: Vec<Pose>,
+    /// Ways of the centres of mass, and turns, since the start.
+    moved: Vec<(Vector, Rotation)>,
+    joints: Vec<&'a Joint>,
+    /// Limits at which joints stop in a piece of the motion, and whose.
+    stops: Vec<(&'a Joint, Limit)>,
+    rows: Vec<Row>,
+    /// Of `G W Gᵀ`.
+    factor: Option<Skyline>,
+}
+
+impl<'a> System<'a> {
+    /// Bodies, each with its inertia, where they are at `time`.
+    pub fn new(
+        view: &StepView,
+        time: Real,
+        (bodies, inertias): (Vec<usize>, Vec<Inertia>),
+        joints: Vec<&'a Joint>,
+    ) -> Self {
+        let pose = |b: &usize| view.bodies[*b].motion_from(time).start;
+        let origin = bodies.first().map_or(Vector::ZERO, |b| pose(b).translation);
+        let relative = |pose: Pose| Pose::from_parts(pose.translation - origin, pose.rotation);
+        let center = |b: &usize| view.bodies[*b].mass.local_com;
+        let start: Vec<Pose> = bodies.iter().map(|b| relative(pose(b))).collect();
+        let mut system = Self {
+            inertias,
+            centers: bodies.iter().map(center).collect(),
+            origin,
+            poses: start.clone(),
+            start,
+            moved: vec![(Vector::ZERO, Rotation::IDENTITY); bodies.len()],
+            bodies,
+            joints,
+            stops: Vec::new(),
+            rows: Vec::new(),
+            factor: None,
+        };
+        system.factor();
+        system
+    }
+
+    /// Whether nothing moves a body.
+    pub fn is_infinite(&self, k: usize) -> bool {
+        self.inertias[k].is_infinite()
+    }
+
+    /// Whether any joint holds any body.
+    pub fn holds(&self) -> bool {
+        !self.rows.is_empty()
+    }
+
+    /// Way of a body's centre of mass, and its turn.
+    pub fn moved(&self, k: usize) -> (Vector, Rotation) {
+        self.moved[k]
+    }
+
+    /// Change of the velocities of all bodies by wrenches on some of them.
+    pub fn change(&self, wrenches: &[(usize, Twist)]) -> Vec<Twist> {
+        let mut change = vec![[Vector::ZERO; 2]; self.bodies.len()];
+        for (body, wrench) in wrenches {
+            if let Some(k) = self.bodies.iter().position(|b| b == body) {
+                add(&mut change[k], self.inertias[k].apply(*wrench), 1.0);
+            }
+        }
+        self.hold(&mut change);
+        change
+    }
+
+    /// Takes from twists what joints do not let them have.
+    pub fn hold(&self, twists: &mut [Twist]) {
+        let held = self.solve(self.rows.iter().map(|r| r.along(twists)).collect());
+        self.subtract(&held, twists);
+    }
+
+    /// Takes `W Gᵀ λ` from twists.
+    fn subtract(&self, lambda: &[f64], twists: &mut [Twist]) {
+        for (row, lambda) in self.rows.iter().zip(lambda) {
+            for (k, jacobian) in row.bodies.into_iter().zip(row.jacobian) {
+                add(
+                    &mut twists[k],
+                    self.inertias[k].apply(jacobian),
+                    -*lambda as Real,
+                );
+            }
+        }
+    }
+
+    fn solve(&self, right: Vec<f64>) -> Vec<f64> {
+        match &self.factor {
+            Some(factor) => factor.solve(right),
+            None => vec![0.0; right.len()],
+        }
+    }
+
+    fn factor(&mut self) {
+        self.rows = self.rows_now();
+        let mut of_body: Vec<Vec<(usize, Twist)>> = vec![Vec::new(); self.bodies.len()];
+        let mut lower = Vec::new();
+        for (i, row) in self.rows.iter().enumerate() {
+            let free = |k: &usize| !self.is_infinite(row.bodies[*k]);
+            for k in (0..2).filter(free) {
+                let weighted = self.inertias[row.bodies[k]].apply(row.jacobian[k]);
+                of_body[row.bodies[k]].push((i, weighted));
+            }
+            let near = || {
+                (0..2)
+                    .filter(free)
+                    .flat_map(|k| of_body[row.bodies[k]].iter().map(move |r| (k, r)))
+            };
+            let first = near().map(|(_, (j, _))| *j).min().unwrap_or(i);
+            let mut entries = vec![0.0; i + 1 - first];
+            for (k, (j, weighted)) in near() {
+                entries[j - first] += dot(row.jacobian[k], *weighted);
+            }
+            entries[i - first] =
+                entries[i - first] * (1.0 + REGULAR) + f64::from(Real::MIN_POSITIVE);
+            lower.push((first, entries));
+        }
+        self.factor = (!lower.is_empty())
+            .then(|| Skyline::factor(lower))
+            .flatten();
+    }
+
+    /// The rows of all joints that hold what moves at the poses now, those of stops last.
+    fn rows_now(&self) -> Vec<Row> {
+        let joints = self.joints.iter();
+        let ends = joints.filter_map(|j| Some((self.ends(j, &self.poses)?, j.locked)));
+        let locked = ends.flat_map(|(ends, locked)| ends.locked(locked));
+        let stops = self.stops.iter();
+        let stops = stops.filter_map(|(j, limit)| Some(self.ends(j, &self.poses)?.limited(limit)));
+        let rows = locked.chain(stops);
+        rows.filter(|r| self.is_movable(r)).collect()
+    }
+
+    /// Both ends of a joint at some poses.
+    fn ends(&self, joint: &Joint, poses: &[Pose]) -> Option<Ends> {
+        let place = |body: usize| self.bodies.iter().position(|o| *o == body);
+        let bodies = [place(joint.bodies[0])?, place(joint.bodies[1])?];
+        Some(Ends {
+            bodies,
+            frames: [0, 1].map(|k| poses[bodies[k]] * joint.frames[k]),
+            centers: bodies.map(|k| poses[k] * self.centers[k]),
+        })
+    }
+
+    /// Has joints that stand at a limit hold it where a push by some changes of velocity would have them pass it.
+    pub fn stand_at_limits(&mut self, twists: &[Twist], push: impl Fn(&Self) -> Vec<Twist>) {
+        for _ in 0..STOPPING_ROUNDS {
+            let pushed = push(self);
+            let stops = self.more_stops(|_, _, limit, row| {
+                let [rate, push] = [twists, &pushed].map(|t| row.along(t) as Real);
+                limit.holds(row.opening, rate, push).then_some(())
+            });
+            if stops.is_empty() {
+                break;
+            }
+        }
+    }
+
+    /// Adds the limits of which `stops` says so, and returns what it said.
+    fn more_stops<T>(
+        &mut self,
+        stops: impl Fn(&Self, &Joint, &Limit, &Row) -> Option<T>,
+    ) -> Vec<T> {
+        let (known, mut found) = (self.stops.len(), Vec::new());
+        for &joint in self.joints.iter().filter(|j| !j.limits.is_empty()) {
+            let Some(ends) = self.ends(joint, &self.poses) else {
+                continue;
+            };
+            for limit in &joint.limits {
+                let row = ends.limited(limit);
+                let is_this = |(j, l): &(&Joint, Limit)| std::ptr::eq(*j, joint) && l == limit;
+                if self.is_movable(&row)
+                    && !self.stops[..known].iter().any(is_this)
+                    && let Some(said) = stops(self, joint, limit, &row)
+                {
+                    self.stops.push((joint, *limit));
+                    found.push(said);
+                }
+            }
+        }
+        if !found.is_empty() {
+            self.factor();
+        }
+        found
+    }
+
+    /// Has joints stop at the limits that they would pass in some seconds at some velocities, and returns where.
+    pub fn stop_at_limits(&mut self, twists: &[Twist], seconds: Real) -> Vec<f64> {
+        let mut targets = Vec::new();
+        for _ in 0..STOPPING_ROUNDS {
+            let mut held = twists.to_vec();
+            self.hold(&mut held);
+            let start = (self.poses.clone(), self.moved.clone());
+            self.displace(&held, seconds);
+            let end = std::mem::replace(&mut self.poses, start.0);
+            self.moved = start.1;
+            let stops = self.more_stops(|system, joint, limit, row| {
+                let next = system.ends(joint, &end)?.limited(limit).opening;
+                limit.stop(row.opening, next)
+            });
+            if stops.is_empty() {
+                break;
+            }
+            targets.extend(stops.into_iter().map(f64::from));
+        }
+        targets
+    }
+
+    /// Moves the bodies by some velocities for some seconds, until joints are open by `targets`, and returns the
+    /// velocities they end with.
+    pub fn integrate(&mut self, twists: &[Twist], seconds: Real, targets: &[f64]) -> Vec<Twist> {
+        let size = self
+            .poses
+            .iter()
+            .map(|p| p.translation.length())
+            .fold(0.0, Real::max);
+        let closed = CLOSED.max(ROUNDING * f64::from(size));
+        self.displace(twists, seconds);
+        let mut twists = twists.to_vec();
+        let mut changed = false;
+        for _ in 0..CLOSING_STEPS {
+            let left = self.openings().into_iter().zip(targets);
+            let left: Vec<f64> = left.map(|(now, target)| now - target).collect();
+            if left.iter().all(|o| o.abs() <= closed) {
+                break;
+            }
+            changed = true;
+            let mut moves = vec![[Vector::ZERO; 2]; self.bodies.len()];
+            self.subtract(&self.solve(left), &mut moves);
+            self.displace(&moves, 1.0);
+        }
+        if changed {
+            for (k, twist) in twists.iter_mut().enumerate() {
+                if !self.is_infinite(k) {
+                    let (way, turn) = self.moved[k];
+                    *twist = [way, shortest(turn).to_scaled_axis()].map(|moved| moved / seconds);
+                }
+            }
+        }
+        self.factor();
+        self.hold(&mut twists);
+        twists
+    }
+
+    /// How far each locked axis is open at the poses now.
+    pub fn openings(&self) -> Vec<f64> {
+        let rows = self.rows_now();
+        rows.iter().map(|r| f64::from(r.opening)).collect()
+    }
+
+    /// How far each is where rapier's step ended.
+    pub fn openings_in_the_end(&mut self, view: &StepView) -> Vec<f64> {
+        let pose = |b: &usize| {
+            let end = view.bodies[*b].end;
+            Pose::from_parts(end.translation - self.origin, end.rotation)
+        };
+        let ends = self.bodies.iter().map(pose).collect();
+        let now = std::mem::replace(&mut self.poses, ends);
+        let openings = self.openings();
+        self.poses = now;
+        openings
+    }
+
+    /// Scales the velocities that bodies end with so that they have no more energy than those they had: joints that are
+    /// closed in a short time give their bodies the speed that it takes. Energy is that in the frame of what nothing
+    /// moves, or else of the common centre of mass.
+    pub fn take_no_energy(&self, own: &[Twist], end: &mut [Twist]) {
+        let center = |poses: &[Pose], k: usize| poses[k] * self.centers[k];
+        let holder = (0..own.len()).find(|k| self.is_infinite(*k));
+        let frame = |poses: &[Pose], k: usize| match holder {
+            Some(h) => {
+                let [slide, turn] = own[h];
+                [
+                    slide + turn.cross(center(poses, k) - center(poses, h)),
+                    turn,
+                ]
+            }
+            None => [self.common_velocity(own), Vector::ZERO],
+        };
+        let frames: [Vec<Twist>; 2] = [&self.start, &self.poses]
+            .map(|poses| (0..own.len()).map(|k| frame(poses, k)).collect());
+        let energy = |twists: &[Twist], poses: &[Pose], frame: &[Twist]| -> f64 {
+            let of = |(k, inertia): (usize, &Inertia)| {
+                // Its inertia is that of the start.
+                let back = self.start[k].rotation * poses[k].rotation.inverse();
+                let [slide, turn] = [0, 1].map(|i| twists[k][i] - frame[k][i]);
+                inertia.energy([slide, back * turn])
+            };
+            self.inertias.iter().enumerate().map(of).sum()
+        };
+        let had = energy(own, &self.start, &frames[0]);
+        let has = energy(end, &self.poses, &frames[1]);
+        if has > had {
+            let share = (had / has).sqrt() as Real;
+            for (twist, still) in end.iter_mut().zip(&frames[1]) {
+                *twist = [0, 1].map(|i| still[i] + (twist[i] - still[i]) * share);
+            }
+        }
+    }
+
+    /// Velocity of the common centre of mass; along axes on which a body is locked, of the others.
+    fn common_velocity(&self, own: &[Twist]) -> Vector {
+        let (mut masses, mut momentum) = (Vector::ZERO, Vector::ZERO);
+        for (inertia, twist) in self.inertias.iter().zip(own) {
+            let mass = inertia.masses();
+            masses += mass;
+            momentum += mass * twist[0];
+        }
+        momentum / masses.max(Vector::splat(Real::MIN_POSITIVE))
+    }
+
+    fn is_movable(&self, row: &Row) -> bool {
+        row.bodies.iter().any(|k| !self.is_infinite(*k))
+    }
+
+    /// Moves all bodies by some twists for some seconds.
+    fn displace(&mut self, twists: &[Twist], seconds: Real) {
+        for (k, [slide, turn]) in twists.iter().enumerate() {
+            let turn = Rotation::from_scaled_axis(*turn * seconds);
+            let center = self.poses[k] * self.centers[k] + *slide * seconds;
+            let rotation = (turn * self.poses[k].rotation).normalize();
+            self.poses[k] = Pose::from_parts(center - rotation * self.centers[k], rotation);
+            let moved = &mut self.moved[k];
+            *moved = (moved.0 + *slide * seconds, (turn * moved.1).normalize());
+        }
+    }
+}
+
+fn add(twist: &mut Twist, more: Twist, factor: Real) {
+    twist[0] += more[0] * factor;
+    twist[1] += more[1] * factor;
+}

@@ -1,0 +1,29 @@
+//! What a pipeline keeps from step to step.
+
+use crate::batch::Batch;
+use crate::parry::Answers;
+use crate::rapier::effects::EffectSettings;
+use crate::rapier::host::events_of_impacts::ReportedStarts;
+use crate::rapier::host::recycling::RecyclingRecord;
+use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
+use crate::rapier::step_plan::StepPlan;
+use crate::rapier::tuning::Tuning;
+use std::sync::Arc;
+
+/// What a [`MedialPipeline`](crate::MedialPipeline) keeps from step to step.
+pub struct State {
+    /// The backend that computes contacts and first contacts of many pairs at once.
+    pub batch: Batch,
+    /// What the dispatcher in rapier's narrow phase answers from.
+    pub answers: Arc<Answers>,
+    /// Which contacts rapier keeps.
+    pub recycled: RecyclingRecord,
+    pub effects: EffectSettings,
+    pub tuning: Tuning,
+    /// [`MedialOptions::budget`](crate::MedialOptions::budget).
+    pub budget: u64,
+    pub reported: ReportedStarts,
+    pub placed: InitialOverlaps,
+    /// The plan of the last step, if nothing moved in it.
+    pub kept: Option<StepPlan>,
+}

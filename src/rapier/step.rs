@@ -1,0 +1,317 @@
+//! One step, in order: the plan (who may meet whom, and the contacts that rapier will ask for), rapier's own step, the
+//! impacts within it, and the report. The work itself is in the rooms of this folder.
+
+use crate::math::Real;
+use crate::rapier::contacts::{candidates, muting};
+use crate::rapier::effects::{Effect, EffectSettings, Effects};
+use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
+use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::speculative::Speculators;
+use crate::rapier::host::substeps::Substeps;
+use crate::rapier::host::{forced_updates, multibody_coordinates};
+use crate::rapier::impacts::event_loop::{self, Outcome};
+use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
+use crate::rapier::report::StepReport;
+use crate::rapier::state::State;
+use crate::rapier::step_plan::{StepPlan, lowered};
+use crate::rapier::tuning::Tuning;
+use crate::rapier::view::census::Census;
+use crate::rapier::view::filter_answers::FilterAnswers;
+use crate::rapier::view::medial_colliders::{self, Sets};
+use crate::rapier::view::step_view::StepView;
+use crate::rapier::world::World;
+use rapier3d::dynamics::IntegrationParameters;
+use rapier3d::pipeline::{EventHandler, PhysicsHooks};
+use std::collections::HashSet;
+use std::sync::Arc;
+use web_time::Instant;
+
+/// What a part of a step is told.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    /// The user's parameters, with the time that is left of the step.
+    parameters: &'a IntegrationParameters,
+    filters: &'a FilterAnswers<'a>,
+    events: &'a dyn EventHandler,
+    /// Whether the world may stop within the step, and go on from there.
+    may_stop: bool,
+}
+
+impl Part<'_> {
+    /// How first contacts are searched.
+    fn policy<'e>(
+        &self,
+        effects: &'e EffectSettings,
+        (tuning, budget): (Tuning, u64),
+    ) -> CcdPolicy<'e> {
+        CcdPolicy {
+            effects,
+            dt: self.parameters.dt,
+            unit: self.parameters.length_unit,
+            tuning,
+            may_stop: self.may_stop,
+            budget,
+        }
+    }
+}
+
+/// What bodies are given for the length of rapier's step.
+struct Loans {
+    speculators: Speculators,
+    substeps: Substeps,
+}
+
+impl Loans {
+    fn give_back(self, world: &mut World) {
+        self.speculators.restore(world.bodies);
+        self.substeps.restore(world.bodies);
+    }
+}
+
+impl State {
+    /// Steps the world by `parameters.dt`, in as many parts as it stops.
+    pub fn step(
+        &mut self,
+        world: &mut World,
+        parameters: &IntegrationParameters,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+    ) -> StepReport {
+        let mut rest = *parameters;
+        let mut report = StepReport::default();
+        let answers = Arc::clone(&self.answers);
+        let filters = FilterAnswers::new(hooks, &answers);
+        let can_stop = !world.has_links_or_particles();
+        loop {
+            let part = Part {
+                parameters: &rest,
+                filters: &filters,
+                events,
+                may_stop: can_stop && report.stops < self.tuning.max_stops,
+            };
+            let (done, stopped) = self.part(world, part);
+            report.add(&done);
+            let Some(time) = stopped else {
+                self.send_early(world.sets(parameters), &mut report);
+                return report;
+            };
+            report.stops += 1;
+            rest.dt -= time;
+        }
+    }
+
+    /// A step, or what of it comes before the world stops; the second result is when, in seconds.
+    fn part(&mut self, world: &mut World, part: Part) -> (StepReport, Option<Real>) {
+        let before = self.batch.report().clone();
+        // Filters are asked before rapier has moved colliders to where the user put their bodies.
+        world
+            .bodies
+            .propagate_modified_body_positions_to_colliders(world.colliders);
+        let census = world.census();
+        let lowered = lowered(part.parameters);
+        let part = Part {
+            parameters: match census.medial {
+                0 => part.parameters,
+                _ => &lowered,
+            },
+            ..part
+        };
+        let mut report = StepReport::default();
+        let mut work = Work::default();
+        let kept = self.kept.take().filter(|kept| kept.holds_in(&census));
+        let is_kept = kept.is_some();
+        let mut plan =
+            kept.unwrap_or_else(|| self.plan(world, part, census, (&mut report, &mut work)));
+
+        let events = DedupEventHandler::new(part.events, &mut self.reported);
+        self.rapiers_step(world, part, (&mut plan, is_kept), &events, &mut report);
+
+        let clock = Instant::now();
+        let outcome = self.impacts(world, part, &mut plan, &mut work);
+        write_back(&plan.view, &outcome, world);
+        if !is_kept || plan.view.followed {
+            self.placed.end(&plan.view, world.colliders);
+        }
+        let scene = Scene {
+            dt: part.parameters.dt,
+            bodies: world.bodies,
+            colliders: world.colliders,
+            narrow_phase: world.narrow_phase,
+        };
+        events.finish(&mut self.reported, &outcome.impulses, scene);
+        if plan.census.all > 0 {
+            report.medial_colliders = medial_colliders::count(world.colliders);
+        }
+        report.add_impacts(&outcome);
+        report.event_seconds = clock.elapsed().as_secs_f64();
+        for ids in self.answers.take_missed() {
+            self.recycled.forget(ids);
+        }
+        report.add_answered(&self.answers.take_counts());
+        report.add_searched(&work);
+        report.add_sent(&before, self.batch.report());
+        self.kept = (!plan.view.followed).then_some(plan);
+        (report, outcome.stopped)
+    }
+
+    /// Plans a step, and hands the contacts to come to the narrow phase.
+    fn plan(
+        &mut self,
+        world: &mut World,
+        part: Part,
+        census: Census,
+        (report, work): (&mut StepReport, &mut Work),
+    ) -> StepPlan {
+        let clock = Instant::now();
+        let parameters = part.parameters;
+        medial_colliders::make_unique(world.bodies, world.colliders);
+        self.effects.clean(world.colliders);
+        let view = if census.medial == 0 || self.effects.none() {
+            StepView::default()
+        } else {
+            let (bodies, colliders) = (&*world.bodies, &*world.colliders);
+            let joints = world.joints();
+            StepView::take(world.gravity, parameters.dt, bodies, colliders, joints)
+        };
+        self.placed.begin(&view, world.narrow_phase);
+        let rules = world.rules(part.filters);
+        let wild = WildMultibodies::find(&view, &rules, world.narrow_phase, parameters.dt);
+        let prediction = parameters.prediction_distance();
+        let policy = part.policy(&self.effects, (self.tuning, self.budget));
+        let muted = muting::muted(&view, &policy, &rules, prediction, work);
+        report.muted = muted.len();
+        report.mute_seconds = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        let found = candidates::find(world.sets(parameters), &mut self.recycled, &muted);
+        forced_updates::force_updates(&found.fresh, world.colliders);
+        let mut results = self.batch.run(&found.jobs);
+        report.pairs = found.pairs;
+        report.jobs = found.jobs.len();
+        let jobs = found.jobs.iter().zip(&found.ahead);
+        for ((job, ahead), result) in jobs.clone().zip(&mut results) {
+            ahead.rebase_to_step_start(result);
+            self.recycled.set_touching(job, !result.contacts.is_empty());
+            report.add_contacts(result);
+        }
+        let keys = jobs.map(|(job, ahead)| ahead.key(job));
+        let answers = keys.zip(results);
+        let starts = found.starts;
+        let compute = Box::new(move |job| starts.contacts(job));
+        self.answers.replace(answers, compute);
+        self.answers.mute(muted);
+        self.answers
+            .give_one_point(self.effects.one_point(world.colliders));
+        report.batch_seconds = clock.elapsed().as_secs_f64();
+        StepPlan {
+            census,
+            view,
+            depth: found.depth,
+            wild,
+        }
+    }
+
+    /// Takes rapier's step, in which the narrow phase asks for what was planned.
+    fn rapiers_step(
+        &self,
+        world: &mut World,
+        part: Part,
+        (plan, is_kept): (&mut StepPlan, bool),
+        events: &DedupEventHandler,
+        report: &mut StepReport,
+    ) {
+        let clock = Instant::now();
+        let parameters = part.parameters;
+        self.answers.take_counts();
+        self.answers.take_depth();
+        let loans = (!is_kept).then(|| {
+            let unit = parameters.length_unit;
+            let speculators = Speculators::set(&plan.view, &self.effects, unit, world.bodies);
+            let joints = (&*world.impulse_joints, &*world.multibody_joints);
+            let substeps = Substeps::set(&plan.view, joints, parameters, &plan.wild, world.bodies);
+            report.speculative = speculators.count();
+            Loans {
+                speculators,
+                substeps,
+            }
+        });
+        plan.wild.bring_to_rest(world.multibody_joints);
+        report.batch_seconds += clock.elapsed().as_secs_f64();
+
+        let off = |e: &Effects| e.continuous == Effect::Off;
+        let takes_all = !self.effects.any(off) && !plan.census.any_modified;
+        // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
+        let sweeps = takes_all && !world.has_links_or_particles();
+        self.answers.sweep_elsewhere(sweeps);
+        let clock = Instant::now();
+        world.step(parameters, part.filters, events);
+        report.step_seconds = clock.elapsed().as_secs_f64();
+        self.answers.sweep_elsewhere(false);
+        self.answers.let_none_pass();
+        self.answers.mute(HashSet::new());
+        if let Some(loans) = loans {
+            loans.give_back(world);
+        }
+    }
+
+    /// Finds and resolves the impacts within the step that rapier has just taken.
+    fn impacts(
+        &mut self,
+        world: &World,
+        part: Part,
+        plan: &mut StepPlan,
+        work: &mut Work,
+    ) -> Outcome {
+        let moved = plan.census.medial > 0 && world.islands.num_active_bodies() > 0;
+        if plan.census.still.is_some() && !moved {
+            return Outcome::default();
+        }
+        let parameters = part.parameters;
+        let view = &mut plan.view;
+        view.follow(parameters, world.bodies, world.colliders);
+        let rules = world.rules(part.filters);
+        let wild = std::mem::take(&mut plan.wild);
+        wild.take_back(view, &rules, world.narrow_phase, parameters.dt);
+        let depth = plan.depth.max(self.answers.take_depth());
+        let policy = part.policy(&self.effects, (self.tuning, self.budget));
+        event_loop::resolve(
+            view,
+            policy,
+            rules,
+            (world.narrow_phase, depth),
+            &mut self.placed,
+            &mut self.batch,
+            work,
+        )
+    }
+
+    /// Has a device begin with the contacts of the next step, since the poses are final.
+    fn send_early(&mut self, sets: Sets, report: &mut StepReport) {
+        if !self.batch.has_device() || self.kept.is_some() {
+            return;
+        }
+        let before = self.batch.report().clone();
+        let parameters = lowered(sets.parameters);
+        let sets = Sets {
+            parameters: &parameters,
+            ..sets
+        };
+        let next = candidates::expect(sets, &self.recycled);
+        self.batch.submit(&next);
+        report.add_sent(&before, self.batch.report());
+    }
+}
+
+/// Writes what impacts did to bodies and multibodies to rapier's sets.
+fn write_back(view: &StepView, outcome: &Outcome, world: &mut World) {
+    for &(index, struck) in &outcome.changed {
+        view.bodies[index].write_back(struck, world.bodies);
+    }
+    if outcome.changed.is_empty() {
+        return;
+    }
+    multibody_coordinates::write_back(view, &outcome.changed, world.bodies, world.multibody_joints);
+    world
+        .bodies
+        .propagate_modified_body_positions_to_colliders(world.colliders);
+}

@@ -1,0 +1,36 @@
+//! What is known before rapier's step: what the world was, who may meet whom, which multibodies gain energy. In a world
+//! in which nothing moves a plan holds for the next step too.
+
+use crate::math::Real;
+use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::recycling::RECYCLE_DISTANCE;
+use crate::rapier::view::census::Census;
+use crate::rapier::view::step_view::StepView;
+use rapier3d::dynamics::IntegrationParameters;
+
+/// What is known before rapier's step.
+pub struct StepPlan {
+    /// What the world had when the plan was made.
+    pub census: Census,
+    /// Bodies and colliders.
+    pub view: StepView,
+    /// How deep the deepest contact of all is, a length.
+    pub depth: Real,
+    /// Multibodies that gain energy in rapier's step.
+    pub wild: WildMultibodies,
+}
+
+impl StepPlan {
+    /// Whether it holds in this world: nothing moved when it was made, and nothing has changed.
+    pub fn holds_in(&self, census: &Census) -> bool {
+        census.still.is_some() && self.census == *census
+    }
+}
+
+/// Parameters of a step with medial colliders: contacts are kept no longer than [`RECYCLE_DISTANCE`] says.
+pub fn lowered(parameters: &IntegrationParameters) -> IntegrationParameters {
+    let mut parameters = *parameters;
+    let distance = &mut parameters.normalized_contact_recycle_distance;
+    *distance = distance.min(RECYCLE_DISTANCE);
+    parameters
+}

@@ -1,0 +1,120 @@
+//! Decides which pairs of colliders may meet in the step: by rapier's own rules (groups, body types, joints, filters),
+//! and by the boxes that they sweep.
+
+use crate::math::Real;
+use crate::rapier::view::filter_answers::FilterAnswers;
+use crate::rapier::view::motion::{Body, Kind};
+use crate::rapier::view::overlapping_boxes::meeting;
+use crate::rapier::view::step_view::StepView;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use rapier3d::dynamics::{ImpulseJointSet, MultibodyJointSet, RigidBodySet, RigidBodyType};
+use rapier3d::geometry::{ColliderSet, SolverFlags};
+use rapier3d::pipeline::ActiveHooks;
+
+/// What decides whether two colliders respond to each other (`narrow_phase/pair_update.rs` of rapier
+/// 0.36, in its order).
+#[derive(Clone, Copy)]
+pub struct Rules<'a> {
+    /// Bodies.
+    pub bodies: &'a RigidBodySet,
+    /// Colliders.
+    pub colliders: &'a ColliderSet,
+    /// Joints, some of which turn contacts off.
+    pub impulse_joints: &'a ImpulseJointSet,
+    /// Multibodies, likewise.
+    pub multibody_joints: &'a MultibodyJointSet,
+    /// Filters of the user.
+    pub verdicts: &'a FilterAnswers<'a>,
+}
+
+impl Rules<'_> {
+    /// Whether rapier would let them push each other. Pairs whose contacts the user modifies are left
+    /// to rapier.
+    pub fn respond(&self, view: &StepView, pair: [usize; 2]) -> bool {
+        let [h1, h2] = pair.map(|k| view.parts[k].handle);
+        let (Some(c1), Some(c2)) = (self.colliders.get(h1), self.colliders.get(h2)) else {
+            return false;
+        };
+        let body = |h| self.bodies.get(h).map(|b| b.body_type());
+        let types = [c1, c2].map(|c| c.parent().and_then(body).unwrap_or(RigidBodyType::Fixed));
+        let typed = [c1, c2]
+            .iter()
+            .any(|c| c.active_collision_types().test(types[0], types[1]));
+        if !typed
+            || !c1.collision_groups().test(c2.collision_groups())
+            || !c1.solver_groups().test(c2.solver_groups())
+        {
+            return false;
+        }
+        if let (Some(b1), Some(b2)) = (c1.parent(), c2.parent()) {
+            let mut joints = self.impulse_joints.joints_between(b1, b2);
+            if joints.any(|(_, j)| !j.data.contacts_enabled) {
+                return false;
+            }
+            let links = [b1, b2].map(|b| self.multibody_joints.rigid_body_link(b));
+            if let [Some(l1), Some(l2)] = links
+                && l1.multibody == l2.multibody
+            {
+                // Both are driven by their joints; nothing here could push them.
+                return false;
+            }
+        }
+        let active = c1.active_hooks() | c2.active_hooks();
+        if active.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS) {
+            return false;
+        }
+        if !active.contains(ActiveHooks::FILTER_CONTACT_PAIRS) {
+            return true;
+        }
+        let world = (self.bodies, self.colliders);
+        let flags = self.verdicts.of_pair(view, world, [h1, h2]);
+        flags.is_some_and(|f| f.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
+    }
+}
+
+/// Whether an impact between two colliders is for the event loop to find: one of them medial, one of
+/// them free, and one awake.
+pub fn is_ccd_candidate(view: &StepView, [i, j]: [usize; 2]) -> bool {
+    let (p, q) = (&view.parts[i], &view.parts[j]);
+    let (a, b) = (&view.bodies[p.body], &view.bodies[q.body]);
+    let free = |body: &Body| body.kind == Kind::Free;
+    p.body != q.body
+        && (free(a) || free(b))
+        && (a.awake || b.awake)
+        && (p.medial().is_some() || q.medial().is_some())
+}
+
+/// Pairs of colliders whose boxes over the whole step meet, in the narrow phase's order (lower collider
+/// index first). Of fixed ones only those count that are near what moves: a world may have thousands.
+pub fn sweep(view: &StepView, dt: Real, margin: Real) -> Vec<[usize; 2]> {
+    let moving = |k: &usize| view.bodies[view.parts[*k].body].kind != Kind::Fixed;
+    let swept = |&k: &usize| {
+        let aabb = view.swept_aabb(k, 0.0, dt);
+        aabb.loosened(margin + view.parts[k].skin)
+    };
+    let (mut parts, fixed): (Vec<usize>, Vec<usize>) = (0..view.parts.len()).partition(moving);
+    let mut boxes: Vec<Aabb> = parts.iter().map(swept).collect();
+    let all = boxes
+        .iter()
+        .fold(Aabb::new_invalid(), |all, b| all.merged(b));
+    for k in fixed {
+        let aabb = swept(&k);
+        if aabb.intersects(&all) {
+            parts.push(k);
+            boxes.push(aabb);
+        }
+    }
+    let met = meeting(&boxes)
+        .into_iter()
+        .map(|pair| pair.map(|n| parts[n]));
+    let is_ccd_candidate = met.filter(|pair| is_ccd_candidate(view, *pair));
+    let mut pairs: Vec<_> = is_ccd_candidate.map(|pair| in_order(view, pair)).collect();
+    pairs.sort_unstable();
+    pairs
+}
+
+/// In the narrow phase's order.
+pub fn in_order(view: &StepView, [i, j]: [usize; 2]) -> [usize; 2] {
+    let index = |k: usize| view.parts[k].handle.into_raw_parts().0;
+    if index(i) <= index(j) { [i, j] } else { [j, i] }
+}

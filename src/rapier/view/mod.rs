@@ -1,0 +1,10 @@
+//! What a step sees of the world, taken before rapier's step: bodies and their motions, colliders, who may meet whom.
+
+pub(crate) mod census;
+pub(crate) mod eligible_pairs;
+pub(crate) mod filter_answers;
+pub(crate) mod medial_colliders;
+pub(crate) mod motion;
+pub(crate) mod overlapping_boxes;
+pub(crate) mod step_view;
+pub(crate) mod turned;

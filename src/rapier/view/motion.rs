@@ -1,0 +1,355 @@
+//! One body in a step: its pose and velocities before rapier's step, and the rigid motion that the step gave it.
+//!
+//! rapier turns a body in `n` linearised pieces, so a fast turn ends short of `|ω| dt`. So the motion is taken from the
+//! poses before and after, and from the number of full turns in between.
+
+use crate::math::{Pose, Real, Rotation, Vector};
+use crate::rapier::view::turned::{Turned, shortest};
+use parry3d::mass_properties::MassProperties;
+use parry3d::query::NonlinearRigidMotion;
+use rapier3d::dynamics::{
+    LockedAxes, MultibodyLink, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType,
+};
+use std::f32::consts::TAU;
+
+/// Turn in a step, in radians, from which the end rotation alone may hide whole turns.
+const MAY_WRAP: Real = 2.5;
+
+/// Whether an impact may move a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Never moves.
+    Fixed,
+    /// Moves, and nothing stops it: kinematic bodies, and links of multibodies of which a joint is kinematic or
+    /// coupled to another.
+    Driven,
+    /// Dynamic.
+    Free,
+}
+
+/// How joints bend the path of a body, of which its motion is a chord.
+#[derive(Clone, Copy, Debug)]
+struct Bend {
+    /// What they add to its velocities in a second.
+    rate: [Vector; 2],
+    /// Seconds into the step until which they do.
+    until: Real,
+    /// By how much its velocities exceed the tangent of the path.
+    excess: [Vector; 2],
+}
+
+/// A body in a step.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// `None` for what colliders without a body stand on.
+    pub handle: Option<RigidBodyHandle>,
+    /// Whether an impact may move it.
+    pub kind: Kind,
+    /// Took part in rapier's step.
+    pub awake: bool,
+    /// Motion from [`Self::time`] on, world frame, per second.
+    pub motion: NonlinearRigidMotion,
+    /// Seconds into the step at which `motion` starts.
+    pub time: Real,
+    /// Pose at the start of the step.
+    pub start: Pose,
+    /// Pose at the end of rapier's step.
+    pub end: Pose,
+    /// Linear and angular velocity that the solver works with, per second. The angular velocity turns with
+    /// the body: where the step turns it about another axis, one fixed in the world would change its energy.
+    pub velocity: [Vector; 2],
+    /// How joints bend its path.
+    bend: Option<Bend>,
+    /// Whether its motion is the one that rapier's step made, and its velocities are those at its end.
+    pub is_rapiers: bool,
+    /// The velocities before rapier's step.
+    pub velocity_before: [Vector; 2],
+    /// Linear velocity that gravity and forces of the user give it in the whole step.
+    pull: Vector,
+    /// Largest distance of a point of its colliders from the centre of mass, a length.
+    pub reach: Real,
+    /// Mass, centre and inertia in the body's frame.
+    pub mass: MassProperties,
+    /// Inverse mass along the world's axes, 0 where locked.
+    pub inverse_mass: Vector,
+    /// Locked axes.
+    pub locked: LockedAxes,
+    /// rapier's dominance group.
+    pub dominance: i16,
+    /// Radians per second of the fastest link of its multibody before rapier's step; 0 of a body of none.
+    pub whirl: Real,
+    /// Of a link of a multibody, before rapier's step.
+    pub turned_before: Option<Turned>,
+    /// Whether rapier's step is taken back from it.
+    pub is_taken_back: bool,
+}
+
+impl Body {
+    /// A body at the start of a step; `is_free`: where it is dynamic, an impact may move it.
+    pub fn new(handle: RigidBodyHandle, body: &RigidBody, is_free: bool) -> Self {
+        let kind = match (body.is_fixed(), body.is_dynamic() && is_free) {
+            (true, _) => Kind::Fixed,
+            (false, true) => Kind::Free,
+            (false, false) => Kind::Driven,
+        };
+        let properties = body.mass_properties();
+        Self {
+            handle: Some(handle),
+            kind,
+            awake: kind != Kind::Fixed && !body.is_sleeping(),
+            motion: NonlinearRigidMotion {
+                local_center: properties.local_mprops.local_com,
+                ..NonlinearRigidMotion::constant_position(*body.position())
+            },
+            time: 0.0,
+            start: *body.position(),
+            end: *body.position(),
+            velocity: [body.linvel(), body.angvel()],
+            bend: None,
+            is_rapiers: true,
+            velocity_before: [body.linvel(), body.angvel()],
+            pull: Vector::ZERO,
+            reach: 0.0,
+            mass: properties.local_mprops,
+            inverse_mass: properties.effective_inv_mass,
+            locked: properties.flags,
+            dominance: body.effective_dominance_group(),
+            whirl: 0.0,
+            turned_before: None,
+            is_taken_back: false,
+        }
+    }
+
+    /// How far a link that goes on from this body's motion has turned: at the end of rapier's step, or at its start, if
+    /// the step was taken back.
+    pub fn turned(&self, link: &MultibodyLink) -> Turned {
+        match self.turned_before {
+            Some(before) if self.is_taken_back => before,
+            _ => Turned::of(link),
+        }
+    }
+
+    /// The fixed body that colliders without a body stand on.
+    pub fn ground() -> Self {
+        Self {
+            handle: None,
+            kind: Kind::Fixed,
+            awake: false,
+            motion: NonlinearRigidMotion::identity(),
+            time: 0.0,
+            start: Pose::IDENTITY,
+            end: Pose::IDENTITY,
+            velocity: [Vector::ZERO; 2],
+            bend: None,
+            is_rapiers: true,
+            velocity_before: [Vector::ZERO; 2],
+            pull: Vector::ZERO,
+            reach: 0.0,
+            mass: MassProperties::default(),
+            inverse_mass: Vector::ZERO,
+            locked: LockedAxes::empty(),
+            dominance: i16::from(i8::MAX) + 1,
+            whirl: 0.0,
+            turned_before: None,
+            is_taken_back: false,
+        }
+    }
+
+    /// Velocity with which the solver starts, before contacts: gravity and forces of the user.
+    pub fn predict(&mut self, body: &RigidBody, gravity: Vector, dt: Real) {
+        if self.kind == Kind::Fixed || !self.awake {
+            return;
+        }
+        [self.motion.linvel, self.motion.angvel] = velocities(body, dt);
+        if body.is_dynamic() {
+            let forces = gravity * body.gravity_scale() + body.user_force() * self.inverse_mass;
+            self.pull = forces * dt;
+            self.motion.linvel += self.pull;
+        }
+    }
+
+    /// The motion that took it to where it is after rapier's step.
+    pub fn moved(&mut self, body: &RigidBody, iterations: usize, dt: Real) {
+        // rapier computes the mass of a body that is new in this step only now.
+        let properties = body.mass_properties();
+        let com = properties.local_mprops.local_com;
+        self.reach += (com - self.mass.local_com).length();
+        self.mass = properties.local_mprops;
+        self.inverse_mass = properties.effective_inv_mass;
+        self.locked = properties.flags;
+        self.dominance = body.effective_dominance_group();
+        self.motion.local_center = com;
+        let (start, end) = (self.motion.start, *body.position());
+        self.end = end;
+        let spin = start.rotation * (end.rotation.inverse() * body.angvel());
+        self.velocity = [body.linvel(), spin];
+        let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
+        let turn = unwrapped(turn, body.angvel() * dt, iterations.max(1) as Real);
+        self.motion.linvel = (end * com - start * com) / dt;
+        self.motion.angvel = turn / dt;
+        self.awake |= self.motion.linvel != Vector::ZERO || self.motion.angvel != Vector::ZERO;
+    }
+
+    /// Linear velocity that gravity and forces of the user give it in the whole step.
+    pub fn pull(&self) -> Vector {
+        self.pull
+    }
+
+    /// Takes back rapier's step but for what gravity and forces gave it.
+    pub fn take_back(&mut self) {
+        self.velocity = self.velocity_before;
+        self.velocity[0] += self.pull;
+        self.end = self.start;
+        self.go(self.velocity);
+        self.is_taken_back = true;
+    }
+
+    /// Takes back what forces did to the velocities in the last `share` of rapier's step.
+    pub fn undo_forces(&mut self, share: Real) {
+        for (now, before) in self.velocity.iter_mut().zip(self.velocity_before) {
+            *now += (before - *now) * share;
+        }
+    }
+
+    /// Stops it for the last `share` of the step: it gains no speed by forces in a time in which it gets nowhere.
+    /// What contacts took of that already is not taken twice.
+    pub fn hold(&mut self, share: Real) {
+        let pull = self.pull * share;
+        let length = pull.length();
+        if length > 0.0 {
+            let along = pull / length;
+            let gained = self.velocity[0].dot(along).clamp(0.0, length);
+            self.velocity[0] -= along * gained;
+        }
+        self.motion = NonlinearRigidMotion::constant_position(self.motion.start);
+        self.bend = None;
+    }
+
+    /// Lets it be carried along by a motion, as if it were part of that body.
+    pub fn follow(&mut self, carrying: &NonlinearRigidMotion) {
+        let center = carrying.start * carrying.local_center;
+        self.bend = None;
+        self.motion = NonlinearRigidMotion {
+            local_center: self.motion.start.inverse_transform_point(center),
+            linvel: carrying.linvel,
+            angvel: carrying.angvel,
+            ..self.motion
+        };
+    }
+
+    /// Motion from `time` on.
+    pub fn motion_from(&self, time: Real) -> NonlinearRigidMotion {
+        NonlinearRigidMotion {
+            start: self.motion.position_at_time(time - self.time),
+            ..self.motion
+        }
+    }
+
+    /// Linear velocity of its centre of mass at `time`, where it is advanced to, and angular velocity: of its path,
+    /// where that is bent.
+    pub fn twist(&self, time: Real) -> [Vector; 2] {
+        if let Some(bend) = self.bend.filter(|_| self.time == time) {
+            return [0, 1].map(|i| self.velocity[i] - bend.excess[i]);
+        }
+        let m = self.motion_from(time);
+        // A body that is carried along turns about another's centre.
+        let arm = m.start.rotation * (self.mass.local_com - m.local_center);
+        [m.linvel + m.angvel.cross(arm), m.angvel]
+    }
+
+    /// Gives it the motion that moves its centre of mass by a way and turns it, in some seconds, with the whole turns
+    /// that it makes; by then its velocities have gained so much.
+    pub fn aim(
+        &mut self,
+        (way, turn): (Vector, Rotation),
+        [tangent, gained]: [[Vector; 2]; 2],
+        seconds: Real,
+    ) {
+        let turned = shortest(turn).to_scaled_axis();
+        let turned = unwrapped(turned, self.motion.angvel * seconds, Real::MAX.sqrt());
+        self.motion.local_center = self.mass.local_com;
+        self.motion.linvel = way / seconds;
+        self.motion.angvel = turned / seconds;
+        let spin = self.velocity[1] + gained[1] - turn * self.velocity[1];
+        self.bend = Some(Bend {
+            rate: [gained[0] / seconds, spin / seconds],
+            until: self.time + seconds,
+            excess: [0, 1].map(|i| self.velocity[i] - tangent[i]),
+        });
+        self.is_rapiers = false;
+    }
+
+    /// Gives it a motion along these velocities.
+    pub fn go(&mut self, [linear, angular]: [Vector; 2]) {
+        self.motion.local_center = self.mass.local_com;
+        self.motion.linvel = linear;
+        self.motion.angvel = angular;
+        self.bend = None;
+        self.is_rapiers = false;
+    }
+
+    /// Moves it to where it is at `time`.
+    pub fn advance(&mut self, time: Real) {
+        let before = self.motion.start.rotation;
+        self.motion = self.motion_from(time);
+        self.motion.start.rotation = self.motion.start.rotation.normalize();
+        self.velocity[1] = self.motion.start.rotation * (before.inverse() * self.velocity[1]);
+        if let Some(bend) = self.bend {
+            let seconds = (time.min(bend.until) - self.time).max(0.0);
+            for (velocity, rate) in self.velocity.iter_mut().zip(bend.rate) {
+                *velocity += rate * seconds;
+            }
+            if time > bend.until {
+                self.bend = None;
+            }
+        }
+        self.time = time;
+    }
+
+    /// Gives rapier's body the pose of this one, and where it was `struck` the velocities.
+    pub fn write_back(&self, struck: bool, bodies: &mut RigidBodySet) {
+        let Some(body) = self.handle.and_then(|h| bodies.get_mut(h)) else {
+            return;
+        };
+        if !self.motion.start.is_finite() {
+            return;
+        }
+        let end = *body.position();
+        body.set_position(self.motion.start, struck);
+        if body.body_type() == RigidBodyType::KinematicPositionBased {
+            // Where it was going, it still is.
+            body.set_next_kinematic_position(end);
+        }
+        if struck {
+            body.set_linvel(self.velocity[0], true);
+            body.set_angvel(self.velocity[1], true);
+        }
+    }
+}
+
+/// Linear and angular velocity with which a body starts into a step of `dt` seconds. Of a body that is
+/// driven by its position rapier computes them only in its step.
+pub fn velocities(body: &RigidBody, dt: Real) -> [Vector; 2] {
+    if body.body_type() != RigidBodyType::KinematicPositionBased {
+        return [body.linvel(), body.angvel()];
+    }
+    let (start, end) = (body.position(), body.next_position());
+    let com = body.mass_properties().local_mprops.local_com;
+    let turn = shortest(end.rotation * start.rotation.inverse());
+    [*end * com - *start * com, turn.to_scaled_axis()].map(|moved| moved / dt)
+}
+
+/// The turn `turn` plus whole turns, as rapier's integration of `expected` in `n` pieces made it.
+fn unwrapped(turn: Vector, expected: Vector, n: Real) -> Vector {
+    let asked = expected.length();
+    if asked <= MAY_WRAP {
+        return turn;
+    }
+    let made = expected * (n * 2.0 * (asked / (2.0 * n)).atan() / asked);
+    let axis = turn.normalize_or_zero();
+    if axis == Vector::ZERO {
+        // Whole turns only: about the axis expected.
+        return made.normalize() * (made.length() / TAU).round() * TAU;
+    }
+    turn + axis * (((made.dot(axis) - turn.length()) / TAU).round() * TAU)
+}

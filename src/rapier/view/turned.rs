@@ -1,0 +1,54 @@
+//! How far a link of a multibody has turned about the axes of its joint, in the form in which rapier sums it.
+
+use crate::math::{Real, Rotation, Vector};
+use rapier3d::dynamics::MultibodyLink;
+use std::f32::consts::TAU;
+
+/// Difference of angles, in radians, that is not made up for by whole turns: what rounding makes.
+const NO_TURN: Real = 1.0e-4;
+
+/// How far a link of a multibody has turned: rapier sums the angles about the three axes of its joint, with all whole
+/// turns, beside the rotation that they made.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Turned {
+    /// Of the link against its parent.
+    pub rotation: Rotation,
+    /// Sums about the axes of the joint, in radians.
+    pub angles: Vector,
+}
+
+impl Turned {
+    /// What rapier has now.
+    pub fn of(link: &MultibodyLink) -> Self {
+        let coordinates = link.joint.coords();
+        Self {
+            rotation: link.joint.joint_rot(),
+            angles: Vector::new(coordinates[3], coordinates[4], coordinates[5]),
+        }
+    }
+
+    /// Displacements that take a link from what rapier has, `of`, to a rotation, of which the last is the shortest turn
+    /// there, and the others whole turns: so its angles go on from these. `free`: the axis of a hinge.
+    pub fn goes_on(&self, of: &Self, rotation: Rotation, hinge: Option<usize>) -> [Vector; 3] {
+        let turn = |from: Rotation| shortest(rotation * from.inverse()).to_scaled_axis();
+        let last = turn(of.rotation);
+        let left = self.angles + turn(self.rotation) - of.angles - last;
+        if let Some(axis) = hinge {
+            let whole = Vector::AXES[axis] * (left[axis] / TAU).round() * TAU;
+            return [whole, Vector::ZERO, last];
+        }
+        let half = 0.5 * left;
+        if half.length() < NO_TURN || !half.is_finite() {
+            return [Vector::ZERO, Vector::ZERO, last];
+        }
+        let whole = (half.length() / TAU).ceil() * TAU;
+        let length = (whole * whole - half.length_squared()).max(0.0).sqrt();
+        let aside = half.normalize().any_orthonormal_vector() * length;
+        [half + aside, half - aside, last]
+    }
+}
+
+/// The same rotation, by no more than half a turn.
+pub fn shortest(q: Rotation) -> Rotation {
+    if q.w < 0.0 { -q } else { q }
+}
