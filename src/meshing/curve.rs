@@ -6,7 +6,7 @@ use crate::meshing::certify::hausdorff::in_unit;
 use crate::meshing::draft::Draft;
 use crate::meshing::options::{BuildOptions, Hausdorff, Limits, Progress};
 use crate::meshing::recipe::source::Source;
-use crate::meshing::surface::surface::Surface;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 use std::ops::ControlFlow;
 

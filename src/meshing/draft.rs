@@ -6,7 +6,7 @@ use crate::math::fast_hash::FastSet;
 use crate::math::{Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::surface::surface::Frame;
+use crate::meshing::surface::checked_surface::Frame;
 use crate::meshing::watch::bytes_of;
 
 /// A medial sphere in the builder's frame.

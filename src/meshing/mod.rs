@@ -30,7 +30,7 @@ use certify::mass::mass_properties;
 use options::Limits;
 use recipe::source::Source;
 use std::ops::ControlFlow;
-use surface::surface::Surface;
+use surface::checked_surface::Surface;
 use watch::Watch;
 
 impl MedialMesh {

@@ -1,9 +1,9 @@
 //! What a user of rapier calls (layer 6), and what is done before and after rapier's step to have medial colliders
 //! collide.
 //!
-//! A step in order: `step.rs` takes a [`StepView`](view) of the world, makes a plan of it (`step_plan.rs`: [contacts]
-//! that rapier will ask for, pairs that are kept from its solver), has rapier step, and resolves the [impacts] within
-//! the step that rapier missed, with their [joints]. [host] has what rapier 0.36 needs to be told in roundabout ways.
+//! A step in order (`step.rs`): it takes a view of the world (`view/`), plans the step (`contacts/`: the contacts that
+//! rapier will ask for, and the pairs that are kept from its solver), has rapier step, and resolves the impacts within
+//! the step that rapier missed (`impacts/`, `joints/`). What rapier 0.36 has to be told in roundabout ways is in `host/`.
 
 mod contacts;
 mod effects;

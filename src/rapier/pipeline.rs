@@ -115,7 +115,7 @@ impl MedialPipeline {
         self.state.batch.ready().await;
     }
 
-    /// Sets the effects of one collider. An effect left at [`Effect::Auto`] follows the scene's setting, so
+    /// Sets the effects of one collider. An effect left at [`Effect::Auto`](crate::Effect::Auto) follows the scene's setting, so
     /// [`Effects::default`] removes the collider's own settings. If two colliders of a pair differ in an effect,
     /// `On` wins over `Off`.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {

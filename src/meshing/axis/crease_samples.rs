@@ -6,11 +6,11 @@ use crate::meshing::axis::local_spacing::LocalSpacing;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::random::Random;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::creases::{Creases, SharpEdge};
 use crate::meshing::surface::samples::{
     CANDIDATES, Grid, Sample, dense_samples, even_samples, spacing, vertex_samples_where,
 };
-use crate::meshing::surface::surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// Distance between pairs along a crease, and of each half of a pair from it, over that of samples.

@@ -8,8 +8,8 @@ use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::simplify::tangent::Faces;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::creases::Creases;
-use crate::meshing::surface::surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// A surface of which more than this share of the sharp edges end alone, within a face, is smooth, and they are

@@ -20,8 +20,8 @@ use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::geometry::union_find::Groups;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::flat_faces::FlatFaces;
-use crate::meshing::surface::surface::Surface;
 use std::f64::consts::TAU;
 
 /// Triangles of a sheet lower than this share of what makes corners one are left out.

@@ -9,7 +9,7 @@ use crate::math::fast_hash::{FastMap, FastSet};
 use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Point, coordinate};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::surface::surface::Surface;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// Half-thickness of a sheet before enclosure (longest side 1).

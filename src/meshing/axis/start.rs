@@ -10,8 +10,8 @@ use crate::meshing::axis::sheets::{open_sheets, thin_sheets};
 use crate::meshing::draft::Draft;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::samples::{Sample, blue_noise};
-use crate::meshing::surface::surface::Surface;
 use crate::meshing::watch::Watch;
 use std::borrow::Cow;
 

@@ -20,8 +20,8 @@ use crate::meshing::draft::{Draft, Signed};
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::random::Random;
 use crate::meshing::geometry::subdivide::{halve, longest_edge_sq};
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::samples::{even_samples, vertex_samples};
-use crate::meshing::surface::surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// Points that dilation looks at, besides all vertices. The certificate finds the rest: more

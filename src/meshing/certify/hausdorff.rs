@@ -35,8 +35,8 @@ use crate::meshing::geometry::subdivide;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::{Hausdorff, Progress};
 use crate::meshing::surface::boundary::solid_boundary;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::samples::vertex_samples;
-use crate::meshing::surface::surface::Surface;
 use crate::meshing::watch::Watch;
 use std::ops::ControlFlow;
 

@@ -11,7 +11,7 @@ use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::meshing::findings::MassSource;
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::surface::surface::{Frame, Surface};
+use crate::meshing::surface::checked_surface::{Frame, Surface};
 use crate::meshing::watch::Watch;
 use parry3d::mass_properties::MassProperties;
 use parry3d::math::Matrix;

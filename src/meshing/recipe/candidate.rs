@@ -11,7 +11,7 @@ use crate::meshing::options::{Hausdorff, Quality, Variant};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::recipe::tightened::GAIN_OF_TIGHT;
 use crate::meshing::refine::refit::Target;
-use crate::meshing::surface::surface::Surface;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// A finished medial mesh and what was measured on it, in the builder's frame.

@@ -13,8 +13,8 @@ use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::{Hausdorff, Limits, Variant};
 use crate::meshing::recipe::candidate::Candidate;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::flat_faces::{FlatFaces, flat_faces};
-use crate::meshing::surface::surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// A medial mesh is exact when it is nowhere farther off than this (longest side 1), of which half is left to the

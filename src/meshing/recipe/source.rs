@@ -3,7 +3,7 @@
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::Limits;
 use crate::meshing::surface::boundary::Boundary;
-use crate::meshing::surface::surface::Surface;
+use crate::meshing::surface::checked_surface::Surface;
 
 /// Note on a result that is not what the source was.
 pub const GAVE_UP: &str = "holes or parts were given up to reach the count";

@@ -13,8 +13,8 @@ use crate::meshing::refine::swaps::{LARGE, Scored, Swaps, grow, remove, swap};
 use crate::meshing::simplify::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::simplify::shared_count::Parts;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::samples::{even_samples, vertex_samples};
-use crate::meshing::surface::surface::Surface;
 use crate::meshing::watch::Watch;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -9,8 +9,8 @@ use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::simplify::quadric::Quadric;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::creases::Creases;
-use crate::meshing::surface::surface::Surface;
 
 /// Steps of Newton's method, and the residual at which it has converged (longest side 1).
 const STEPS: usize = 30;

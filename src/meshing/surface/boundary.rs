@@ -10,7 +10,7 @@ use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::subdivide::{halve, longest_edge_sq};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::surface::surface::Surface;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// Distance before and behind the surface at which the winding number is asked for (longest side 1).

@@ -10,8 +10,8 @@ use crate::math::fast_hash::FastMap;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::triangle::closest_on_triangle;
 use crate::meshing::geometry::union_find::Groups;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::edges::Edges;
-use crate::meshing::surface::surface::Surface;
 use crate::meshing::watch::Watch;
 use std::collections::BTreeMap;
 

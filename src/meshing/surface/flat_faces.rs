@@ -3,7 +3,7 @@
 use crate::error::BuildError;
 use crate::meshing::axis::roof::Plane;
 use crate::meshing::geometry::bounds::{Point, direction};
-use crate::meshing::surface::surface::Surface;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// Corners of a flat face may be off its plane by this (longest side 1): their rounding to `f32`, at a few

@@ -1,6 +1,7 @@
 //! From triangles to the surface of a solid: repair, orientation, creases, the boundary of what overlaps.
 
 pub(crate) mod boundary;
+pub(crate) mod checked_surface;
 pub(crate) mod creases;
 pub(crate) mod edges;
 pub(crate) mod flat_faces;
@@ -10,5 +11,4 @@ pub(crate) mod patches;
 pub(crate) mod repair;
 pub(crate) mod samples;
 pub(crate) mod seams;
-pub(crate) mod surface;
 pub(crate) mod weld;

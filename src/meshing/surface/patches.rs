@@ -13,10 +13,10 @@ use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::random::Random;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::openings::{Opening, openings};
 use crate::meshing::surface::orient::{Patch, Patches};
 use crate::meshing::surface::samples::even_samples;
-use crate::meshing::surface::surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// Points looked at, by area. A winding number costs about 10 µs.

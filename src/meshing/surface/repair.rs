@@ -6,11 +6,11 @@ use crate::math::{Real, Vector};
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::surface::checked_surface::{Frame, Surface, corners, cross};
 use crate::meshing::surface::openings::lids;
 use crate::meshing::surface::orient::{Patches, orient};
 use crate::meshing::surface::patches::{Kind, judge};
 use crate::meshing::surface::seams::seam_slivers;
-use crate::meshing::surface::surface::{Frame, Surface, corners, cross};
 use crate::meshing::surface::weld::{Welded, weld};
 use crate::meshing::watch::Watch;
 

@@ -6,7 +6,7 @@ use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
 use crate::meshing::geometry::bounds::{Point, coordinate, direction};
 use crate::meshing::geometry::random::Random;
-use crate::meshing::surface::surface::Surface;
+use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// Candidates per sample wanted. Fewer leave gaps, more cost time for a few samples.

@@ -46,7 +46,7 @@ pub enum SavedWorldError {
     Version {
         /// Version of the bytes.
         found: u32,
-        /// The version that this crate reads: [`VERSION`].
+        /// The version that this crate reads.
         reads: u32,
     },
     /// Bytes were changed or are missing: the checksum is wrong.
