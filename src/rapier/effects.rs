@@ -78,7 +78,7 @@ pub struct MedialOptions {
     /// Where contacts and first contacts of many pairs are computed. The results are the same on each, bit by bit.
     pub backend: Backend,
     /// Node pairs and elementary tests that the search for first contacts may take in a step, each half a
-    /// microsecond to one. DedupEventHandler it is spent, bodies of which more would have to be asked wait until the next step where they
+    /// microsecond to one. Once it is spent, bodies of which more would have to be asked wait until the next step where they
     /// are proven free ([`crate::StepReport::waiting`]), and keep their speed: they lose time, and pass through nothing.
     pub budget: u64,
 }

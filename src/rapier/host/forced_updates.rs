@@ -37,7 +37,7 @@ const RESTS: Real = 1.25;
 const FORCE_UPDATE_BIT: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
 
 /// Of which medial colliders the contacts with each other are to be computed anew, and how deep the deepest
-/// contact of all is. QueryProgress from the world alone, so that a world that was saved and loaded goes on as it
+/// contact of all is. Known from the world alone, so that a world that was saved and loaded goes on as it
 /// would have.
 pub fn find(sets: &Sets, items: &MedialColliders, starts: &Starts) -> (Vec<bool>, Real) {
     let mut anew = vec![false; items.all.len()];

@@ -11,7 +11,7 @@ use crate::rapier::view::step_view::StepView;
 /// The medial meshes of both, where they are.
 pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
 
-/// A query_options about a pair from some time on, while neither of the two has another motion.
+/// A question about a pair from some time on, while neither of the two has another motion.
 pub struct LazyToiQuery<'m> {
     /// Seconds into the step.
     from: Real,

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// is. Smaller, and wide grounds cost queries; larger, and nothing is gained, since rounding hides gaps.
 const UNBOUNDED: Real = 1.0e12;
 
-/// PairCulling of the colliders on their bodies' motions, each made when first wanted.
+/// Outlines of the colliders on their bodies' motions, each made when first wanted.
 pub struct PairCulling {
     made: Vec<Option<Made>>,
     shells: Vec<Option<Arc<Shell>>>,

@@ -1,10 +1,10 @@
-//! SweptBoxes of the colliders of a step, each from its body's last impact to the end, and which of them meet: in a tree,
+//! Boxes of the colliders of a step, each from its body's last impact to the end, and which of them meet: in a tree,
 //! since every impact changes a few.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::partitioning::{Bvh, BvhBuildStrategy};
 
-/// SweptBoxes by the index of their collider.
+/// Boxes by the index of their collider.
 #[derive(Default)]
 pub struct SweptBoxes {
     all: Vec<Aabb>,
