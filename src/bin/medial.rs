@@ -59,7 +59,7 @@ enum Command {
     Bake(BakeArguments),
     /// Describe a medial mesh (.ma or baked), or the errors by count that a triangle mesh may be built with.
     Info(InfoArguments),
-    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side, with error and cost of each.
+    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side; tell error and cost of each.
     Compare(CompareArguments),
     /// Measure from which batch sizes on the GPU pays, for `Backend::Auto`.
     #[cfg(feature = "gpu")]

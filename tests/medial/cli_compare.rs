@@ -6,6 +6,13 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
 
+const KINDS: [&str; 4] = [
+    "medial mesh",
+    "convex decomposition",
+    "convex hull",
+    "triangle mesh",
+];
+
 /// Width, height and pixels (red, green, blue) of a picture.
 fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
     let decoder = png::Decoder::new(BufReader::new(File::open(path).unwrap()));
@@ -43,8 +50,7 @@ fn errors_are_those_of_a_known_body() {
     assert_eq!(json["steps"], 3);
     let rows = json["colliders"].as_array().unwrap();
     let names: Vec<_> = rows.iter().map(|row| row["collider"].as_str()).collect();
-    let kinds = ["medial mesh", "convex decomposition", "convex hull"];
-    assert_eq!(names, kinds.map(Some));
+    assert_eq!(names, KINDS.map(Some));
     for row in rows {
         let times = &row["step_milliseconds"];
         let [median, longest] = ["median", "longest"].map(|k| times[k].as_f64().unwrap());
@@ -58,6 +64,8 @@ fn errors_are_those_of_a_known_body() {
     assert!(error(1) < error(2), "{}", error(1));
     assert!(rows[0]["pieces"].as_u64().unwrap() <= 40);
     assert_eq!(rows[2]["pieces"], 1);
+    assert_eq!(rows[3]["pieces"], 20);
+    assert_eq!(error(3), 0.0);
 
     let ([width, height], bytes) = pixels(&directory.join("out.png"));
     assert_eq!([width, height], [908, 604]);
@@ -81,7 +89,7 @@ fn the_table_names_each_collider() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     let lines = text(&output.stdout);
     assert!(lines.starts_with("compare.png\n"), "{lines}");
-    for name in ["medial mesh", "convex decomposition", "convex hull"] {
+    for name in KINDS {
         assert!(lines.lines().any(|l| l.starts_with(name)), "{lines}");
     }
     assert!(!lines.contains("ms a step"), "no step was timed: {lines}");

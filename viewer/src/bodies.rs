@@ -50,6 +50,12 @@ impl Builder {
         self.running = Some((build.clone(), receiver));
     }
 
+    /// Another mesh falls, once it is built.
+    pub fn take(&mut self, mesh: PathBuf, build: &Build) {
+        self.mesh = Some(mesh);
+        self.start(build);
+    }
+
     /// Whether a build is running.
     pub fn is_busy(&self) -> bool {
         self.running.is_some()

@@ -6,13 +6,15 @@
 //! ```
 //! `--steps N` takes N steps before the first frame, pauses, and prints `ready` once it has drawn some:
 //! what `screenshot.sh` waits for.
-//! Left button: turn. Right button: move. Wheel: nearer. Space: pause. S: one step.
+//! Left button: on a body that falls, drag it; elsewhere, turn. Right button: move. Wheel: nearer. Space: pause. S: one
+//! step. Drop a mesh file: it falls instead.
 
 mod bodies;
 #[path = "../../examples/common/mod.rs"]
 mod common;
 mod drawing;
 mod graph;
+mod hand;
 mod panel;
 mod settings;
 
@@ -21,6 +23,7 @@ use common::arguments::Arguments;
 use common::scene::Kind;
 use drawing::Drawing;
 use graph::Graph;
+use hand::Hand;
 use kiss3d::prelude::*;
 use settings::Settings;
 use std::path::PathBuf;
@@ -78,13 +81,29 @@ async fn view() -> Result<(), String> {
     root.add_light(sun);
     let mut drawing = Drawing::new(&mut root, &scene, &stage, settings.kind);
 
+    let mut hand = Hand::default();
     while window.render_3d(&mut root, &mut camera).await {
-        settings.take_keys(&window);
+        let pointer = ray(&window, &camera);
+        let button = settings.take_events(&window);
+        if button == Some(Action::Press) && !window.is_egui_capturing_mouse() {
+            let held = pointer.is_some_and(|ray| hand.grab(&stage, ray));
+            let turns = (!held).then_some(MouseButton::Button1);
+            camera.rebind_rotate_button(turns);
+        } else if button == Some(Action::Release) {
+            hand.open();
+            camera.rebind_rotate_button(Some(MouseButton::Button1));
+        }
+        if let Some(file) = window.dropped_files().pop() {
+            builder.take(file, &settings.build);
+        }
         frames += 1;
         if frames == FRAMES && options.steps.is_some() {
             println!("ready");
         }
         if !settings.paused || std::mem::take(&mut settings.one_step) {
+            if let Some(ray) = pointer {
+                hand.pull(&mut stage, ray);
+            }
             graph.push(&stage.step());
         }
         let before = settings.clone();
@@ -92,7 +111,17 @@ async fn view() -> Result<(), String> {
         if before.build != settings.build {
             builder.start(&settings.build);
         }
-        let built = builder.finished().transpose()?;
+        let built = match builder.finished() {
+            Some(Ok(scene)) => {
+                settings.failure = None;
+                Some(scene)
+            }
+            Some(Err(failure)) => {
+                settings.failure = Some(failure);
+                None
+            }
+            None => None,
+        };
         let restart = std::mem::take(&mut settings.restart);
         if built.is_some() || before.kind != settings.kind || restart {
             let other = built.is_some();
@@ -102,6 +131,7 @@ async fn view() -> Result<(), String> {
                 false => scene.stage_from(settings.kind, &stage),
             };
             stage.set_effects(settings.effects);
+            hand.open();
             drawing.remove();
             drawing = Drawing::new(&mut root, &scene, &stage, settings.kind);
             if other || restart {
@@ -115,4 +145,10 @@ async fn view() -> Result<(), String> {
         drawing.overlay(&mut window, &settings.show, &scene, &stage);
     }
     Ok(())
+}
+
+/// From the eye through the pointer, while that is over the window.
+fn ray(window: &Window, camera: &OrbitCamera3d) -> Option<(Vec3, Vec3)> {
+    let (x, y) = window.cursor_pos()?;
+    Some(camera.unproject(Vec2::new(x as f32, y as f32), window.size().as_vec2()))
 }

@@ -3,7 +3,7 @@
 use crate::common::scene::Kind;
 use crate::graph::Graph;
 use crate::settings::Settings;
-use kiss3d::egui::{Align2, Context, ScrollArea, Slider, Ui, Window};
+use kiss3d::egui::{Align2, Color32, Context, ScrollArea, Slider, Ui, Window};
 use rapier3d_medial::Effect;
 
 /// Draws the panel and takes what the user sets on it.
@@ -12,6 +12,9 @@ pub fn panel(context: &Context, settings: &mut Settings, graph: &Graph, building
     window.default_width(250.0).show(context, |ui| {
         ScrollArea::vertical().show(ui, |ui| {
             run(ui, settings);
+            if let Some(failure) = &settings.failure {
+                ui.colored_label(Color32::from_rgb(255, 130, 110), failure);
+            }
             ui.separator();
             show(ui, settings);
             if settings.kind == Kind::Medial {
@@ -42,6 +45,7 @@ fn run(ui: &mut Ui, settings: &mut Settings) {
             ui.selectable_value(&mut settings.kind, kind, name);
         }
     });
+    ui.small("Drag bodies, or drop a mesh file to let it fall.");
 }
 
 fn show(ui: &mut Ui, settings: &mut Settings) {

@@ -47,6 +47,8 @@ pub struct Settings {
     pub one_step: bool,
     /// The start is asked for.
     pub restart: bool,
+    /// What could not be done, in words.
+    pub failure: Option<String>,
 }
 
 impl Settings {
@@ -70,20 +72,24 @@ impl Settings {
             paused: false,
             one_step: false,
             restart: false,
+            failure: None,
         }
     }
 
-    /// Space pauses, S steps.
-    pub fn take_keys(&mut self, window: &Window) {
-        if window.is_egui_capturing_keyboard() {
-            return;
-        }
+    /// Space pauses, S steps. Whether the left button went down or up since the last call; `None`: neither.
+    pub fn take_events(&mut self, window: &Window) -> Option<Action> {
+        let typing = window.is_egui_capturing_keyboard();
+        let mut button = None;
         for event in window.events().iter() {
             match event.value {
-                WindowEvent::Key(Key::Space, Action::Press, _) => self.paused = !self.paused,
-                WindowEvent::Key(Key::S, Action::Press, _) => self.one_step = true,
+                WindowEvent::Key(Key::Space, Action::Press, _) if !typing => {
+                    self.paused = !self.paused;
+                }
+                WindowEvent::Key(Key::S, Action::Press, _) if !typing => self.one_step = true,
+                WindowEvent::MouseButton(MouseButton::Button1, action, _) => button = Some(action),
                 _ => {}
             }
         }
+        button
     }
 }

@@ -9,7 +9,7 @@ use crate::{INTERRUPTED, STOP};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use rapier3d_medial::math::Vector;
-use rapier3d_medial::meshing::mesh_file;
+use rapier3d_medial::meshing::{Creases, mesh_file};
 use rapier3d_medial::{BuildOptions, MedialMesh, Quality};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -49,6 +49,9 @@ pub struct BuildArguments {
     /// Fit the surface on both sides instead of enclosing it.
     #[arg(long)]
     no_enclose: bool,
+    /// Round all edges: sharp ones are kept by parts of no thickness, which take much longer in a step.
+    #[arg(long)]
+    round_edges: bool,
     /// Of several meshes: write them baked (.medial), not as .ma.
     #[arg(long)]
     bake: bool,
@@ -95,6 +98,14 @@ impl From<QualityArgument> for Quality {
             QualityArgument::Balanced => Self::Balanced,
             QualityArgument::Best => Self::Best,
         }
+    }
+}
+
+/// Which edges are kept.
+pub fn creases(round_edges: bool) -> Creases {
+    match round_edges {
+        true => Creases::None,
+        false => Creases::Auto,
     }
 }
 
@@ -237,6 +248,7 @@ fn build_one(
         enclose: !arguments.no_enclose,
         max_error,
         quality: arguments.quality.into(),
+        creases: creases(arguments.round_edges),
         ..Default::default()
     };
     if arguments.primitives.is_some() || max_error.is_some() {

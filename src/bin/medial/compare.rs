@@ -1,8 +1,9 @@
 //! `medial compare`: a mesh as the colliders that rapier may have of it (medial mesh, convex decomposition, convex
-//! hull), each with its largest error, what it costs to make and to step, and a picture of them side by side.
+//! hull, triangle mesh), each with its largest error, what it costs to make and to step, and a picture of them side by
+//! side.
 
 use crate::STOP;
-use crate::build::{BAR_STEPS, QualityArgument, bar, listen};
+use crate::build::{BAR_STEPS, QualityArgument, bar, creases, listen};
 use crate::common::creature::creature;
 use crate::common::mesh::Mesh;
 use crate::common::random::Random;
@@ -49,6 +50,9 @@ pub struct CompareArguments {
     /// How much work to spend on a small error of the medial mesh.
     #[arg(short, long, value_enum, default_value_t)]
     quality: QualityArgument,
+    /// Round all edges of the medial mesh.
+    #[arg(long)]
+    round_edges: bool,
     /// Steps to time, of a heap of 12 bodies; 0 times none.
     #[arg(long, value_name = "N", default_value_t = 240)]
     steps: usize,
@@ -74,7 +78,7 @@ struct Comparison {
 #[derive(Serialize)]
 struct Row {
     collider: &'static str,
-    /// Primitives, or convex hulls.
+    /// Primitives, convex hulls, or triangles.
     pieces: usize,
     /// Largest distance between its surface and the mesh's, in either direction (longest side 1).
     error: f64,
@@ -94,6 +98,8 @@ struct Made {
     medial: (MedialMesh, f64),
     parts: (SharedShape, f64),
     hull: (SharedShape, f64),
+    /// Of rapier's own triangle mesh, the seconds alone.
+    triangles: f64,
 }
 
 /// Makes the colliders, measures and draws them.
@@ -161,11 +167,13 @@ fn measure(
         ),
         (Kind::Parts, "convex decomposition", hulls, made.parts.1),
         (Kind::Hulls, "convex hull", 1, made.hull.1),
+        (Kind::Triangles, "triangle mesh", triangles, made.triangles),
     ];
+    let errors = [errors[0], errors[1], errors[2], 0.0];
     let scene = heap(mesh, made.medial.0);
     let mut colliders = Vec::new();
     for ((kind, collider, pieces, seconds_to_build), error) in rows.into_iter().zip(errors) {
-        go_on(bar, "stepping", 0.85 + 0.05 * colliders.len() as f32)?;
+        go_on(bar, "stepping", 0.84 + 0.04 * colliders.len() as f32)?;
         colliders.push(Row {
             collider,
             pieces,
@@ -189,6 +197,7 @@ fn make(arguments: &CompareArguments, mesh: &Mesh, bar: &ProgressBar) -> Result<
     let options = BuildOptions {
         primitives: Some(arguments.primitives as usize),
         quality: arguments.quality.into(),
+        creases: creases(arguments.round_edges),
         ..Default::default()
     };
     let (medial, medial_seconds) = timed(|| {
@@ -204,7 +213,9 @@ fn make(arguments: &CompareArguments, mesh: &Mesh, bar: &ProgressBar) -> Result<
     let hull = hull.ok_or(Failure::NoHull)?;
     go_on(bar, "convex decomposition", BUILT)?;
     let (parts, parts_seconds) = timed(|| SharedShape::convex_decomposition(vertices, indices));
+    let (_, triangles) = timed(|| mesh.to_parry());
     Ok(Made {
+        triangles,
         medial: (medial, medial_seconds),
         parts: (parts, parts_seconds),
         hull: (hull, hull_seconds),
