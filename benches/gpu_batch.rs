@@ -267,6 +267,7 @@ fn every_test(devices: &mut Devices) -> Value {
         ],
         seconds: 1.0,
         reach: f64::from(LIMITS.tolerance),
+        lists: false,
     };
     let mut proposals = Proposals::default();
     let sweeps = [sweep];

@@ -14,7 +14,7 @@
 @group(0) @binding(4) var<storage, read_write> meetings: array<vec4<u32>>;
 // Those of them that are not proven free, in no order.
 @group(0) @binding(5) var<storage, read_write> near: array<vec4<u32>>;
-// For each pair, 0 before, FREE and how many primitive pairs are not proven free; last how many primitive
+// For each pair, 0 before, FREE and how many primitive pairs are not proven free, or OPEN; last how many primitive
 // pairs meet, how many mesh pairs are taken, and how many primitive pairs are listed.
 @group(0) @binding(6) var<storage, read_write> answers: array<atomic<u32>>;
 
@@ -42,7 +42,7 @@ fn side(pair: u32, k: u32) -> Side {
   return Side(three(pairs, at), three(pairs, at + 3u), reals(pairs, at + 6u));
 }
 
-// Roots, and bits of the reach.
+// Roots, bits of the reach, and whether there is to be a list.
 fn roots(pair: u32) -> vec4<u32> { return texel(pairs, pair * PAIR + 2u * SIDE); }
 
 fn ball(side: Side, node: u32) -> Swept { return sweep(side, reals(nodes, node * NODE)); }
@@ -151,7 +151,8 @@ fn walk() {
 }
 
 // Each proof brings the mesh pair's answer nearer to FREE; what is not proven is listed. So the answer says how
-// many have to be on the list: a proof that was never begun, or an entry that found no room, is missed there.
+// many have to be on the list: a proof that was never begun, or an entry that found no room, is missed there. Without
+// a list the first that is not proven decides, and the others are skipped.
 @compute @workgroup_size(WALKS)
 fn prove(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
   let count = min(atomicLoad(&answers[params.pairs]), params.room);
@@ -159,10 +160,13 @@ fn prove(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let met = meetings[k];
     let pair = met.z;
     if (met.w != params.stamp || atomicLoad(&answers[pair]) - FREE > WALK_FINDS + WALK_ROOM) { continue; }
+    let last = roots(pair);
     let a = primitive(side(pair, 0u), met.x);
     let b = primitive(side(pair, 1u), met.y);
-    if (stays_free(a, b, bitcast<f32>(roots(pair).z))) {
+    if (stays_free(a, b, bitcast<f32>(last.z))) {
       atomicSub(&answers[pair], 1u);
+    } else if (last.w == 0u) {
+      atomicMax(&answers[pair], OPEN);
     } else {
       let at = atomicAdd(&answers[params.pairs + 2u], 1u);
       if (at < params.near_room) { near[at] = vec4<u32>(met.xy, pair, params.stamp); }

@@ -14,6 +14,7 @@ pub(super) struct Key {
     motions: [[u32; 16]; 2],
     seconds: u32,
     reach: u64,
+    lists: bool,
 }
 
 impl Key {
@@ -32,6 +33,7 @@ impl Key {
             motions: [bits(m), bits(n)],
             seconds: sweep.seconds.to_bits(),
             reach: sweep.reach.to_bits(),
+            lists: sweep.lists,
         }
     }
 }

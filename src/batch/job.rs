@@ -58,6 +58,8 @@ pub struct Sweep<'a> {
     pub seconds: Real,
     /// Distance that counts as contact, a length; negative lets them overlap that deep.
     pub reach: f64,
+    /// Whether it helps to know which primitives may come within reach: [`Job::answer_near`].
+    pub lists: bool,
 }
 
 /// Asks for the contacts of two meshes at fixed poses.
@@ -96,6 +98,7 @@ impl Job for PairJob {
             motions: [Pose::IDENTITY, self.pos12].map(NonlinearRigidMotion::constant_position),
             seconds: 0.0,
             reach: self.prediction.into(),
+            lists: true,
         })
     }
     fn free(&self) -> PairResult {
@@ -158,6 +161,8 @@ impl Job for ToiJob {
             motions: [self.motion1, self.motion2],
             seconds: self.seconds,
             reach: f64::from(target) + f64::from(options.tolerance),
+            // The bits of a bracket depend on where a search begins it, and the search is short without a list.
+            lists: false,
         })
     }
     fn free(&self) -> ToiResult {

@@ -54,6 +54,7 @@ fn sweeps(drawn: &[Drawn]) -> Vec<Sweep<'_>> {
             motions: d.motions,
             seconds: 1.0,
             reach: d.reach,
+            lists: true,
         })
         .collect()
 }
@@ -225,6 +226,7 @@ fn what_finds_no_room_is_given_up() {
         motions: [NonlinearRigidMotion::identity(); 2],
         seconds: 0.0,
         reach: 0.0,
+        lists: true,
     };
     // All balls of one meet all of the other.
     let fit = MOST_MEETINGS / 110;
@@ -318,6 +320,7 @@ fn what_grew_for_a_batch_that_failed_is_used_by_the_next() {
         motions: [NonlinearRigidMotion::identity(), beside],
         seconds: 0.0,
         reach: 0.0,
+        lists: true,
     };
     let mut said = Proposals::default();
     block_on(gpu.propose(&[sweep(&small)], &mut said)).expect("proposals");
@@ -351,6 +354,7 @@ fn no_extreme_within_reach_is_free() {
                 motions: *motions,
                 seconds: *seconds,
                 reach: 0.0,
+                lists: true,
             })
             .collect();
         let mut proposals = Proposals::default();

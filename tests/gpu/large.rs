@@ -90,6 +90,7 @@ fn large_meshes_lose_no_pair() {
             motions,
             seconds: SECONDS,
             reach,
+            lists: false,
         })
         .collect();
     let mut proposals = Proposals::default();

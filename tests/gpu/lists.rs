@@ -55,6 +55,7 @@ fn judge(moving: bool, count: usize) -> [usize; 3] {
             motions: *motions,
             seconds: SECONDS,
             reach: *reach,
+            lists: true,
         })
         .collect();
     let mut proposals = Proposals::default();

@@ -86,8 +86,8 @@ twins! {
         roots: [u32; 2] = "vec2<u32>",
         /// Distance that counts as contact, with the slack for rounding.
         reach: f32 = "f32",
-        /// Nothing.
-        pad: u32 = "u32",
+        /// 1 where the primitive pairs within reach are to be listed, else 0.
+        lists: u32 = "u32",
     }
     /// Of a batch of mesh pairs.
     CullParams {
@@ -114,7 +114,7 @@ twins! {
 /// A test or a mesh pair that is proven free in the whole step; not 0, which is what no shader has written.
 /// Of a mesh pair `FREE + n`: `n` primitive pairs are not proven free.
 pub const FREE: u32 = 1;
-/// A test that is not proven free.
+/// A test or a mesh pair without a list that is not proven free; or less, by the proofs of other primitive pairs.
 pub const OPEN: u32 = 1 << 30;
 /// Too much of it meets to be looked at.
 pub const GIVEN_UP: u32 = 1 << 31;

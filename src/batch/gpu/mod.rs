@@ -69,7 +69,7 @@ pub enum Proposal {
         /// How many there are.
         count: u32,
     },
-    /// Nothing is known of them: the CPU has to search the pair.
+    /// Not proven, and without a list: the CPU has to search the pair.
     Open,
     /// The GPU could not take the sweep, since a number was not finite or too large.
     Unfit,
@@ -148,6 +148,7 @@ impl Gpu {
             motions: [still; 2],
             seconds: 0.0,
             reach: 0.0,
+            lists: true,
         };
         self.propose(&[sweep], &mut Proposals::default()).await?;
         self.meshes.remove(&mesh);

@@ -64,7 +64,10 @@ impl Proposals {
         self.clear();
         self.each.resize(sweeps, Proposal::Unfit);
         let given_up = |answer: u32| !(FREE..GIVEN_UP).contains(&answer);
-        let entries = |answer: u32| if given_up(answer) { 0 } else { answer - FREE };
+        // Without a list it is far more than any has entries.
+        let lists = FREE..FREE + MOST_MEETINGS as u32;
+        let is_open = |answer: u32| !lists.contains(&answer);
+        let entries = |answer: u32| if is_open(answer) { 0 } else { answer - FREE };
         self.starts.clear();
         self.starts.push(0);
         self.found.clear();
@@ -90,7 +93,7 @@ impl Proposals {
             found.given_up += u64::from(given_up(answer));
             found.unlisted += u64::from(!is_whole);
             *said = match *said {
-                _ if given_up(answer) || !is_whole => Proposal::Open,
+                _ if is_open(answer) || !is_whole => Proposal::Open,
                 Proposal::Open => Proposal::Open,
                 Proposal::Near { first, count: some } => Proposal::Near {
                     first,

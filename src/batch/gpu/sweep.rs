@@ -78,7 +78,7 @@ impl Sweep<'_> {
             sides,
             roots,
             reach: (reach as f32).next_up(),
-            pad: 0,
+            lists: self.lists.into(),
         })
     }
 }
