@@ -15,6 +15,7 @@ for features in gpu gpu,parallel; do
   cargo bench --features "$features" --bench gpu_batch -- --json "$work/$features.json" | tee "$work/$features.txt"
   test -s "$work/$features.json" || { echo 'no figures: no adapter?' >&2; exit 1; }
 done
+cargo bench --features gpu --bench gpu_host -- --json "$work/host.json" | tee "$work/host.txt"
 
 field() { sed -n "s/^  \"$1\": \"\(.*\)\",\?$/\1/p" "$work/gpu.json"; }
 if [ -z "$out" ]; then
@@ -25,6 +26,7 @@ tests=$(sed -n 's/^test result: ok\. \([0-9]*\) passed.*/\1/p' "$work/tests.txt"
 {
   printf '{\n"commit": "%s",\n"date": "%s",\n"tests_passed": %s,\n' \
     "$(git describe --always --dirty)" "$(date -u +%F)" "$tests"
-  printf '"serial": %s,\n"parallel": %s\n}\n' "$(cat "$work/gpu.json")" "$(cat "$work/gpu,parallel.json")"
+  printf '"serial": %s,\n"parallel": %s,\n' "$(cat "$work/gpu.json")" "$(cat "$work/gpu,parallel.json")"
+  printf '"host": %s\n}\n' "$(cat "$work/host.json")"
 } > "$out"
 echo "$out"

@@ -114,6 +114,7 @@ fn walk() {
   var a: Side;
   var b: Side;
   var reach = 0.0;
+  var lists = false;
   var looks = 0u;
   var whole = true;
   var taken = 0u;
@@ -131,6 +132,7 @@ fn walk() {
       b = side(pair, 1u);
       let last = roots(pair);
       reach = bitcast<f32>(last.z);
+      lists = last.w != 0u;
       first = last.xy;
       left = 1u;
       handed_on = 0u;
@@ -140,12 +142,12 @@ fn walk() {
     // A few before the next look whether it is done: that is checked for all neighbours at once.
     for (var k = 0u; k < WALK_STRETCH && (left | open) != 0u; k++) {
       looks++;
-      whole = open + kept < WALK_ROOM && looks <= WALK_LOOKS;
+      whole = open + kept < WALK_ROOM && looks <= select(FIRST_LOOKS, WALK_LOOKS, lists);
       if (whole) { look(a, b, reach); } else { left = 0u; open = 0u; }
     }
     if (open + kept + WALK_STRETCH >= WALK_ROOM) {
       let all = hand_on(pair);
-      if (!all || handed_on > WALK_FINDS) { whole = false; left = 0u; open = 0u; }
+      if (!all || handed_on > select(FIRST_FINDS, WALK_FINDS, lists)) { whole = false; left = 0u; open = 0u; }
     }
   }
 }

@@ -3,8 +3,8 @@
 
 use super::gpu::{Proposal, Proposals};
 use super::job::Sweep;
+use crate::math::fast_hash::FastMap;
 use parry3d::query::NonlinearRigidMotion;
-use std::collections::HashMap;
 
 /// All that a sweep's answer depends on: instance ids, which are never given twice, and numbers, by
 /// their bits.
@@ -42,7 +42,7 @@ impl Key {
 #[derive(Default)]
 pub(super) struct Early {
     /// Index of each.
-    pub(super) sent: HashMap<Key, u32>,
+    pub(super) sent: FastMap<Key, u32>,
     /// What the device said of them, once they are collected.
     pub(super) proposals: Proposals,
     /// Whether the device still has them.

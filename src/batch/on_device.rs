@@ -141,6 +141,30 @@ impl Batch {
         }
     }
 
+    /// Sends the jobs of several batches to this one's GPU in one submission, and waits without blocking for its answers.
+    /// The next [`Self::run`] of each of them, which need no GPU of their own, takes the answers of jobs that are the
+    /// same, bit by bit, from it, and computes the others as if nothing had been sent.
+    pub async fn share<J: Job>(&mut self, parts: &mut [(&mut Self, Vec<J>)]) {
+        let jobs: Vec<&J> = parts.iter().flat_map(|(_, jobs)| jobs).collect();
+        self.submit_async(&jobs).await;
+        self.ready().await;
+        let mut start = 0;
+        for (batch, jobs) in parts {
+            let sweeps = jobs.iter().filter_map(Job::sweep);
+            let early = &mut batch.early;
+            early.forget();
+            let keys = sweeps.map(|sweep| Key::of(&sweep));
+            early.sent.extend(keys.zip(0..));
+            let end = start + jobs.iter().filter_map(Job::sweep).count();
+            early.proposals.take_part(&self.early.proposals, start..end);
+            start = end;
+            if early.proposals.is_empty() {
+                early.forget();
+            }
+        }
+        self.early.forget();
+    }
+
     /// Whether what was sent before is of any use for these jobs; where not, it is forgotten.
     pub(super) fn sent_early<J: Job>(&mut self, jobs: &[J]) -> bool {
         let sent = &self.early.sent;

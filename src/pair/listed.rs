@@ -31,7 +31,7 @@ pub fn contacts_of_listed(
     if prediction < 0.0 {
         return contacts(mesh1, mesh2, pos12, prediction);
     }
-    let (mut found, mut counts) = (Vec::new(), Counts::default());
+    let (mut found, mut counts) = (Vec::with_capacity(listed.len()), Counts::default());
     if !(pos12.is_finite() && prediction.is_finite()) {
         return (found, counts);
     }

@@ -1,6 +1,8 @@
 //! [`MedialPipeline`]: what a user calls in place of rapier's step. `step.rs` has the step itself.
 
 use crate::batch::Batch;
+#[cfg(feature = "gpu")]
+use crate::batch::PairJob;
 use crate::math::Vector;
 use crate::parry::MedialDispatcher;
 use crate::rapier::effects::{EffectSettings, Effects, MedialOptions};
@@ -105,14 +107,36 @@ impl MedialPipeline {
     /// computed on the CPU. Outside browsers each step does this by itself.
     #[cfg(feature = "gpu")]
     pub async fn prepare(&mut self, world: &PhysicsWorld) {
+        let next = self.expected(world);
+        self.state.batch.submit_async(&next).await;
+        self.state.batch.ready().await;
+    }
+
+    /// Does the same as [`Self::prepare`] for many worlds in one submission to one GPU, that of `batch`: the pipelines
+    /// themselves need none. Await it between two steps; each world goes on as by itself, bit by bit. Other jobs of
+    /// the steps are computed on the CPU, as everything is without a GPU.
+    #[cfg(feature = "gpu")]
+    pub async fn prepare_many<'a>(
+        batch: &mut Batch,
+        worlds: impl IntoIterator<Item = (&'a mut Self, &'a PhysicsWorld)>,
+    ) {
+        let part = |(pipeline, world): (&'a mut Self, &'a PhysicsWorld)| {
+            let next = pipeline.expected(world);
+            (&mut pipeline.state.batch, next)
+        };
+        let mut parts: Vec<_> = worlds.into_iter().map(part).collect();
+        batch.share(&mut parts).await;
+    }
+
+    /// The contacts that the next step will compute, if nothing is changed until then.
+    #[cfg(feature = "gpu")]
+    fn expected(&self, world: &PhysicsWorld) -> Vec<PairJob> {
         let parameters = lowered(&world.integration_parameters);
         let sets = Sets {
             parameters: &parameters,
             ..Sets::of(world)
         };
-        let next = candidates::expect(sets, &self.state.recycled);
-        self.state.batch.submit_async(&next).await;
-        self.state.batch.ready().await;
+        candidates::expect(sets, &self.state.recycled)
     }
 
     /// Sets the effects of one collider. An effect left at [`Effect::Auto`](crate::Effect::Auto) follows the scene's setting, so

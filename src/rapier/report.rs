@@ -24,6 +24,8 @@ pub struct StepReport {
     pub jobs: usize,
     /// Pairs that the GPU proved not to meet, and which the CPU did not look at.
     pub settled_by_gpu: u64,
+    /// Pairs for which the GPU listed the primitives that may meet, so that the CPU did not search for them.
+    pub listed: u64,
     /// Pairs that the GPU could not take, since a number was not finite or too large. The CPU computed them.
     pub unfit: u64,
     /// Submissions to the GPU: for the first contacts of this step, and for the contacts of the next one.
@@ -130,6 +132,7 @@ impl StepReport {
     /// Adds what the backend did between two of its reports.
     pub(crate) fn add_sent(&mut self, before: &BatchReport, after: &BatchReport) {
         self.settled_by_gpu += after.settled_by_gpu - before.settled_by_gpu;
+        self.listed += after.listed - before.listed;
         self.unfit += after.unfit - before.unfit;
         self.submissions += after.submissions - before.submissions;
         self.maps += after.maps - before.maps;
@@ -144,6 +147,7 @@ impl StepReport {
         self.pairs += part.pairs;
         self.jobs += part.jobs;
         self.settled_by_gpu += part.settled_by_gpu;
+        self.listed += part.listed;
         self.unfit += part.unfit;
         self.submissions += part.submissions;
         self.maps += part.maps;

@@ -1,5 +1,6 @@
 //! Worlds stepped with batches on the GPU end as those on the CPU do, bit by bit.
 
+use crate::detailed::{Form, detailed};
 use crate::scene::{gpu, options};
 use rapier3d::prelude::*;
 use rapier3d_medial::batch::Batch;
@@ -142,6 +143,104 @@ fn worlds_prepared_between_steps_are_the_same() {
     assert!(
         contacts > 300 && early * 10 > contacts * 9,
         "{early} of {contacts}"
+    );
+}
+
+/// Worlds of their own, each with a pipeline without a device: one submission a step serves all, until the device is lost.
+#[test]
+fn worlds_that_share_a_device_are_the_same() {
+    if gpu(options()).is_none() {
+        return;
+    }
+    let ring = MedialMesh::torus(0.5, 0.1, 12).expect("a ring");
+    let world = |number: usize| {
+        let mut world = PhysicsWorld::new();
+        world.insert_collider(ColliderBuilder::cuboid(20.0, 0.5, 20.0), None);
+        for k in 0..3 + number % 3 {
+            let turn = Vector::new(0.3 * number as Real, 0.7 * k as Real, 0.1);
+            let at = Vector::new(0.1 * k as Real, 0.8 + 0.3 * k as Real, 0.0);
+            let body = RigidBodyBuilder::dynamic().pose(Pose::new(at, turn));
+            world.insert(body, ColliderBuilder::medial_mesh(ring.clone()));
+        }
+        world
+    };
+    // One without any body besides.
+    let mut worlds: Vec<_> = (0..40).map(|n| [world(n), world(n)]).collect();
+    worlds.push([PhysicsWorld::new(), PhysicsWorld::new()]);
+    let pipelines = worlds
+        .iter()
+        .map(|_| [(); 2].map(|()| MedialPipeline::default()));
+    let mut pipelines: Vec<_> = pipelines.collect();
+    let mut batch = Batch::new(Backend::Gpu);
+    let (mut jobs, mut early) = (0, 0);
+    for step in 0..120 {
+        let submissions = batch.report().submissions;
+        let all = pipelines.iter_mut().zip(&worlds);
+        let all = all.map(|([shared, _], [world, _])| (shared, world));
+        pollster::block_on(MedialPipeline::prepare_many(&mut batch, all));
+        assert_eq!(
+            batch.report().submissions - submissions,
+            u64::from(step < 90)
+        );
+        for (k, (pipelines, worlds)) in pipelines.iter_mut().zip(&mut worlds).enumerate() {
+            let [shared, alone] = pipelines;
+            let report = shared.step(&mut worlds[0]);
+            assert_eq!((report.submissions, report.maps), (0, 0));
+            assert_eq!(alone.step(&mut worlds[1]).sent_early, 0);
+            let [a, b] = &*worlds;
+            assert!(bits(a) == bits(b), "world {k}, step {step}");
+            if step < 90 {
+                jobs += report.jobs as u64;
+                early += report.sent_early;
+            }
+        }
+        if step == 89 {
+            batch.gpu().expect("a device").lose();
+        }
+    }
+    let of = |[shared, _]: &[MedialPipeline; 2]| shared.batch().report().listed;
+    let listed: u64 = pipelines.iter().map(of).sum();
+    println!("{early} of {jobs} jobs sent early, {listed} with lists");
+    assert!(
+        jobs > 2000 && early == jobs && listed > 500,
+        "{jobs} {early} {listed}"
+    );
+    assert_eq!(batch.report().fallbacks, 1);
+}
+
+/// Bodies of slabs and cones in a heap, some of radius 0: bears, spiders, rings and sheets.
+#[test]
+fn heaps_of_detailed_bodies_are_the_same_on_either_backend() {
+    if gpu(options()).is_none() {
+        return;
+    }
+    let forms = [Form::Bear, Form::Spider, Form::Ring, Form::Sheet];
+    let meshes = forms.map(|form| detailed(form, 60));
+    let world = || {
+        let mut world = PhysicsWorld::new();
+        world.insert_collider(ColliderBuilder::cuboid(20.0, 0.5, 20.0), None);
+        for k in 0..12 {
+            let at = Vector::new(0.2 * (k % 3) as Real, 1.5 + 0.9 * k as Real, 0.1);
+            let turn = Vector::new(0.5 * k as Real, 0.2, 0.3 * (k % 2) as Real);
+            let body = RigidBodyBuilder::dynamic().pose(Pose::new(at, turn));
+            let mesh = meshes[k % 4].clone();
+            world.insert(body, ColliderBuilder::medial_mesh(mesh));
+        }
+        world
+    };
+    let [mut on_cpu, mut on_gpu] = [world(), world()];
+    let mut cpu = MedialPipeline::default();
+    let mut device = MedialPipeline::with_batch(MedialOptions::default(), Batch::new(Backend::Gpu));
+    for step in 0..200 {
+        cpu.step(&mut on_cpu);
+        device.step(&mut on_gpu);
+        assert!(bits(&on_cpu) == bits(&on_gpu), "step {step}");
+    }
+    let report = device.batch().report();
+    println!("{report:?}");
+    assert!(
+        report.listed > 300 && report.settled_by_gpu > 300,
+        "{report:?}"
     );
 }
 

@@ -4,8 +4,8 @@
 use super::clock::Clock;
 use super::context::{Context, Growing};
 use super::layout::{
-    CullParams, LISTED, MOST_MEETINGS, Near, Node, PROOFS, Pair, Primitive, WALK_FINDS, WALK_PAIRS,
-    WALK_ROOM, WALKS,
+    CullParams, LISTED, MEETINGS, MOST_MEETINGS, Near, Node, PROOFS, Pair, Primitive, WALK_FINDS,
+    WALK_PAIRS, WALKS,
 };
 use super::meshes::Meshes;
 use super::shaders::CULL;
@@ -262,7 +262,7 @@ fn answered(pairs: usize) -> usize {
 
 /// How many meetings there is room for: of few mesh pairs each may have all that a walk finds.
 fn room(context: &Context, pairs: &[Pair]) -> usize {
-    let [least, each] = [WALK_FINDS, WALK_ROOM].map(|n| n as usize);
     let most = context.options.binding_bytes as usize / MEETING;
-    (least + each * pairs.len()).min(MOST_MEETINGS).min(most)
+    let expected = 2 * WALK_FINDS as usize + MEETINGS * pairs.len();
+    expected.min(MOST_MEETINGS).min(most)
 }

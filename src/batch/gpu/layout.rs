@@ -138,6 +138,11 @@ pub const WALK_ROOM: u32 = 128;
 pub const WALK_FINDS: u32 = 1024;
 /// Node pairs and primitive pairs that a walk takes up before it is given up.
 const WALK_LOOKS: u32 = 4096;
+/// The same of walks for first contacts, which the CPU finds without looking at all that meets. Their looks are a part of
+/// the CPU's cap (`MAX_PIECES` in `sweep.rs`).
+const FIRST_LOOKS: u32 = 1024;
+/// As [`WALK_FINDS`], of walks for first contacts.
+const FIRST_FINDS: u32 = 128;
 /// Node pairs that a walk takes up before it looks whether it is done: less, and the next mesh pair is
 /// fetched for one thread at a time; more, and threads that are done wait longer.
 const WALK_STRETCH: u32 = 12;
@@ -158,7 +163,10 @@ const WALK_SIMILAR: f64 = 3.0;
 const PROOF_ROUNDS: u32 = 6;
 
 /// Most meetings that a batch has room for, 16 bytes each; pairs beyond are given up.
-pub const MOST_MEETINGS: usize = 1 << 20;
+pub const MOST_MEETINGS: usize = 1 << 22;
+
+/// Meetings that a batch has room for, for each mesh pair.
+pub const MEETINGS: usize = 256;
 
 /// Primitive pairs that the list of a batch has room for at first, for each mesh pair, and the fewest of all.
 pub const LISTED: [usize; 2] = [8, 1 << 10];
@@ -194,6 +202,8 @@ pub fn constants() -> String {
         ("WALK_ROOM", WALK_ROOM),
         ("WALK_FINDS", WALK_FINDS),
         ("WALK_LOOKS", WALK_LOOKS),
+        ("FIRST_LOOKS", FIRST_LOOKS),
+        ("FIRST_FINDS", FIRST_FINDS),
         ("WALK_STRETCH", WALK_STRETCH),
         ("WALK_PAIRS", WALK_PAIRS as u32),
         ("MAX_GROUPS", MAX_GROUPS),

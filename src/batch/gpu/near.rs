@@ -44,6 +44,20 @@ impl Proposals {
         self.near.get(range).unwrap_or_default()
     }
 
+    /// Takes over the answers to a range of mesh pairs of another batch, with their lists.
+    pub fn take_part(&mut self, from: &Self, range: std::ops::Range<usize>) {
+        self.clear();
+        for &said in from.each.get(range).unwrap_or_default() {
+            let near = from.near(said);
+            let first = self.near.len() as u32;
+            self.near.extend(near);
+            self.each.push(match said {
+                Proposal::Near { count, .. } => Proposal::Near { first, count },
+                other => other,
+            });
+        }
+    }
+
     /// Forgets everything; room is kept.
     pub fn clear(&mut self) {
         self.each.clear();
