@@ -49,7 +49,7 @@ pub struct BuildArguments {
     /// Fit the surface on both sides instead of enclosing it.
     #[arg(long)]
     no_enclose: bool,
-    /// Round all edges: sharp ones are kept by parts of no thickness, which take much longer in a step.
+    /// Round all edges, also where sharp ones would make the error smaller.
     #[arg(long)]
     round_edges: bool,
     /// Of several meshes: write them baked (.medial), not as .ma.

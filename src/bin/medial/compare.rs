@@ -50,7 +50,7 @@ pub struct CompareArguments {
     /// How much work to spend on a small error of the medial mesh.
     #[arg(short, long, value_enum, default_value_t)]
     quality: QualityArgument,
-    /// Round all edges of the medial mesh.
+    /// Round all edges of the medial mesh, also where sharp ones would make its error smaller.
     #[arg(long)]
     round_edges: bool,
     /// Steps to time, of a heap of 12 bodies; 0 times none.
