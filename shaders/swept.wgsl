@@ -1,6 +1,7 @@
 // Spheres and primitives swept over the step: chords of their centres with radii that cover the
-// sagitta. Twin of src/pair/swept.rs; what it calls free is free on any conforming device, because
-// the pair's slack is taken off every bound.
+// sagitta. sweep is the twin of Side::chord in src/pair/swept.rs; stays_free proves what free_until does in
+// src/pair/apart.rs, along directions of Gilbert's iteration, which is here alone. What it calls free is
+// free on any conforming device, because the pair's slack is taken off every bound.
 
 struct Swept { start: vec3<f32>, chord: vec3<f32>, radius: f32 }
 

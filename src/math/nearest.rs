@@ -1,5 +1,6 @@
 //! The sphere of a linearly interpolated family that is nearest to another: closed forms at a
-//! fixed time. Source: paper §4.2, Eqs. (1) and (2) at fixed `t`, in Minkowski-difference form.
+//! fixed time. Source: paper §4.2, Eqs. (1) and (2) at fixed `t`, in Minkowski-difference form. Twin on a device:
+//! `shaders/nearest.wgsl`.
 //!
 //! # Derivation
 //! Subtracting the two families leaves one family of difference vectors and radius sums,

@@ -1,5 +1,6 @@
 //! How long two primitives, or the hulls of two nodes, are certainly apart, because one direction after another separates
 //! them while they move along the chords of their paths. This cheap bound decides which primitives are worth an elementary test.
+//! On a device `stays_free` in `shaders/swept.wgsl` proves the same, with directions found in another way.
 
 use crate::math::lane::Vec3;
 

@@ -15,6 +15,8 @@
 //! So the first test that is in contact when its turn comes is the first contact. A fast turn is searched in pieces,
 //! so that sagittas stay small. The time of the first entry in the queue is a lower bound of the contact at any moment:
 //! a search that has used up [`WORK`] ends with that bound, as unresolved.
+//!
+//! On a device `walk` in `shaders/cull.wgsl` splits nodes in the same way, but looks at all that meet.
 
 use super::apart::{Balls, free_until};
 use super::deepening::Threshold;

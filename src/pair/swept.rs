@@ -1,6 +1,6 @@
 //! One body over a piece of the step, as the search for a first contact ([`super::search`]) sees it: the chords
 //! along which the centres of its nodes and primitives move, and radii enlarged by the sagitta, which is how far a
-//! centre may be off its chord.
+//! centre may be off its chord. Twin of `Side::chord` on a device: `sweep` in `shaders/swept.wgsl`.
 
 use super::apart::Balls;
 use super::outline::Left;

@@ -1,4 +1,4 @@
-//! Sorts the device's list of primitive pairs by mesh pair. A mesh pair whose answer says that another number of them
+//! Sorts the device's list of primitive pairs, which `prove` in `shaders/cull.wgsl` writes, by mesh pair. A mesh pair whose answer says that another number of them
 //! has to be there is left to the CPU: some found no room, or the driver has not run all that it was given.
 
 use super::Proposal;
