@@ -169,13 +169,16 @@ export async function ownMesh(page, save) {
     return asked && document.getElementById("drop").hidden;
   })()`);
   const told = (words) => page.until(`document.getElementById("says").textContent.includes(${JSON.stringify(words)})`, PATIENCE);
+  if (!(await page.value("state.paused"))) await page.click("#pause");
   await page.click("#restart");
+  await page.until("state.paused && state.steps === 0", PATIENCE);
+  await fast(page, 10);
   assert.ok(await drop("frame.obj", frameObj()), "a place to drop is shown");
   await page.until("!document.getElementById('building').hidden", PATIENCE);
   await told(`frame.obj: ${TRIANGLES.length} triangles`);
   assert.ok((await page.value("state.told")) > 3, "the worker tells how far it is");
   assert.equal(await pressed(page, "#own"), "true");
-  await page.until("state.steps < 60", PATIENCE);
+  await page.until("state.steps === 0", PATIENCE);
   assert.equal((await poses(page)).length, 7 * 16);
   await fast(page, 360);
   const end = await poses(page);
