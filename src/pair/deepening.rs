@@ -4,8 +4,8 @@
 //!
 //! Usually they may sink by a given length: the target distance becomes their distance `s` at the start, minus this
 //! length. Where parts are thinner than that, such a target would never be met, because the medial axes would cross
-//! before. There all radii are reduced by one factor instead. Let `m` be the distance of the axes at the start, and
-//! `s < 0`. For any `0 < b < m`, the factor `σ = (m − b) / (m − s)` leaves primitives that are at least `b` apart: two
+//! before. There all radii are reduced by one factor instead. Let `m` be the distance of the axes at the start. For any
+//! `0 < b < m` with `s <= b`, the factor `σ = (m − b) / (m − s)` leaves primitives that are at least `b` apart: two
 //! spheres of radius sum `R`, whose centres are no nearer than `m` and no nearer than `R + s`, are farther apart than
 //! `σ R` by `m − σ R` and by `R + s − σ R`, of which one is at least `b` (they are equal at `R = m − s`). And spheres
 //! whose radii are multiplied by any factor from 0 on still contain the axis: while they do not meet, no axis has
@@ -74,8 +74,8 @@ impl Threshold {
         let given = GIVEN * (axes - CLOSEST * tolerance);
         let by = by.min(given.max(PRESSED * axes));
         let tolerance = tolerance.min(TAKEN * by);
-        let (scale, target) = if distance > 0.0 {
-            (1.0, (distance - by).max(0.0))
+        let (scale, target) = if distance > by {
+            (1.0, distance - by)
         } else {
             ((axes - by) / (axes - distance), 0.0)
         };

@@ -178,3 +178,38 @@ fn sheets_of_radius_0_never_cross_unseen() {
     }
     assert!(unresolved < queries() / 20, "{unresolved} unresolved");
 }
+
+/// Blunt rods, thick at one end and nearly without radius at the other, whose thick ends are a hair apart, or in each
+/// other by one: they may sink in by all of what is asked, and no further.
+#[test]
+fn blunt_rods_that_touch_sink_in_by_what_is_asked() {
+    let mut rng = Rng::new(10);
+    let still = NonlinearRigidMotion::identity();
+    for case in 0..queries() / 4 {
+        let thick = rng.range(0.05, 0.2) as Real;
+        let by = thick * rng.range(0.02, 0.05) as Real;
+        let gap = by * rng.range(-0.9, 0.9) as Real;
+        let radii = [thick, thick * 1.0e-3];
+        let y = 2.0 * thick + gap;
+        let lower = rod([Vector::ZERO, Vector::new(1.0, 0.0, 0.0)], radii);
+        let upper = rod([Vector::new(0.0, y, 0.0), Vector::new(-1.0, y, 0.0)], radii);
+        let options = ToiOptions {
+            target_distance: by,
+            tolerance: 0.02 * by,
+            initial_contact: InitialContact::Deepen { by },
+            ..ToiOptions::default()
+        };
+        for (sinks, status) in [
+            (0.0, ToiStatus::Separated),
+            (0.9, ToiStatus::Separated),
+            (1.2, ToiStatus::Contact),
+        ] {
+            let moving = NonlinearRigidMotion {
+                linvel: Vector::new(0.1 * by, -sinks * by, 0.1 * by),
+                ..still
+            };
+            let toi = first_contact(&lower, &still, &upper, &moving, 1.0, &options);
+            assert_eq!(toi.status, status, "case {case}: {gap} apart, {sinks}");
+        }
+    }
+}
