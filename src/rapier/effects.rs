@@ -66,6 +66,13 @@ pub struct Effects {
     /// bodies get an impulse, and all others go on. There are at most eight stops in a step, and none in worlds
     /// with multibodies or soft bodies.
     pub stop: Effect,
+    /// Lets pairs with restitution bounce where they meet within the step, by an impulse that gains no energy, and keeps
+    /// them from rapier's solver in that step. `On`: for pairs whose restitution is above 0, if they may approach by more
+    /// than twice what gravity adds in the step. `Auto`: for those of them that no gravity or force of yours pulls on, as in
+    /// space: nothing else takes from these what rapier's solver gives them. Off: slow pairs bounce in that solver, in
+    /// which elastic bodies that are not round gain or lose much of their energy within seconds. Pairs with [`Self::stop`]
+    /// on are left to it too.
+    pub restitution: Effect,
 }
 
 /// Settings of a [`MedialPipeline`](crate::rapier::MedialPipeline). The defaults give up nothing; for games
@@ -110,6 +117,7 @@ impl Effects {
         full_manifolds: Effect::Auto,
         speculative: Effect::Off,
         stop: Effect::Off,
+        restitution: Effect::Off,
     };
 
     /// Returns these effects with [`Self::continuous`] set.
@@ -148,9 +156,16 @@ impl Effects {
         self
     }
 
+    /// Returns these effects with [`Self::restitution`] set.
+    pub const fn restitution(mut self, effect: Effect) -> Self {
+        self.restitution = effect;
+        self
+    }
+
     /// Whether nothing needs to know how bodies move in the step.
     fn leaves_all_to_rapier(&self) -> bool {
-        [self.continuous, self.guard] == [Effect::Off; 2] && self.speculative != Effect::On
+        [self.continuous, self.guard, self.restitution] == [Effect::Off; 3]
+            && self.speculative != Effect::On
     }
 }
 
@@ -253,6 +268,7 @@ impl EffectSettings {
             full_manifolds: choose(a.full_manifolds, b.full_manifolds, scene.full_manifolds),
             speculative: choose(a.speculative, b.speculative, scene.speculative),
             stop: choose(a.stop, b.stop, scene.stop),
+            restitution: choose(a.restitution, b.restitution, scene.restitution),
         }
     }
 }

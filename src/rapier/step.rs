@@ -2,7 +2,8 @@
 //! impacts within it, and the report. The work itself is in the rooms of this folder.
 
 use crate::math::Real;
-use crate::rapier::contacts::{candidates, muting};
+use crate::rapier::contacts::candidates;
+use crate::rapier::contacts::muting::{self, Muted};
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
 use crate::rapier::host::multibody_energy::WildMultibodies;
@@ -43,14 +44,17 @@ impl Part<'_> {
         &self,
         effects: &'e EffectSettings,
         (tuning, budget): (Tuning, u64),
+        bouncing: bool,
     ) -> CcdPolicy<'e> {
         CcdPolicy {
             effects,
             dt: self.parameters.dt,
             unit: self.parameters.length_unit,
+            substeps: self.parameters.num_solver_iterations.max(1),
             tuning,
             may_stop: self.may_stop,
             budget,
+            bouncing,
         }
     }
 }
@@ -177,14 +181,25 @@ impl State {
         let rules = world.rules(part.filters);
         let wild = WildMultibodies::find(&view, &rules, world.narrow_phase, parameters.dt);
         let prediction = parameters.prediction_distance();
-        let policy = part.policy(&self.effects, (self.tuning, self.budget));
-        let muted = muting::muted(&view, &policy, &rules, prediction, work);
+        let policy = part.policy(&self.effects, (self.tuning, self.budget), false);
+        let Muted {
+            keys: muted,
+            bouncing,
+            bare,
+        } = muting::muted(
+            &view,
+            &policy,
+            &rules,
+            (world.narrow_phase, prediction),
+            work,
+        );
         report.muted = muted.len();
         report.mute_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
         let found = candidates::find(world.sets(parameters), &mut self.recycled, &muted);
-        forced_updates::force_updates(&found.fresh, world.colliders);
+        let forced = found.fresh.union(&bare).copied().collect();
+        forced_updates::force_updates(&forced, world.colliders);
         let mut results = self.batch.run(&found.jobs);
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();
@@ -208,6 +223,7 @@ impl State {
             view,
             depth: found.depth,
             wild,
+            bouncing,
         }
     }
 
@@ -273,7 +289,8 @@ impl State {
         let wild = std::mem::take(&mut plan.wild);
         wild.take_back(view, &rules, world.narrow_phase, parameters.dt);
         let depth = plan.depth.max(self.answers.take_depth());
-        let policy = part.policy(&self.effects, (self.tuning, self.budget));
+        let bouncing = plan.bouncing;
+        let policy = part.policy(&self.effects, (self.tuning, self.budget), bouncing);
         event_loop::resolve(
             view,
             policy,

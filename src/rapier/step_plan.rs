@@ -18,6 +18,8 @@ pub struct StepPlan {
     pub depth: Real,
     /// Multibodies that gain energy in rapier's step.
     pub wild: WildMultibodies,
+    /// Whether pairs may bounce ([`Effects::restitution`](crate::Effects::restitution)).
+    pub bouncing: bool,
 }
 
 impl StepPlan {

@@ -50,6 +50,9 @@ pub struct Tuning {
     /// Times that the world stops in one step. Each costs a step; after the last one impulses take the
     /// rest, so fewer only make impacts less exact: at half, 0.7 impulses a flight instead of 0.3.
     pub max_stops: usize,
+    /// Speed up to which nothing bounces where no force pulls, in units of rapier's length unit per second. Far below what
+    /// can be seen; ten times as large, and boxes of elastic bodies lose a hundredth of their energy.
+    pub least_bounce: Real,
     /// Depth from which bodies in an impact are pushed apart, in units of the thickness.
     pub push_from: Real,
     /// Share of the depth below it that is pushed out in a step.
@@ -71,6 +74,7 @@ impl Default for Tuning {
             hair: 0.1,
             max_events: 16,
             max_stops: 8,
+            least_bounce: 1.0e-3,
             push_from: 0.1,
             push: 0.2,
         }

@@ -42,6 +42,7 @@ mod oracle;
 mod partners;
 mod random;
 mod resting;
+mod restitution;
 #[allow(dead_code)]
 #[path = "../common/ccd/rng.rs"]
 mod rng;

@@ -11,40 +11,107 @@ use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::view::eligible_pairs::{Rules, sweep};
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
+use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 use std::collections::HashSet;
 
-/// The pairs to be muted, under the key by which the narrow phase will ask.
+/// The pairs that are kept from rapier's solver.
+#[derive(Default)]
+pub struct Muted {
+    /// All of them, under the key by which the narrow phase will ask.
+    pub keys: HashSet<Key>,
+    /// Whether some may bounce ([`Effects::restitution`](crate::Effects::restitution)).
+    pub bouncing: bool,
+    /// Medial colliders near another with which they have restitution and, as far as rapier knows, no contact. rapier would
+    /// keep it that there is none for as long as they hardly move, though they were muted only for a bounce.
+    pub bare: HashSet<ColliderHandle>,
+}
+
+/// Finds the pairs to be muted.
 pub fn muted(
     view: &StepView,
     policy: &CcdPolicy,
     rules: &Rules,
-    prediction: Real,
+    (narrow_phase, prediction): (&NarrowPhase, Real),
     work: &mut Work,
-) -> HashSet<Key> {
-    let mut keys = HashSet::new();
-    if !policy.may_be_fast(view, policy.tuning.muted, view.least_thickness()) {
-        return keys;
+) -> Muted {
+    let mut muted = Muted::default();
+    if !view.any_restitution()
+        && !policy.may_be_fast(view, policy.tuning.muted, view.least_thickness())
+    {
+        return muted;
     }
-    for pair in sweep(view, policy.dt, 0.0) {
+    // rapier's solver lets contacts bounce that are only within its prediction distance.
+    let margin = if view.any_restitution() {
+        prediction
+    } else {
+        0.0
+    };
+    for pair in sweep(view, policy.dt, margin) {
         let [p, q] = pair.map(|k| &view.parts[k]);
         let plane = p.shape.as_halfspace().or(q.shape.as_halfspace());
         let reach = prediction + p.skin + q.skin;
         let apart = |a: &parry3d::bounding_volume::Aabb, b: &parry3d::bounding_volume::Aabb| {
             (a.mins - b.maxs).max(b.mins - a.maxs).max_element() > reach
         };
-        if plane.is_none()
-            && !apart(&p.aabb, &q.aabb)
-            && policy.is_fast(view, pair, policy.tuning.muted)
-            && !policy.speculates(view, pair)
-            && policy.left(work) > policy.budget / 2
-            && rules.respond(view, pair)
-            && (is_wild_pair(view, policy, pair) || !policy.touches(view, pair, work))
-        {
-            let [m1, m2] = pair.map(|k| view.motion(k, 0.0).start);
-            keys.insert(Key::new(&*p.shape, &*q.shape, &m1.inv_mul(&m2)));
+        if plane.is_some() || apart(&p.aabb, &q.aabb) {
+            continue;
+        }
+        match reason(view, policy, rules, pair, work) {
+            Some(reason) => {
+                let [m1, m2] = pair.map(|k| view.motion(k, 0.0).start);
+                let key = Key::new(&*p.shape, &*q.shape, &m1.inv_mul(&m2));
+                muted.keys.insert(key);
+                muted.bouncing |= reason == Reason::Bounces;
+            }
+            None if view.restitution(pair) > 0.0 => {
+                let known = narrow_phase.contact_pair(p.handle, q.handle);
+                if known.is_some_and(|c| !c.has_any_active_contact()) {
+                    let medial = if p.medial().is_some() { p } else { q };
+                    muted.bare.insert(medial.handle);
+                }
+            }
+            None => {}
         }
     }
-    keys
+    muted
+}
+
+/// Why a pair is muted.
+#[derive(PartialEq)]
+enum Reason {
+    Bounces,
+    IsFast,
+    IsWild,
+}
+
+fn reason(
+    view: &StepView,
+    policy: &CcdPolicy,
+    rules: &Rules,
+    pair: [usize; 2],
+    work: &mut Work,
+) -> Option<Reason> {
+    let may_bounce = policy.may_bounce(view, pair);
+    let is_fast = policy.is_fast(view, pair, policy.tuning.muted);
+    if !(may_bounce || is_fast)
+        || policy.speculates(view, pair)
+        || policy.left(work) <= policy.budget / 2
+        || !rules.respond(view, pair)
+    {
+        return None;
+    }
+    // What no force presses together does not rest, whatever its nearest points do.
+    let rests = |speed: Option<Real>| speed.is_some_and(|s| s <= policy.least_bounce(view, pair));
+    if may_bounce && (view.most_pull(pair) == 0.0 || !rests(policy.approach(view, pair, work))) {
+        return Some(Reason::Bounces);
+    }
+    if !is_fast {
+        return None;
+    }
+    if is_wild_pair(view, policy, pair) {
+        return Some(Reason::IsWild);
+    }
+    (!policy.touches(view, pair, work)).then_some(Reason::IsFast)
 }
 
 /// Whether two bodies may be moved, and one is of a multibody that turns wildly.

@@ -260,15 +260,26 @@ impl Response {
             let twists: Vec<Twist> = system.bodies.iter().map(of).collect();
             system.stand_at_limits(&twists, |system| system.change(&wrenches(hit.normal)));
         }
+        let [v1, v2] = [0, 1].map(|k| at(view.bodies[both[k]].velocity, k));
+        // A bounce is from the velocity that the bodies have where they meet; forces add the rest of theirs after it.
+        let at_contact = v2 - v1 - view.relative_pull(pair) * policy.share_after(hit.time);
+        let bounces = material.restitution > 0.0
+            && -at_contact.dot(hit.normal) > policy.least_bounce(view, pair);
+        let (approach, restitution) = match bounces {
+            true => (at_contact, material.restitution),
+            false => (v2 - v1, 0.0),
+        };
         let impact = |system: &System| Impact {
             normal: hit.normal,
-            material,
+            material: Material {
+                restitution,
+                ..material
+            },
             response: Vector::AXES.map(|axis| {
                 let change = system.change(&wrenches(axis));
                 at(change[1], 1) - at(change[0], 0)
             }),
         };
-        let [v1, v2] = [0, 1].map(|k| at(view.bodies[both[k]].velocity, k));
         let own = impact(&system);
         // What the two would do without their joints.
         let alone = |k: usize| {
@@ -280,7 +291,7 @@ impl Response {
             self.joints = Some(joints);
             return moved;
         }
-        if let Some(j) = own.impulse(v2 - v1, 0.0) {
+        if let Some(j) = own.impulse(approach, 0.0) {
             let blow = ReportedImpulse::new(view, pair, hit, j.dot(hit.normal));
             blow.add_to(self.impulses.entry(pair).or_default());
             let change = system.change(&wrenches(j));

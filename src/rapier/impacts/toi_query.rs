@@ -11,17 +11,18 @@
 
 use crate::batch::ToiJob;
 use crate::elementary::{Cores, InitialContact, Paths, Toi, ToiOptions, ToiStatus};
-use crate::math::{Real, Vector};
+use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::Left;
 use crate::parry::cast::Cast;
-use crate::parry::near::is_within;
+use crate::parry::near::{is_within, nearest};
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::impacts::thin_parts::Thin;
 use crate::rapier::tuning::Tuning;
 use crate::rapier::view::step_view::StepView;
 use parry3d::query::NonlinearRigidMotion;
+use parry3d::shape::Shape;
 
 /// What a query found, and its price.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -110,12 +111,16 @@ pub struct CcdPolicy<'a> {
     pub dt: Real,
     /// rapier's length unit.
     pub unit: Real,
+    /// rapier's sub-steps in a step.
+    pub substeps: usize,
     /// Constants.
     pub tuning: Tuning,
     /// Whether the world may stop once more in this step.
     pub may_stop: bool,
     /// Node pairs and elementary tests that first contacts may take.
     pub budget: u64,
+    /// Whether pairs may bounce in this step ([`Effects::restitution`]), which rapier's solver does not have then.
+    pub bouncing: bool,
 }
 
 impl CcdPolicy<'_> {
@@ -154,7 +159,7 @@ impl CcdPolicy<'_> {
     /// Whether first contacts of the pair are wanted from `time` on: of a fast pair, and by default where parts
     /// may meet that are so thin that the pair is fast for them.
     fn is_searched(&self, view: &StepView, pair: [usize; 2], time: Real) -> bool {
-        if self.is_fast(view, pair, self.tuning.fast) {
+        if self.is_fast(view, pair, self.tuning.fast) || self.may_bounce(view, pair) {
             return true;
         }
         if self.effects_of(view, pair).continuous != Effect::Auto {
@@ -173,7 +178,35 @@ impl CcdPolicy<'_> {
     /// scene at rest none does, and no pair need be looked for.
     pub fn may_be_fast(&self, view: &StepView, share: Real, thickness: Real) -> bool {
         let asked = |e: &Effects| e.continuous == Effect::On || e.guard == Effect::On;
-        self.effects.any(asked) || 2.0 * view.most_travel(self.dt) > share * thickness
+        self.effects.any(asked)
+            || self.bouncing
+            || 2.0 * view.most_travel(self.dt) > share * thickness
+    }
+
+    /// Speed of approach, in units of length per second, up to which a pair does not bounce: twice what forces add in a
+    /// step, so that what rests stays at rest.
+    pub fn least_bounce(&self, view: &StepView, pair: [usize; 2]) -> Real {
+        2.0 * view.most_pull(pair) + self.tuning.least_bounce * self.unit
+    }
+
+    /// Share of the step for which forces still act on what meets at `time`, a time in seconds. rapier moves bodies in
+    /// each sub-step by the velocity at its end, which is that of its middle, so velocities are half a sub-step behind.
+    pub fn share_after(&self, time: Real) -> Real {
+        1.0 - time / self.dt - 0.5 / self.substeps as Real
+    }
+
+    /// Whether the pair has restitution, and may meet so fast in this step that it bounces.
+    pub fn may_bounce(&self, view: &StepView, pair: [usize; 2]) -> bool {
+        let effects = self.effects_of(view, pair);
+        let is_wanted = match effects.restitution {
+            Effect::On => true,
+            Effect::Off => false,
+            Effect::Auto => view.most_pull(pair) == 0.0,
+        };
+        is_wanted
+            && effects.stop != Effect::On
+            && view.restitution(pair) > 0.0
+            && view.travel(pair, self.dt) > self.least_bounce(view, pair) * self.dt
     }
 
     /// Whether the solver gets contacts of the pair for all that it may reach in the step.
@@ -235,9 +268,14 @@ impl CcdPolicy<'_> {
         } else {
             gap * (1.0 + 2.0 * tuning.tolerance * met as Real)
         };
+        // What bounces does so where it touches; the solver does not keep it from sinking.
+        let by = match self.may_bounce(view, pair) {
+            true => hair,
+            false => (tuning.sink * thickness).max(hair),
+        };
         Some(if fast {
             QueryOptions {
-                first: options(target, (tuning.sink * thickness).max(hair), 0.0),
+                first: options(target, by, 0.0),
                 floor: Some(floor),
                 left: None,
             }
@@ -306,19 +344,48 @@ impl CcdPolicy<'_> {
 
     /// Whether the pair touches at the start of the step, so that the solver has it.
     pub fn touches(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> bool {
-        let gap = self.tuning.touching * self.gap(view.thickness(pair));
-        let [start1, start2] = pair.map(|k| view.motion(k, 0.0).start);
-        let [shape1, shape2] = pair.map(|k| &*view.parts[k].shape);
-        let (mesh, other, pos12) = match shape1.as_shape::<MedialMesh>() {
-            Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2)),
-            None => (shape2.as_shape(), shape1, start2.inv_mul(&start1)),
-        };
-        let reach = reach(view, pair, gap);
+        let (mesh, other, pos12, reach) = self.at_start(view, pair);
         let found = mesh.and_then(|mesh| is_within(mesh, other, &pos12, reach).ok());
         found.is_some_and(|(within, counts)| {
             work.add(counts);
             within
         })
+    }
+
+    /// How fast a pair that touches at the start of the step approaches at its nearest points, a length per second;
+    /// `None` if it does not touch.
+    pub fn approach(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> Option<Real> {
+        let (mesh, other, pos12, reach) = self.at_start(view, pair);
+        let (found, counts) = nearest(mesh?, other, &pos12, reach).ok()?;
+        work.add(counts);
+        let contact = found?;
+        let flipped = view.parts[pair[0]].medial().is_none();
+        let [k, l] = if flipped { [pair[1], pair[0]] } else { pair };
+        let motion = view.motion(k, 0.0);
+        let point = motion.start * contact.points[0];
+        let normal = motion.start.rotation * contact.normal;
+        let velocity = |k: usize| {
+            let m = view.motion(k, 0.0);
+            m.linvel + m.angvel.cross(point - m.start * m.local_center)
+        };
+        Some((velocity(k) - velocity(l)).dot(normal))
+    }
+
+    /// The medial mesh of a pair and the other shape, which the pose at the start of the step takes to the mesh's frame,
+    /// and the distance, a length, up to which they touch.
+    fn at_start<'v>(
+        &self,
+        view: &'v StepView,
+        pair: [usize; 2],
+    ) -> (Option<&'v MedialMesh>, &'v dyn Shape, Pose, Real) {
+        let gap = self.tuning.touching * self.gap(view.thickness(pair));
+        let [start1, start2] = pair.map(|k| view.motion(k, 0.0).start);
+        let [shape1, shape2] = pair.map(|k| &*view.parts[k].shape);
+        let reach = reach(view, pair, gap);
+        match shape1.as_shape::<MedialMesh>() {
+            Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2), reach),
+            None => (shape2.as_shape(), shape1, start2.inv_mul(&start1), reach),
+        }
     }
 }
 

@@ -11,8 +11,8 @@ use crate::rapier::view::turned::Turned;
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
-    ImpulseJointSet, IntegrationParameters, Multibody, MultibodyJointSet, MultibodyLink,
-    RigidBodyHandle, RigidBodySet,
+    CoefficientCombineRule, ImpulseJointSet, IntegrationParameters, Multibody, MultibodyJointSet,
+    MultibodyLink, RigidBodyHandle, RigidBodySet,
 };
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, SharedShape};
 
@@ -45,6 +45,8 @@ pub struct Part {
     pub least: Real,
     /// How far outside its shape it is solid.
     pub skin: Real,
+    /// Coefficient of restitution, and how it combines with that of another collider.
+    restitution: (Real, CoefficientCombineRule),
 }
 
 impl Part {
@@ -151,6 +153,7 @@ impl StepView {
             thickness,
             least,
             skin: collider.contact_skin(),
+            restitution: (collider.restitution(), collider.restitution_combine_rule()),
         });
     }
 
@@ -258,6 +261,30 @@ impl StepView {
     pub fn most_travel(&self, seconds: Real) -> Real {
         let speed = |b: &Body| b.motion.linvel.length() + b.motion.angvel.length() * b.reach;
         self.bodies.iter().map(speed).fold(0.0, Real::max) * seconds
+    }
+
+    /// Whether a collider has restitution.
+    pub fn any_restitution(&self) -> bool {
+        self.parts.iter().any(|p| p.restitution.0 > 0.0)
+    }
+
+    /// Coefficient of restitution of two colliders, by rapier's combine rules.
+    pub fn restitution(&self, pair: [usize; 2]) -> Real {
+        let [(a, rule1), (b, rule2)] = pair.map(|k| self.parts[k].restitution);
+        CoefficientCombineRule::combine(a, b, rule1, rule2)
+    }
+
+    /// What gravity and forces of the user add in the whole step to the velocity of the second body of a pair against
+    /// the first.
+    pub fn relative_pull(&self, pair: [usize; 2]) -> Vector {
+        let [a, b] = pair.map(|k| self.bodies[self.parts[k].body].pull());
+        b - a
+    }
+
+    /// The most that gravity and forces of the user add in the whole step to the speed of a body of the pair.
+    pub fn most_pull(&self, pair: [usize; 2]) -> Real {
+        let [a, b] = pair.map(|k| self.bodies[self.parts[k].body].pull().length());
+        a.max(b)
     }
 
     /// Bound on how far a point of one collider moves relative to the other in `seconds`.
