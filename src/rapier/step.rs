@@ -185,7 +185,7 @@ impl State {
         let Muted {
             keys: muted,
             bouncing,
-            bare,
+            stale,
         } = muting::muted(
             &view,
             &policy,
@@ -198,7 +198,7 @@ impl State {
 
         let clock = Instant::now();
         let found = candidates::find(world.sets(parameters), &mut self.recycled, &muted);
-        let forced = found.fresh.union(&bare).copied().collect();
+        let forced = found.fresh.union(&stale).copied().collect();
         forced_updates::force_updates(&forced, world.colliders);
         let mut results = self.batch.run(&found.jobs);
         report.pairs = found.pairs;

@@ -21,9 +21,10 @@ pub struct Muted {
     pub keys: HashSet<Key>,
     /// Whether some may bounce ([`Effects::restitution`](crate::Effects::restitution)).
     pub bouncing: bool,
-    /// Medial colliders near another with which they have restitution and, as far as rapier knows, no contact. rapier would
-    /// keep it that there is none for as long as they hardly move, though they were muted only for a bounce.
-    pub bare: HashSet<ColliderHandle>,
+    /// Medial colliders of which rapier knows the wrong contacts with a partner with which they have restitution, and would
+    /// keep them for as long as the two hardly move: none of a pair that was muted only for a bounce, or those of a pair
+    /// that rested and is muted now.
+    pub stale: HashSet<ColliderHandle>,
 }
 
 /// Finds the pairs to be muted.
@@ -56,19 +57,24 @@ pub fn muted(
         if plane.is_some() || apart(&p.aabb, &q.aabb) {
             continue;
         }
+        let known = narrow_phase.contact_pair(p.handle, q.handle);
+        let medial = if p.medial().is_some() { p } else { q };
         match reason(view, policy, rules, pair, work) {
             Some(reason) => {
                 let [m1, m2] = pair.map(|k| view.motion(k, 0.0).start);
                 let key = Key::new(&*p.shape, &*q.shape, &m1.inv_mul(&m2));
                 muted.keys.insert(key);
-                muted.bouncing |= reason == Reason::Bounces;
-            }
-            None if view.restitution(pair) > 0.0 => {
-                let known = narrow_phase.contact_pair(p.handle, q.handle);
-                if known.is_some_and(|c| !c.has_any_active_contact()) {
-                    let medial = if p.medial().is_some() { p } else { q };
-                    muted.bare.insert(medial.handle);
+                if reason == Reason::Bounces {
+                    muted.bouncing = true;
+                    if known.is_some_and(|c| !c.manifolds().is_empty()) {
+                        muted.stale.insert(medial.handle);
+                    }
                 }
+            }
+            None if view.restitution(pair) > 0.0
+                && known.is_some_and(|c| !c.has_any_active_contact()) =>
+            {
+                muted.stale.insert(medial.handle);
             }
             None => {}
         }
