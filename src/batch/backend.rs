@@ -2,6 +2,8 @@
 //! of other pairs, of which it lists those that may. The CPU computes these, and pairs without a list as if there were
 //! no GPU. So answers are the same on both, except for counts of work, and a GPU that fails costs nothing but time.
 
+#[cfg(feature = "gpu")]
+use super::calibration::Least;
 use super::cpu;
 #[cfg(feature = "gpu")]
 use super::early::Early;
@@ -12,8 +14,6 @@ use super::gpu::{Gpu, Proposal, Proposals};
 use super::job::Job;
 #[cfg(feature = "gpu")]
 use super::job::Sweep;
-#[cfg(feature = "gpu")]
-use super::on_device::Least;
 use crate::elementary::bracket::{Bracket, Limits};
 use crate::elementary::many::{Lanes, brackets};
 use crate::elementary::path::LinearPath;

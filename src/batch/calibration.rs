@@ -38,6 +38,16 @@ pub struct Calibration {
     pub tests: Option<usize>,
 }
 
+/// Sizes from which a GPU is asked; `None`: never.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy)]
+pub(super) struct Least {
+    /// Mesh pairs in a batch.
+    pub(super) jobs: Option<usize>,
+    /// Elementary tests in a batch.
+    pub(super) tests: Option<usize>,
+}
+
 impl fmt::Display for Calibration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = |n: Option<usize>| n.map_or("never".to_owned(), |n| n.to_string());

@@ -1,7 +1,7 @@
 //! What of a batch a GPU is asked: whether it pays, what it said, and what is left for the CPU.
 
 use super::backend::{Backend, Batch};
-use super::calibration::Calibration;
+use super::calibration::{Calibration, Least};
 use super::cpu;
 use super::early::Key;
 use super::gpu::{Gpu, GpuCounts, GpuOptions, Proposal, Proposals};
@@ -18,13 +18,6 @@ const ESTIMATED: Least = Least {
     jobs: Some(64),
     tests: Some(1 << 14),
 };
-
-/// Sizes from which a GPU is asked; `None`: never.
-#[derive(Clone, Copy)]
-pub struct Least {
-    jobs: Option<usize>,
-    tests: Option<usize>,
-}
 
 impl Batch {
     /// Opens a backend without blocking, with options for the choice of the GPU.

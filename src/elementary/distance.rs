@@ -1,11 +1,13 @@
 //! Signed distance of two primitives at a fixed time: paper Eq. (2), minimised over all pairs of spheres. Where medial
 //! surfaces cross it is minus the sum of the radii there, which the elementary tests alone do not find.
 
-use super::penetration::Ball;
 use super::test_list::{Domain, ElementaryTest, Share, edges, for_each_test};
 use super::{certificate, cone_cone, slab_crossing, sphere_slab};
-use crate::math::lane::Scalar;
+use crate::math::lane::{Scalar, Vec3};
 use crate::math::nearest::{Family, Nearest};
+
+/// A sphere in a common frame: centre and radius.
+pub type Ball<S> = (Vec3<S>, S);
 
 /// The family and the nearest spheres of one elementary test of two primitives.
 pub fn nearest_in_test<S: Scalar>(

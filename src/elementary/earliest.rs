@@ -5,9 +5,9 @@ use super::ToiStatus;
 use super::bracket::{Bracket, Limits, bracket, witness};
 use super::certificate::lower_bound;
 use super::cone_cone::family;
+use super::distance::Ball;
 use super::distance::crossing;
 use super::path::Path;
-use super::penetration::Ball;
 use super::test_list::{ElementaryTest, Share, for_each_test};
 use crate::math::lane::Scalar;
 

@@ -2,10 +2,10 @@
 //! paths (paper Eqs. 1 to 3) or in exact rigid motion.
 
 use super::bracket::Limits;
+use super::distance::Ball;
 use super::distance::thinnest;
 pub use super::earliest::Earliest;
 use super::path::{LinearPath, RigidPath};
-use super::penetration::Ball;
 use super::test_list::{Domain, ElementaryTest, Share, for_each_test};
 use super::{MovingSphere, Toi, ToiOptions};
 use crate::math::Real;

@@ -10,7 +10,7 @@
 //! Tangent to two edges `e1, e2` with radius slopes `d1, d2` means `n·e1 = d1`, `n·e2 = d2`:
 //! `n = g ± h N/|N|` with `N = e1 × e2`, as in [`crate::math::nearest`].
 
-use super::distance::nearest_in_test;
+use super::distance::{Ball, nearest_in_test};
 use super::test_list::{Share, edges, for_each_test};
 use crate::math::lane::{Scalar, Vec3};
 
@@ -33,9 +33,6 @@ pub const LOST: f64 = 1.0e-6;
 /// turns over at each tremble. Larger, and a body is pushed out the longer way: at most so much
 /// longer.
 pub const HYSTERESIS: f64 = 0.1;
-
-/// A sphere in a common frame: centre and radius.
-pub type Ball<S> = (Vec3<S>, S);
 
 /// Gap of two primitives along a unit direction from the first to the second; negative when they
 /// overlap along it.

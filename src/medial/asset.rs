@@ -26,8 +26,8 @@
 use super::check::{check, check_primitives};
 use super::files::{self, file_error};
 use super::mesh::{MedialMesh, Parts};
-use super::primitive::MedialSphere;
 use super::simplex::Simplex;
+use super::sphere::MedialSphere;
 use super::tree::{Below, Node, SphereTree};
 use crate::error::{AssetError, MeshError};
 use crate::math::{Real, Rotation, Vector};

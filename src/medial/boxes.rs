@@ -8,8 +8,8 @@
 //! adds the border radius to every ball, and to the box by Minkowski's sum: nothing else changes.
 
 use super::mesh::MedialMesh;
-use super::primitive::MedialSphere;
 use super::solids::{not_negative, positive};
+use super::sphere::MedialSphere;
 use crate::error::MeshError;
 use crate::math::{Real, Vector};
 

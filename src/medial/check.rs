@@ -1,7 +1,7 @@
 //! Checks the spheres, edges and faces from which a medial mesh is to be made, or that a file contains.
 
-use super::primitive::MedialSphere;
 use super::simplex::Simplex;
+use super::sphere::MedialSphere;
 use crate::error::{AssetError, MeshError};
 use crate::math::Real;
 

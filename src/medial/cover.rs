@@ -28,7 +28,7 @@ impl Cover {
     /// For a sheet that rests on some spheres; the box widened by `margin`.
     pub fn new(mesh: &MedialMesh, index: u32, rests_on: [u32; 3], margin: Vec3<f64>) -> Self {
         let spheres = mesh.simplices()[index as usize].vertices;
-        let balls = balls(&mesh.primitive(index as usize));
+        let balls = balls(mesh.primitive(index as usize).as_slab());
         let [a, b, c] = balls.map(|b| Sheet::Ball(b).bounds());
         let least =
             |a: Vec3<f64>, b: Vec3<f64>| Vec3::new(a.x.min(b.x), a.y.min(b.y), a.z.min(b.z));

@@ -6,7 +6,7 @@
 //! that is `n·u = −da`, `n·v = −db`, `|n| = 1`: the system of the interior point in
 //! `math::nearest`, so `n = −g ± √(1 − |g|²) N/|N|` with the same `g` and `N`.
 
-use super::primitive::MedialPrimitive;
+use super::sphere::MedialSphere;
 use crate::math::lane::Vec3;
 use crate::math::nearest::{Family, Nearest, edge_minimum, nearest_in_triangle};
 
@@ -24,9 +24,9 @@ pub struct Ball {
     pub radius: f64,
 }
 
-/// The three spheres of a primitive, repeated as in [`MedialPrimitive::as_slab`]; exact.
-pub fn balls(primitive: &MedialPrimitive) -> [Ball; 3] {
-    primitive.as_slab().map(|s| Ball {
+/// The three spheres of a primitive as [`as_slab`](super::MedialPrimitive::as_slab) gives them; exact.
+pub fn balls(slab: [MedialSphere; 3]) -> [Ball; 3] {
+    slab.map(|s| Ball {
         center: Vec3::from_vector(s.center),
         radius: s.radius.into(),
     })

@@ -11,7 +11,7 @@
 
 use super::files::{self, file_error};
 use super::mesh::MedialMesh;
-use super::primitive::MedialSphere;
+use super::sphere::MedialSphere;
 use super::text::{Line, Lines, TextError, quote};
 use crate::error::MeshError;
 use crate::math::Vector;

@@ -2,12 +2,14 @@
 //! Source: paper §3 (medial mesh, a non-manifold triangle mesh of medial spheres).
 
 use super::check::check;
+use super::exact::balls;
 use super::leaf_order::LeafOrder;
 use super::mass;
-use super::primitive::{MedialPrimitive, MedialSphere};
+use super::primitive::MedialPrimitive;
 use super::rectangle::SweptRectangles;
 use super::shell::Shell;
-use super::simplex::{primitive_of, primitives_of, sorted};
+use super::simplex::{Simplex, primitive_of, primitives_of, sorted};
+use super::sphere::MedialSphere;
 use super::thickness::{self, Thicknesses};
 use super::tree::SphereTree;
 use crate::error::MeshError;
@@ -18,8 +20,6 @@ use parry3d::partitioning::{Bvh, BvhBuildStrategy};
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
-
-pub use super::simplex::Simplex;
 
 /// A concave solid made of spheres that are joined by medial cones and slabs: the shape of a medial
 /// collider. Lengths are in the user's unit (metres in rapier), in the body's frame.
@@ -219,7 +219,8 @@ impl MedialMesh {
     /// A few balls that hold it. Made at the first call.
     pub(crate) fn shell(&self) -> &Arc<Shell> {
         let shell = &self.data.shell;
-        shell.get_or_init(|| Arc::new(Shell::of_mesh(self)))
+        let of_mesh = || Shell::of_mesh(self.spheres(), self.simplices(), self.tree());
+        shell.get_or_init(|| Arc::new(of_mesh()))
     }
 
     /// Swept rectangles round what is below the inner nodes of its tree. Made at the first call.
@@ -291,7 +292,8 @@ impl MedialMesh {
 
     pub(super) fn solid_mass_properties(&self) -> &MassProperties {
         let solid = &self.data.solid_mass;
-        solid.get_or_init(|| mass::solid_mass_properties(self))
+        let primitives = || self.primitives().map(|p| balls(p.as_slab()));
+        solid.get_or_init(|| mass::solid_mass_properties(&primitives().collect::<Vec<_>>()))
     }
 
     /// Number by which [`crate::MedialPipeline`] tells colliders apart. Clones share it; the pipeline gives each

@@ -23,9 +23,11 @@ mod sheet;
 pub mod shell;
 pub mod simplex;
 pub mod solids;
+pub mod sphere;
 pub(crate) mod text;
 pub mod thickness;
 pub mod tree;
 
 pub use mesh::MedialMesh;
-pub use primitive::{MedialPrimitive, MedialSphere};
+pub use primitive::MedialPrimitive;
+pub use sphere::MedialSphere;

@@ -6,8 +6,8 @@
 //! coordinates.
 
 use super::mesh::MedialMesh;
-use super::primitive::MedialSphere;
 use super::solids::positive;
+use super::sphere::MedialSphere;
 use crate::error::MeshError;
 use crate::math::{Real, Vector};
 

@@ -5,25 +5,10 @@
 //! given spheres.
 
 use super::exact::{balls, nearest_to_point};
+use super::sphere::MedialSphere;
 use crate::math::lane::Vec3;
 use crate::math::{Real, Vector};
 use parry3d::bounding_volume::Aabb;
-
-/// A medial sphere, or any sphere interpolated between medial spheres.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct MedialSphere {
-    /// Centre, in the body's frame, in the user's unit of length.
-    pub center: Vector,
-    /// Radius, ≥ 0, in the user's unit of length.
-    pub radius: Real,
-}
-
-impl MedialSphere {
-    /// A sphere from its centre and radius.
-    pub fn new(center: Vector, radius: Real) -> Self {
-        Self { center, radius }
-    }
-}
 
 /// One convex part of a medial mesh: the convex hull of one, two or three spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +54,7 @@ impl MedialPrimitive {
 
     /// Signed distance of `point`, in the body's frame, computed in double precision.
     pub fn signed_distance(&self, point: Vector) -> PointDistance {
-        let nearest = nearest_to_point(&balls(self), Vec3::from_vector(point));
+        let nearest = nearest_to_point(&balls(self.as_slab()), Vec3::from_vector(point));
         let (x, y) = (nearest.alpha as Real, nearest.beta as Real);
         let weights = match self {
             Self::Sphere(_) => [1.0, 0.0, 0.0],

@@ -6,8 +6,8 @@
 //! `TURNS` directions in that plane. Sides are shortened as far as the swept sphere's roundings still hold
 //! everything. Only square roots enter, so that rectangles are the same bits on every machine.
 
-use super::mesh::Simplex;
-use super::primitive::MedialSphere;
+use super::simplex::Simplex;
+use super::sphere::MedialSphere;
 use super::tree::{Below, SphereTree};
 use crate::math::Real;
 use crate::math::lane::Vec3;

@@ -3,7 +3,7 @@
 
 use super::asset::{mass_numbers, mass_of};
 use super::mesh::MedialMesh;
-use super::primitive::MedialSphere;
+use super::sphere::MedialSphere;
 use crate::math::{Real, Vector};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -1,7 +1,7 @@
 //! Medial meshes scaled by one factor along all axes, mirrored axes included, with their mass properties.
 
 use super::mesh::MedialMesh;
-use super::primitive::MedialSphere;
+use super::sphere::MedialSphere;
 use crate::math::{Real, Rotation, Vector};
 use parry3d::mass_properties::MassProperties;
 

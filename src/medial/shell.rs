@@ -1,8 +1,9 @@
 //! A coarse hull of a medial mesh made of a few balls, however many spheres the mesh has. Directions that may keep
 //! two bodies apart are tried on it before a search ([`crate::pair::outline`]).
 
-use super::mesh::MedialMesh;
-use super::tree::Below;
+use super::simplex::Simplex;
+use super::sphere::MedialSphere;
+use super::tree::{Below, SphereTree};
 use crate::math::{Real, Vector};
 
 /// Most balls and primitives of an outline: the bits of a mask. A larger mesh is taken for nodes of its
@@ -24,9 +25,8 @@ pub struct Shell {
 
 impl Shell {
     /// Of a mesh: its spheres and primitives, or nodes of its tree.
-    pub fn of_mesh(mesh: &MedialMesh) -> Self {
-        let (spheres, simplices) = (mesh.spheres(), mesh.simplices());
-        let count = mesh.tree().nodes().len();
+    pub fn of_mesh(spheres: &[MedialSphere], simplices: &[Simplex], tree: &SphereTree) -> Self {
+        let count = tree.nodes().len();
         let mut shell = Self {
             nodes: vec![0; count],
             ..Self::default()
@@ -37,13 +37,13 @@ impl Shell {
             shell.balls = spheres.iter().map(|s| (s.center, s.radius)).collect();
             shell.primitives = simplices.iter().map(|s| bits(&s.vertices)).collect();
             for (at, node) in shell.nodes.iter_mut().enumerate() {
-                if let Below::Primitive(primitive) = mesh.tree().nodes()[at].below() {
+                if let Below::Primitive(primitive) = tree.nodes()[at].below() {
                     *node = 1 << primitive;
                 }
             }
         } else {
-            for (k, at) in front(mesh).into_iter().enumerate() {
-                let node = &mesh.tree().nodes()[at as usize];
+            for (k, at) in front(tree).into_iter().enumerate() {
+                let node = &tree.nodes()[at as usize];
                 shell.balls.push((node.center, node.radius));
                 shell.primitives.push(1 << k);
                 shell.nodes[at as usize] = 1 << k;
@@ -52,13 +52,13 @@ impl Shell {
         let nodes = &mut shell.nodes;
         // Children come after their parents.
         for at in 0..count {
-            if let Below::Nodes(first, second) = mesh.tree().nodes()[at].below() {
+            if let Below::Nodes(first, second) = tree.nodes()[at].below() {
                 nodes[first as usize] |= nodes[at];
                 nodes[second as usize] |= nodes[at];
             }
         }
         for at in (0..count).rev() {
-            if let Below::Nodes(first, second) = mesh.tree().nodes()[at].below() {
+            if let Below::Nodes(first, second) = tree.nodes()[at].below() {
                 nodes[at] |= nodes[first as usize] | nodes[second as usize];
             }
         }
@@ -78,10 +78,10 @@ impl Shell {
 }
 
 /// Nodes of a mesh's tree, more than half of [`MOST`], that together hold all of it.
-fn front(mesh: &MedialMesh) -> Vec<u32> {
+fn front(tree: &SphereTree) -> Vec<u32> {
     let mut front = vec![0];
     while front.len() <= MOST / 2 {
-        let split = |at: u32| match mesh.tree().nodes()[at as usize].below() {
+        let split = |at: u32| match tree.nodes()[at as usize].below() {
             Below::Nodes(first, second) => [Some(first), Some(second)],
             Below::Primitive(_) => [Some(at), None],
         };

@@ -1,6 +1,7 @@
 //! The primitives of a medial mesh as indices of spheres, and which of them tests a shared edge or sphere.
 
-use super::primitive::{MedialPrimitive, MedialSphere};
+use super::primitive::MedialPrimitive;
+use super::sphere::MedialSphere;
 use std::collections::HashSet;
 
 /// A primitive as indices of its spheres, and the edges and spheres that it tests for its neighbours too.

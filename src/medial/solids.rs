@@ -2,7 +2,7 @@
 //! and frames of round bars.
 
 use super::mesh::MedialMesh;
-use super::primitive::MedialSphere;
+use super::sphere::MedialSphere;
 use crate::error::MeshError;
 use crate::math::{Real, Vector};
 

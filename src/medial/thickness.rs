@@ -4,8 +4,8 @@
 //! thin, even if it stands on something thick. So each primitive has a thickness of its own, and each node of the
 //! tree has the smallest thickness below it.
 
-use super::mesh::Simplex;
-use super::primitive::MedialSphere;
+use super::simplex::Simplex;
+use super::sphere::MedialSphere;
 use super::tree::{Below, SphereTree};
 use crate::math::{Real, Vector};
 

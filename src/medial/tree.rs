@@ -3,8 +3,8 @@
 //! It is built once, in the body's frame: a rigid body keeps its shape, and a sphere keeps its radius
 //! when it turns, so only the centre of a node moves with the body.
 
-use super::mesh::Simplex;
-use super::primitive::MedialSphere;
+use super::simplex::Simplex;
+use super::sphere::MedialSphere;
 use crate::math::{Real, Vector};
 
 /// A node of the tree: a sphere that encloses some primitives of a medial mesh.

@@ -9,6 +9,7 @@
 use super::first_contact::Counts;
 use super::hulls::Hulls;
 use super::outline;
+use super::placement::Placement;
 use super::volumes::Volumes;
 use crate::elementary::certificate::ActiveFace;
 use crate::elementary::distance::{crossing, deeper, family, is_beyond, nearest_in_family};
@@ -141,32 +142,6 @@ pub(crate) fn along_old_normal(
     let (gap, n) = penetration::deepest(a, b, Vec3::from_vector(old), penetration::HYSTERESIS);
     let middle = (Vec3::from_vector(at.points[0]) + place.point(at.points[1])) * 0.5;
     pair.across(middle, gap, n)
-}
-
-/// A relative pose in double precision, its rotation normalised.
-pub(super) struct Placement {
-    rotation: [Vec3<f64>; 3],
-    translation: Vec3<f64>,
-}
-
-impl Placement {
-    pub(super) fn new(pose: &Pose) -> Self {
-        Self {
-            rotation: crate::math::motion::rotation_columns(pose.rotation),
-            translation: Vec3::from_vector(pose.translation),
-        }
-    }
-    #[inline]
-    pub(super) fn point(&self, local: Vector) -> Vec3<f64> {
-        let v = Vec3::<f64>::from_vector(local);
-        let [x, y, z] = self.rotation;
-        self.translation + x * v.x + y * v.y + z * v.z
-    }
-    fn inverse_point(&self, p: Vec3<f64>) -> Vector {
-        let v = p - self.translation;
-        let [x, y, z] = self.rotation;
-        Vec3::new(x.dot(v), y.dot(v), z.dot(v)).to_vector()
-    }
 }
 
 /// Two primitives in the first body's frame.

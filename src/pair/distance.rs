@@ -4,10 +4,11 @@
 //! For bodies that overlap it is the most negative distance of any two primitives: how deep the nearest spheres are in
 //! each other, not how far the bodies must move to be apart.
 
-use super::contacts::{Placement, PrimitivePair, SpherePair};
+use super::contacts::{PrimitivePair, SpherePair};
 use super::first_contact::Counts;
 use super::hulls::Hulls;
 use super::outline;
+use super::placement::Placement;
 use super::volumes::Volumes;
 use crate::math::lane::Vec3;
 use crate::math::{Pose, Real};

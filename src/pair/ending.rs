@@ -16,15 +16,6 @@ use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
 use crate::medial::tree::Below;
 
-/// Node pairs, proofs by directions, iterations of elementary tests (twice) and pieces of one search,
-/// together, after which it ends unresolved. Interleaved combs of 1,236 primitives take a seventh of it,
-/// fast flights of such meshes a thirty-sixth. A query of endless turns ends after two tenths of a second.
-/// Larger, and it takes longer; smaller, and it knows less.
-pub(super) const WORK: u64 = 1 << 19;
-
-/// Pieces whose pairs of roots do not count as work. As above.
-pub(super) const ROOT_PIECES: u64 = 64;
-
 type Spheres = [(Vec3<f64>, f64); 3];
 
 impl<A: Volumes, B: Volumes> Search<'_, A, B> {

@@ -1,7 +1,7 @@
 //! The hulls of the nodes of two bodies at fixed poses, each placed once, and a lower bound of the distance of two.
 
 use super::apart::{Balls, gap};
-use super::contacts::Placement;
+use super::placement::Placement;
 use super::volumes::Volumes;
 use crate::math::Vector;
 use crate::math::lane::Vec3;

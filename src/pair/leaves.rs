@@ -7,8 +7,7 @@ use super::search::Search;
 use super::volumes::Volumes;
 use crate::elementary::InitialContact;
 use crate::elementary::bracket::Limits;
-use crate::elementary::distance::{crossing, signed_distance, thinnest};
-use crate::elementary::penetration::Ball;
+use crate::elementary::distance::{Ball, crossing, signed_distance, thinnest};
 use crate::elementary::resumed::bracket_until;
 use crate::elementary::test_list::{Share, for_each_test};
 use crate::math::Real;
@@ -27,6 +26,56 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         let pair = [p, q];
         let [(all_a, share_a), (all_b, share_b)] = self.spheres(pair);
         let (sa, sb) = (&all_a[..share_a.spheres], &all_b[..share_b.spheres]);
+        let balls_and_shares = ([sa, sb], [share_a, share_b]);
+        let Some(threshold) = self.threshold(pair, balls_and_shares, time) else {
+            return false;
+        };
+        // A target of the pair's own leaves no test to a neighbour, whose target is another; where the two
+        // targets may be far from each other, no neighbour leaves one to it either.
+        let own = matches!(self.initial_contact, InitialContact::Approach { .. });
+        let shares = if threshold.target == self.target && !own {
+            [share_a, share_b]
+        } else {
+            [share_a, share_b].map(|s| Share::whole(s.spheres))
+        };
+        // What their contact needs, not the search's: what touches already has a target of its own, and mostly
+        // directions put it off for good.
+        let mut balls = self.swept([i, j], pair);
+        if threshold.scale < 1.0 {
+            let lost = |s: &Ball<f64>| (1.0 - threshold.scale) * s.1;
+            let [a, b] = [all_a, all_b].map(|s| s.each_ref().map(lost));
+            balls = [balls[0].less(a), balls[1].less(b)];
+        }
+        for_each_test(shares[0], shares[1], |test| {
+            self.proofs += 1;
+            let some = [
+                balls[0].only(test.corners.map(|c| c.0)),
+                balls[1].only(test.corners.map(|c| c.1)),
+            ];
+            if let Some(free) = self.above_until([&some[0], &some[1]], &threshold, time) {
+                let open = Open {
+                    primitives: pair,
+                    test,
+                    threshold,
+                    spent: 0,
+                };
+                let place = Candidate::Test(self.open.len() as u32);
+                self.queue(Entry::at(free, place));
+                self.open.push(open);
+            }
+            true
+        });
+        true
+    }
+
+    /// The distance up to which two primitives, given as spheres in their bodies' frames and what they test, have to be
+    /// followed, from `time` on; `None` if they overlap at the start, where the search is to stop.
+    fn threshold(
+        &mut self,
+        pair: [u32; 2],
+        ([sa, sb], [share_a, share_b]): ([&[Ball<f64>]; 2], [Share; 2]),
+        time: f64,
+    ) -> Option<Threshold> {
         let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
             let turned = self.motions[side].sin_cos(0.0);
             let place = |c| self.motions[side].point(c).at(0.0, turned).position;
@@ -69,47 +118,12 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                 if crossings.iter().flatten().any(|c| -c.radius <= target) {
                     self.earliest.overlap_at_start();
                     self.earliest.found = None;
-                    return false;
+                    return None;
                 }
             }
             InitialContact::Stop => {}
         }
-        // A target of the pair's own leaves no test to a neighbour, whose target is another; where the two
-        // targets may be far from each other, no neighbour leaves one to it either.
-        let own = matches!(self.initial_contact, InitialContact::Approach { .. });
-        let shares = if threshold.target == self.target && !own {
-            [share_a, share_b]
-        } else {
-            [share_a, share_b].map(|s| Share::whole(s.spheres))
-        };
-        // What their contact needs, not the search's: what touches already has a target of its own, and mostly
-        // directions put it off for good.
-        let mut balls = self.swept([i, j], pair);
-        if threshold.scale < 1.0 {
-            let lost = |s: &Ball<f64>| (1.0 - threshold.scale) * s.1;
-            let [a, b] = [all_a, all_b].map(|s| s.each_ref().map(lost));
-            balls = [balls[0].less(a), balls[1].less(b)];
-        }
-        for_each_test(shares[0], shares[1], |test| {
-            self.proofs += 1;
-            let some = [
-                balls[0].only(test.corners.map(|c| c.0)),
-                balls[1].only(test.corners.map(|c| c.1)),
-            ];
-            if let Some(free) = self.above_until([&some[0], &some[1]], &threshold, time) {
-                let open = Open {
-                    primitives: pair,
-                    test,
-                    threshold,
-                    spent: 0,
-                };
-                let place = Candidate::Test(self.open.len() as u32);
-                self.queue(Entry::at(free, place));
-                self.open.push(open);
-            }
-            true
-        });
-        true
+        Some(threshold)
     }
 
     /// Thickness of the thinner of two primitives, or the least number where it has none.

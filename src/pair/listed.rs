@@ -8,8 +8,9 @@
 //! holds: farther pairs add none.
 
 use super::SpherePair;
-use super::contacts::{Placement, PrimitivePair, Step, contacts};
+use super::contacts::{PrimitivePair, Step, contacts};
 use super::first_contact::Counts;
+use super::placement::Placement;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::medial::leaf_order::LeafOrder;

@@ -15,6 +15,7 @@ mod hulls;
 mod leaves;
 pub mod listed;
 pub mod outline;
+mod placement;
 mod queue;
 mod search;
 mod swept;

@@ -4,8 +4,8 @@
 
 use crate::elementary::test_list::Share;
 use crate::math::{Real, Vector};
-use crate::medial::mesh::Simplex;
 use crate::medial::shell::Shell;
+use crate::medial::simplex::Simplex;
 use crate::medial::tree::Below;
 use crate::medial::{MedialMesh, MedialSphere};
 use std::ops::Range;

@@ -1,15 +1,15 @@
 //! Shape casts of medial meshes, against each other and against parry's shapes, in exact rigid motion, by the certified
 //! query: it chooses how each shape is searched, and turns the bracket of the first contact into parry's answer.
 
-use super::advance;
-use super::foreign::{self, Parts};
+use super::axisymmetric_toi;
+use super::distance;
+use super::initial_contacts::Touching;
 use super::inside;
-use super::near;
-use super::touching::Touching;
+use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Pose, Real, Vector};
-use crate::medial::mesh::Simplex;
+use crate::medial::simplex::Simplex;
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::Left;
@@ -143,7 +143,7 @@ impl Cast<'_> {
     fn foreign_thickness(&self) -> Real {
         match self.other.as_shape::<MedialMesh>() {
             Some(_) => Real::INFINITY,
-            None => foreign::thickness(self.other),
+            None => swept_sphere_parts::thickness(self.other),
         }
     }
 
@@ -155,7 +155,7 @@ impl Cast<'_> {
     ) -> Result<Touching, Unsweepable> {
         let [start1, start2] = motions.map(|m| m.start);
         let pos12 = start1.inverse() * start2;
-        let (nearest, _) = near::nearest(self.mesh, self.other, &pos12, self.target_distance)?;
+        let (nearest, _) = distance::nearest(self.mesh, self.other, &pos12, self.target_distance)?;
         let (gap, normal, points, primitives) = match nearest {
             Some(c) => {
                 let points = [start1 * c.points[0], start2 * c.points[1]];
@@ -199,16 +199,24 @@ impl Cast<'_> {
             options.target_distance,
         );
         let mut parts = Parts::default();
-        if !foreign::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {
+        if !swept_sphere_parts::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {
             return Err(Unsweepable);
         }
-        let Parts { soup, turned, .. } = &parts;
+        let Parts {
+            soup, axisymmetric, ..
+        } = &parts;
         let mut found = self.search(soup, motion1, motion2, seconds, options, left);
         found.toi.primitives[1] = parts.soup_subshape(found.toi.primitives[1]);
-        if !turned.is_empty() {
-            let mut other =
-                advance::first_contact(self.mesh, motion1, turned, motion2, seconds, options);
-            other.toi.primitives[1] = parts.turned_subshape(other.toi.primitives[1]);
+        if !axisymmetric.is_empty() {
+            let mut other = axisymmetric_toi::first_contact(
+                self.mesh,
+                motion1,
+                axisymmetric,
+                motion2,
+                seconds,
+                options,
+            );
+            other.toi.primitives[1] = parts.axisymmetric_subshape(other.toi.primitives[1]);
             found.counts.nodes += other.counts.nodes;
             found.counts.tests += other.counts.tests;
             found.toi = earlier(found.toi, other.toi);
@@ -319,10 +327,6 @@ fn earlier(a: Toi, b: Toi) -> Toi {
         ..first
     }
 }
-
-/// Error: the other shape is neither medial nor one of parry's own, so it cannot be swept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unsweepable;
 
 fn status(toi: &Toi) -> ShapeCastStatus {
     match toi.status {

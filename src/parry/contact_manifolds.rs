@@ -1,9 +1,9 @@
 //! Contact manifolds with medial meshes, as parry asks for them from step to step: from the batch's answers for two
 //! meshes, from our own clipping for a mesh and a flat face, and from parry for a mesh and all other shapes.
 
-use super::bearing;
+use super::contact_reduction;
 use super::dispatcher::{MedialDispatcher, medial};
-use super::flat;
+use super::flat_face;
 use super::manifolds::{self, ensure_workspace, write_one_point};
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
@@ -62,7 +62,7 @@ impl MedialDispatcher {
         };
         let center = mesh.unit_mass_properties().local_com;
         let center = if side == 0 { center } else { pos12 * center };
-        let borne = bearing::borne(manifolds, side);
+        let previous = contact_reduction::previous(manifolds, side);
         let (Some(mesh1), Some(mesh2)) = meshes else {
             let pair = ((mesh, side), pos12, [g1, g2]);
             let goes_on = write_on_flat(pair, prediction, manifolds, workspace);
@@ -71,9 +71,9 @@ impl MedialDispatcher {
                 None => write_by_parry(pair, prediction, manifolds, workspace),
             };
             if goes_on != Some(true) {
-                bearing::hand_on(manifolds, &borne, prediction, side);
+                contact_reduction::transfer_impulses(manifolds, &previous, prediction, side);
             }
-            bearing::choose(manifolds, center, prediction, &borne, side);
+            contact_reduction::choose(manifolds, center, prediction, &previous, side);
             if goes_on.is_some() {
                 manifolds.retain(|m| !m.points.is_empty());
             }
@@ -90,7 +90,7 @@ impl MedialDispatcher {
                     manifolds,
                 );
             });
-        bearing::choose(manifolds, center, prediction, &borne, side);
+        contact_reduction::choose(manifolds, center, prediction, &previous, side);
         self.answers.count_manifolds(manifolds.len());
         Ok(())
     }
@@ -117,14 +117,14 @@ where
     } else {
         (g1, pos12.inverse())
     };
-    let face = flat::face(mesh, other, &pose, prediction)?;
-    let goes_on = flat::wrote(manifolds);
+    let face = flat_face::face(mesh, other, &pose, prediction)?;
+    let goes_on = flat_face::wrote(manifolds);
     if !goes_on {
         // parry's workspace holds indices into the list that is written anew here.
         *workspace = None;
     }
     ensure_workspace::<M, C>(g1, g2, workspace);
-    flat::write_manifolds(mesh, &face, &pose, side, prediction, manifolds);
+    flat_face::write_manifolds(mesh, &face, &pose, side, prediction, manifolds);
     Some(goes_on)
 }
 
@@ -141,8 +141,8 @@ where
     M: Default + Clone,
     C: Default + Copy,
 {
-    bearing::look_again(manifolds);
-    let flat = if !manifolds.is_empty() && flat::wrote(manifolds) {
+    contact_reduction::force_full_update(manifolds);
+    let flat = if !manifolds.is_empty() && flat_face::wrote(manifolds) {
         manifolds.clone()
     } else {
         Vec::new()

@@ -3,7 +3,7 @@
 
 use super::answers::Answers;
 use super::cast::Cast;
-use super::near;
+use super::distance;
 use crate::batch::PairResult;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -84,8 +84,8 @@ impl MedialDispatcher {
         max_distance: Real,
     ) -> Result<Option<SpherePair>, Unsupported> {
         let (found, counts) = match (medial(g1), medial(g2)) {
-            (Some(mesh), _) => near::nearest(mesh, g2, pos12, max_distance),
-            (None, Some(mesh)) => near::nearest(mesh, g1, &pos12.inverse(), max_distance)
+            (Some(mesh), _) => distance::nearest(mesh, g2, pos12, max_distance),
+            (None, Some(mesh)) => distance::nearest(mesh, g1, &pos12.inverse(), max_distance)
                 .map(|(pair, counts)| (pair.map(|p| flipped(p, pos12)), counts)),
             (None, None) => return Err(Unsupported),
         }

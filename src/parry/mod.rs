@@ -1,23 +1,23 @@
 //! The medial mesh as a shape of parry, rapier's geometry library (layer 5): queries, contact manifolds and shape
 //! casts, against medial meshes and all of parry's shapes.
 
-pub mod advance;
 pub mod answers;
-pub mod bearing;
+pub mod axisymmetric;
+pub mod axisymmetric_toi;
 pub mod cast;
+pub mod conservative_advancement;
 mod contact_manifolds;
+pub mod contact_reduction;
 pub mod dispatcher;
-pub mod flat;
-pub mod follow;
-pub mod foreign;
+pub mod distance;
+pub mod flat_face;
+mod initial_contacts;
 pub mod inside;
-pub mod leaving;
 pub mod manifolds;
-pub mod near;
-pub mod parts;
+pub mod medial_part;
+pub mod ray_exit;
 pub mod shape;
-mod touching;
-pub mod turned;
+pub mod swept_sphere_parts;
 
 pub use answers::Answers;
 pub use dispatcher::MedialDispatcher;

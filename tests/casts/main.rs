@@ -1,7 +1,7 @@
 //! Shape casts of medial meshes against every built-in shape, by [`oracle`], which shares no code with
 //! them.
 
-mod bearing;
+mod contact_reduction;
 mod faces;
 mod flat;
 mod inside;

@@ -5,12 +5,11 @@ use crate::ccd::families::Family;
 use crate::ccd::motion::{Ball, Paths};
 use crate::ccd::rng::Rng;
 use rapier3d_medial::elementary::distance::{self, signed_distance};
-use rapier3d_medial::elementary::penetration;
 use rapier3d_medial::elementary::test_list::ElementaryTest;
 use rapier3d_medial::math::lane::{Scalar, Vec3};
 use rapier3d_medial::math::tolerance::SLACK_ULPS;
 
-fn convert<S: Scalar>(balls: &[Ball]) -> Vec<penetration::Ball<S>> {
+fn convert<S: Scalar>(balls: &[Ball]) -> Vec<distance::Ball<S>> {
     let convert = |ball: &Ball| {
         let [x, y, z] = [ball.center.x, ball.center.y, ball.center.z].map(S::splat);
         (Vec3::new(x, y, z), S::splat(ball.radius))

@@ -70,8 +70,16 @@ fn holds(mesh: &MedialMesh, left: &Left, primitive: usize) -> bool {
     left.meets(leaf.expect("a leaf of each primitive"))
 }
 
-/// Both from `from` to 1 s, each so manieth sample of them, the first told from the start and the second from `from` on; returns what was
-/// said: 0 apart, 1 apart for a while, 2 not, and whether less than all is left.
+fn shell(mesh: &MedialMesh) -> Arc<Shell> {
+    Arc::new(Shell::of_mesh(
+        mesh.spheres(),
+        mesh.simplices(),
+        mesh.tree(),
+    ))
+}
+
+/// Judges two meshes from `from` to 1 s at each `each`-th sample of them, the first told from the start and the second
+/// from `from` on. Returns what was said (0 apart, 1 apart for a while, 2 not), and whether less than all is left.
 fn judge(
     meshes: [&MedialMesh; 2],
     motions: [&NonlinearRigidMotion; 2],
@@ -79,7 +87,7 @@ fn judge(
     each: usize,
     what: &str,
 ) -> (usize, bool) {
-    let shells = meshes.map(|m| Arc::new(Shell::of_mesh(m)));
+    let shells = meshes.map(shell);
     let a = Outline::new(&shells[0], motions[0], [0.0, 1.0]);
     let b = Outline::new(&shells[1], &later(motions[1], from), [from, 1.0]);
     let apart = apart_until(&a, &b, from, target);
@@ -180,7 +188,7 @@ fn a_query_that_pauses_gives_the_same_answer() {
             ..Default::default()
         };
         let (whole, all) = first_contact_counted(&a, &still, &b, &moving, 1.0, &options);
-        let outline = |m, motion| Outline::new(&Arc::new(Shell::of_mesh(m)), motion, [0.0, 1.0]);
+        let outline = |m, motion| Outline::new(&shell(m), motion, [0.0, 1.0]);
         let target = options.target_distance.max(0.0) + options.tolerance;
         let apart = apart_until(&outline(&a, &still), &outline(&b, &moving), 0.0, target);
         for left in [None, apart.map(|apart| apart.left)] {

@@ -3,7 +3,8 @@
 use crate::ccd::distance::{Corners, Goal, distance};
 use crate::ccd::rng::Rng;
 use nalgebra::Vector3;
-use rapier3d_medial::elementary::penetration::{Ball, deepest};
+use rapier3d_medial::elementary::distance::Ball;
+use rapier3d_medial::elementary::penetration::deepest;
 use rapier3d_medial::elementary::{MovingSphere, first_contact};
 use rapier3d_medial::math::lane::{Scalar, Vec3};
 use rapier3d_medial::math::{Pose, Vector};

@@ -1,15 +1,9 @@
 //! Measures how long a shader runs on the GPU, if this is asked for and the GPU can measure it.
 
-use super::context::Context;
-use super::transfer::Transfer;
-use crate::error::GpuError;
 use wgpu::{
-    Buffer, BufferUsages, CommandEncoder, ComputePassTimestampWrites, QuerySet, QuerySetDescriptor,
-    QueryType,
+    Buffer, BufferUsages, CommandEncoder, ComputePassTimestampWrites, Device, QuerySet,
+    QuerySetDescriptor, QueryType, Queue,
 };
-
-/// Two marks of eight bytes.
-const BYTES: usize = 16;
 
 /// Marks before and after the shader.
 pub(super) struct Clock {
@@ -20,18 +14,24 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    pub(super) fn new(context: &mut Context) -> Result<Self, GpuError> {
-        let usage = BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC;
-        let read = context.buffer("shader time", BYTES as u64, usage)?;
-        Ok(Self {
-            marks: context.device.create_query_set(&QuerySetDescriptor {
+    /// Bytes of its two marks.
+    pub(super) const BYTES: usize = 16;
+
+    /// How the buffer is used to which it resolves its marks.
+    pub(super) const USAGE: BufferUsages =
+        BufferUsages::QUERY_RESOLVE.union(BufferUsages::COPY_SRC);
+
+    /// A clock with a buffer of [`Self::BYTES`].
+    pub(super) fn new(device: &Device, queue: &Queue, read: Buffer) -> Self {
+        Self {
+            marks: device.create_query_set(&QuerySetDescriptor {
                 label: Some("shader time"),
                 ty: QueryType::Timestamp,
                 count: 2,
             }),
             read,
-            period: context.queue.get_timestamp_period().into(),
-        })
+            period: queue.get_timestamp_period().into(),
+        }
     }
 
     /// What the shader's pass writes.
@@ -45,13 +45,13 @@ impl Clock {
 
     /// Room that the marks take among the answers.
     pub(super) fn bytes(clock: Option<&Self>) -> usize {
-        clock.map_or(0, |_| BYTES)
+        clock.map_or(0, |_| Self::BYTES)
     }
 
-    /// Has the marks sent after the other answers.
-    pub(super) fn receive(&self, encoder: &mut CommandEncoder, down: &mut Transfer) {
+    /// Resolves the marks into a buffer of [`Self::BYTES`], to be sent after the other answers.
+    pub(super) fn resolve(&self, encoder: &mut CommandEncoder) -> &Buffer {
         encoder.resolve_query_set(&self.marks, 0..2, &self.read, 0);
-        down.receive(encoder, &self.read, BYTES);
+        &self.read
     }
 
     /// Seconds that the shader took, from the bytes received.

@@ -141,7 +141,8 @@ impl Context {
             },
         };
         if timed {
-            context.clock = Some(Clock::new(&mut context)?);
+            let read = context.buffer("shader time", Clock::BYTES as u64, Clock::USAGE)?;
+            context.clock = Some(Clock::new(&context.device, &context.queue, read));
         }
         Ok(context)
     }
@@ -171,7 +172,7 @@ impl Context {
     pub(super) fn poll(&self) -> Result<(), GpuError> {
         let done = self.device.poll(PollType::wait_indefinitely());
         self.check()?;
-        done.map_err(|e| super::transfer::refused(&e.to_string()))?;
+        done.map_err(|e| refused(&e.to_string()))?;
         Ok(())
     }
 
@@ -215,6 +216,13 @@ impl Context {
         });
         self.check()?;
         Ok(buffer)
+    }
+}
+
+/// The error of a driver that does not do what it was asked.
+pub(super) fn refused(message: &str) -> GpuError {
+    GpuError::Refused {
+        message: message.to_owned(),
     }
 }
 

@@ -182,7 +182,8 @@ impl Cull {
         down.receive(&mut encoder, &self.answers.buffer, answers);
         down.receive(&mut encoder, &self.near.buffer, near);
         if let Some(clock) = &context.clock {
-            clock.receive(&mut encoder, down);
+            let marks = clock.resolve(&mut encoder);
+            down.receive(&mut encoder, marks, Clock::BYTES);
         }
         up.hand_over();
         context.queue.submit([encoder.finish()]);

@@ -105,7 +105,8 @@ impl Elementary {
         Stage::run(context, &mut encoder, &[(stage, groups)]);
         down.receive(&mut encoder, &self.answers.buffer, answers);
         if let Some(clock) = &context.clock {
-            clock.receive(&mut encoder, down);
+            let marks = clock.resolve(&mut encoder);
+            down.receive(&mut encoder, marks, Clock::BYTES);
         }
         up.hand_over();
         context.queue.submit([encoder.finish()]);

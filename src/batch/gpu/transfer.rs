@@ -1,7 +1,7 @@
 //! Copies data to the GPU and back, through one buffer each way that is kept from step to step and mapped while the CPU
 //! uses it. `Queue::write_buffer` would allocate a buffer at every call.
 
-use super::context::{Context, Growing};
+use super::context::{Context, Growing, refused};
 use super::layout::TEXELS;
 use super::texels::{ROW, Texels};
 use crate::error::GpuError;
@@ -226,12 +226,6 @@ impl Transfer {
         drop(view);
         self.room.buffer.unmap();
         context.check()
-    }
-}
-
-pub(super) fn refused(message: &str) -> GpuError {
-    GpuError::Refused {
-        message: message.to_owned(),
     }
 }
 

@@ -140,8 +140,39 @@ pub fn residuals(
         true => envelope.iter().map(|e| e.at(draft, &solid).0).collect(),
         false => Vec::new(),
     };
-    let boundary = Cloud::new(boundary);
-    let mut rows = map_chunks(&paired, watch, |chunk| {
+    let mut rows = surface_rows(&solid, &paired, &Cloud::new(boundary), beyond, watch)?;
+    for (hint, row) in hints.iter_mut().zip(&rows) {
+        *hint = row.primitive;
+    }
+    let surface_rows = rows.len();
+    let share = surface_rows as f64 / envelope.len().max(1) as f64;
+    let outer = envelope_rows(draft, &solid, tree, (envelope, share), beyond, watch)?;
+    for (sample, (row, triangle)) in envelope.iter_mut().zip(outer) {
+        sample.triangle = triangle;
+        rows.push(row);
+    }
+    watch.hold(bytes_of(&rows) + bytes_of(&paired) + size_of_val(envelope));
+    let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
+    let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();
+    let squares = sum(|r| r.weight * r.residual * r.residual);
+    let rms = (squares / sum(|r| r.weight).max(f64::MIN_POSITIVE)).sqrt();
+    Ok(Residuals {
+        rows,
+        surface_rows,
+        largest,
+        score: largest + 2.0 * rms,
+    })
+}
+
+/// Rows of surface samples, each with the primitive it had last.
+fn surface_rows(
+    solid: &Solid,
+    paired: &[(Sample, u32)],
+    boundary: &Cloud,
+    beyond: f64,
+    watch: &mut Watch,
+) -> Result<Vec<Row>, BuildError> {
+    map_chunks(paired, watch, |chunk| {
         let mut last = 0;
         let row = |&(sample, hint): &(Sample, u32)| {
             let point = sample.point;
@@ -150,7 +181,7 @@ pub fn residuals(
             let mut residual = near.signed.distance;
             let mut on_boundary = point;
             if beyond > 0.0 && residual < 0.0 {
-                if let Some(exit) = far_exit(&solid, &sample, &near, beyond, &boundary) {
+                if let Some(exit) = far_exit(solid, &sample, &near, beyond, boundary) {
                     residual = -(exit - point).length();
                     // Shrinking the ball there shortens the way.
                     near = solid.nearest(exit, last);
@@ -169,16 +200,22 @@ pub fn residuals(
             }
         };
         chunk.iter().map(row).collect()
-    })?;
-    for (hint, row) in hints.iter_mut().zip(&rows) {
-        *hint = row.primitive;
-    }
-    let surface_rows = rows.len();
-    let share = surface_rows as f64 / envelope.len().max(1) as f64;
-    let outer = map_chunks(envelope, watch, |chunk| {
+    })
+}
+
+/// Rows of envelope samples of which each weighs `share`, and the triangle nearest to each.
+fn envelope_rows(
+    draft: &Draft,
+    solid: &Solid,
+    tree: &TriangleTree,
+    (envelope, share): (&[EnvelopeSample], f64),
+    beyond: f64,
+    watch: &mut Watch,
+) -> Result<Vec<(Row, u32)>, BuildError> {
+    map_chunks(envelope, watch, |chunk| {
         let mut hint = 0;
         let row = |sample: &EnvelopeSample| {
-            let (point, corners) = sample.at(draft, &solid);
+            let (point, corners) = sample.at(draft, solid);
             if sample.triangle != UNKNOWN {
                 hint = sample.triangle;
             }
@@ -208,21 +245,6 @@ pub fn residuals(
             (row, triangle)
         };
         chunk.iter().map(row).collect()
-    })?;
-    for (sample, (row, triangle)) in envelope.iter_mut().zip(outer) {
-        sample.triangle = triangle;
-        rows.push(row);
-    }
-    watch.hold(bytes_of(&rows) + bytes_of(&paired) + size_of_val(envelope));
-    let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
-    let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();
-    let squares = sum(|r| r.weight * r.residual * r.residual);
-    let rms = (squares / sum(|r| r.weight).max(f64::MIN_POSITIVE)).sqrt();
-    Ok(Residuals {
-        rows,
-        surface_rows,
-        largest,
-        score: largest + 2.0 * rms,
     })
 }
 

@@ -2,8 +2,8 @@
 //! the coordinates of the joints, so these coordinates are what has to be written.
 
 use crate::math::{Pose, Real, Vector};
+use crate::rapier::view::link_angles::LinkAngles;
 use crate::rapier::view::step_view::StepView;
-use crate::rapier::view::turned::Turned;
 use rapier3d::dynamics::{Multibody, MultibodyJointSet, MultibodyLink, RigidBodySet};
 
 /// Pose, centre of mass in the world, linear and angular velocity of a link.
@@ -13,7 +13,7 @@ struct State {
     center: Vector,
     velocity: [Vector; 2],
     /// From where its angles go on.
-    turned: Turned,
+    turned: LinkAngles,
 }
 
 /// Sets all multibodies of which a link changed: `changed` has indices in the view, and whether the velocity did.
@@ -59,7 +59,7 @@ fn set(
             pose,
             center: pose * body.mass_properties().local_mprops.local_com,
             velocity: struck.map_or([body.linvel(), body.angvel()], |b| b.velocity),
-            turned: ours.map_or_else(|| Turned::of(link), |b| b.turned(link)),
+            turned: ours.map_or_else(|| LinkAngles::of(link), |b| b.turned(link)),
         }
     };
     let links: Vec<MultibodyLink> = multibody.links().copied().collect();
@@ -138,7 +138,7 @@ fn coordinates(
     }
     let mut turns = free(3);
     let hinge = turns.next().filter(|_| turns.next().is_none());
-    let now = Turned::of(link);
+    let now = LinkAngles::of(link);
     let turns = own.turned.goes_on(&now, between.rotation, hinge);
     for (way, turn) in ways.iter_mut().zip(turns) {
         way.extend(free(3).map(|i| turn[i]));

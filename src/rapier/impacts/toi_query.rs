@@ -16,7 +16,7 @@ use crate::medial::MedialMesh;
 use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::Left;
 use crate::parry::cast::Cast;
-use crate::parry::near::{is_within, nearest};
+use crate::parry::distance::{is_within, nearest};
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::impacts::thin_parts::Thin;
 use crate::rapier::tuning::Tuning;

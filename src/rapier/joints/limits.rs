@@ -7,7 +7,7 @@
 //! `dθ_i/dt = ω · (e_i + θ × e_i / 2 + c θ × (θ × e_i))` with `c = (1 − (θ/2) cot(θ/2)) / θ²`.
 
 use crate::math::{Pose, Real, Rotation, Vector};
-use crate::rapier::view::turned::{Turned, shortest};
+use crate::rapier::view::link_angles::{LinkAngles, shortest};
 use rapier3d::dynamics::{GenericJoint, MultibodyLink};
 use std::f32::consts::PI;
 
@@ -75,7 +75,7 @@ impl Limit {
     }
 
     /// Those of a link of a multibody, whose turns so far are given.
-    pub fn of_link(link: &MultibodyLink, turned: &Turned) -> Vec<Self> {
+    pub fn of_link(link: &MultibodyLink, turned: &LinkAngles) -> Vec<Self> {
         let joint = &link.joint.data;
         let limited = (0..6u8).filter(|i| free_limits(joint) & (1 << i) != 0);
         let limit = |axis: u8| {

@@ -13,8 +13,8 @@ use crate::rapier::impacts::impulse::Inertia;
 use crate::rapier::joints::limits::Limit;
 use crate::rapier::joints::rows::{Ends, Joint, Row, Twist, dot};
 use crate::rapier::joints::skyline::Skyline;
+use crate::rapier::view::link_angles::shortest;
 use crate::rapier::view::step_view::StepView;
-use crate::rapier::view::turned::shortest;
 
 /// Relative addition to the diagonal of `G W Gᵀ`, which is singular where joints close a loop: above the rounding of
 /// the Jacobians in single precision.

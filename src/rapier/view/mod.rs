@@ -3,8 +3,8 @@
 pub(crate) mod census;
 pub(crate) mod eligible_pairs;
 pub(crate) mod filter_answers;
+pub(crate) mod link_angles;
 pub(crate) mod medial_colliders;
 pub(crate) mod motion;
 pub(crate) mod overlapping_boxes;
 pub(crate) mod step_view;
-pub(crate) mod turned;

@@ -4,7 +4,7 @@
 //! poses before and after, and from the number of full turns in between.
 
 use crate::math::{Pose, Real, Rotation, Vector};
-use crate::rapier::view::turned::{Turned, shortest};
+use crate::rapier::view::link_angles::{LinkAngles, shortest};
 use parry3d::mass_properties::MassProperties;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
@@ -79,7 +79,7 @@ pub struct Body {
     /// Radians per second of the fastest link of its multibody before rapier's step; 0 of a body of none.
     pub whirl: Real,
     /// Of a link of a multibody, before rapier's step.
-    pub turned_before: Option<Turned>,
+    pub turned_before: Option<LinkAngles>,
     /// Whether rapier's step is taken back from it.
     pub is_taken_back: bool,
 }
@@ -122,10 +122,10 @@ impl Body {
 
     /// How far a link that goes on from this body's motion has turned: at the end of rapier's step, or at its start, if
     /// the step was taken back.
-    pub fn turned(&self, link: &MultibodyLink) -> Turned {
+    pub fn turned(&self, link: &MultibodyLink) -> LinkAngles {
         match self.turned_before {
             Some(before) if self.is_taken_back => before,
-            _ => Turned::of(link),
+            _ => LinkAngles::of(link),
         }
     }
 

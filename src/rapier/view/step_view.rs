@@ -4,10 +4,10 @@
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::parry::foreign;
+use crate::parry::swept_sphere_parts;
 use crate::rapier::host::enabled::enabled;
+use crate::rapier::view::link_angles::LinkAngles;
 use crate::rapier::view::motion::{Body, Kind};
-use crate::rapier::view::turned::Turned;
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
@@ -94,7 +94,7 @@ impl StepView {
             let mut new = Body::new(h, body, multibody.is_none_or(gives_way));
             new.predict(body, gravity, dt);
             let link = link.zip(multibody).and_then(|(l, m)| m.link(l.id));
-            new.turned_before = link.map(Turned::of);
+            new.turned_before = link.map(LinkAngles::of);
             view.bodies.push(new);
             view.index.insert(h, view.bodies.len() - 1);
             Some(view.bodies.len() - 1)
@@ -141,7 +141,7 @@ impl StepView {
         body.reach = body.reach.max(arm.length() + bound.radius());
         let [thickness, least] = match shape.as_shape::<MedialMesh>() {
             Some(mesh) => [mesh.thickness(), mesh.thicknesses().least()],
-            None => [foreign::thickness(&*shape); 2],
+            None => [swept_sphere_parts::thickness(&*shape); 2],
         };
         self.parts.push(Part {
             handle,

@@ -10,14 +10,14 @@ const NO_TURN: Real = 1.0e-4;
 /// How far a link of a multibody has turned: rapier sums the angles about the three axes of its joint, with all whole
 /// turns, beside the rotation that they made.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Turned {
+pub struct LinkAngles {
     /// Of the link against its parent.
     pub rotation: Rotation,
     /// Sums about the axes of the joint, in radians.
     pub angles: Vector,
 }
 
-impl Turned {
+impl LinkAngles {
     /// What rapier has now.
     pub fn of(link: &MultibodyLink) -> Self {
         let coordinates = link.joint.coords();

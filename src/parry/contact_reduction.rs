@@ -42,15 +42,18 @@ struct Seen {
 }
 
 /// A contact of the step before that carried a load.
-pub struct Borne<C> {
+pub struct PreviousContact<C> {
     subshapes: [u32; 2],
     place: Vector,
     data: C,
 }
 
 /// The contacts of these manifolds that carried a load, at their points on body `side` (0 or 1).
-pub fn borne<M, C: Copy>(manifolds: &[ContactManifold<M, C>], side: usize) -> Vec<Borne<C>> {
-    let of = |m: &ContactManifold<M, C>, i: usize| Borne {
+pub fn previous<M, C: Copy>(
+    manifolds: &[ContactManifold<M, C>],
+    side: usize,
+) -> Vec<PreviousContact<C>> {
+    let of = |m: &ContactManifold<M, C>, i: usize| PreviousContact {
         subshapes: [m.subshape1, m.subshape2],
         place: places(m, i)[side],
         data: m.points[i].data,
@@ -62,7 +65,7 @@ pub fn borne<M, C: Copy>(manifolds: &[ContactManifold<M, C>], side: usize) -> Ve
 
 /// Makes parry compute all contacts anew. It would otherwise go on from those in the manifolds, from which some were
 /// removed.
-pub fn look_again<M, C: Default + Copy>(manifolds: &mut [ContactManifold<M, C>]) {
+pub fn force_full_update<M, C: Default + Copy>(manifolds: &mut [ContactManifold<M, C>]) {
     if manifolds.iter().map(|m| m.points.len()).sum::<usize>() >= SOLVED {
         manifolds
             .iter_mut()
@@ -73,9 +76,9 @@ pub fn look_again<M, C: Default + Copy>(manifolds: &mut [ContactManifold<M, C>])
 /// Passes the data (impulses) of contacts of the step before to the nearest new contacts of the same subshapes, each
 /// once. parry matches contacts by features, which several contacts of an edge share, so that an impulse would count
 /// several times.
-pub fn hand_on<M, C: Default + Copy>(
+pub fn transfer_impulses<M, C: Default + Copy>(
     manifolds: &mut [ContactManifold<M, C>],
-    borne: &[Borne<C>],
+    previous: &[PreviousContact<C>],
     prediction: Real,
     side: usize,
 ) {
@@ -89,7 +92,7 @@ pub fn hand_on<M, C: Default + Copy>(
             .iter_mut()
             .for_each(|p| p.data = C::default());
         let mut free = vec![true; now.len()];
-        for b in borne.iter().filter(|b| b.subshapes == ids) {
+        for b in previous.iter().filter(|b| b.subshapes == ids) {
             let apart = |i: &usize| now[*i].distance(b.place);
             let near = (0..now.len()).filter(|i| free[*i] && apart(i) < prediction);
             if let Some(i) = near.min_by(|i, j| apart(i).total_cmp(&apart(j))) {
@@ -101,12 +104,12 @@ pub fn hand_on<M, C: Default + Copy>(
 }
 
 /// Removes all contacts but those that bear the load: at most four for each normal, chosen for a load at `center`
-/// (in the first body's frame). `borne` are the contacts that did so in the step before, on body `side`.
+/// (in the first body's frame). `previous` are the contacts that did so in the step before, on body `side`.
 pub fn choose<M, C: Copy>(
     manifolds: &mut [ContactManifold<M, C>],
     center: Vector,
     prediction: Real,
-    borne: &[Borne<C>],
+    previous: &[PreviousContact<C>],
     side: usize,
 ) {
     let prediction = f64::from(prediction);
@@ -129,7 +132,7 @@ pub fn choose<M, C: Copy>(
         for (i, point) in manifold.points.iter().enumerate() {
             let points = places(manifold, i);
             let from = points[0] - center;
-            let bore = borne
+            let bore = previous
                 .iter()
                 .any(|b| f64::from(b.place.distance(points[side])) < SAME_PLACE * prediction);
             seen.push(Seen {

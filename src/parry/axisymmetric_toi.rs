@@ -3,12 +3,12 @@
 //! [`follow`] advances them as it does primitives, only less exactly.
 //!
 //! # Guarantee
-//! It is that of [`crate::elementary`], where `D(t)` is the signed distance of [`super::turned`], which sees bodies
+//! It is that of [`crate::elementary`], where `D(t)` is the signed distance of [`super::axisymmetric`], which sees bodies
 //! inside the cylinder or cone as overlapping, and never falls below minus the largest radius. For a contact,
 //! `upper = lower`, and `D` there is at most the tolerance. All is computed in double precision.
 
-use super::follow::{Advance, Limits, TOLERANCE_PER_SLACK, follow};
-use super::turned::{Ball, NearBall, Place, Turned, unit};
+use super::axisymmetric::{Axisymmetric, Ball, NearBall, Place, unit};
+use super::conservative_advancement::{Advance, Limits, TOLERANCE_PER_SLACK, follow};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
@@ -47,7 +47,7 @@ const NODE_STEPS: u32 = 16;
 pub fn first_contact(
     mesh: &MedialMesh,
     motion1: &NonlinearRigidMotion,
-    bodies: &[Turned],
+    bodies: &[Axisymmetric],
     motion2: &NonlinearRigidMotion,
     seconds: Real,
     options: &ToiOptions,
@@ -136,7 +136,7 @@ impl Ord for Entry {
 
 impl Search<'_> {
     /// Best-first over the tree and the bodies, by the time until which each node is proven free.
-    fn run(&mut self, bodies: &[Turned]) {
+    fn run(&mut self, bodies: &[Axisymmetric]) {
         for (index, body) in bodies.iter().enumerate() {
             for root in 0..self.mesh.roots() {
                 self.push(body, index as u32, root, 0.0);
@@ -162,7 +162,7 @@ impl Search<'_> {
 
     /// Ends unresolved: nothing meets before the entry's time, and nothing is known from there on. The
     /// witness is of a primitive that may come first.
-    fn give_up(&mut self, body: &Turned, entry: &Entry) {
+    fn give_up(&mut self, body: &Axisymmetric, entry: &Entry) {
         let mut below = self.mesh.below(entry.node);
         let primitive = loop {
             match below {
@@ -194,7 +194,7 @@ impl Search<'_> {
         (balls, share.spheres.clamp(1, 3))
     }
 
-    fn push(&mut self, body: &Turned, index: u32, node: u32, time: f64) {
+    fn push(&mut self, body: &Axisymmetric, index: u32, node: u32, time: f64) {
         self.counts.nodes += 1;
         let (center, radius) = self.mesh.bound(node);
         let limits = Limits {
@@ -216,7 +216,7 @@ impl Search<'_> {
         }
     }
 
-    fn leaf(&mut self, body: &Turned, primitives: [u32; 2], entry: &Entry) {
+    fn leaf(&mut self, body: &Axisymmetric, primitives: [u32; 2], entry: &Entry) {
         self.counts.tests += u32::from(entry.spent == 0);
         let (mut all, len) = self.balls(primitives[0]);
         let thickness = self.mesh.thicknesses().primitives[primitives[0] as usize];
@@ -285,12 +285,16 @@ impl Search<'_> {
             }));
             return;
         }
+        self.keep(&advance, primitives, limits.target);
+    }
+
+    /// Keeps what came out of following two primitives, if nothing earlier was found.
+    fn keep(&mut self, advance: &Advance, primitives: [u32; 2], target: f64) {
         self.tolerance = self.tolerance.max(TOLERANCE_PER_SLACK * advance.slack);
         let sooner = self.found.is_none() || advance.lower < self.lower;
         self.lower = self.lower.min(advance.lower);
-        let overlap = advance.met
-            && advance.lower <= 0.0
-            && advance.near.distance() < limits.target - advance.slack;
+        let overlap =
+            advance.met && advance.lower <= 0.0 && advance.near.distance() < target - advance.slack;
         if sooner || overlap {
             self.found = Some(Found {
                 near: advance.near,
@@ -308,13 +312,13 @@ impl Search<'_> {
         }
     }
 
-    fn advance(&mut self, body: &Turned, balls: &[Ball], limits: &Limits) -> Advance {
+    fn advance(&mut self, body: &Axisymmetric, balls: &[Ball], limits: &Limits) -> Advance {
         let advance = follow(&self.motions, body, balls, limits);
         self.work += advance.steps;
         advance
     }
 
-    fn answer(&self, bodies: &[Turned], origin: Vec3<f64>) -> Toi {
+    fn answer(&self, bodies: &[Axisymmetric], origin: Vec3<f64>) -> Toi {
         let separated = Toi::separated(self.options);
         let tolerance = self.tolerance as Real;
         let Some(found) = self.found else {

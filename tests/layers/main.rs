@@ -1,6 +1,8 @@
 //! The import rules of the design, checked on the source text: imports go down the layers only, and
 //! each foreign library stays in its layer.
 
+mod circles;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

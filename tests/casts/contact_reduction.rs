@@ -4,7 +4,7 @@
 use rapier3d::parry::query::{ContactManifold, TrackedContact};
 use rapier3d::parry::shape::PackedFeatureId;
 use rapier3d_medial::math::{Real, Vector};
-use rapier3d_medial::parry::bearing::{borne, choose};
+use rapier3d_medial::parry::contact_reduction::{choose, previous};
 
 type Manifold = ContactManifold<(), ()>;
 
@@ -76,7 +76,7 @@ fn the_facet_under_the_load_bears() {
             })
             .collect();
         let mut all = manifolds(&contacts);
-        let before = borne(&all[..0], 0);
+        let before = previous(&all[..0], 0);
         choose(&mut all, Vector::ZERO, prediction, &before, 0);
         let kept: Vec<[Real; 3]> = all
             .iter()

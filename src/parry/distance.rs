@@ -1,16 +1,15 @@
 //! Distance of a medial mesh to one of parry's shapes at fixed poses, and the contact that attains it.
 //!
-//! The other shape is its surface as swept spheres ([`super::foreign`]), so the closed forms for two medial meshes
-//! serve here too. Cylinders and cones have closed forms of their own ([`super::turned`]). A centre inside a closed
+//! The other shape is its surface as swept spheres ([`super::swept_sphere_parts`]), so the closed forms for two medial meshes
+//! serve here too. Cylinders and cones have closed forms of their own ([`super::axisymmetric`]). A centre inside a closed
 //! body counts as deep as its shortest way out is long ([`super::inside`]).
 //!
 //! parry's own answers come from its iterative GJK algorithm: they are off by up to 1e-3 of the distance at times, are
 //! missing for height fields and voxels, and are in the wrong frame for contacts of compounds with half-spaces.
 
-use super::cast::Unsweepable;
-use super::foreign::{self, Parts};
+use super::axisymmetric::{Axisymmetric, NearBall, Place, unit};
 use super::inside;
-use super::turned::{NearBall, Place, Turned, unit};
+use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::math::lane::Vec3;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::tree::Below;
@@ -73,7 +72,7 @@ fn near(
             .transform_by(&pos21)
             .loosened(reach(mesh, other, &pos21, max_distance));
     let mut parts = Parts::default();
-    if !foreign::add_surface(&mut parts, other, &Pose::IDENTITY, &region) {
+    if !swept_sphere_parts::add_surface(&mut parts, other, &Pose::IDENTITY, &region) {
         return Err(Unsweepable);
     }
     let (mut best, mut counts) = near_spheres(mesh, &parts.soup, pos12, max_distance, wanted);
@@ -83,11 +82,11 @@ fn near(
     for pair in best.iter_mut() {
         pair.primitives[1] = parts.soup_subshape(pair.primitives[1]);
     }
-    for (index, body) in parts.turned.iter().enumerate() {
+    for (index, body) in parts.axisymmetric.iter().enumerate() {
         let limit = best.map_or(max_distance, |b| b.distance);
-        let found = nearest_turned(mesh, body, pos12, limit, &mut counts);
+        let found = nearest_axisymmetric(mesh, body, pos12, limit, &mut counts);
         if let Some(mut found) = found {
-            found.primitives[1] = parts.turned_subshape(index as u32);
+            found.primitives[1] = parts.axisymmetric_subshape(index as u32);
             best = Some(found);
         }
     }
@@ -119,7 +118,7 @@ fn way_out(mesh: &MedialMesh, other: &dyn Shape, pos12: &Pose) -> Option<SphereP
     let placed = |s: &MedialSphere| MedialSphere::new(pos21 * s.center, s.radius);
     let placed: Vec<_> = mesh.spheres().iter().map(placed).collect();
     let way = inside::way_out(other, &placed)?;
-    let of_sphere = |p: &crate::medial::mesh::Simplex| p.vertices.contains(&(way.sphere as u32));
+    let of_sphere = |p: &crate::medial::simplex::Simplex| p.vertices.contains(&(way.sphere as u32));
     let primitive = mesh.simplices().iter().position(of_sphere).unwrap_or(0);
     let MedialSphere { center, radius } = placed[way.sphere];
     Some(SpherePair {
@@ -135,9 +134,9 @@ fn way_out(mesh: &MedialMesh, other: &dyn Shape, pos12: &Pose) -> Option<SphereP
 }
 
 /// The nearest sphere to a cylinder or cone, if it is nearer than `limit`: best-first over the mesh's tree.
-fn nearest_turned(
+fn nearest_axisymmetric(
     mesh: &MedialMesh,
-    body: &Turned,
+    body: &Axisymmetric,
     pos12: &Pose,
     limit: Real,
     counts: &mut Counts,
@@ -199,7 +198,7 @@ fn nearest_turned(
 }
 
 /// Unit direction from the body to a sphere, and the signed distance; of a centre inside, the way out.
-fn out_of(body: &Turned, place: &Place, near: &NearBall) -> (Vec3<f64>, f64) {
+fn out_of(body: &Axisymmetric, place: &Place, near: &NearBall) -> (Vec3<f64>, f64) {
     if near.apart <= 0.0 {
         let (out, way) = body.way_out(place, near.ball.0);
         return (out, -way - near.ball.1);

@@ -2,9 +2,9 @@
 //! capsule a cone, a flat face a slab of radius 0, a rounded face a slab of its border radius.
 //!
 //! A closed body is represented by its surface only, so [`super::inside`] has to find out whether the other body starts
-//! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::advance`].
+//! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::axisymmetric_toi`].
 
-use super::turned::Turned;
+use super::axisymmetric::Axisymmetric;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::Soup;
@@ -18,16 +18,20 @@ const PLANE_REACH: Real = 2.0;
 /// What rounding takes from the coordinates of a box put in another frame, in units of the coordinates.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 
+/// Error: the other shape is neither medial nor one of parry's own, so it cannot be swept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unsweepable;
+
 /// A shape as swept spheres, cylinders and cones, in the shape's frame.
 #[derive(Clone, Debug, Default)]
 pub struct Parts {
     /// Swept spheres.
     pub soup: Soup,
     /// Cylinders and cones.
-    pub turned: Vec<Turned>,
+    pub axisymmetric: Vec<Axisymmetric>,
     /// parry's subshape of each primitive of the soup: child, triangle, segment, cell or voxel.
     soup_subshapes: Vec<u32>,
-    turned_subshapes: Vec<u32>,
+    axisymmetric_subshapes: Vec<u32>,
 }
 
 impl Parts {
@@ -37,9 +41,9 @@ impl Parts {
         of.copied().unwrap_or(0)
     }
 
-    /// parry's subshape of one of the turned bodies.
-    pub fn turned_subshape(&self, index: u32) -> u32 {
-        let of = self.turned_subshapes.get(index as usize);
+    /// parry's subshape of one of the axisymmetric bodies.
+    pub fn axisymmetric_subshape(&self, index: u32) -> u32 {
+        let of = self.axisymmetric_subshapes.get(index as usize);
         of.copied().unwrap_or(0)
     }
 
@@ -47,7 +51,8 @@ impl Parts {
     fn name(&mut self, subshape: u32) {
         self.soup.end_part();
         self.soup_subshapes.resize(self.soup.len(), subshape);
-        self.turned_subshapes.resize(self.turned.len(), subshape);
+        self.axisymmetric_subshapes
+            .resize(self.axisymmetric.len(), subshape);
     }
 }
 
@@ -65,8 +70,8 @@ pub fn thickness(shape: &dyn Shape) -> Real {
 /// Adds the surface of `shape`, placed at `pose` in the parts' frame, as far as it meets `region`
 /// (in the parts' frame). Returns `false` for a shape that has no such surface: a custom one.
 pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
-    if let Some(turned) = Turned::new(shape, pose) {
-        parts.turned.push(turned);
+    if let Some(body) = Axisymmetric::new(shape, pose) {
+        parts.axisymmetric.push(body);
         parts.name(0);
         return true;
     }
@@ -93,31 +98,53 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
         TypedShape::RoundConvexPolyhedron(c) => {
             add_polyhedron(soup, &c.inner_shape, pose, c.border_radius, region);
         }
-        TypedShape::TriMesh(m) => {
+        TypedShape::HalfSpace(plane) => {
             let local = local();
+            add_plane(soup, plane, pose, &local);
+        }
+        TypedShape::Compound(c) => {
+            for (i, (child, s)) in c.shapes().iter().enumerate() {
+                let (soup, axisymmetric) = (parts.soup.len(), parts.axisymmetric.len());
+                if !add_surface(parts, s.as_ref(), &(pose * child), region) {
+                    return false;
+                }
+                parts.soup_subshapes.truncate(soup);
+                parts.axisymmetric_subshapes.truncate(axisymmetric);
+                parts.name(i as u32);
+            }
+        }
+        _ => return add_elements(parts, shape, pose, region),
+    }
+    parts.name(0);
+    true
+}
+
+/// Adds the triangles, segments or voxels of a shape that is made of them, as [`add_surface`] does.
+fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
+    let local = seen_from(pose, region);
+    let flat = |p: Vector| MedialSphere::new(pose * p, 0.0);
+    match shape.as_typed_shape() {
+        TypedShape::TriMesh(m) => {
             for i in m.bvh().intersect_aabb(&local) {
                 let t = m.triangle(i);
-                parts.soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
+                parts.soup.push(&[t.a, t.b, t.c].map(flat));
                 parts.name(i);
             }
         }
         TypedShape::Polyline(l) => {
-            let local = local();
             for i in l.bvh().intersect_aabb(&local) {
                 let s = l.segment(i);
-                parts.soup.push(&[ball(s.a, 0.0), ball(s.b, 0.0)]);
+                parts.soup.push(&[s.a, s.b].map(flat));
                 parts.name(i);
             }
         }
         TypedShape::HeightField(h) => {
-            let local = local();
             h.map_elements_in_local_aabb(&local, &mut |i, t| {
-                parts.soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0)));
+                parts.soup.push(&[t.a, t.b, t.c].map(flat));
                 parts.name(i);
             });
         }
         TypedShape::Voxels(v) => {
-            let local = local();
             let cube = Cuboid::new(v.voxel_size() * 0.5);
             for voxel in v.voxels_intersecting_local_aabb(&local) {
                 if !voxel.state.is_empty() {
@@ -125,21 +152,6 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
                     add_cuboid(&mut parts.soup, &cube, &at, 0.0, &seen_from(&at, region));
                     parts.name(voxel.linear_id.flat_id() as u32);
                 }
-            }
-        }
-        TypedShape::HalfSpace(plane) => {
-            let local = local();
-            add_plane(soup, plane, pose, &local);
-        }
-        TypedShape::Compound(c) => {
-            for (i, (child, s)) in c.shapes().iter().enumerate() {
-                let (soup, turned) = (parts.soup.len(), parts.turned.len());
-                if !add_surface(parts, s.as_ref(), &(pose * child), region) {
-                    return false;
-                }
-                parts.soup_subshapes.truncate(soup);
-                parts.turned_subshapes.truncate(turned);
-                parts.name(i as u32);
             }
         }
         _ => return false,

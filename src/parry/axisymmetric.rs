@@ -36,7 +36,7 @@ const FLAT: f64 = 1.0e-15;
 
 /// A cylinder or cone, about an axis through its centre.
 #[derive(Clone, Copy, Debug)]
-pub struct Turned {
+pub struct Axisymmetric {
     /// Centre in the collider's frame.
     pub center: Vector,
     /// Unit axis there; a cone's tip is on its positive side.
@@ -48,7 +48,7 @@ pub struct Turned {
     pub border: Real,
 }
 
-/// Where a [`Turned`] body is: centre and axis.
+/// Where a [`Axisymmetric`] body is: centre and axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     /// Centre; points are given relative to it.
@@ -83,7 +83,7 @@ impl NearBall {
     }
 }
 
-impl Turned {
+impl Axisymmetric {
     /// The shape at `pose`, if it is a cylinder or a cone, plain or rounded.
     pub fn new(shape: &dyn Shape, pose: &Pose) -> Option<Self> {
         let (half_height, radius, pointed, border) = match shape.as_typed_shape() {

@@ -102,7 +102,7 @@ fn stretches(mesh: &MedialMesh, ray: &Ray) -> Vec<Stretch> {
     mesh.bvh()
         .leaves(met)
         .filter_map(|primitive| {
-            let balls = exact::balls(&mesh.primitive(primitive as usize)).map(seen);
+            let balls = exact::balls(mesh.primitive(primitive as usize).as_slab()).map(seen);
             let [from, to] = ChordSolver::new(balls).chord(0.0, 0.0)?;
             Some(Stretch {
                 from,

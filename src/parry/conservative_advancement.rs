@@ -1,0 +1,251 @@
+//! How long one primitive (1 to 3 interpolated spheres) is certainly apart from a cylinder or cone in exact rigid
+//! motion, step by step until they touch. Source: conservative advancement (Mirtich 1996), with the bound of
+//! [`super::axisymmetric`] in place of a computed distance.
+//!
+//! # Step
+//! At time `t` the nearest sphere gives a direction `m`, which is then held fixed in the frame of the
+//! cylinder, where its support `h(m)` is a constant. A corner `p = x − o`, seen from the centre `o` of
+//! the cylinder that turns with `ω`, has in that frame the velocity `x′ − o′ − ω × p` and an acceleration
+//! of at most
+//! ```text
+//! B = |x″| + |o″| + 2 ω |x′ − o′| + ω² |p|
+//! ```
+//! (frame, Coriolis, centrifugal), so the bound along `m` stays above `g + g′ s − B s²/2` for each
+//! corner, up to the first root. The Lipschitz step, `g` over the largest relative speed of points of the two
+//! bodies, is taken instead where it is longer.
+//!
+//! # Rounding
+//! Positions are sums of at most 16 rounded terms no larger than `scale`, the sum of all lengths in
+//! play, so that `ULPS` ulps of it cover the bound. A tolerance below [`TOLERANCE_PER_SLACK`] times
+//! that slack is raised to it.
+
+use super::axisymmetric::{Axisymmetric, Ball, NearBall, Place, unit};
+use crate::math::lane::Vec3;
+use crate::math::motion::{PointPath, RigidMotion};
+
+/// Rounding slack in units of `f64::EPSILON × scale` (no unit); derived in the header, with a margin
+/// of 4.
+const ULPS: f64 = 64.0;
+
+/// Smallest tolerance in units of the slack: one slack is lost in the bound, one in the test for
+/// contact, and the last step needs room.
+pub const TOLERANCE_PER_SLACK: f64 = 4.0;
+
+/// How one volume is followed.
+#[derive(Clone, Copy)]
+pub struct Limits {
+    /// Known to be free until here.
+    pub start: f64,
+    /// Contacts from here on are of no interest.
+    pub horizon: f64,
+    /// Signed distance that counts as contact, a length.
+    pub target: f64,
+    /// Distance from the target within which contact is told, a length.
+    pub tolerance: f64,
+    /// Cap of the iterations.
+    pub steps: u32,
+}
+
+/// What is known of one volume.
+pub struct Advance {
+    /// No contact before.
+    pub lower: f64,
+    /// Within the tolerance at `lower`.
+    pub met: bool,
+    /// Proven free up to the horizon.
+    pub separated: bool,
+    /// Iterations taken.
+    pub steps: u32,
+    /// Rounding slack, a length.
+    pub slack: f64,
+    /// Nearest sphere at `lower`, its radius with the body's border.
+    pub near: NearBall,
+    /// Where the body is then.
+    pub place: Place,
+}
+
+#[derive(Clone, Copy)]
+struct Corner {
+    path: PointPath<f64>,
+    /// Of the sphere, with the body's border.
+    radius: f64,
+    /// Bound of its speed against the body's centre.
+    speed: f64,
+}
+
+/// Spheres and a body on their way, the spheres seen from the body's centre.
+struct Chase<'a> {
+    motions: &'a [RigidMotion<f64>; 2],
+    body: &'a Axisymmetric,
+    corners: [Corner; 3],
+    count: usize,
+    /// Path of the body's centre.
+    pivot: PointPath<f64>,
+    /// Axis of the body, in its frame.
+    axis: Vec3<f64>,
+    /// Bound of the speed of any sphere against any point of the body.
+    speed: f64,
+}
+
+/// What a [`Chase`] has come to at a time.
+struct Moment {
+    place: Place,
+    balls: [Ball; 3],
+    /// Velocities of the spheres against the turning body.
+    rates: [Vec3<f64>; 3],
+    /// Rounding slack, a length.
+    slack: f64,
+}
+
+impl<'a> Chase<'a> {
+    fn new(motions: &'a [RigidMotion<f64>; 2], body: &'a Axisymmetric, balls: &[Ball]) -> Self {
+        let [motion1, motion2] = motions;
+        let pivot = motion2.point(Vec3::from_vector(body.center));
+        let corners: [Corner; 3] = std::array::from_fn(|i| {
+            let (center, radius) = balls[i.min(balls.len() - 1)];
+            let path = motion1.point(center);
+            Corner {
+                path,
+                radius: radius + f64::from(body.border),
+                speed: path.speed_with(&pivot),
+            }
+        });
+        let mut chase = Self {
+            motions,
+            body,
+            corners,
+            count: balls.len().min(3),
+            pivot,
+            axis: Vec3::from_vector(body.axis),
+            speed: 0.0,
+        };
+        // No point of the body moves faster against its centre than this.
+        let own = motion2.angle() * body.reach();
+        chase.speed = (chase.largest(|c| c.speed) + own).max(f64::MIN_POSITIVE);
+        chase
+    }
+
+    fn corners(&self) -> &[Corner] {
+        &self.corners[..self.count]
+    }
+
+    fn largest(&self, size: fn(&Corner) -> f64) -> f64 {
+        self.corners().iter().map(size).fold(0.0, f64::max)
+    }
+
+    fn at(&self, t: f64) -> Moment {
+        let [motion1, motion2] = self.motions;
+        let turned = [motion1.sin_cos(t), motion2.sin_cos(t)];
+        let center = self.pivot.at(t, turned[1]);
+        let spin = motion2.angular_velocity();
+        let mut balls = [(Vec3::zero(), 0.0); 3];
+        let mut rates = [Vec3::zero(); 3];
+        for (i, c) in self.corners().iter().enumerate() {
+            let state = c.path.at(t, turned[0]);
+            let p = state.position - center.position;
+            balls[i] = (p, c.radius);
+            rates[i] = state.velocity - center.velocity - spin.cross(p);
+        }
+        let distances = balls[..self.count].iter().map(|b| b.0.length());
+        let far = distances.fold(0.0, f64::max);
+        let arms = self.largest(|c| c.path.terms()) + self.pivot.terms();
+        let size = self.body.reach() + self.largest(|c| c.radius) + far + self.speed + arms;
+        Moment {
+            place: Place {
+                origin: center.position,
+                axis: unit(motion2.direction(self.axis, turned[1])),
+            },
+            balls,
+            rates,
+            slack: ULPS * f64::EPSILON * size,
+        }
+    }
+
+    /// Least gap of the spheres above the target along the direction `m` from the body, and a time for which none closes
+    /// its own within `left`.
+    fn step(&self, moment: &Moment, m: Vec3<f64>, target: f64, left: f64) -> (f64, f64) {
+        let support = self.body.support(&moment.place, m);
+        let turn = self.motions[1].angle();
+        let (mut least, mut step) = (f64::MAX, f64::MAX);
+        for ((p, corner), rate) in moment.balls.iter().zip(self.corners()).zip(moment.rates) {
+            let gap = m.dot(p.0) - p.1 - support - target - moment.slack;
+            least = least.min(gap);
+            let farthest = p.0.length() + corner.speed * left;
+            let bend = corner.path.acceleration
+                + self.pivot.acceleration
+                + 2.0 * turn * corner.speed
+                + turn * turn * farthest;
+            step = step.min(first_root(gap, m.dot(rate), bend));
+        }
+        // The zero direction: the distance is never below minus the largest radius.
+        if -self.largest(|c| c.radius) - target > moment.slack {
+            step = f64::MAX;
+        }
+        (least, step)
+    }
+}
+
+/// Follows 1 to 3 interpolated spheres until they meet the body.
+pub fn follow(
+    motions: &[RigidMotion<f64>; 2],
+    body: &Axisymmetric,
+    balls: &[Ball],
+    limits: &Limits,
+) -> Advance {
+    let chase = Chase::new(motions, body, balls);
+    let place = Place {
+        origin: Vec3::zero(),
+        axis: chase.axis,
+    };
+    let mut known = Advance {
+        lower: limits.start,
+        met: false,
+        separated: false,
+        steps: 0,
+        slack: 0.0,
+        near: body.nearest(&place, &[]),
+        place,
+    };
+    while known.steps < limits.steps {
+        known.steps += 1;
+        let t = known.lower;
+        let moment = chase.at(t);
+        known.slack = moment.slack;
+        known.near = body.nearest(&moment.place, &moment.balls[..chase.count]);
+        known.place = moment.place;
+        let tolerance = limits.tolerance.max(TOLERANCE_PER_SLACK * known.slack);
+        if known.near.distance() - limits.target <= tolerance - known.slack {
+            known.met = true;
+            return known;
+        }
+        let left = limits.horizon - t;
+        let (least, step) = chase.step(&moment, known.near.direction, limits.target, left);
+        let step = step.max(least / chase.speed) * (1.0 - 8.0 * f64::EPSILON);
+        let next = (t + step) * (1.0 - 4.0 * f64::EPSILON);
+        if step > 0.0 && next >= limits.horizon {
+            known.separated = true;
+            known.lower = limits.horizon;
+            return known;
+        }
+        if next.is_nan() || next <= t {
+            return known;
+        }
+        known.lower = next;
+    }
+    known
+}
+
+/// First `s > 0` with `gap + rate s − bend s²/2 ≤ 0`; 0 where `gap` is not positive.
+fn first_root(gap: f64, rate: f64, bend: f64) -> f64 {
+    if gap.is_nan() || gap <= 0.0 {
+        return 0.0;
+    }
+    let root = (rate * rate + 2.0 * bend * gap).sqrt();
+    if rate < 0.0 {
+        2.0 * gap / (root - rate)
+    } else if bend > 0.0 {
+        (rate + root) / bend
+    } else {
+        f64::MAX
+    }
+}
