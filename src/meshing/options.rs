@@ -167,7 +167,8 @@ pub enum Variant {
         /// Number of edges of the triangle mesh that could be kept.
         edges: usize,
     },
-    /// The medial mesh is the medial axis of convex bodies with flat faces, and exact.
+    /// The medial mesh is exact: it is the medial axes of convex bodies with flat faces, or of convex pieces that overlap
+    /// and together are the body.
     Exact,
 }
 
@@ -188,7 +189,8 @@ pub struct BuildReport {
     pub primitives: usize,
     /// What became of sharp edges.
     pub variant: Variant,
-    /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring.
+    /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring. Of convex
+    /// pieces that overlap (see [`Self::notes`]) it is their number.
     pub euler: i64,
     /// Whether the result keeps to [`BuildOptions::max_error`]; true if none was asked for. The number of primitives
     /// is always kept to.

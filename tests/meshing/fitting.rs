@@ -154,7 +154,7 @@ fn neither_a_higher_quality_nor_more_primitives_are_worse() {
     let cases = [
         ("wavy ring", wavy_ring(), 0, [10, 50].as_slice()),
         ("bent bar", bar, 1, &[10, 100]),
-        ("L", l_shape(), 1, &[10, 60]),
+        ("L", l_shape(), 1, &[10, 30]),
     ];
     for (name, mesh, euler, counts) in cases {
         let at = |quality, primitives| {

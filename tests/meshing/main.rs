@@ -1,6 +1,7 @@
 //! Triangle mesh → medial mesh, against planted shapes and independent checks.
 
 mod bad_input;
+mod blocks;
 mod broken;
 mod cached;
 mod combined;

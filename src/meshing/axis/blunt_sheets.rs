@@ -6,8 +6,8 @@
 //! is no longer than the larger radius. So `r (1 − cos φ)` is what is lost.
 
 use crate::math::fast_hash::FastMap;
-use crate::meshing::axis::roof::Plane;
 use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::union_find::Groups;
 
 /// Sheets that are left out.

@@ -14,10 +14,11 @@
 
 use crate::math::fast_hash::{FastMap, FastSet};
 use crate::meshing::axis::blunt_sheets::BluntSheets;
-use crate::meshing::axis::roof::{FIRST, GROUND, Plane, RoofCorner};
+use crate::meshing::axis::roof::{FIRST, GROUND, RoofCorner};
 use crate::meshing::axis::sheet_triangles::sheet_triangles;
 use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Point, direction};
+use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::geometry::union_find::Groups;
 use crate::meshing::surface::checked_surface::Surface;

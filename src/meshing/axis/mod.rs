@@ -2,6 +2,7 @@
 
 pub(crate) mod blunt_sheets;
 pub(crate) mod clip;
+pub(crate) mod convex_pieces;
 pub(crate) mod crease_ends;
 pub(crate) mod crease_samples;
 pub(crate) mod crease_splits;

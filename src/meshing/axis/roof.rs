@@ -17,6 +17,7 @@
 use crate::math::fast_hash::FastMap;
 use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::random::Random;
 
 /// Offsets are moved by up to this (longest side 1): far above rounding, far below what counts as exact.
@@ -30,22 +31,6 @@ pub const GROUND: u32 = 0;
 
 /// The sides of faces follow the ground and the seven others of the box.
 pub const FIRST: u32 = 8;
-
-/// The plane of a face: `normal · x = offset`.
-#[derive(Clone, Copy, Debug)]
-pub struct Plane {
-    /// Outward unit normal.
-    pub normal: Point,
-    /// Distance from the origin along it.
-    pub offset: f64,
-}
-
-impl Plane {
-    /// Depth of a point below the plane.
-    pub fn depth(&self, p: Point) -> f64 {
-        self.offset - self.normal.dot(p)
-    }
-}
 
 /// A corner of the roof: a ball that touches what its sides are of.
 #[derive(Clone, Copy)]

@@ -2,6 +2,7 @@
 
 pub(crate) mod bounds;
 pub(crate) mod chunks;
+pub(crate) mod convex;
 pub(crate) mod four_boxes;
 pub(crate) mod nearest_triangle;
 pub(crate) mod random;

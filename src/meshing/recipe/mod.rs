@@ -3,6 +3,7 @@
 pub(crate) mod candidate;
 pub(crate) mod counts;
 pub(crate) mod ladder;
+pub(crate) mod pieces;
 pub(crate) mod pipeline;
 pub(crate) mod polyhedron;
 pub(crate) mod smallest;

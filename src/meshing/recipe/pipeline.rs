@@ -24,7 +24,10 @@ const FEW_SAMPLES: usize = 2_000;
 impl Source {
     /// What the limits allow: balls inside where the surface bounds matter, slabs where it is a sheet.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let exact = self.polyhedra(watch)?;
+        let exact = match self.polyhedra(watch)? {
+            None => self.pieces(watch)?,
+            convex => convex,
+        };
         if self.limits.max_error.is_none()
             && let Some(exact) = exact
         {

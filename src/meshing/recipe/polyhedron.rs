@@ -7,14 +7,15 @@
 use crate::error::BuildError;
 use crate::math::Real;
 use crate::meshing::axis::flat_axis::{Axis, Body};
-use crate::meshing::axis::roof::{FIRST, GROUND, Plane, roof};
+use crate::meshing::axis::roof::{FIRST, GROUND, roof};
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::{Hausdorff, Limits, Variant};
 use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::flat_faces::{FlatFaces, flat_faces};
+use crate::meshing::surface::flat_faces::{FlatFaces, convex_faces};
 use crate::meshing::watch::Watch;
 
 /// A medial mesh is exact when it is nowhere farther off than this (longest side 1), of which half is left to the
@@ -35,7 +36,7 @@ const CORNERS: usize = 8;
 const SAME_AREA: f64 = 1e-5;
 
 /// Primitives at most, where no fewer are asked for: faces are compared each with each.
-const MOST: usize = 2_000;
+pub const MOST: usize = 2_000;
 
 impl Axis {
     /// The axis as a build returns it, grown if asked to. Its errors are bounds, not samples.
@@ -104,10 +105,11 @@ pub fn polyhedra(
     for body in bodies {
         let left = most.saturating_sub(all.draft.faces.len());
         // Three edges or more bound a face, two faces share one, and each has a slab or more.
-        let Some(faces) = flat_faces(surface, body, left - left / 3, watch)? else {
+        let Some(faces) = convex_faces(surface, body, left - left / 3, watch)? else {
             return Ok(None);
         };
-        let Some(axis) = axis(surface, tree, &faces, angle.cos(), left, watch)? else {
+        let limits = (angle.cos(), EXACT_HERE);
+        let Some(axis) = axis(surface, tree, &faces, limits, left, watch)? else {
             return Ok(None);
         };
         all.area += axis.area;
@@ -133,12 +135,13 @@ pub fn polyhedra(
     Ok((all.growth + all.bulge <= EXACT_HERE).then_some(all))
 }
 
-/// The axis of one body.
-fn axis(
+/// The axis of one convex body, of at most `most` primitives and off by at most `close` (longest side 1); none where it
+/// has a sheet between faces whose normals have a cosine above `least_cosine`.
+pub fn axis(
     surface: &Surface,
     tree: &TriangleTree,
     faces: &FlatFaces,
-    least_cosine: f64,
+    (least_cosine, close): (f64, f64),
     most: usize,
     watch: &mut Watch,
 ) -> Result<Option<Axis>, BuildError> {
@@ -164,7 +167,7 @@ fn axis(
             watch.again()?;
             let found = body.axis(&polygons, same, tree);
             let count = found.draft.faces.len();
-            if found.growth + found.bulge <= EXACT_HERE && count > 0 {
+            if found.growth + found.bulge <= close && count > 0 {
                 return Ok((count <= most).then_some(found));
             }
         }

@@ -1,8 +1,8 @@
-//! The faces of a convex polyhedron: its triangles, joined where they lie in one plane.
+//! The flat faces of a body: its triangles, joined where they lie in one plane.
 
 use crate::error::BuildError;
-use crate::meshing::axis::roof::Plane;
 use crate::meshing::geometry::bounds::{Point, direction};
+use crate::meshing::geometry::convex::Plane;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 
@@ -10,7 +10,7 @@ use crate::meshing::watch::Watch;
 /// sizes from the origin.
 const FLAT: f64 = 5e-7;
 
-/// The faces of a convex body.
+/// The faces of a body.
 pub struct FlatFaces {
     /// Their planes.
     pub planes: Vec<Plane>,
@@ -32,6 +32,28 @@ struct Face {
 
 /// The faces that the triangles `body` of a surface make; `None` where there are more than `most`, or where they
 /// bound no convex body.
+pub fn convex_faces(
+    surface: &Surface,
+    body: Vec<usize>,
+    most: usize,
+    watch: &mut Watch,
+) -> Result<Option<FlatFaces>, BuildError> {
+    let Some(faces) = flat_faces(surface, body, most, watch)? else {
+        return Ok(None);
+    };
+    for (i, &(t, _)) in faces.face_of.iter().enumerate() {
+        watch.every(i)?;
+        for p in surface.corners(t) {
+            if faces.planes.iter().any(|plane| plane.depth(p) < -FLAT) {
+                return Ok(None);
+            }
+        }
+    }
+    Ok((faces.planes.len() >= 4).then_some(faces))
+}
+
+/// The faces that the triangles `body` of a surface make; `None` where there are more than `most`, or where a triangle
+/// is off the plane of its face.
 pub fn flat_faces(
     surface: &Surface,
     mut body: Vec<usize>,
@@ -91,12 +113,11 @@ pub fn flat_faces(
     let planes: Vec<Plane> = faces.iter().map(plane).collect();
     for (i, &(t, own)) in face_of.iter().enumerate() {
         watch.every(i)?;
-        for p in surface.corners(t) {
-            let beyond = planes.iter().any(|plane| plane.depth(p) < -FLAT);
-            if beyond || planes[own as usize].depth(p) > FLAT {
-                return Ok(None);
-            }
+        let plane = &planes[own as usize];
+        let is_off = |p: Point| plane.depth(p).abs() > FLAT;
+        if surface.corners(t).into_iter().any(is_off) {
+            return Ok(None);
         }
     }
-    Ok((planes.len() >= 4).then_some(FlatFaces { planes, face_of }))
+    Ok(Some(FlatFaces { planes, face_of }))
 }

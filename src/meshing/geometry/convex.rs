@@ -1,0 +1,193 @@
+//! Planes, and convex polyhedra cut by them.
+
+use crate::meshing::geometry::bounds::{Point, direction, perpendicular};
+
+/// Points nearer to a plane than this are on it (longest side 1): planes through vertices that were rounded to `f32` miss
+/// each other's corners by less.
+pub const ON: f64 = 1e-6;
+
+/// The plane of a face: `normal · x = offset`.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane {
+    /// Outward unit normal.
+    pub normal: Point,
+    /// Distance from the origin along it.
+    pub offset: f64,
+}
+
+impl Plane {
+    /// Depth of a point below the plane.
+    pub fn depth(&self, p: Point) -> f64 {
+        self.offset - self.normal.dot(p)
+    }
+}
+
+/// A flat face of a convex polyhedron.
+#[derive(Clone)]
+pub struct Face {
+    /// Index of its plane.
+    pub plane: u32,
+    /// Its corners, in order around it.
+    pub corners: Vec<Point>,
+}
+
+/// A convex polyhedron as its faces.
+#[derive(Clone)]
+pub struct Convex {
+    pub faces: Vec<Face>,
+}
+
+impl Convex {
+    /// The cube of corners `±half`, all faces of plane `plane`.
+    pub fn cube(half: f64, plane: u32) -> Self {
+        let side = |axis: usize, sign: f64| {
+            let corner = |u: f64, v: f64| {
+                let mut p = [0.0; 3];
+                p[axis] = sign * half;
+                p[(axis + 1) % 3] = u * half;
+                p[(axis + 2) % 3] = v * half;
+                Point::new(p[0], p[1], p[2])
+            };
+            let around = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            Face {
+                plane,
+                corners: around.map(|(u, v)| corner(u, v)).to_vec(),
+            }
+        };
+        let sides = (0..3).flat_map(|axis| [side(axis, -1.0), side(axis, 1.0)]);
+        Self {
+            faces: sides.collect(),
+        }
+    }
+
+    /// All corners, once for each face that they are of.
+    pub fn corners(&self) -> impl Iterator<Item = Point> + Clone + '_ {
+        self.faces
+            .iter()
+            .flat_map(|face| face.corners.iter().copied())
+    }
+
+    /// A point inside.
+    pub fn middle(&self) -> Point {
+        let sum = self.corners().fold(Point::zero(), |sum, p| sum + p);
+        sum * (1.0 / self.corners().count().max(1) as f64)
+    }
+
+    /// Its volume (longest side 1).
+    pub fn volume(&self) -> f64 {
+        let middle = self.middle();
+        let fans = self.faces.iter().flat_map(|face| {
+            let from = face.corners[0] - middle;
+            let fan = face.corners[1..].windows(2);
+            fan.map(move |w| from.dot((w[0] - middle).cross(w[1] - middle)).abs())
+        });
+        fans.sum::<f64>() / 6.0
+    }
+
+    /// The parts below and above a plane, whose new face is of plane `index`; `None` for a part that has no thickness.
+    pub fn cut(&self, plane: &Plane, index: u32) -> [Option<Self>; 2] {
+        let depths = || self.corners().map(|p| plane.depth(p));
+        [1.0, -1.0].map(|sign| {
+            let reaches = |sign: f64| depths().any(|depth| sign * depth > ON);
+            match (reaches(sign), reaches(-sign)) {
+                (false, _) => None,
+                (true, false) => Some(self.clone()),
+                (true, true) => self.side(plane, index, sign),
+            }
+        })
+    }
+
+    /// The part where `sign` times the depth is positive.
+    fn side(&self, plane: &Plane, index: u32, sign: f64) -> Option<Self> {
+        let height = |p: Point| {
+            let height = sign * plane.depth(p);
+            if height.abs() <= ON { 0.0 } else { height }
+        };
+        let mut faces = Vec::with_capacity(self.faces.len() + 1);
+        let mut on_cut: Vec<Point> = Vec::new();
+        for face in &self.faces {
+            let mut kept = Vec::with_capacity(face.corners.len() + 1);
+            let mut is_below = false;
+            for (i, &p) in face.corners.iter().enumerate() {
+                let q = face.corners[(i + 1) % face.corners.len()];
+                let (h, k) = (height(p), height(q));
+                is_below |= h > 0.0;
+                if h >= 0.0 {
+                    kept.push(p);
+                }
+                let crossing = (h * k < 0.0).then(|| p + (q - p) * (h / (h - k)));
+                kept.extend(crossing);
+                on_cut.extend(crossing.or((h == 0.0).then_some(p)));
+            }
+            if is_below && kept.len() >= 3 {
+                faces.push(Face {
+                    plane: face.plane,
+                    corners: kept,
+                });
+            }
+        }
+        faces.push(Face {
+            plane: index,
+            corners: around(on_cut, plane.normal)?,
+        });
+        Some(Self { faces })
+    }
+}
+
+/// Points of a convex polygon across `normal`, each once, in order; `None` for fewer than three.
+fn around(points: Vec<Point>, normal: Point) -> Option<Vec<Point>> {
+    let mut all: Vec<Point> = Vec::with_capacity(points.len());
+    for p in points {
+        if all.iter().all(|q| (p - *q).length() > ON) {
+            all.push(p);
+        }
+    }
+    if all.len() < 3 {
+        return None;
+    }
+    let middle = all.iter().fold(Point::zero(), |sum, p| sum + *p) * (1.0 / all.len() as f64);
+    let u = perpendicular(direction(normal));
+    let v = normal.cross(u);
+    let angle = |p: &Point| (*p - middle).dot(v).atan2((*p - middle).dot(u));
+    all.sort_by(|p, q| angle(p).total_cmp(&angle(q)));
+    Some(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane(normal: Point, offset: f64) -> Plane {
+        Plane { normal, offset }
+    }
+
+    #[test]
+    fn a_cube_cut_in_eight_has_eight_eighths() {
+        let mut parts = vec![Convex::cube(0.5, 9)];
+        let axes = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
+        for (i, (x, y, z)) in axes.into_iter().enumerate() {
+            let cut = plane(Point::new(x, y, z), 0.1);
+            let halves = parts.iter().flat_map(|p| p.cut(&cut, i as u32));
+            parts = halves.flatten().collect();
+        }
+        let mut volumes: Vec<f64> = parts.iter().map(Convex::volume).collect();
+        volumes.sort_by(f64::total_cmp);
+        assert_eq!(volumes.len(), 8);
+        assert!((volumes[0] - 0.4f64.powi(3)).abs() < 1e-12, "{volumes:?}");
+        assert!((volumes.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_plane_that_touches_cuts_nothing_off() {
+        let cube = Convex::cube(0.5, 9);
+        let diagonal = direction(Point::new(1.0, 1.0, 0.0));
+        let [below, above] = cube.cut(&plane(diagonal, 0.5f64.sqrt()), 0);
+        assert!(below.is_some() && above.is_none());
+        let [below, above] = cube.cut(&plane(diagonal, 0.0), 0);
+        let volumes = [below, above].map(|p| p.map_or(0.0, |p| p.volume()));
+        assert!(
+            volumes.iter().all(|v| (v - 0.5).abs() < 1e-12),
+            "{volumes:?}"
+        );
+    }
+}
