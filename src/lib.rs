@@ -78,16 +78,16 @@ pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
 pub use meshing::{BuildOptions, BuildReport, Progress, Quality};
 pub use parry::MedialDispatcher;
 pub use rapier::{
-    Effect, Effects, MedialColliderBuilder, MedialOptions, MedialPipeline, MedialSharedShape,
-    StepReport,
+    Effect, Effects, MedialColliderBuilder, MedialIntegrationParameters, MedialOptions,
+    MedialPipeline, MedialSharedShape, StepReport,
 };
 
 /// Everything that a game with rapier usually needs: `use rapier3d_medial::prelude::*;`.
 pub mod prelude {
     pub use crate::{
         Backend, BuildError, BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder,
-        MedialMesh, MedialOptions, MedialPipeline, MedialSharedShape, MedialSphere, MeshError,
-        Progress, Quality, StepReport,
+        MedialIntegrationParameters, MedialMesh, MedialOptions, MedialPipeline, MedialSharedShape,
+        MedialSphere, MeshError, Progress, Quality, StepReport,
     };
 }
 

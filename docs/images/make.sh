@@ -4,6 +4,6 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 cargo run --release --example falling_rings -- --out docs/images --animate
 cargo run --release --features cli --bin medial -- compare -o docs/images/compare.png
-for name in convex_hull_comparison chain nut_and_bolt; do
+for name in convex_hull_comparison chain nut_and_bolt factory; do
   cargo run --release --example "$name" -- --out docs/images
 done

@@ -25,6 +25,7 @@ pub use host::recycling::RECYCLE_DISTANCE;
 pub use integration::collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]
 pub use integration::debug_draw::MedialDebugRender;
+pub use integration::parameters::MedialIntegrationParameters;
 #[cfg(feature = "serde-serialize")]
 pub use integration::saved_world::{SavedWorld, SavedWorldError, load_world, save_world};
 pub use pipeline::MedialPipeline;

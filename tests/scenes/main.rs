@@ -1,6 +1,7 @@
 //! Whole rapier scenes: what rests, what hangs, what must never pass; saving, drawing, repeating.
 
 mod bodies;
+mod bounces;
 mod budget;
 mod characters;
 mod controls;
@@ -20,6 +21,7 @@ mod fast_pairs;
 mod features;
 mod filters;
 mod fixed_partners;
+mod fixtures;
 mod force_events;
 #[cfg_attr(
     not(feature = "enhanced-determinism"),
@@ -52,8 +54,15 @@ mod rolling;
 mod ropes;
 #[cfg(feature = "serde-serialize")]
 mod saving;
+#[allow(dead_code)]
+#[path = "../../examples/factory/solid.rs"]
+mod solid;
 mod spawned;
 mod still;
+#[allow(dead_code)]
+#[path = "../../examples/factory/thread.rs"]
+mod thread;
+mod threads;
 mod told;
 mod walls;
 mod whirls;

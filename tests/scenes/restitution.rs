@@ -26,8 +26,39 @@ fn capsule() -> MedialMesh {
     MedialMesh::new(spheres.to_vec(), vec![[0, 1]], Vec::new()).expect("a capsule")
 }
 
+/// A link of a chain: a ring drawn out to a stadium.
+fn link() -> MedialMesh {
+    let bend = |k: u32| {
+        let (sin, cos) = (k as Real / 16.0 * std::f32::consts::TAU).sin_cos();
+        let middle = if cos > 0.0 { 0.15 } else { -0.15 };
+        MedialSphere::new(Vector::new(middle + 0.18 * cos, 0.0, 0.18 * sin), 0.06)
+    };
+    MedialMesh::tube(&(0..16).map(bend).collect::<Vec<_>>(), true).expect("a link")
+}
+
+/// A creature: a slab as its trunk, four legs that taper, a neck with a head, a tail that ends in a point.
+fn creature() -> MedialMesh {
+    let ball = |x: Real, y: Real, z: Real, r: Real| MedialSphere::new(Vector::new(x, y, z), r);
+    let mut spheres = vec![
+        ball(-0.2, 0.0, -0.08, 0.1),
+        ball(-0.2, 0.0, 0.08, 0.1),
+        ball(0.2, 0.0, 0.0, 0.12),
+        ball(0.4, 0.15, 0.0, 0.08),
+        ball(-0.45, 0.1, 0.0, 0.0),
+    ];
+    let mut edges = vec![[2, 3], [0, 4]];
+    for (k, [x, z]) in [[-0.2, -0.12], [-0.2, 0.12], [0.2, -0.1], [0.2, 0.1]]
+        .iter()
+        .enumerate()
+    {
+        spheres.push(ball(1.3 * x, -0.3, 1.6 * z, 0.03));
+        edges.push([k.min(2) as u32, 5 + k as u32]);
+    }
+    MedialMesh::new(spheres, edges, vec![[0, 1, 2]]).expect("a creature")
+}
+
 /// The bodies that fly.
-fn kinds() -> [(&'static str, MedialMesh); 5] {
+fn kinds() -> [(&'static str, MedialMesh); 7] {
     let cuboid = |half| MedialMesh::cuboid(half).expect("a cuboid");
     [
         ("cubes", cuboid(Vector::splat(0.25))),
@@ -35,6 +66,8 @@ fn kinds() -> [(&'static str, MedialMesh); 5] {
         ("capsules", capsule()),
         ("tori", MedialMesh::torus(0.35, 0.1, 16).expect("a torus")),
         ("jacks", jack()),
+        ("links", link()),
+        ("creatures", creature()),
     ]
 }
 
@@ -158,6 +191,45 @@ fn half_elastic_bodies_only_lose_energy() {
         }
         println!("{kind}: {:.4} of the energy is left", energy / start);
     }
+}
+
+/// Energy of ten seconds at every rate, of three seeds, and what the effect costs beside the same flights without.
+#[test]
+#[ignore = "minutes: the table of docs/measurements/hard-scenes.md"]
+fn table_of_elastic_bodies() {
+    let mut wrong = Vec::new();
+    let own = ("rapier's cubes", ColliderBuilder::cuboid(0.25, 0.25, 0.25));
+    let ours = kinds().map(|(kind, mesh)| (kind, ColliderBuilder::medial_mesh(mesh)));
+    for (kind, collider) in [own].into_iter().chain(ours) {
+        let is_plain = kind.starts_with("rapier");
+        let mut row = Vec::new();
+        for hertz in [30.0, 60.0, 120.0, 240.0] {
+            let ends = [7, 8, 9].map(|seed| elastic(&collider, hertz, seed, is_plain));
+            let worst = ends.iter().map(|[end, _]| end - 1.0);
+            let worst = worst.fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+            let most = ends.iter().map(|[_, most]| most - 1.0).fold(0.0, f64::max);
+            let bound = if hertz < 60.0 { 0.05 } else { 0.01 };
+            if !is_plain && (worst.abs() > bound || most > 0.005) {
+                wrong.push(format!(
+                    "{kind} at {hertz} Hz: {worst:+.4}, at most {most:+.4}"
+                ));
+            }
+            row.push(format!("{:+.2} / {:+.2}", 100.0 * worst, 100.0 * most));
+        }
+        let seconds = |effects: Effects| {
+            let mut flight = Flight::new(&collider, 1.0, 60.0, 7);
+            let mut pipeline = MedialPipeline::new(MedialOptions::default().effects(effects));
+            let clock = cpu_time::ProcessTime::now();
+            for _ in 0..600 {
+                pipeline.step(&mut flight.world);
+            }
+            clock.elapsed().as_secs_f64()
+        };
+        let cost =
+            seconds(Effects::default()) / seconds(Effects::default().restitution(Effect::Off));
+        println!("| {kind} | {} | {cost:.2} |", row.join(" | "));
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 /// Lets what has weight bounce within the step too.

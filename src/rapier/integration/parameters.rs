@@ -1,0 +1,49 @@
+//! The settings of rapier that scenes of small bodies need, in one call.
+
+use crate::error::MeshError;
+use crate::math::Real;
+use rapier3d::dynamics::IntegrationParameters;
+
+/// Adds [`MedialIntegrationParameters::for_detail`] to rapier's [`IntegrationParameters`].
+pub trait MedialIntegrationParameters: Sized {
+    /// rapier's default parameters for a world in which `detail`, in your unit of length, is the least size that matters:
+    /// the pitch of a thread, the thickness of a wall, a few times the play of a fit. It becomes rapier's length unit, on
+    /// which depend the distance from which contacts press (0.02 of it), the overlap that is left alone (0.005), and the
+    /// gaps of this crate. Bodies stay as fast as they may be by default, 400 of your units in a second; with a length unit
+    /// alone rapier would cap them at 400 times the detail.
+    ///
+    /// # Errors
+    /// [`MeshError::Parameter`] unless `detail` is positive and finite.
+    ///
+    /// ```
+    /// use rapier3d::prelude::*;
+    /// use rapier3d_medial::prelude::*;
+    /// let mut world = PhysicsWorld::new();
+    /// // Metres, and threads of millimetres.
+    /// world.integration_parameters = IntegrationParameters::for_detail(0.001)?;
+    /// world.integration_parameters.dt = 1.0 / 120.0;
+    /// # Ok::<(), MeshError>(())
+    /// ```
+    fn for_detail(detail: Real) -> Result<Self, MeshError>;
+}
+
+impl MedialIntegrationParameters for IntegrationParameters {
+    fn for_detail(detail: Real) -> Result<Self, MeshError> {
+        if !(detail.is_finite() && detail > 0.0) {
+            return Err(MeshError::Parameter {
+                what: "detail",
+                value: detail.into(),
+                must: "positive and finite",
+            });
+        }
+        let default = Self::default();
+        let fastest = default.max_linear_velocity();
+        // A cap that overflows is none.
+        let normalized_max_linear_velocity = (fastest / detail).min(Real::MAX);
+        Ok(Self {
+            length_unit: detail,
+            normalized_max_linear_velocity,
+            ..default
+        })
+    }
+}

@@ -1,0 +1,283 @@
+//! Fixtures on which the field tests contact: chain nets, spikes and wedges that meet tip to tip (Erleben), a wheel on its
+//! axle. Nothing passes, nothing gains energy, and all comes to rest that must.
+
+use crate::linking::{line, linking};
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+
+/// Distance of the net's rings, and their radii, metres.
+const SPACING: Real = 1.5;
+const RING: [Real; 2] = [0.5, 0.08];
+
+/// A net of `rows` × `columns` flat rings and the upright ones that join neighbours, held at its four corners.
+struct Net {
+    world: PhysicsWorld,
+    rings: Vec<RigidBodyHandle>,
+    mesh: MedialMesh,
+    /// Rings that are linked, by the linking number of their middle lines.
+    linked: Vec<([usize; 2], i32)>,
+}
+
+impl Net {
+    fn new(rows: usize, columns: usize) -> Self {
+        let mesh = MedialMesh::torus(RING[0], RING[1], 16).expect("a ring");
+        let mut world = PhysicsWorld::new();
+        world.integration_parameters.dt = 0.01;
+        let mut rings = Vec::new();
+        let mut put = |at: [Real; 2], turn: Vector, held: bool| {
+            let body = if held {
+                RigidBodyBuilder::fixed()
+            } else {
+                RigidBodyBuilder::dynamic()
+            };
+            let at = Vector::new(at[0], 0.0, at[1]) * SPACING;
+            let body = body.translation(at).rotation(turn);
+            let collider = ColliderBuilder::medial_mesh(mesh.clone()).friction(0.2);
+            rings.push(world.insert(body, collider).0);
+            rings.len() - 1
+        };
+        let quarter = std::f32::consts::FRAC_PI_2;
+        let mut pairs = Vec::new();
+        let mut flat = Vec::new();
+        for i in 0..rows {
+            for j in 0..columns {
+                let held = (i == 0 || i == rows - 1) && (j == 0 || j == columns - 1);
+                flat.push(put([i as Real, j as Real], Vector::ZERO, held));
+            }
+        }
+        for i in 0..rows {
+            for j in 0..columns {
+                let own = flat[i * columns + j];
+                if i + 1 < rows {
+                    let joins = put([i as Real + 0.5, j as Real], Vector::X * quarter, false);
+                    pairs.extend([[own, joins], [joins, flat[(i + 1) * columns + j]]]);
+                }
+                if j + 1 < columns {
+                    let joins = put([i as Real, j as Real + 0.5], Vector::Z * quarter, false);
+                    pairs.extend([[own, joins], [joins, flat[i * columns + j + 1]]]);
+                }
+            }
+        }
+        let mut net = Self {
+            world,
+            rings,
+            mesh,
+            linked: Vec::new(),
+        };
+        net.linked = pairs.into_iter().map(|p| (p, net.number(p))).collect();
+        assert!(net.linked.iter().all(|(_, number)| number.abs() == 1));
+        net
+    }
+
+    fn number(&self, pair: [usize; 2]) -> i32 {
+        let [a, b] = pair.map(|k| line(&self.mesh, self.world.bodies[self.rings[k]].position()));
+        linking(&a, &b)
+    }
+
+    /// How many pairs are linked otherwise than at the start, of neighbours and of rings near each other.
+    fn changed(&self) -> usize {
+        let lost = self
+            .linked
+            .iter()
+            .filter(|(pair, n)| self.number(*pair) != *n);
+        let mut changed = lost.count();
+        let at = |k: usize| self.world.bodies[self.rings[k]].translation();
+        for a in 0..self.rings.len() {
+            for b in 0..a {
+                if at(a).distance(at(b)) < 2.2 * RING[0] {
+                    let is_pair = |p: &[usize; 2]| *p == [a, b] || *p == [b, a];
+                    let known = self.linked.iter().any(|(p, _)| is_pair(p));
+                    changed += usize::from(!known && self.number([a, b]) != 0);
+                }
+            }
+        }
+        changed
+    }
+
+    /// Steps the net; the fastest ring on the way, m/s, and milliseconds of a step.
+    fn run(&mut self, steps: usize) -> (Real, f64) {
+        let mut pipeline = MedialPipeline::default();
+        let mut fastest: Real = 0.0;
+        let clock = cpu_time::ProcessTime::now();
+        for _ in 0..steps {
+            pipeline.step(&mut self.world);
+            let speeds = self.world.bodies.iter().map(|(_, b)| b.linvel().length());
+            fastest = speeds.fold(fastest, Real::max);
+        }
+        (
+            fastest,
+            1.0e3 * clock.elapsed().as_secs_f64() / steps as f64,
+        )
+    }
+}
+
+/// 153 rings: no link changes, and nothing is faster than by falling through the net's depth.
+#[test]
+fn a_chain_net_stays_linked() {
+    let mut net = Net::new(7, 8);
+    let (fastest, milliseconds) = net.run(200);
+    let changed = net.changed();
+    println!(
+        "net of {} rings: {changed} links changed, fastest {fastest} m/s, {milliseconds:.2} ms of CPU a step",
+        net.rings.len()
+    );
+    assert_eq!(changed, 0);
+    assert!(fastest < 15.0, "{fastest} m/s");
+}
+
+#[test]
+#[ignore = "minutes: 2,913 rings over 1,000 steps, for docs/measurements/hard-scenes.md"]
+fn a_large_chain_net_stays_linked() {
+    let mut net = Net::new(31, 32);
+    for hundreds in 1..=10 {
+        let (fastest, milliseconds) = net.run(100);
+        let changed = net.changed();
+        println!(
+            "net of {} rings, step {hundreds}00: {changed} links changed, fastest {fastest} m/s, {milliseconds:.1} ms of CPU a step",
+            net.rings.len()
+        );
+        assert_eq!(changed, 0);
+    }
+}
+
+/// A row of spikes or wedges on a plate, upwards, their tips of radius 0.
+fn comb(is_wedge: bool, tips: usize) -> MedialMesh {
+    let ball = |x: Real, y: Real, z: Real, r: Real| MedialSphere::new(Vector::new(x, y, z), r);
+    let mut spheres = vec![
+        ball(-0.5, 0.0, -0.3, 0.1),
+        ball(0.5, 0.0, -0.3, 0.1),
+        ball(0.5, 0.0, 0.3, 0.1),
+        ball(-0.5, 0.0, 0.3, 0.1),
+    ];
+    let mut faces = vec![[0, 1, 2], [0, 2, 3]];
+    let mut edges = Vec::new();
+    for k in 0..tips {
+        let x = (k as Real + 0.5) / tips as Real - 0.5;
+        let first = spheres.len() as u32;
+        if is_wedge {
+            for z in [-0.3, 0.3] {
+                spheres.extend([ball(x, 0.0, z, 0.1), ball(x, 0.5, z, 0.0)]);
+            }
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| first + k);
+            faces.extend([[a, b, c], [b, d, c]]);
+        } else {
+            spheres.extend([ball(x, 0.0, 0.0, 0.1), ball(x, 0.5, 0.0, 0.0)]);
+            edges.push([first, first + 1]);
+        }
+    }
+    MedialMesh::new(spheres, edges, faces).expect("a comb")
+}
+
+/// Spikes and wedges fall on others, tip on tip, edge on edge, across, and between each other.
+#[test]
+fn spikes_and_wedges_come_to_rest_on_each_other() {
+    let half_turn = std::f32::consts::PI;
+    for is_wedge in [false, true] {
+        for aside in [0.0, 0.02, 0.1] {
+            for across in [0.0, 0.5 * half_turn] {
+                let mut world = PhysicsWorld::new();
+                world.insert_collider(
+                    ColliderBuilder::cuboid(5.0, 0.5, 5.0).translation(Vector::Y * -0.6),
+                    None,
+                );
+                let mesh = comb(is_wedge, 5);
+                let collider = || ColliderBuilder::medial_mesh(mesh.clone()).friction(0.5);
+                world.insert(RigidBodyBuilder::fixed(), collider());
+                let turn = Rotation::from_rotation_y(across) * Rotation::from_rotation_x(half_turn);
+                let at = Vector::new(aside, 1.3, 0.0);
+                let body = RigidBodyBuilder::dynamic().pose(Pose::from_parts(at, turn));
+                let (body, _) = world.insert(body, collider().density(500.0));
+                let mut pipeline = MedialPipeline::default();
+                let (mut fastest, mut lowest) = (0.0, Real::MAX);
+                for _ in 0..480 {
+                    pipeline.step(&mut world);
+                    let body = &world.bodies[body];
+                    fastest = body.linvel().length().max(fastest);
+                    lowest = body.translation().y.min(lowest);
+                }
+                let end = &world.bodies[body];
+                println!(
+                    "wedges {is_wedge}, {aside} m aside, across {across:.2}: fastest {fastest:.2} m/s, lowest {lowest:.3} m, ends at {:.3} with {:.4} m/s, asleep {}",
+                    end.translation(),
+                    end.linvel().length(),
+                    end.is_sleeping()
+                );
+                let name = format!("wedges {is_wedge}, {aside} m aside, across {across}");
+                // From 1.3 m down to the ground it is 5.2 m/s.
+                assert!(fastest < 5.5, "{name}: {fastest} m/s");
+                // Plates and ground are 0.1 thick on either side.
+                assert!(lowest > -0.01, "{name}: {lowest} m");
+                // Crossed edges of radius 0 tremble a little (docs/guarantee.md: bodies of no thickness).
+                let speed = end.linvel().length();
+                let rests = end.is_sleeping() || is_wedge && across > 0.0 && speed < 0.05;
+                assert!(rests, "{name}: {speed} m/s");
+            }
+        }
+    }
+}
+
+/// A wheel, a torus with spokes round its hub, hangs loosely on a fixed axle, is struck, and comes to hang again.
+#[test]
+fn a_wheel_stays_on_its_axle() {
+    let mut world = PhysicsWorld::new();
+    let axle = [-0.5, 0.5].map(|x| MedialSphere::new(Vector::X * x, 0.08));
+    let flange = |x: Real| {
+        let rim = |k: u32| {
+            let (sin, cos) = (k as Real / 12.0 * std::f32::consts::TAU).sin_cos();
+            MedialSphere::new(Vector::new(x, 0.25 * cos, 0.25 * sin), 0.06)
+        };
+        MedialMesh::tube(&(0..12).map(rim).collect::<Vec<_>>(), true).expect("a flange")
+    };
+    let fixed = |mesh: MedialMesh| ColliderBuilder::medial_mesh(mesh).friction(0.3);
+    world.insert_collider(
+        fixed(MedialMesh::tube(&axle, false).expect("an axle")),
+        None,
+    );
+    for x in [-0.4, 0.4] {
+        world.insert_collider(fixed(flange(x)), None);
+    }
+    // Its hub is a ring of 0.1 m round the axle, its middle 0.02 m below.
+    let ring = |radius: Real, thickness: Real, first: u32| {
+        let at = move |k: u32| {
+            let (sin, cos) = (k as Real / 24.0 * std::f32::consts::TAU).sin_cos();
+            MedialSphere::new(Vector::new(0.0, radius * cos, radius * sin), thickness)
+        };
+        let spheres: Vec<_> = (0..24).map(at).collect();
+        let edges: Vec<[u32; 2]> = (0..24).map(|k| [first + k, first + (k + 1) % 24]).collect();
+        (spheres, edges)
+    };
+    let (mut spheres, mut edges) = ring(0.16, 0.06, 0);
+    let (rim, around) = ring(0.6, 0.06, 24);
+    spheres.extend(rim);
+    edges.extend(around);
+    edges.extend((0..6).map(|k| [4 * k, 24 + 4 * k]));
+    let wheel = MedialMesh::new(spheres, edges, vec![]).expect("a wheel");
+    let body = RigidBodyBuilder::dynamic()
+        .translation(Vector::Y * -0.01)
+        .angvel(Vector::X * 10.0);
+    let (wheel, _) = world.insert(body, fixed(wheel).density(500.0));
+    let mut pipeline = MedialPipeline::default();
+    for step in 0..600 {
+        if step == 120 {
+            world.bodies[wheel].set_linvel(Vector::new(4.0, 20.0, 3.0), true);
+        }
+        pipeline.step(&mut world);
+        let body = &world.bodies[wheel];
+        let at = body.translation();
+        assert!(at.x.abs() < 0.4, "step {step}: at {at}");
+        assert!(at.y.hypot(at.z) < 0.1, "step {step}: at {at}");
+        assert!(
+            body.linvel().length() < 25.0,
+            "step {step}: {}",
+            body.linvel()
+        );
+    }
+    let end = &world.bodies[wheel];
+    println!(
+        "wheel: ends at {:.3} with {:.3} m/s and {:.3} rad/s, asleep {}",
+        end.translation(),
+        end.linvel().length(),
+        end.angvel().length(),
+        end.is_sleeping()
+    );
+}
