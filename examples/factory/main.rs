@@ -5,10 +5,11 @@
 //! cargo run --release --example factory
 //! ```
 //! Options: `--part NAME` (nuts, locks, pegs, gears or rivals alone), `--hertz N` (steps in a second, default 120),
-//! `--unit M` (rapier's length unit, default 0.001), `--thread NAME` (of the nuts one alone, such as "M8 tight"), `--out DIR` (where the picture goes; default target/factory).
+//! `--unit M` (rapier's length unit, default 0.001), `--thread NAME` (of the nuts one alone, such as "M8 tight"),
+//! `--out DIR` (where the picture goes; default target/factory).
 //!
-//! Exits with 1 where a medial nut leaves its thread, its advance is 2 % off the pitch, a peg jams, or the gears' ratio is
-//! off by more than 0.1 %.
+//! Exits with 1 where a medial nut leaves its thread, one that is turned by a torque jams, its advance is 2 % off the pitch,
+//! a peg jams, or the gears' ratio is off by more than 0.1 %. Nuts that go down by their weight alone may be slow.
 
 #[path = "../common/mod.rs"]
 mod common;
