@@ -8,7 +8,7 @@ use rapier3d_medial::rapier::Tuning;
 type Change = (&'static str, fn(&mut Tuning, f32));
 
 /// Of the loop itself, and of the stops.
-const CHANGES: [(bool, Change); 13] = [
+const CHANGES: [(bool, Change); 14] = [
     (false, ("fast", |t, x| t.fast *= x)),
     (false, ("floor", |t, x| t.floor *= x)),
     (false, ("muted", |t, x| t.muted *= x)),
@@ -24,6 +24,7 @@ const CHANGES: [(bool, Change); 13] = [
         }),
     ),
     (false, ("push_from", |t, x| t.push_from *= x)),
+    (false, ("tips", |t, x| t.tips *= x)),
     (false, ("push", |t, x| t.push *= x)),
     (true, ("stopping", |t, x| t.stopping *= x)),
     (

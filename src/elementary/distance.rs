@@ -95,11 +95,25 @@ pub fn thinnest<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> S {
 /// Signed distance of two primitives of 1 to 3 spheres.
 pub fn signed_distance<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> S {
     let mut least: Option<S> = None;
-    let mut offer = |d: S| least = Some(least.map_or(d, |l| l.min(d)));
+    let mut normal = None;
     for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
-        offer(nearest_in_test(&test, a, b).1.distance);
+        let family = family(&test, a, b);
+        // No sphere pair of a test is nearer than its corners along any one direction: mostly that of the nearest yet.
+        let bound = normal.map(|n| certificate::lower_bound(test.domain, &family, n));
+        if !least
+            .zip(bound)
+            .is_some_and(|(least, bound)| bound >= least)
+        {
+            let nearest = nearest_in_family(test.domain, &family);
+            if least.is_none_or(|least| nearest.distance < least) {
+                least = Some(nearest.distance);
+                let length = nearest.length;
+                normal = (length > S::zero()).then(|| nearest.y * (S::one() / length));
+            }
+        }
         true
     });
+    let mut offer = |d: S| least = Some(least.map_or(d, |l| l.min(d)));
     for c in [crossing(a, u8::MAX, b), crossing(b, u8::MAX, a)]
         .into_iter()
         .flatten()

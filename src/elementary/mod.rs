@@ -103,23 +103,46 @@ pub struct Cores {
     /// An upper limit of that thickness, a length: the thickness of a partner that is not medial. Infinite if there is
     /// no limit.
     pub at_most: Real,
+    /// How thick a blunt tip has to be, as a share of the local thickness, to be kept from passing through what it
+    /// touches at the start ([`InitialContact::Deepen`]), shared between two medial bodies as [`Self::share`] is. 0: the
+    /// whole tip is kept, however thin it is.
+    pub tips: Real,
 }
 
 impl Cores {
     /// What the spheres of two primitives of these thicknesses lose: a share of their radius, which is
     /// taken as `most` where it is larger. Infinite thickness stands for a surface.
     pub(crate) fn losses(&self, thickness: [Real; 2]) -> [Loss; 2] {
+        let (shares, most) = self.of_each(self.share, thickness);
+        shares.map(|share| Loss { share, most })
+    }
+
+    /// Radii, lengths, down to which spheres of two primitives of these thicknesses are kept apart where they touch at
+    /// the start: of blunt tips; what is slender has no thinner ones. Those of their cores.
+    pub(crate) fn kept(&self, thickness: [Real; 2]) -> [f64; 2] {
+        let losses = self.losses(thickness);
+        let (shares, most) = self.of_each(self.tips, thickness);
+        std::array::from_fn(|k| {
+            let radius = if shares[k] > 0.0 {
+                shares[k] * most
+            } else {
+                0.0
+            };
+            radius - losses[k].of(radius)
+        })
+    }
+
+    /// What of a share each of two primitives of these thicknesses has, and the local thickness.
+    fn of_each(&self, share: Real, thickness: [Real; 2]) -> ([f64; 2], f64) {
         let most = thickness[0].min(thickness[1]).min(self.at_most);
         let solid = thickness.map(Real::is_finite);
         let share = if solid == [true; 2] {
-            0.5 * self.share
+            0.5 * share
         } else {
-            self.share
+            share
         };
-        solid.map(|solid| Loss {
-            share: if solid { f64::from(share) } else { 0.0 },
-            most: f64::from(most),
-        })
+        let shares = solid.map(|solid| if solid { f64::from(share) } else { 0.0 });
+        (shares, f64::from(most))
     }
 }
 
@@ -225,7 +248,8 @@ pub struct Toi {
     pub tolerance: Real,
     /// Number of iterations, summed over all elementary tests.
     pub iterations: u32,
-    /// Unit normal from the first body to the second, in the world frame, at `lower`.
+    /// Unit normal from the first body to the second, in the world frame, at `lower`: along it those parts meet that count
+    /// as in contact then ([`InitialContact::Deepen`] lets others be deeper in each other).
     pub normal: Vector,
     /// Nearest spheres of both bodies, in the world frame, at `lower`.
     pub spheres: [MedialSphere; 2],

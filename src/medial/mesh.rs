@@ -247,7 +247,8 @@ impl MedialMesh {
     }
 
     /// How thin the solid typically is, a length: 95 % of the medial mesh, by area, have a larger radius (a
-    /// cone counts as a strip as wide as itself). The smallest radius would not do, because it is near 0 at
+    /// cone counts as a strip as wide as itself, and a tip that grows thick fast, as at the edges of a box, as the part
+    /// it ends). The smallest radius would not do, because it is near 0 at
     /// the tips of most meshes, and every motion would count as fast.
     pub fn thickness(&self) -> Real {
         self.data.parts.thickness

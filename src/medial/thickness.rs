@@ -87,7 +87,8 @@ impl Thicknesses {
     }
 }
 
-/// Weighted 5th percentile of the mean radius of each primitive; see [`super::MedialMesh::thickness`].
+/// Weighted 5th percentile of the mean radius of each primitive or, where that is larger, its thickness; see
+/// [`super::MedialMesh::thickness`].
 pub(super) fn typical(spheres: &[MedialSphere], primitives: &[Simplex]) -> Real {
     let mut local: Vec<(Real, Real)> = primitives
         .iter()
@@ -106,7 +107,9 @@ pub(super) fn typical(spheres: &[MedialSphere], primitives: &[Simplex]) -> Real 
             } else {
                 mean
             };
-            (mean, area)
+            // Blunt tips count as the parts they end, as they do where bodies meet.
+            let used = usize::from(p.len).clamp(1, 3);
+            (mean.max(of_primitive(&[a, b, c][..used])), area)
         })
         .collect();
     local.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -51,6 +51,24 @@ impl Balls {
         some
     }
 
+    /// Means of them, with the shares that each has.
+    pub(super) fn mixed(&self, means: &[[f64; 3]]) -> Self {
+        let mut mixed = *self;
+        mixed.len = means.len();
+        for (k, shares) in means.iter().enumerate() {
+            let none = (Vec3::zero(), Vec3::zero(), 0.0);
+            let sum = |sum: Ball, (s, share): (&Ball, &f64)| {
+                (
+                    sum.0 + s.0 * *share,
+                    sum.1 + s.1 * *share,
+                    sum.2 + s.2 * share,
+                )
+            };
+            mixed.spheres[k..].fill(self.spheres.iter().zip(shares).fold(none, sum));
+        }
+        mixed
+    }
+
     fn all(&self) -> &[Ball] {
         &self.spheres[..self.len]
     }

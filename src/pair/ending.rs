@@ -3,8 +3,9 @@
 
 use super::apart::Balls;
 use super::deepening::Threshold;
-use super::queue::Candidate;
+use super::queue::{Candidate, Tested};
 use super::search::Search;
+use super::tips::Part;
 use super::volumes::Volumes;
 use crate::elementary::bracket::{Bracket, Limits, witness};
 use crate::elementary::distance::{nearest_in_test, signed_distance};
@@ -23,7 +24,10 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
     /// primitives that may come first.
     pub(super) fn give_up(&mut self, time: f64, first: Option<Candidate>) {
         let primitives = match first {
-            Some(Candidate::Test(place)) => self.open[place as usize].primitives,
+            Some(Candidate::Test(place)) => {
+                let open = &self.open[place as usize];
+                self.tested[open.of as usize].primitives
+            }
             Some(Candidate::Nodes([i, j])) => {
                 let (a, b) = (self.sides.0.node(i).below, self.sides.1.node(j).below);
                 [
@@ -33,6 +37,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             }
             None => [0, 0],
         };
+        self.found = None;
         let limits = Limits {
             start: time,
             ..self.earliest.limits
@@ -49,16 +54,13 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         self.earliest.lower = self.earliest.lower.min(time);
     }
 
-    pub(super) fn path(
-        &self,
-        test: &ElementaryTest,
-        pair: [u32; 2],
-        threshold: &Threshold,
-    ) -> RigidPath<f64> {
-        let [(a, _), (b, _)] = self.spheres(pair);
-        RigidPath::new(test, &self.motions, threshold.target, |second, k| {
+    pub(super) fn path(&self, test: &ElementaryTest, of: &Tested) -> RigidPath<f64> {
+        let [(a, _), (b, _)] = self.spheres(of.primitives);
+        let (a, b) = (of.parts[0].of(&a), of.parts[1].of(&b));
+        let Threshold { scale, target, .. } = of.threshold;
+        RigidPath::new(test, &self.motions, target, |second, k| {
             let (center, radius) = if second { b[k as usize] } else { a[k as usize] };
-            (center, threshold.scale * radius)
+            (center, scale * radius)
         })
     }
 
@@ -144,27 +146,32 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         pairs.map(distance).fold(f64::INFINITY, f64::min)
     }
 
-    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness:
-    /// a test that is proven free until then may be nearer than the one that was found.
+    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness, or of what is left of
+    /// them where they touched at the start: a test that is proven free until then may be nearer than the one that was
+    /// found.
     pub(super) fn settle(&mut self) {
         let Some((.., pair)) = self.earliest.found else {
             return;
         };
-        let reported = self.spheres(pair);
         if matches!(self.initial_contact, InitialContact::Approach { .. })
             && self.earliest.status == ToiStatus::Contact
             && self.distance_at_start(pair) <= self.target + self.earliest.limits.tolerance
         {
             (self.earliest.lower, self.earliest.upper) = (0.0, 0.0);
         }
+        let [(a, share_a), (b, share_b)] = self.spheres(pair);
+        let whole = [share_a, share_b].map(|s| Part::whole(s.spheres));
+        let found = self.found.map(|of| (of.parts, of.threshold.scale));
+        let (parts, scale) = found.unwrap_or((whole, 1.0));
         let Some((test, bracket, _)) = &mut self.earliest.found else {
             return;
         };
         let lower = self.earliest.lower;
-        let [(a, share_a), (b, share_b)] = reported;
+        let (a, b) = (parts[0].of(&a), parts[1].of(&b));
+        let [a, b] = [a, b].map(|s| s.map(|(center, radius)| (center, scale * radius)));
         let then = |side: usize, spheres: Spheres| placed(&self.motions[side], spheres, lower);
         let (pa, pb) = (then(0, a), then(1, b));
-        let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
+        let shares = parts.map(|part| Share::whole(part.spheres));
         let mut least = f64::INFINITY;
         for_each_test(shares[0], shares[1], |other| {
             let distance = nearest_in_test(&other, &pa, &pb).1.distance;

@@ -164,7 +164,10 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
     /// The answer, once the query is settled.
     pub fn toi(&self) -> Toi {
         let Some(Search {
-            sides, earliest, ..
+            sides,
+            earliest,
+            found,
+            ..
         }) = &self.search
         else {
             return Toi::bad_input(&self.options);
@@ -177,7 +180,8 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
                 0 => sides.0.body.primitive(primitives[0]).0,
                 _ => sides.1.body.primitive(primitives[1]).0,
             };
-            let s = spheres[i as usize];
+            let i = usize::from(i);
+            let s = found.map_or(spheres[i], |of| of.parts[side].sphere(&spheres, i));
             let at = self.motions[side].position_at_time(t * self.seconds);
             MedialSphere::new(at * s.center, s.radius)
         };

@@ -19,6 +19,7 @@ mod placement;
 mod queue;
 mod search;
 mod swept;
+mod tips;
 pub mod volumes;
 
 pub use contacts::{SpherePair, contacts};

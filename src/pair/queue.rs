@@ -2,6 +2,7 @@
 //! tests, in the order of the times until which they are proven not to meet.
 
 use super::deepening::Threshold;
+use super::tips::Part;
 use crate::elementary::test_list::ElementaryTest;
 use std::cmp::Ordering;
 
@@ -14,13 +15,22 @@ pub(super) enum Candidate {
     Test(u32),
 }
 
+/// What of two primitives is tested, and from when on it is in contact.
+#[derive(Clone, Copy)]
+pub(super) struct Tested {
+    pub(super) primitives: [u32; 2],
+    /// Of each, what is tested.
+    pub(super) parts: [Part; 2],
+    /// What counts as contact.
+    pub(super) threshold: Threshold,
+}
+
 /// An elementary test that is not settled.
 #[derive(Clone, Copy)]
 pub(super) struct Open {
-    pub(super) primitives: [u32; 2],
+    /// Place of what it is of.
+    pub(super) of: u32,
     pub(super) test: ElementaryTest,
-    /// What counts as contact of this primitive pair.
-    pub(super) threshold: Threshold,
     /// Iterations so far.
     pub(super) spent: u32,
 }

@@ -21,7 +21,7 @@
 use super::apart::{Balls, free_until};
 use super::deepening::Threshold;
 use super::outline::Left;
-use super::queue::{Candidate, Entry, Open};
+use super::queue::{Candidate, Entry, Open, Tested};
 use super::swept::Side;
 use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
@@ -71,6 +71,8 @@ pub(super) struct Search<'a, A, B> {
     pub(super) first: Option<Entry>,
     /// Elementary tests that are not settled.
     pub(super) open: Vec<Open>,
+    /// What they are of.
+    pub(super) tested: Vec<Tested>,
     /// Pieces begun, and how many there are.
     pub(super) pieces: u64,
     all_pieces: f64,
@@ -83,6 +85,8 @@ pub(super) struct Search<'a, A, B> {
     /// Node pairs looked at.
     pub(super) nodes: u32,
     pub(super) earliest: Earliest<f64>,
+    /// What of the primitives found was tested.
+    pub(super) found: Option<Tested>,
     /// As [`super::first_contact::Query::deepest`].
     pub(super) deepest: f64,
 }
@@ -123,6 +127,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             heap: BinaryHeap::with_capacity(64),
             first: None,
             open: Vec::with_capacity(16),
+            tested: Vec::with_capacity(16),
             pieces: 0,
             all_pieces: 1.0,
             proofs: 0,
@@ -130,6 +135,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             pause: WORK,
             nodes: 0,
             earliest: Earliest::new(options_limits(options)),
+            found: None,
             deepest: f64::INFINITY,
         }
     }
@@ -180,6 +186,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         self.heap.clear();
         self.first = None;
         self.open.clear();
+        self.tested.clear();
         for i in 0..self.sides.0.body.roots() {
             for j in 0..self.sides.1.body.roots() {
                 self.push([i, j], self.times[0]);

@@ -86,6 +86,7 @@ impl Touching {
             cores: Some(Cores {
                 share: CORE,
                 at_most: thickness.min(sinks / CORE),
+                tips: 0.0,
             }),
             ..*options
         }

@@ -86,6 +86,7 @@ fn what_touches_never_crosses_unseen() {
         let cores = (case % 2 == 0).then_some(Cores {
             share: 0.5,
             at_most: Real::INFINITY,
+            tips: 0.0,
         });
         let options = ToiOptions {
             tolerance: 1.0e-5,
@@ -127,6 +128,7 @@ fn cores_meet_at_their_share_of_the_local_thickness() {
             cores: Some(Cores {
                 share: 0.5,
                 at_most: Real::INFINITY,
+                tips: 0.0,
             }),
             ..ToiOptions::default()
         };

@@ -35,5 +35,6 @@ mod oracle;
 mod outlines;
 mod penetration;
 mod regressions;
+mod tips;
 mod truth;
 mod witness;

@@ -54,6 +54,7 @@ mod rolling;
 mod ropes;
 #[cfg(feature = "serde-serialize")]
 mod saving;
+mod sharp_blocks;
 #[allow(dead_code)]
 #[path = "../../examples/factory/solid.rs"]
 mod solid;

@@ -256,7 +256,11 @@ impl CcdPolicy<'_> {
             target_distance: skin + target,
             tolerance: tuning.tolerance * gap,
             initial_contact: InitialContact::Deepen { by },
-            cores: Some(Cores { share, at_most }),
+            cores: Some(Cores {
+                share,
+                at_most,
+                tips: tuning.tips,
+            }),
             ..ToiOptions::default()
         };
         let hair = tuning.hair * gap;

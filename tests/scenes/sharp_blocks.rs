@@ -1,0 +1,158 @@
+//! Heaps of blocks with flat faces, whose slabs have radii of nearly 0 at sharp edges: they fall and come to rest as the
+//! same blocks do as convex decompositions, no body is frozen for long, and none sinks into the ground.
+
+use crate::bodies::*;
+use crate::random::Random;
+use rapier3d::prelude::*;
+use rapier3d_medial::prelude::*;
+
+/// Blocks of a heap, and steps that they have to come to rest.
+const BLOCKS: usize = 12;
+const STEPS: usize = 240;
+
+/// An L-shaped block of 1 m by 1 m by 0.35 m, whose arms are 0.35 m thick.
+fn l_shape() -> (Vec<Vector>, Vec<[u32; 3]>) {
+    let [low, inner, high] = [-0.4, -0.05, 0.6];
+    let outline = [
+        (low, low),
+        (high, low),
+        (high, inner),
+        (inner, inner),
+        (inner, high),
+        (low, high),
+    ];
+    let layer = |z: Real| outline.map(|(x, y)| Vector::new(x, y, z));
+    let vertices = [layer(-0.17), layer(0.18)].concat();
+    let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]];
+    let caps = faces.map(|[a, b, c]| [[a, c, b], [a + 6, b + 6, c + 6]]);
+    let sides = [0, 1, 2, 3, 4, 5].map(|k| {
+        let next = (k + 1) % 6;
+        [[k, next, next + 6], [k, next + 6, k + 6]]
+    });
+    let indices: Vec<[u32; 3]> = caps.into_iter().chain(sides).flatten().collect();
+    (vertices, indices)
+}
+
+fn l_block(primitives: usize) -> MedialMesh {
+    let (vertices, indices) = l_shape();
+    let options = BuildOptions {
+        primitives: Some(primitives),
+        ..BuildOptions::default()
+    };
+    let built = MedialMesh::from_trimesh(&vertices, &indices, &options);
+    built.expect("an L-shaped block").0
+}
+
+/// Symptom: a heap of such blocks hung in the air, each body frozen in every step after 17 impacts at its start. Cause:
+/// where two thick parts of slabs with thin tips were apart by less than the tolerance, they were not let come nearer,
+/// and counted as meeting at once.
+#[test]
+fn blocks_with_sharp_edges_fall_into_a_heap() {
+    let mesh = l_block(20);
+    let mut world = PhysicsWorld::new();
+    let ground = ColliderBuilder::cuboid(20.0, 1.0, 20.0).translation(Vector::Y * -1.0);
+    world.insert_collider(ground, None);
+    let mut random = Random(3);
+    let blocks: Vec<_> = (0..8)
+        .map(|k| {
+            let turn = random.direction() * 3.0;
+            let aside = random.direction() * 0.2;
+            let block = RigidBodyBuilder::dynamic()
+                .translation(aside + Vector::Y * (1.0 + 0.8 * k as Real))
+                .rotation(turn);
+            world
+                .insert(block, ColliderBuilder::medial_mesh(mesh.clone()))
+                .0
+        })
+        .collect();
+    let mut pipeline = attached(&mut world);
+    let (mut frozen, mut events) = (0, 0);
+    for _ in 0..180 {
+        let report = pipeline.step(&mut world);
+        frozen += report.frozen;
+        events += report.events;
+    }
+    let highest = blocks.iter().map(|b| world.bodies[*b].translation().y);
+    let highest = highest.fold(0.0, Real::max);
+    println!("{frozen} frozen, {events} events, highest at {highest}");
+    assert!(frozen < 40 && highest < 2.0, "{frozen} frozen, {highest}");
+}
+
+/// What became of a heap.
+#[derive(Debug, Default)]
+struct Heap {
+    /// Bodies frozen in all steps, and steps in a row in which one was.
+    frozen: usize,
+    in_a_row: usize,
+    /// Corner of a block that got deepest into the ground, a height in metres.
+    lowest: Real,
+    /// Heights of the centres at the end, in metres: the mean and the highest.
+    mean: Real,
+    highest: Real,
+}
+
+/// Drops blocks on a cuboid, or on two triangles.
+fn heap(collider: &ColliderBuilder, corners: &[Vector], on_triangles: bool) -> Heap {
+    let mut world = PhysicsWorld::new();
+    let ground = if on_triangles {
+        let corner = |x: Real, z: Real| Vector::new(20.0 * x, 0.0, 20.0 * z);
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, z)| corner(x, z)).to_vec();
+        let triangles = vec![[0, 2, 1], [0, 3, 2]];
+        ColliderBuilder::trimesh(corners, triangles).expect("two triangles")
+    } else {
+        ColliderBuilder::cuboid(20.0, 1.0, 20.0).translation(Vector::Y * -1.0)
+    };
+    world.insert_collider(ground, None);
+    let mut random = Random(1);
+    let blocks: Vec<_> = (0..BLOCKS)
+        .map(|k| {
+            let turn = random.direction() * 3.0;
+            let aside = random.direction() * 0.2;
+            let block = RigidBodyBuilder::dynamic()
+                .translation(aside + Vector::Y * (1.0 + 0.8 * k as Real))
+                .rotation(turn);
+            world.insert(block, collider.clone()).0
+        })
+        .collect();
+    let mut pipeline = attached(&mut world);
+    let mut heap = Heap::default();
+    let mut row = 0;
+    for _ in 0..STEPS {
+        let report = pipeline.step(&mut world);
+        row = if report.frozen > 0 { row + 1 } else { 0 };
+        heap.frozen += report.frozen;
+        heap.in_a_row = heap.in_a_row.max(row);
+        let poses = blocks.iter().map(|b| *world.bodies[*b].position());
+        let heights = poses.flat_map(|pose| corners.iter().map(move |c| (pose * *c).y));
+        heap.lowest = heights.fold(heap.lowest, Real::min);
+    }
+    let heights = blocks.iter().map(|b| world.bodies[*b].translation().y);
+    heap.mean = heights.clone().sum::<Real>() / BLOCKS as Real;
+    heap.highest = heights.fold(0.0, Real::max);
+    heap
+}
+
+/// Symptom: in each step 4 to 7 of these blocks stayed where they were, after 17 impacts each, at 44 ms a step. Cause: of
+/// blocks pressed into each other the sharp edges were not let pass each other by a hair, though they count as as thick
+/// as what they end; the normal told was that of the thick parts, along which the pair parted already, so that impulses
+/// changed nothing; and what is behind an edge that had passed was not stopped.
+#[test]
+fn heaps_of_blocks_with_sharp_edges_are_not_frozen() {
+    let (corners, triangles) = l_shape();
+    let decomposed = ColliderBuilder::convex_decomposition(&corners, &triangles);
+    let ours = ColliderBuilder::medial_mesh(l_block(60));
+    for on_triangles in [false, true] {
+        let own = heap(&decomposed, &corners, on_triangles);
+        let heap = heap(&ours, &corners, on_triangles);
+        println!("{heap:?}, as convex decompositions {own:?}");
+        assert!(heap.frozen < 30 && heap.in_a_row <= 6, "{heap:?}");
+        // A tenth of the thickness of a block's arm, and what rapier's own sink in.
+        assert!(heap.lowest > own.lowest - 0.035, "{heap:?}, own {own:?}");
+        // Blocks come to lie at random: by less than half the thickness of an arm higher or lower.
+        assert!(
+            (heap.mean - own.mean).abs() < 0.175,
+            "{heap:?}, own {own:?}"
+        );
+    }
+}
