@@ -4,6 +4,7 @@ mod bodies;
 mod bounces;
 mod budget;
 mod characters;
+mod combs;
 mod controls;
 mod creature_walks;
 mod crowds;
