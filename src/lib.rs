@@ -61,6 +61,9 @@
 //! | [`medial`] | the medial mesh itself, its trees, mass, surface and files |
 //! | [`math`] | SIMD lanes, closed forms, rigid motion, constants |
 
+// Limits are in clippy.toml.
+#![warn(clippy::too_many_lines)]
+
 pub mod batch;
 pub mod elementary;
 pub mod error;

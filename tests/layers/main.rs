@@ -45,7 +45,7 @@ const CONFINED: [(&str, &str); 4] = [
 ];
 
 /// The line count above which a file should have been split.
-const LONGEST: usize = 450;
+const LONGEST: usize = 400;
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();

@@ -1,6 +1,8 @@
 //! Impacts within a step: the queue of pairs, their first contacts, and what an impact does to bodies.
 
 pub(crate) mod body_state;
+mod bounces;
+pub(crate) mod contact_point;
 pub(crate) mod deep_pairs;
 pub(crate) mod event_loop;
 pub(crate) mod event_queue;

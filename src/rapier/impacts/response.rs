@@ -10,14 +10,14 @@
 
 use crate::math::{Real, Vector};
 use crate::rapier::impacts::body_state::BodyImpactState;
+use crate::rapier::impacts::contact_point::ContactPoint;
 use crate::rapier::impacts::impact_history::ImpactHistory;
-use crate::rapier::impacts::impulse::{Impact, Inertia, Material};
+use crate::rapier::impacts::impulse::{Inertia, Material};
 use crate::rapier::impacts::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
 use crate::rapier::joints::jointed_bodies::{Joints, settle};
 use crate::rapier::joints::pieces::Pieces;
 use crate::rapier::joints::rows::Twist;
-use crate::rapier::joints::tied_system::System;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
@@ -46,6 +46,14 @@ pub struct Response {
 
 fn bodies(view: &StepView, pair: Pair) -> [usize; 2] {
     pair.map(|k| view.parts[k].body)
+}
+
+/// How fast a hit's bodies are pushed out of each other, a length per second. Thin parts are kept as far from each other as
+/// the least gap.
+fn way_out(view: &StepView, policy: &CcdPolicy, pair: Pair, hit: &Hit) -> Real {
+    let thickness = view.thickness_at(pair, hit.primitives);
+    let sunk = hit.depth - (policy.tuning.push_from * thickness - policy.least_gap());
+    policy.tuning.push * sunk.max(0.0) / policy.dt
 }
 
 impl Response {
@@ -246,45 +254,22 @@ impl Response {
             end.hold(&mut twists);
             twists
         });
-        let now = both.map(|b| view.bodies[b].motion_from(hit.time));
-        let centers = [0, 1].map(|k| now[k].start * view.bodies[both[k]].mass.local_com);
-        let arms = centers.map(|c| hit.point - c);
-        let at = |[linear, angular]: Twist, k: usize| linear + angular.cross(arms[k]);
-        let wrenches = |j: Vector| {
-            let on = |k: usize, j: Vector| (both[k], [j, arms[k].cross(j)]);
-            [on(0, -j), on(1, j)]
-        };
+        let point = ContactPoint::new(view, both, hit);
         // What stands at its limit resists as the stop does.
         for system in [Some(&mut system), moving.as_mut()].into_iter().flatten() {
             let of = |b: &usize| view.bodies[*b].velocity;
             let twists: Vec<Twist> = system.bodies.iter().map(of).collect();
-            system.stand_at_limits(&twists, |system| system.change(&wrenches(hit.normal)));
+            system.stand_at_limits(&twists, |system| system.change(&point.wrenches(hit.normal)));
         }
-        let [v1, v2] = [0, 1].map(|k| at(view.bodies[both[k]].velocity, k));
-        // A bounce is from the velocity that the bodies have where they meet; forces add the rest of theirs after it.
-        let at_contact = v2 - v1 - view.relative_pull(pair) * policy.share_after(hit.time);
-        let bounces = material.restitution > 0.0
-            && -at_contact.dot(hit.normal) > policy.least_bounce(view, pair);
-        let (approach, restitution) = match bounces {
-            true => (at_contact, material.restitution),
-            false => (v2 - v1, 0.0),
-        };
-        let impact = |system: &System| Impact {
-            normal: hit.normal,
-            material: Material {
-                restitution,
-                ..material
-            },
-            response: Vector::AXES.map(|axis| {
-                let change = system.change(&wrenches(axis));
-                at(change[1], 1) - at(change[0], 0)
-            }),
-        };
-        let own = impact(&system);
+        let [v1, v2] = [0, 1].map(|k| point.velocity(view.bodies[both[k]].velocity, k));
+        let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, material);
+        let own = point.impact(&system, material);
         // What the two would do without their joints.
         let alone = |k: usize| {
-            let wrench = [hit.normal, arms[k].cross(hit.normal)];
-            at(inertia(view, both[k], false).apply(wrench), k).dot(hit.normal)
+            let wrench = point.wrench(k, hit.normal);
+            point
+                .velocity(inertia(view, both[k], false).apply(wrench), k)
+                .dot(hit.normal)
         };
         if own.resistance() < HELD * (alone(0) + alone(1)) {
             let moved = system.bodies;
@@ -294,7 +279,7 @@ impl Response {
         if let Some(j) = own.impulse(approach, 0.0) {
             let blow = ReportedImpulse::new(view, pair, hit, j.dot(hit.normal));
             blow.add_to(self.impulses.entry(pair).or_default());
-            let change = system.change(&wrenches(j));
+            let change = system.change(&point.wrenches(j));
             for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
                 let body = &mut view.bodies[b];
                 body.velocity[0] += dv;
@@ -302,20 +287,12 @@ impl Response {
                 self.courses[b].struck |= body.kind == Kind::Free;
             }
         }
-        // A carried body turns about its carrier's centre, not its own.
-        let velocity = |k: usize| {
-            let m = &now[k];
-            let arm = centers[k] - m.start * m.local_center;
-            at([m.linvel + m.angvel.cross(arm), m.angvel], k)
-        };
-        // Thin parts are kept as far from each other as the least gap.
-        let thickness = view.thickness_at(pair, hit.primitives);
-        let sunk = hit.depth - (policy.tuning.push_from * thickness - policy.least_gap());
-        let out = policy.tuning.push * sunk.max(0.0) / policy.dt;
-        let impact = moving.as_ref().map_or(own, impact);
+        let impact = moving
+            .as_ref()
+            .map_or(own, |system| point.impact(system, material));
         let system = moving.unwrap_or(system);
-        if let Some(j) = impact.impulse(velocity(1) - velocity(0), out) {
-            let change = system.change(&wrenches(j));
+        if let Some(j) = impact.impulse(point.relative_motion(), way_out(view, policy, pair, hit)) {
+            let change = system.change(&point.wrenches(j));
             for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
                 let motion = &mut view.bodies[b].motion;
                 motion.linvel += dv;

@@ -11,18 +11,15 @@
 
 use crate::batch::ToiJob;
 use crate::elementary::{Cores, InitialContact, Paths, Toi, ToiOptions, ToiStatus};
-use crate::math::{Pose, Real, Vector};
-use crate::medial::MedialMesh;
+use crate::math::{Real, Vector};
 use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::Left;
 use crate::parry::cast::Cast;
-use crate::parry::distance::{is_within, nearest};
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::impacts::thin_parts::Thin;
 use crate::rapier::tuning::Tuning;
 use crate::rapier::view::step_view::StepView;
 use parry3d::query::NonlinearRigidMotion;
-use parry3d::shape::Shape;
 
 /// What a query found, and its price.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,7 +40,7 @@ impl Work {
         self.nodes + self.tests
     }
 
-    fn add(&mut self, counts: Counts) {
+    pub(super) fn add(&mut self, counts: Counts) {
         self.nodes += u64::from(counts.nodes);
         self.tests += u64::from(counts.tests);
     }
@@ -142,7 +139,7 @@ impl CcdPolicy<'_> {
         (self.tuning.least_gap * self.unit).max(Real::MIN_POSITIVE)
     }
 
-    fn effects_of(&self, view: &StepView, pair: [usize; 2]) -> Effects {
+    pub(super) fn effects_of(&self, view: &StepView, pair: [usize; 2]) -> Effects {
         self.effects.of(pair.map(|k| view.parts[k].handle))
     }
 
@@ -181,32 +178,6 @@ impl CcdPolicy<'_> {
         self.effects.any(asked)
             || self.bouncing
             || 2.0 * view.most_travel(self.dt) > share * thickness
-    }
-
-    /// Speed of approach, in units of length per second, up to which a pair does not bounce: twice what forces add in a
-    /// step, so that what rests stays at rest.
-    pub fn least_bounce(&self, view: &StepView, pair: [usize; 2]) -> Real {
-        2.0 * view.most_pull(pair) + self.tuning.least_bounce * self.unit
-    }
-
-    /// Share of the step for which forces still act on what meets at `time`, a time in seconds. rapier moves bodies in
-    /// each sub-step by the velocity at its end, which is that of its middle, so velocities are half a sub-step behind.
-    pub fn share_after(&self, time: Real) -> Real {
-        1.0 - time / self.dt - 0.5 / self.substeps as Real
-    }
-
-    /// Whether the pair has restitution, and may meet so fast in this step that it bounces.
-    pub fn may_bounce(&self, view: &StepView, pair: [usize; 2]) -> bool {
-        let effects = self.effects_of(view, pair);
-        let is_wanted = match effects.restitution {
-            Effect::On => true,
-            Effect::Off => false,
-            Effect::Auto => view.most_pull(pair) == 0.0,
-        };
-        is_wanted
-            && effects.stop != Effect::On
-            && view.restitution(pair) > 0.0
-            && view.travel(pair, self.dt) > self.least_bounce(view, pair) * self.dt
     }
 
     /// Whether the solver gets contacts of the pair for all that it may reach in the step.
@@ -345,57 +316,11 @@ impl CcdPolicy<'_> {
     pub fn is_deep(&self, deepest: f64) -> bool {
         deepest <= f64::from(self.tuning.sink - self.tuning.floor)
     }
-
-    /// Whether the pair touches at the start of the step, so that the solver has it.
-    pub fn touches(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> bool {
-        let (mesh, other, pos12, reach) = self.at_start(view, pair);
-        let found = mesh.and_then(|mesh| is_within(mesh, other, &pos12, reach).ok());
-        found.is_some_and(|(within, counts)| {
-            work.add(counts);
-            within
-        })
-    }
-
-    /// How fast a pair that touches at the start of the step approaches at its nearest points, a length per second;
-    /// `None` if it does not touch.
-    pub fn approach(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> Option<Real> {
-        let (mesh, other, pos12, reach) = self.at_start(view, pair);
-        let (found, counts) = nearest(mesh?, other, &pos12, reach).ok()?;
-        work.add(counts);
-        let contact = found?;
-        let flipped = view.parts[pair[0]].medial().is_none();
-        let [k, l] = if flipped { [pair[1], pair[0]] } else { pair };
-        let motion = view.motion(k, 0.0);
-        let point = motion.start * contact.points[0];
-        let normal = motion.start.rotation * contact.normal;
-        let velocity = |k: usize| {
-            let m = view.motion(k, 0.0);
-            m.linvel + m.angvel.cross(point - m.start * m.local_center)
-        };
-        Some((velocity(k) - velocity(l)).dot(normal))
-    }
-
-    /// The medial mesh of a pair and the other shape, which the pose at the start of the step takes to the mesh's frame,
-    /// and the distance, a length, up to which they touch.
-    fn at_start<'v>(
-        &self,
-        view: &'v StepView,
-        pair: [usize; 2],
-    ) -> (Option<&'v MedialMesh>, &'v dyn Shape, Pose, Real) {
-        let gap = self.tuning.touching * self.gap(view.thickness(pair));
-        let [start1, start2] = pair.map(|k| view.motion(k, 0.0).start);
-        let [shape1, shape2] = pair.map(|k| &*view.parts[k].shape);
-        let reach = reach(view, pair, gap);
-        match shape1.as_shape::<MedialMesh>() {
-            Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2), reach),
-            None => (shape2.as_shape(), shape1, start2.inv_mul(&start1), reach),
-        }
-    }
 }
 
 /// Distance between two shapes, a length, up to which their surfaces count as `distance` apart, skins
 /// included.
-fn reach(view: &StepView, [i, j]: [usize; 2], distance: Real) -> Real {
+pub fn reach(view: &StepView, [i, j]: [usize; 2], distance: Real) -> Real {
     let skins = view.parts[i].skin + view.parts[j].skin;
     distance + skins + ToiOptions::default().tolerance
 }

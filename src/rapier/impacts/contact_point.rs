@@ -1,0 +1,72 @@
+//! Where two bodies meet: what their motions are there, and what an impulse there does.
+
+use crate::math::Vector;
+use crate::rapier::impacts::impulse::{Impact, Material};
+use crate::rapier::impacts::toi_query::Hit;
+use crate::rapier::joints::rows::Twist;
+use crate::rapier::joints::tied_system::System;
+use crate::rapier::view::step_view::StepView;
+
+/// A contact of two bodies at its time, in the world frame.
+pub struct ContactPoint {
+    bodies: [usize; 2],
+    /// From the first body to the second.
+    normal: Vector,
+    /// From the bodies' centres of mass to the point.
+    arms: [Vector; 2],
+    /// Velocities of the bodies' motions there, a length per second.
+    motions: [Vector; 2],
+}
+
+impl ContactPoint {
+    /// The point of a hit of two bodies.
+    pub fn new(view: &StepView, bodies: [usize; 2], hit: &Hit) -> Self {
+        let now = bodies.map(|b| view.bodies[b].motion_from(hit.time));
+        let centers = [0, 1].map(|k| now[k].start * view.bodies[bodies[k]].mass.local_com);
+        let mut point = Self {
+            bodies,
+            normal: hit.normal,
+            arms: centers.map(|c| hit.point - c),
+            motions: [Vector::ZERO; 2],
+        };
+        // A carried body turns about its carrier's centre, not its own.
+        point.motions = [0, 1].map(|k| {
+            let m = &now[k];
+            let arm = centers[k] - m.start * m.local_center;
+            point.velocity([m.linvel + m.angvel.cross(arm), m.angvel], k)
+        });
+        point
+    }
+
+    /// Velocity there of body `k`, whose centre of mass moves so.
+    pub fn velocity(&self, [linear, angular]: Twist, k: usize) -> Vector {
+        linear + angular.cross(self.arms[k])
+    }
+
+    /// Velocity of the second body's motion there against the first's.
+    pub fn relative_motion(&self) -> Vector {
+        self.motions[1] - self.motions[0]
+    }
+
+    /// An impulse there as a change of momentum and angular momentum of body `k`.
+    pub fn wrench(&self, k: usize, impulse: Vector) -> Twist {
+        [impulse, self.arms[k].cross(impulse)]
+    }
+
+    /// An impulse on the second body, and its opposite on the first.
+    pub fn wrenches(&self, impulse: Vector) -> [(usize, Twist); 2] {
+        [(0, -impulse), (1, impulse)].map(|(k, j)| (self.bodies[k], self.wrench(k, j)))
+    }
+
+    /// The impact there of bodies that joints tie together.
+    pub fn impact(&self, system: &System, material: Material) -> Impact {
+        Impact {
+            normal: self.normal,
+            material,
+            response: Vector::AXES.map(|axis| {
+                let change = system.change(&self.wrenches(axis));
+                self.velocity(change[1], 1) - self.velocity(change[0], 0)
+            }),
+        }
+    }
+}
