@@ -68,8 +68,8 @@ pub struct Effects {
     pub stop: Effect,
     /// Lets pairs with restitution bounce where they meet within the step, by an impulse that gains no energy, and keeps
     /// them from rapier's solver in that step. `On`: for pairs whose restitution is above 0, if they may approach by more
-    /// than twice what gravity adds in the step. `Auto`: for those of them that no gravity or force of yours pulls on, as in
-    /// space: nothing else takes from these what rapier's solver gives them. Off: slow pairs bounce in that solver, in
+    /// than twice what gravity adds in the step. `Auto`: for those of them that no gravity, force of yours or joint pulls on, as
+    /// in space: nothing else takes from these what rapier's solver gives them. Off: slow pairs bounce in that solver, in
     /// which elastic bodies that are not round gain or lose much of their energy within seconds. Pairs with [`Self::stop`]
     /// on are left to it too.
     pub restitution: Effect,

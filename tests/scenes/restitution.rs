@@ -287,3 +287,45 @@ fn a_bouncing_ball_rises_as_theory_says() {
         }
     }
 }
+
+/// Two motors close fingers on a block without weight, which then holds still and sleeps beside rapier's own cuboids, whatever
+/// its restitution.
+#[test]
+fn what_motors_hold_without_weight_rests() {
+    let block = |half: Vector, is_medial: bool| match is_medial {
+        true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a cuboid")),
+        false => ColliderBuilder::cuboid(half.x, half.y, half.z),
+    };
+    for restitution in [0.3, 0.5, 0.8] {
+        let left = [true, false].map(|is_medial| {
+            let mut world = PhysicsWorld::new();
+            world.gravity = Vector::ZERO;
+            let base = world.insert_body(RigidBodyBuilder::fixed());
+            let mut bodies = Vec::new();
+            for side in [-1.0, 1.0] {
+                let finger = RigidBodyBuilder::dynamic().translation(Vector::X * 1.2 * side);
+                let collider = block(Vector::new(0.2, 0.5, 0.5), is_medial);
+                let (finger, _) = world.insert(finger, collider.restitution(restitution));
+                let joint = PrismaticJointBuilder::new(Vector::X * side)
+                    .motor_position(0.5, 200.0, 20.0)
+                    .motor_max_force(50.0);
+                world.insert_impulse_joint(base, finger, joint);
+                bodies.push(finger);
+            }
+            let body = RigidBodyBuilder::dynamic().translation(Vector::X * 0.1);
+            let collider = block(Vector::splat(0.5), is_medial).restitution(restitution);
+            bodies.push(world.insert(body, collider).0);
+            let mut pipeline = MedialPipeline::default();
+            for _ in 0..240 {
+                pipeline.step(&mut world);
+            }
+            let speed = |h: &RigidBodyHandle| world.bodies[*h].linvel().length();
+            bodies.iter().map(speed).fold(0.0, Real::max)
+        });
+        println!("restitution {restitution}: speeds after four seconds {left:?}");
+        assert!(
+            left.iter().all(|speed| *speed < 0.01),
+            "{restitution}: {left:?}"
+        );
+    }
+}

@@ -108,7 +108,7 @@ fn reason(
     }
     // What no force presses together does not rest, whatever its nearest points do.
     let rests = |speed: Option<Real>| speed.is_some_and(|s| s <= policy.least_bounce(view, pair));
-    if may_bounce && (view.most_pull(pair) == 0.0 || !rests(policy.approach(view, pair, work))) {
+    if may_bounce && (!view.may_be_pressed(pair) || !rests(policy.approach(view, pair, work))) {
         return Some(Reason::Bounces);
     }
     if !is_fast {

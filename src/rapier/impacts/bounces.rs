@@ -29,7 +29,7 @@ impl CcdPolicy<'_> {
         let is_wanted = match effects.restitution {
             Effect::On => true,
             Effect::Off => false,
-            Effect::Auto => view.most_pull(pair) == 0.0,
+            Effect::Auto => !view.may_be_pressed(pair),
         };
         is_wanted
             && effects.stop != Effect::On

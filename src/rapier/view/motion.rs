@@ -78,6 +78,8 @@ pub struct Body {
     pub dominance: i16,
     /// Radians per second of the fastest link of its multibody before rapier's step; 0 of a body of none.
     pub whirl: Real,
+    /// Whether a joint holds it.
+    pub jointed: bool,
     /// Of a link of a multibody, before rapier's step.
     pub turned_before: Option<LinkAngles>,
     /// Whether rapier's step is taken back from it.
@@ -115,6 +117,7 @@ impl Body {
             locked: properties.flags,
             dominance: body.effective_dominance_group(),
             whirl: 0.0,
+            jointed: false,
             turned_before: None,
             is_taken_back: false,
         }
@@ -150,6 +153,7 @@ impl Body {
             locked: LockedAxes::empty(),
             dominance: i16::from(i8::MAX) + 1,
             whirl: 0.0,
+            jointed: false,
             turned_before: None,
             is_taken_back: false,
         }

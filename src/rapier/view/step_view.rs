@@ -110,7 +110,9 @@ impl StepView {
         let tied = joints.iter().flat_map(|(_, j)| [j.body1(), j.body2()]);
         let links = multibodies.multibodies().flat_map(|m| m.links());
         for handle in tied.chain(links.map(|l| l.rigid_body_handle())) {
-            add(&mut view, handle);
+            if let Some(b) = add(&mut view, handle) {
+                view.bodies[b].jointed = true;
+            }
         }
         for multibody in multibodies.multibodies() {
             let place = |l: &MultibodyLink| view.index.get(&l.rigid_body_handle()).copied();
@@ -285,6 +287,13 @@ impl StepView {
     pub fn most_pull(&self, pair: [usize; 2]) -> Real {
         let [a, b] = pair.map(|k| self.bodies[self.parts[k].body].pull().length());
         a.max(b)
+    }
+
+    /// Whether something other than contacts may press a pair together: gravity, forces of the user, or a joint, whose
+    /// motor or spring acts in the solver only.
+    pub fn may_be_pressed(&self, pair: [usize; 2]) -> bool {
+        let jointed = pair.map(|k| self.bodies[self.parts[k].body].jointed);
+        self.most_pull(pair) > 0.0 || jointed.contains(&true)
     }
 
     /// Bound on how far a point of one collider moves relative to the other in `seconds`.
