@@ -207,3 +207,43 @@ fn eulers_disc_goes_on_for_ever_at_30_hz() {
     assert!(disc.rests.is_none(), "rests after {:?} s", disc.rests);
     assert!(disc.gain > 0.01, "gains {}", disc.gain);
 }
+
+/// Pairs without joints bounce in the event loop where nothing pulls on them ([`Effects::restitution`]), though others that
+/// have joints may press on them: two blocks without weight between two fingers with motors rattle on, where they rest in
+/// the solver.
+#[test]
+fn what_is_pressed_through_others_without_weight_rattles() {
+    let speed = |effects: Effects| {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let base = world.insert_body(RigidBodyBuilder::fixed());
+        let mut put = |x: Real, half_x: Real| {
+            let mesh = MedialMesh::cuboid(Vector::new(half_x, 0.5, 0.5)).expect("a cuboid");
+            let body = RigidBodyBuilder::dynamic().translation(Vector::X * x);
+            let collider = ColliderBuilder::medial_mesh(mesh).restitution(0.5);
+            world.insert(body, collider).0
+        };
+        let fingers = [-1.8, 1.8].map(|x| put(x, 0.2));
+        let blocks = [-0.55, 0.55].map(|x| put(x, 0.5));
+        for (finger, side) in fingers.into_iter().zip([-1.0, 1.0]) {
+            let joint = PrismaticJointBuilder::new(Vector::X * side)
+                .motor_position(0.9, 200.0, 20.0)
+                .motor_max_force(50.0);
+            world.insert_impulse_joint(base, finger, joint);
+        }
+        let mut pipeline = MedialPipeline::new(MedialOptions::default().effects(effects));
+        let mut fastest: Real = 0.0;
+        for step in 0..360 {
+            pipeline.step(&mut world);
+            let now = blocks.map(|h| world.bodies[h].linvel().length());
+            if step >= 240 {
+                fastest = now.into_iter().fold(fastest, Real::max);
+            }
+        }
+        fastest
+    };
+    let [ours, solver] =
+        [Effect::Auto, Effect::Off].map(|e| speed(Effects::default().restitution(e)));
+    assert!(solver < 0.01, "in the solver they move by {solver}");
+    assert!(ours > 0.05, "they move by {ours} only");
+}
