@@ -21,16 +21,46 @@ fn l_shape() -> (Vec<Vector>, Vec<[u32; 3]>) {
         (inner, high),
         (low, high),
     ];
-    let layer = |z: Real| outline.map(|(x, y)| Vector::new(x, y, z));
-    let vertices = [layer(-0.17), layer(0.18)].concat();
     let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]];
-    let caps = faces.map(|[a, b, c]| [[a, c, b], [a + 6, b + 6, c + 6]]);
-    let sides = [0, 1, 2, 3, 4, 5].map(|k| {
-        let next = (k + 1) % 6;
-        [[k, next, next + 6], [k, next + 6, k + 6]]
+    prism(&outline, &faces, [-0.17, 0.18])
+}
+
+/// A T-shaped block of 1 m by 1 m by 0.27 m.
+fn t_shape() -> (Vec<Vector>, Vec<[u32; 3]>) {
+    let outline = [
+        (0.0, 0.0),
+        (1.0, 0.0),
+        (1.0, 2.0),
+        (2.0, 2.0),
+        (2.0, 3.0),
+        (-1.0, 3.0),
+        (-1.0, 2.0),
+        (0.0, 2.0),
+    ];
+    let outline = outline.map(|(x, y): (Real, Real)| ((x - 0.5) / 3.0, (y - 1.5) / 3.0));
+    let stem = [[0, 1, 2], [0, 2, 7]];
+    let top = [[5, 6, 7], [5, 7, 2], [5, 2, 4], [4, 2, 3]];
+    let faces = [&stem[..], &top[..]].concat();
+    prism(&outline, &faces, [-0.4 / 3.0, 0.4 / 3.0])
+}
+
+/// A prism between two heights over an outline, which these triangles fill.
+fn prism(
+    outline: &[(Real, Real)],
+    faces: &[[u32; 3]],
+    [low, high]: [Real; 2],
+) -> (Vec<Vector>, Vec<[u32; 3]>) {
+    let layer = |z: Real| outline.iter().map(move |(x, y)| Vector::new(*x, *y, z));
+    let vertices = layer(low).chain(layer(high)).collect();
+    let n = outline.len() as u32;
+    let caps = faces
+        .iter()
+        .flat_map(|[a, b, c]| [[*a, *c, *b], [a + n, b + n, c + n]]);
+    let sides = (0..n).flat_map(|k| {
+        let next = (k + 1) % n;
+        [[k, next, next + n], [k, next + n, k + n]]
     });
-    let indices: Vec<[u32; 3]> = caps.into_iter().chain(sides).flatten().collect();
-    (vertices, indices)
+    (vertices, caps.chain(sides).collect())
 }
 
 fn l_block(primitives: usize) -> MedialMesh {
@@ -146,7 +176,7 @@ fn heaps_of_blocks_with_sharp_edges_are_not_frozen() {
         let own = heap(&decomposed, &corners, on_triangles, seed);
         let heap = heap(&ours, &corners, on_triangles, seed);
         println!("{heap:?}, as convex decompositions {own:?}");
-        assert!(heap.frozen < 40 && heap.in_a_row <= 8, "{heap:?}");
+        assert!(heap.frozen < 30 && heap.in_a_row <= 6, "{heap:?}");
         // A tenth of the thickness of a block's arm, and what rapier's own sink in.
         assert!(heap.lowest > own.lowest - 0.035, "{heap:?}, own {own:?}");
         // Blocks come to lie at random: by less than half the thickness of an arm higher or lower.
@@ -155,4 +185,20 @@ fn heaps_of_blocks_with_sharp_edges_are_not_frozen() {
             "{heap:?}, own {own:?}"
         );
     }
+}
+
+/// Symptom: two of these blocks, which start across each other, hung in the air for ever, frozen in every step. Cause: they
+/// were left to rapier's solver only until their contacts were half as deep as they are thick, where edges still crossed.
+#[test]
+fn blocks_put_across_each_other_come_apart() {
+    let (corners, triangles) = t_shape();
+    let options = BuildOptions::default();
+    let built = MedialMesh::from_trimesh(&corners, &triangles, &options);
+    let ours = ColliderBuilder::medial_mesh(built.expect("a T-shaped block").0);
+    let decomposed = ColliderBuilder::convex_decomposition(&corners, &triangles);
+    let own = heap(&decomposed, &corners, false, 2);
+    let heap = heap(&ours, &corners, false, 2);
+    println!("{heap:?}, as convex decompositions {own:?}");
+    assert!(heap.frozen < 40 && heap.in_a_row <= 8, "{heap:?}");
+    assert!(heap.highest < own.highest + 0.5, "{heap:?}, own {own:?}");
 }

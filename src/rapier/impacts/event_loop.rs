@@ -123,9 +123,7 @@ pub fn resolve(
     } else {
         FastMap::default()
     };
-    let sunk = deep.iter().map(|(pair, way)| (*pair, *way));
-    let sunk = sunk.filter(|(_, way)| *way > 0.0);
-    let left = placed.leave(view, sunk);
+    let left = placed.leave(view, &deep);
     let all = view.bodies.iter().enumerate();
     let taken = all.filter(|(_, body)| body.is_taken_back);
     let taken: Vec<usize> = taken.map(|(b, _)| b).collect();

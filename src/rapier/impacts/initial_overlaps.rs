@@ -2,14 +2,16 @@
 //!
 //! The medial axes of such a pair are near each other or cross already, so there is nothing left to protect, and
 //! holding them apart would hold them as they are for ever: whatever parts them at one place takes them deeper at
-//! another. So the event loop leaves them to rapier's solver until they are above the floor
-//! ([`crate::rapier::tuning::Tuning::floor`]), and keeps them above it from then on.
+//! another. So the event loop leaves such a pair to rapier's solver until none of its contacts is deep any more
+//! ([`crate::rapier::impacts::deep_pairs`]), and keeps it above the floor ([`crate::rapier::tuning::Tuning::floor`]) from
+//! then on. A pair left to the solver until it is above the floor alone would be held there: next to the contact that is
+//! above it are edges that still cross.
 //!
 //! A pair counts as put into each other if one of the two is new and rapier had no contacts of the pair, or if the two
 //! were moved against each other, between two steps, by so much that they may have been apart before. A pair that
 //! forces pressed together is held, even if both are moved together.
 
-use crate::math::fast_hash::FastSet;
+use crate::math::fast_hash::{FastMap, FastSet};
 use crate::math::{Pose, Real};
 use crate::rapier::view::step_view::StepView;
 use rapier3d::geometry::{ColliderHandle, ColliderSet, NarrowPhase};
@@ -53,22 +55,19 @@ impl InitialOverlaps {
             .collect();
     }
 
-    /// Of the pairs whose contacts in rapier are below the floor in this step, those that are left to the solver. Each
-    /// with the least way, a length, on which it got there if it was apart before.
-    pub fn leave(
-        &mut self,
-        view: &StepView,
-        sunk: impl Iterator<Item = ([usize; 2], Real)>,
-    ) -> Vec<[usize; 2]> {
+    /// Of the pairs with deep contacts in this step, those that are left to the solver. `deep` has the least way, a length,
+    /// on which a pair below the floor got there if it was apart before, and 0 for those above it.
+    pub fn leave(&mut self, view: &StepView, deep: &FastMap<[usize; 2], Real>) -> Vec<[usize; 2]> {
         let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
         let was_put = |pair: [usize; 2], way: Real| match self.moved(view, pair) {
             Some(moved) => moved >= way,
             None => !self.met.contains(&handles(pair)),
         };
         let is_left = |(pair, way): &([usize; 2], Real)| {
-            self.left.contains(&handles(*pair)) || was_put(*pair, *way)
+            self.left.contains(&handles(*pair)) || *way > 0.0 && was_put(*pair, *way)
         };
-        let pairs: Vec<_> = sunk.filter(is_left).map(|(pair, _)| pair).collect();
+        let deep = deep.iter().map(|(pair, way)| (*pair, *way));
+        let pairs: Vec<_> = deep.filter(is_left).map(|(pair, _)| pair).collect();
         self.left = pairs.iter().map(|pair| handles(*pair)).collect();
         pairs
     }
