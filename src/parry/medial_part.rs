@@ -6,12 +6,11 @@
 //! of the core's spheres that is tangent there: a triangle on a slab's flat side, a segment along a cone. Its
 //! normal `n` satisfies `n·(c_j − c_i) = r_i − r_j` along the facet, as in [`crate::math::nearest`].
 
+use super::rays;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialPrimitive, MedialSphere};
 use parry3d::bounding_volume::{Aabb, BoundingSphere};
 use parry3d::mass_properties::MassProperties;
-use parry3d::query::details::local_ray_intersection_with_support_map_with_params;
-use parry3d::query::gjk::VoronoiSimplex;
 use parry3d::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
 use parry3d::shape::{
     FeatureId, PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, Segment, Shape, ShapeType,
@@ -177,13 +176,7 @@ impl RayCast for MedialPart {
         max_time_of_impact: Real,
         solid: bool,
     ) -> Option<RayIntersection> {
-        local_ray_intersection_with_support_map_with_params(
-            self,
-            &mut VoronoiSimplex::new(),
-            ray,
-            max_time_of_impact,
-            solid,
-        )
+        rays::enter(&self.primitive, ray, max_time_of_impact, solid)
     }
 }
 

@@ -15,7 +15,7 @@ mod initial_contacts;
 pub mod inside;
 pub mod manifolds;
 pub mod medial_part;
-pub mod ray_exit;
+pub mod rays;
 pub mod shape;
 pub mod swept_sphere_parts;
 

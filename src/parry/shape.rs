@@ -5,7 +5,7 @@
 //! its convex parts itself instead of asking this crate's dispatcher, whose answers are certified.
 
 use super::medial_part::MedialPart;
-use super::ray_exit;
+use super::rays;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialPrimitive};
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
@@ -74,7 +74,7 @@ impl RayCast for MedialMesh {
         max_time_of_impact: Real,
         solid: bool,
     ) -> Option<RayIntersection> {
-        if !solid && let Some(exit) = ray_exit::exit(self, ray) {
+        if !solid && let Some(exit) = rays::exit(self, ray) {
             return (exit.time_of_impact <= max_time_of_impact).then_some(exit);
         }
         CompositeShapeRef(self)
@@ -87,7 +87,7 @@ impl PointQuery for MedialMesh {
     /// If the point is inside and `solid` is false, this is the point of the surface that is reached straight out of
     /// the primitive whose surface is nearest. Where primitives overlap, another point of the surface may be nearer.
     fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
-        if !solid && let Some((surface, part)) = ray_exit::surface_point(self, point) {
+        if !solid && let Some((surface, part)) = rays::surface_point(self, point) {
             return PointProjection::new(true, surface).with_subshape(part);
         }
         CompositeShapeRef(self)

@@ -1,0 +1,191 @@
+//! Where a ray enters a medial primitive, and where a ray or a point inside a medial mesh leaves it. What counts is leaving
+//! the whole solid, not one of the primitives, which overlap.
+//!
+//! Every primitive is convex, so a ray is inside it on one stretch ([`crate::medial::chord`], in closed form). The ray
+//! leaves the solid at the end of the stretches that follow from the start without a gap. parry's iteration for convex
+//! shapes, which would serve as well, is off by a few thousandths of the size on flat faces.
+
+use crate::math::lane::Vec3;
+use crate::math::{Real, Vector};
+use crate::medial::chord::ChordSolver;
+use crate::medial::exact::{self, Ball};
+use crate::medial::{MedialMesh, MedialPrimitive};
+use parry3d::bounding_volume::Aabb;
+use parry3d::query::{Ray, RayIntersection};
+use parry3d::shape::FeatureId;
+
+/// Where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back inside, as in
+/// parry, and the time is in units of the length of the ray's direction.
+pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
+    if !holds(mesh, ray.origin) {
+        return None;
+    }
+    let length = f64::from(ray.dir.length());
+    let mut stretches = stretches(mesh, ray);
+    stretches.sort_by(|a, b| a.from.total_cmp(&b.from));
+    let mut end: Option<Stretch> = None;
+    for s in stretches {
+        if s.from > end.as_ref().map_or(0.0, |e| e.to) {
+            break;
+        }
+        if s.to > end.as_ref().map_or(0.0, |e| e.to) {
+            end = Some(s);
+        }
+    }
+    let Stretch { to, primitive, .. } = end?;
+    let time = (to / length) as Real;
+    let part = mesh.primitive(primitive as usize);
+    let at = ray.point_at(time);
+    let center = part.interpolate(part.signed_distance(at).weights).center;
+    let normal = (center - at).try_normalize().unwrap_or(-ray.dir);
+    Some(RayIntersection::new(time, normal, FeatureId::Face(0)).with_subshape(primitive))
+}
+
+/// A point of the mesh's surface near a point inside, and its primitive: straight out of the primitive
+/// whose surface is nearest, as far as the union reaches. `None` for a point outside.
+pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> {
+    let inside = |i: &u32| mesh.primitive(*i as usize).signed_distance(point).distance <= 0.0;
+    let ways = holding(mesh, point).filter(inside).filter_map(|i| {
+        let part = mesh.primitive(i as usize);
+        let s = part.interpolate(part.signed_distance(point).weights);
+        let out = (point - s.center).try_normalize();
+        let ray = Ray::new(point, out.unwrap_or(Vector::Y));
+        let hit = exit(mesh, &ray)?;
+        Some((
+            hit.time_of_impact,
+            ray.point_at(hit.time_of_impact),
+            hit.subshape,
+        ))
+    });
+    let nearest = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((nearest.1, nearest.2))
+}
+
+fn holds(mesh: &MedialMesh, point: Vector) -> bool {
+    holding(mesh, point).any(|i| mesh.primitive(i as usize).signed_distance(point).distance <= 0.0)
+}
+
+/// Primitives whose boxes hold a point.
+fn holding(mesh: &MedialMesh, point: Vector) -> impl Iterator<Item = u32> + '_ {
+    let at = Aabb::new(point, point);
+    mesh.bvh()
+        .intersect_aabb(&at)
+        .collect::<Vec<_>>()
+        .into_iter()
+}
+
+/// Where the ray is inside a primitive: lengths from its origin.
+struct Stretch {
+    from: f64,
+    to: f64,
+    primitive: u32,
+}
+
+fn stretches(mesh: &MedialMesh, ray: &Ray) -> Vec<Stretch> {
+    let Some(frame) = RayFrame::new(ray) else {
+        return Vec::new();
+    };
+    let met = |node: &parry3d::partitioning::BvhNode| node.cast_ray(ray, Real::MAX) < Real::MAX;
+    mesh.bvh()
+        .leaves(met)
+        .filter_map(|primitive| {
+            let balls = frame.seen(&mesh.primitive(primitive as usize));
+            let [from, to] = ChordSolver::new(balls).chord(0.0, 0.0)?;
+            Some(Stretch {
+                from,
+                to,
+                primitive,
+            })
+        })
+        .collect()
+}
+
+/// The frame of a ray: its origin, and its direction as the z-axis.
+struct RayFrame {
+    origin: Vec3<f64>,
+    axes: [Vec3<f64>; 3],
+}
+
+impl RayFrame {
+    /// `None` for a ray without direction.
+    fn new(ray: &Ray) -> Option<Self> {
+        let along = ray.dir.try_normalize()?;
+        let z = Vec3::<f64>::from_vector(along);
+        let z = z * (1.0 / z.length());
+        let across = Vec3::<f64>::from_vector(along.any_orthonormal_vector());
+        let x = across - z * across.dot(z);
+        let x = x * (1.0 / x.length());
+        Some(Self {
+            origin: Vec3::from_vector(ray.origin),
+            axes: [x, z.cross(x), z],
+        })
+    }
+
+    /// The spheres of a primitive.
+    fn seen(&self, primitive: &MedialPrimitive) -> [Ball; 3] {
+        exact::balls(primitive.as_slab()).map(|ball| {
+            let c = ball.center - self.origin;
+            let [x, y, z] = self.axes.map(|axis| c.dot(axis));
+            Ball {
+                center: Vec3::new(x, y, z),
+                ..ball
+            }
+        })
+    }
+}
+
+/// Where a ray enters one primitive: the time in units of the length of the ray's direction, up to `most`, and the outward
+/// normal. A ray that starts inside enters at once, with no normal, if the primitive is `solid`; else it is where it leaves,
+/// with the normal that points back inside, as in parry.
+pub fn enter(
+    primitive: &MedialPrimitive,
+    ray: &Ray,
+    most: Real,
+    solid: bool,
+) -> Option<RayIntersection> {
+    let frame = RayFrame::new(ray)?;
+    let balls = frame.seen(primitive);
+    let [from, to] = ChordSolver::new(balls).chord(0.0, 0.0)?;
+    let inside = from <= 0.0;
+    if to < 0.0 {
+        return None;
+    }
+    if inside && solid {
+        let normal = Vector::ZERO;
+        return Some(RayIntersection::new(0.0, normal, FeatureId::Face(0)));
+    }
+    let at = if inside { to } else { from };
+    let time = (at / f64::from(ray.dir.length())) as Real;
+    if time > most {
+        return None;
+    }
+    let point = Vec3::new(0.0, 0.0, at);
+    let out = -exact::nearest_to_point(&balls, point).y;
+    // On a part without thickness the point is its own nearest sphere.
+    let flat = || {
+        exact::tangent_normals(&balls)?
+            .into_iter()
+            .find(|n| n.z <= 0.0)
+    };
+    let [_, _, z] = frame.axes;
+    let out = match out.length() > FLAT * balls.iter().map(|b| b.radius).fold(at.abs(), f64::max) {
+        true => direction_of(&frame, out),
+        false => flat().map_or(-z, |n| direction_of(&frame, n)),
+    };
+    let normal = if inside { -out } else { out };
+    Some(RayIntersection::new(
+        time,
+        normal.to_vector(),
+        FeatureId::Face(0),
+    ))
+}
+
+/// Distance of a point of a primitive's surface from the centre of its sphere, in units of the distance to the ray's
+/// origin, below which it has no direction: what rounding leaves of it.
+const FLAT: f64 = 1.0e-12;
+
+/// A direction of the ray's frame, as a unit vector in the body's.
+fn direction_of(frame: &RayFrame, v: Vec3<f64>) -> Vec3<f64> {
+    let [x, y, z] = frame.axes;
+    (x * v.x + y * v.y + z * v.z) * (1.0 / v.length())
+}
