@@ -36,7 +36,7 @@ pub struct ErrorAt {
 ///
 /// ```no_run
 /// use rapier3d::prelude::*;
-/// use rapier3d_medial::{BuildOptions, build::error_curve};
+/// use rapier3d_medial::{BuildOptions, meshing::error_curve};
 /// use std::ops::ControlFlow;
 ///
 /// let (vertices, indices) = Cuboid::new(Vector::new(0.5, 0.2, 0.3)).to_trimesh();
