@@ -269,7 +269,7 @@ fn star(points: usize, inner: f64) -> Mesh {
     }
 }
 
-/// Stars are exact with a piece for every two of their tips, or one for each.
+/// Stars are exact in the notches between their tips.
 #[test]
 fn stars_are_exact() {
     for (points, inner) in [(4, 0.4), (5, 0.45), (6, 0.6), (8, 0.6)] {
