@@ -312,3 +312,18 @@ fn too_few_primitives_are_no_error() {
     assert!(medial.primitive_count() <= 30);
     assert_ne!(report.variant, Variant::Exact);
 }
+
+/// A triangle without area that sticks out of a block by a few millionths of its size is covered too.
+#[test]
+fn what_sticks_out_of_a_block_is_covered() {
+    let mut mesh = star(4, 0.4);
+    let tip = Vector::new(1.0, 0.0, 0.2);
+    let first = mesh.vertices.len() as u32;
+    let along = [Vector::X * -0.1, Vector::ZERO, Vector::X * 1.4e-5];
+    mesh.vertices.extend(along.map(|way| tip + way));
+    mesh.indices.push([0, 1, 2].map(|k| first + k));
+    let (medial, report) = built(&mesh, Quality::Fast);
+    assert_eq!(report.hausdorff.uncovered, 0.0, "{report:?}");
+    let out = crate::solid_distance(&medial, tip + along[2]);
+    assert!(out <= 1.0e-6, "{out}");
+}

@@ -68,7 +68,10 @@ impl Source {
         };
         draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
         let enclosed = self.measured(draft, before, Effort::CLOSE, watch)?;
-        if enclosed.error() > CLOSE {
+        // Triangles without area may stick out of the pieces, which are of the others alone.
+        let uncovered = f64::from(enclosed.hausdorff.uncovered);
+        let is_short = self.limits.enclose && uncovered > self.limits.allow_uncovered;
+        if is_short || enclosed.error() > CLOSE {
             return Ok(None);
         }
         let mut candidate = self.reported(enclosed, watch)?;
