@@ -73,6 +73,26 @@ fn l_block(primitives: usize) -> MedialMesh {
     built.expect("an L-shaped block").0
 }
 
+/// Blocks above each other, turned and moved aside at random.
+fn dropped(
+    world: &mut PhysicsWorld,
+    collider: &ColliderBuilder,
+    count: usize,
+    seed: u64,
+) -> Vec<RigidBodyHandle> {
+    let mut random = Random(seed);
+    (0..count)
+        .map(|k| {
+            let turn = random.direction() * 3.0;
+            let aside = random.direction() * 0.2;
+            let block = RigidBodyBuilder::dynamic()
+                .translation(aside + Vector::Y * (1.0 + 0.8 * k as Real))
+                .rotation(turn);
+            world.insert(block, collider.clone()).0
+        })
+        .collect()
+}
+
 /// Symptom: a heap of such blocks hung in the air, each body frozen in every step after 17 impacts at its start. Cause:
 /// where two thick parts of slabs with thin tips were apart by less than the tolerance, they were not let come nearer,
 /// and counted as meeting at once.
@@ -82,19 +102,7 @@ fn blocks_with_sharp_edges_fall_into_a_heap() {
     let mut world = PhysicsWorld::new();
     let ground = ColliderBuilder::cuboid(20.0, 1.0, 20.0).translation(Vector::Y * -1.0);
     world.insert_collider(ground, None);
-    let mut random = Random(3);
-    let blocks: Vec<_> = (0..8)
-        .map(|k| {
-            let turn = random.direction() * 3.0;
-            let aside = random.direction() * 0.2;
-            let block = RigidBodyBuilder::dynamic()
-                .translation(aside + Vector::Y * (1.0 + 0.8 * k as Real))
-                .rotation(turn);
-            world
-                .insert(block, ColliderBuilder::medial_mesh(mesh.clone()))
-                .0
-        })
-        .collect();
+    let blocks = dropped(&mut world, &ColliderBuilder::medial_mesh(mesh), 8, 3);
     let mut pipeline = attached(&mut world);
     let (mut frozen, mut events) = (0, 0);
     for _ in 0..180 {
@@ -134,17 +142,7 @@ fn heap(collider: &ColliderBuilder, corners: &[Vector], on_triangles: bool, seed
         ColliderBuilder::cuboid(20.0, 1.0, 20.0).translation(Vector::Y * -1.0)
     };
     world.insert_collider(ground, None);
-    let mut random = Random(seed);
-    let blocks: Vec<_> = (0..BLOCKS)
-        .map(|k| {
-            let turn = random.direction() * 3.0;
-            let aside = random.direction() * 0.2;
-            let block = RigidBodyBuilder::dynamic()
-                .translation(aside + Vector::Y * (1.0 + 0.8 * k as Real))
-                .rotation(turn);
-            world.insert(block, collider.clone()).0
-        })
-        .collect();
+    let blocks = dropped(&mut world, collider, BLOCKS, seed);
     let mut pipeline = attached(&mut world);
     let mut heap = Heap::default();
     let mut row = 0;
