@@ -14,6 +14,10 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::query::{Ray, RayIntersection};
 use parry3d::shape::FeatureId;
 
+/// Distance of a point of a primitive's surface from the centre of its sphere, in units of the distance to the ray's
+/// origin, below which it has no direction: what rounding leaves of it.
+const FLAT: f64 = 1.0e-12;
+
 /// Where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back inside, as in
 /// parry, and the time is in units of the length of the ray's direction.
 pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
@@ -121,6 +125,12 @@ impl RayFrame {
         })
     }
 
+    /// A direction of this frame as a unit vector in the body's.
+    fn unit(&self, v: Vec3<f64>) -> Vec3<f64> {
+        let [x, y, z] = self.axes;
+        (x * v.x + y * v.y + z * v.z) * (1.0 / v.length())
+    }
+
     /// The spheres of a primitive.
     fn seen(&self, primitive: &MedialPrimitive) -> [Ball; 3] {
         exact::balls(primitive.as_slab()).map(|ball| {
@@ -167,25 +177,16 @@ pub fn enter(
             .into_iter()
             .find(|n| n.z <= 0.0)
     };
-    let [_, _, z] = frame.axes;
-    let out = match out.length() > FLAT * balls.iter().map(|b| b.radius).fold(at.abs(), f64::max) {
-        true => direction_of(&frame, out),
-        false => flat().map_or(-z, |n| direction_of(&frame, n)),
+    let size = balls.iter().map(|b| b.radius).fold(at.abs(), f64::max);
+    let out = match out.length() > FLAT * size {
+        true => out,
+        false => flat().unwrap_or(Vec3::new(0.0, 0.0, -1.0)),
     };
+    let out = frame.unit(out);
     let normal = if inside { -out } else { out };
     Some(RayIntersection::new(
         time,
         normal.to_vector(),
         FeatureId::Face(0),
     ))
-}
-
-/// Distance of a point of a primitive's surface from the centre of its sphere, in units of the distance to the ray's
-/// origin, below which it has no direction: what rounding leaves of it.
-const FLAT: f64 = 1.0e-12;
-
-/// A direction of the ray's frame, as a unit vector in the body's.
-fn direction_of(frame: &RayFrame, v: Vec3<f64>) -> Vec3<f64> {
-    let [x, y, z] = frame.axes;
-    (x * v.x + y * v.y + z * v.z) * (1.0 / v.length())
 }
