@@ -33,7 +33,8 @@ const FAR: f64 = 1.0;
 /// The plane of the box's sides.
 const BOX: u32 = u32::MAX;
 
-/// Cells thinner than this are lost between planes that are nearly one (volume, longest side 1).
+/// Cells of less volume than this (longest side 1) are left out: slivers between planes that are nearly one. Where one of
+/// them was more than that, it shows in the error that is measured, and the pieces are not used.
 const NO_VOLUME: f64 = 1e-12;
 
 /// A cell inside the body.
@@ -100,8 +101,12 @@ impl Cells {
         while std::mem::take(&mut grows) {
             for i in order {
                 let fewer = kept & !(1 << i);
-                if fewer != kept && is_inner(fewer) && count(fewer) > inner {
-                    (kept, inner, grows) = (fewer, count(fewer), true);
+                if fewer == kept || !is_inner(fewer) {
+                    continue;
+                }
+                let more = count(fewer);
+                if more > inner {
+                    (kept, inner, grows) = (fewer, more, true);
                 }
             }
         }
