@@ -93,7 +93,7 @@ impl Site {
         };
         // The chain is taut and leans by 60 degrees.
         let pitch = 2.0 * (LINK[0] - LINK[1]);
-        let down = Vector::new(-(0.75 as Real).sqrt(), -0.5, 0.0);
+        let down = Vector::new(-0.866_025_4, -0.5, 0.0);
         let tilt = Rotation::from_rotation_arc(Vector::X, down);
         let top = Vector::new(-0.1, 4.3, 0.0);
         let mut chain = Vec::new();
