@@ -12,12 +12,15 @@ def scenes():
 
 
 def steps(world, step, state):
-    """One world's trajectory: `step` advances it, `state` gives 13 numbers for each body."""
+    """One world's trajectory: `step` advances it, `state` gives 13 numbers for each body.
+
+    Times are of the processor, not of the clock: other programs run beside.
+    """
     ms, frames = [], []
     for number in range(1, world["steps"] + 1):
-        start = time.perf_counter()
+        start = time.process_time()
         step()
-        ms.append(1e3 * (time.perf_counter() - start))
+        ms.append(1e3 * (time.process_time() - start))
         if number % world["every"] == 0:
             numbers = [float(x) for body in state() for x in body]
             frames.append([x if math.isfinite(x) else None for x in numbers])

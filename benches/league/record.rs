@@ -8,7 +8,7 @@ pub const STATE: usize = 13;
 /// One world's steps.
 #[derive(Default, Serialize, Deserialize)]
 pub struct Trajectory {
-    /// Milliseconds of each step.
+    /// Milliseconds of processor time of each step.
     pub ms: Vec<f64>,
     /// States of all bodies in their order, `STATE` numbers each.
     pub frames: Vec<Vec<Option<f64>>>,

@@ -2,9 +2,9 @@
 
 use crate::record::{Run, Trajectory};
 use crate::scenes::{Body, League, Shape, World};
+use cpu_time::ProcessTime;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
-use std::time::Instant;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
@@ -105,7 +105,7 @@ impl Kind {
         let mut pipeline = MedialPipeline::default();
         let mut trajectory = Trajectory::default();
         for step in 1..=world.steps {
-            let clock = Instant::now();
+            let clock = ProcessTime::now();
             if self == Self::Medial {
                 pipeline.step(&mut physics);
             } else {
