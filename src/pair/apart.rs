@@ -2,6 +2,8 @@
 //! them while they move along the chords of their paths. This cheap bound decides which primitives are worth an elementary test.
 //! On a device `stays_free` in `shaders/swept.wgsl` proves the same, with directions found in another way.
 
+use crate::elementary::distance::face;
+use crate::elementary::test_list::ElementaryTest;
 use crate::math::lane::Vec3;
 
 /// Centre at the start of the piece, chord, and radius grown by the sagitta.
@@ -51,6 +53,25 @@ impl Balls {
         some
     }
 
+    /// How far any sphere of these and any of another primitive may travel against each other in the piece at most, if
+    /// `sagitta` is how far both may be off their chords together.
+    pub(super) fn travel(&self, other: &Self, sagitta: f64) -> f64 {
+        let ways =
+            (self.all().iter()).flat_map(|a| other.all().iter().map(|b| (b.1 - a.1).length_sq()));
+        ways.fold(0.0, f64::max).sqrt() + sagitta
+    }
+
+    /// The largest radius beyond the given ones: how far centres may be off their chords.
+    pub(super) fn sagitta(&self, radii: [f64; 3]) -> f64 {
+        let beyond = self.all().iter().zip(radii).map(|(s, radius)| s.2 - radius);
+        beyond.fold(0.0, f64::max)
+    }
+
+    /// Whether they are those of a slab.
+    pub(super) fn is_slab(&self) -> bool {
+        self.len == 3
+    }
+
     /// Means of them, with the shares that each has.
     pub(super) fn mixed(&self, means: &[[f64; 3]]) -> Self {
         let mut mixed = *self;
@@ -80,6 +101,14 @@ impl Balls {
             s.0 + s.1 * t
         };
         [at(1) - at(0), at(2) - at(0)]
+    }
+
+    /// The outer normal, of any length, of that face of a slab that looks along `y` at a time; `None` if there is none.
+    fn face(&self, t: f64, y: Vec3<f64>) -> Option<Vec3<f64>> {
+        let [a, b, c, _] = &self.spheres;
+        (self.len == 3)
+            .then(|| face(self.edges(t), [b.2 - a.2, c.2 - a.2], y))
+            .flatten()
     }
 
     /// The plane of the first three centres at a time.
@@ -163,7 +192,9 @@ pub(super) fn free_until(
         return free;
     }
     let toward = |t: f64| b.middle(t) - a.middle(t);
+    let faces = || [a.face(from, y), b.face(from, -y).map(|n| -n)];
     let _ = attempt(y)
+        || faces().into_iter().flatten().any(&mut attempt)
         || attempt(toward(0.5 * (from + until)))
         || attempt(toward(until))
         || across(a.edges(from), b.edges(from), y)
@@ -171,6 +202,48 @@ pub(super) fn free_until(
             .flatten()
             .any(attempt);
     free
+}
+
+/// Fraction of the piece, from `from` on, up to which one direction keeps the hulls of two primitives apart by more than
+/// `contact`; `None`: up to `until`.
+pub(super) fn held_until(
+    balls: [&Balls; 2],
+    n: Vec3<f64>,
+    span: [f64; 2],
+    contact: f64,
+) -> Option<f64> {
+    let contact = contact + 64.0 * f64::EPSILON * (balls[0].size + balls[1].size);
+    holds(balls, n, span, contact, contact)
+}
+
+/// How far the spheres of two primitives reach towards each other along one direction.
+pub(super) struct Reach {
+    far: [(f64, f64); 4],
+    near: [(f64, f64); 4],
+    contact: f64,
+}
+
+impl Reach {
+    /// Along `n`; what comes within `contact` counts as near.
+    pub(super) fn new([a, b]: [&Balls; 2], n: Vec3<f64>, contact: f64) -> Self {
+        let length = n.length();
+        let contact = contact + 64.0 * f64::EPSILON * (a.size + b.size);
+        Self {
+            far: a.along(n, length),
+            near: b.along(n, -length),
+            contact: contact * length,
+        }
+    }
+
+    /// Whether the spheres of a test are apart between two times.
+    pub(super) fn is_apart(&self, test: &ElementaryTest, span: [f64; 2]) -> bool {
+        let corners = &test.corners;
+        span.iter().all(|t| {
+            let at = |s: (f64, f64)| s.0 + s.1 * t;
+            let gap = |near: usize, far: usize| at(self.near[near]) - at(self.far[far]);
+            (corners.iter()).all(|c| gap(c.1.into(), c.0.into()) > self.contact)
+        })
+    }
 }
 
 /// Directions near `y` that the shapes themselves suggest: across the edges of either, across one

@@ -71,8 +71,7 @@ impl Threshold {
         if axes <= CROSSED * tolerance {
             return plain;
         }
-        let given = GIVEN * (axes - CLOSEST * tolerance);
-        let by = by.min(given.max(PRESSED * axes));
+        let by = given(by, axes, tolerance);
         let tolerance = tolerance.min(TAKEN * by);
         let (scale, target) = if distance > by {
             (1.0, distance - by)
@@ -85,4 +84,16 @@ impl Threshold {
             tolerance,
         }
     }
+}
+
+/// How much deeper one query may let two primitives get, whose axes are that far from each other.
+fn given(by: f64, axes: f64, tolerance: f64) -> f64 {
+    let share = GIVEN * (axes - CLOSEST * tolerance);
+    by.min(share.max(PRESSED * axes))
+}
+
+/// How far two primitives that touch at the start may certainly travel before they are in contact by
+/// [`Threshold::deepened`], a length, if their axes are at least `axes` apart, a length above 0.
+pub fn free_way(by: f64, axes: f64, tolerance: f64) -> f64 {
+    (1.0 - TAKEN) * given(by, axes, tolerance)
 }

@@ -28,6 +28,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                 let open = &self.open[place as usize];
                 self.tested[open.of as usize].primitives
             }
+            Some(Candidate::Parts(place)) => self.tested[place as usize].primitives,
             Some(Candidate::Nodes([i, j])) => {
                 let (a, b) = (self.sides.0.node(i).below, self.sides.1.node(j).below);
                 [
@@ -106,7 +107,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
     /// Spheres of two primitives over the piece, or of their cores.
     pub(super) fn swept(&self, nodes: [u32; 2], [p, q]: [u32; 2]) -> [Balls; 2] {
         let balls = self.hulls(nodes).map(|hull| *hull);
-        if self.cores.is_none() {
+        if self.cores.is_none_or(|cores| cores.share <= 0.0) {
             return balls;
         }
         let [loss_a, loss_b] = self.losses([p, q]);
@@ -122,9 +123,14 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
 
     /// Spheres of two primitives at the start.
     pub(super) fn at_start(&self, pair: [u32; 2]) -> (Spheres, Spheres) {
+        self.at_time(pair, 0.0)
+    }
+
+    /// Spheres of two primitives at a time.
+    pub(super) fn at_time(&self, pair: [u32; 2], time: f64) -> (Spheres, Spheres) {
         let [(a, _), (b, _)] = self.spheres(pair);
         let [first, second] = &self.motions;
-        (placed(first, a, 0.0), placed(second, b, 0.0))
+        (placed(first, a, time), placed(second, b, time))
     }
 
     /// Signed distance of two primitives at the start; of the convex parts that they bound, where it is

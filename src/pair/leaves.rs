@@ -1,15 +1,17 @@
 //! The part of the search for a first contact ([`super::search`]) that deals with two primitives: it lists their
 //! elementary tests, and takes one of them further.
 
-use super::apart::Balls;
-use super::deepening::Threshold;
+use super::apart::{Balls, Reach};
+use super::deepening::{Threshold, free_way};
 use super::queue::{Candidate, Entry, Open, Tested};
 use super::search::Search;
 use super::tips::{Part, Parts};
 use super::volumes::Volumes;
 use crate::elementary::InitialContact;
 use crate::elementary::bracket::{Bracket, Limits};
-use crate::elementary::distance::{Ball, crossing, signed_distance, thinnest};
+use crate::elementary::distance::{
+    Ball, crossing, signed_distance, signed_distance_along, thinnest,
+};
 use crate::elementary::resumed::bracket_until;
 use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
 use crate::math::Real;
@@ -28,11 +30,6 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         let pair = [p, q];
         let [(all_a, share_a), (all_b, share_b)] = self.spheres(pair);
         let (sa, sb) = (&all_a[..share_a.spheres], &all_b[..share_b.spheres]);
-        let at_start = |side: usize, s: &[(Vec3<f64>, f64)]| {
-            let turned = self.motions[side].sin_cos(0.0);
-            let place = |c| self.motions[side].point(c).at(0.0, turned).position;
-            s.iter().map(|s| (place(s.0), s.1)).collect::<Vec<_>>()
-        };
         let tolerance = self.earliest.limits.tolerance;
         let whole = [share_a, share_b].map(|s| Part::whole(s.spheres));
         let mut target = self.target;
@@ -40,17 +37,23 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             target = target.max(-thinnest(sa, sb));
         }
         let mut threshold = Threshold::new(target, tolerance);
+        let mut direction = None;
         match self.initial_contact {
-            InitialContact::Deepen { by } => {
-                let (pa, pb) = (at_start(0, sa), at_start(1, sb));
-                let distance = signed_distance(&pa, &pb);
+            InitialContact::Deepen { by } if !self.is_known_apart(time) => {
+                let (pa, pb) = self.at_start(pair);
+                let (pa, pb) = (&pa[..share_a.spheres], &pb[..share_b.spheres]);
+                let (distance, normal) = signed_distance_along(pa, pb);
                 let touching = target + tolerance;
-                if distance <= touching {
+                if distance > touching {
+                    direction = normal;
+                } else {
                     let depth = (distance - touching) / self.thickness(pair);
                     self.deepest = self.deepest.min(depth);
-                    return self.list_parts([i, j], pair, by.into(), time);
+                    self.list_parts([i, j], pair, by.into(), time, (distance, normal));
+                    return true;
                 }
             }
+            InitialContact::Deepen { .. } => {}
             InitialContact::Approach { by } => {
                 let distance = self.distance_at_start(pair);
                 if distance <= target + tolerance {
@@ -81,19 +84,123 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         } else {
             [share_a, share_b].map(|s| Share::whole(s.spheres))
         };
-        let balls = self.swept([i, j], pair);
         let tested = Tested {
+            nodes: [i, j],
             primitives: pair,
             parts: whole,
             threshold,
         };
-        self.list(tested, shares, &balls, time);
+        self.list_whole(tested, shares, direction, time);
         true
     }
 
+    /// Lists the tests of two primitives as they are, unless the direction between their nearest spheres puts them off;
+    /// `at_start` is that direction at the start.
+    fn list_whole(
+        &mut self,
+        tested: Tested,
+        shares: [Share; 2],
+        at_start: Option<Vec3<f64>>,
+        time: f64,
+    ) {
+        let balls = self.swept(tested.nodes, tested.primitives);
+        let deepens = matches!(self.initial_contact, InitialContact::Deepen { .. });
+        let mut direction = None;
+        if deepens && balls.iter().all(Balls::is_slab) {
+            direction = if time > 0.0 {
+                self.direction_at(&tested, time)
+            } else {
+                at_start
+            };
+            let held =
+                direction.map(|n| self.held_until(balls.each_ref(), n, &tested.threshold, time));
+            match held {
+                Some(None) => return,
+                Some(Some(free)) if !self.soon(free, time) => {
+                    self.wait(tested.nodes, free);
+                    return;
+                }
+                _ => {}
+            }
+        }
+        self.list(tested, shares, &balls, direction, time);
+    }
+
+    /// Whether primitives that are free until `time` are known not to touch at the start of the motions.
+    fn is_known_apart(&self, time: f64) -> bool {
+        self.pieces == 1 && time > 0.0
+    }
+
+    /// The direction between the nearest spheres of what is tested, at a time.
+    fn direction_at(&self, tested: &Tested, time: f64) -> Option<Vec3<f64>> {
+        let (a, b) = self.at_time(tested.primitives, time);
+        let scale = tested.threshold.scale;
+        let [a, b] = [(a, 0), (b, 1)].map(|(all, side)| {
+            let spheres = tested.parts[side].of(&all);
+            spheres.map(|(center, radius)| (center, scale * radius))
+        });
+        let [m, n] = tested.parts.map(|part| part.spheres);
+        signed_distance_along(&a[..m], &b[..n]).1
+    }
+
+    /// Lists the tests of what has waited until `time`, or has it wait longer; returns whether an earlier contact is
+    /// still possible.
+    pub(super) fn list_later(&mut self, place: u32, time: f64) -> bool {
+        let tested = self.tested[place as usize];
+        let balls = self.swept_parts(&tested);
+        let direction = self.direction_at(&tested, time);
+        self.list_or_wait(place, &balls, direction, time);
+        true
+    }
+
+    /// Lists the tests of parts with a threshold of their own, unless a direction puts them off.
+    fn list_or_wait(
+        &mut self,
+        place: u32,
+        balls: &[Balls; 2],
+        direction: Option<Vec3<f64>>,
+        time: f64,
+    ) {
+        let tested = self.tested[place as usize];
+        self.proofs += 1;
+        match direction.map(|n| self.held_until(balls.each_ref(), n, &tested.threshold, time)) {
+            Some(None) => {}
+            Some(Some(free)) if !self.soon(free, time) => {
+                self.queue(Entry::at(free, Candidate::Parts(place)));
+            }
+            _ => {
+                let shares = tested.parts.map(|part| Share::whole(part.spheres));
+                self.list_tests_of(place, shares, balls, direction, time);
+            }
+        }
+    }
+
+    /// Balls of parts over the piece, with the radii that their threshold is for.
+    fn swept_parts(&self, tested: &Tested) -> [Balls; 2] {
+        let swept = self.swept(tested.nodes, tested.primitives);
+        let [a, b] = &tested.parts;
+        let scale = tested.threshold.scale;
+        let balls = [a.of_swept(&swept[0]), b.of_swept(&swept[1])];
+        if scale >= 1.0 {
+            return balls;
+        }
+        let [(all_a, _), (all_b, _)] = self.spheres(tested.primitives);
+        let lost = |s: &Ball<f64>| (1.0 - scale) * s.1;
+        let [lost_a, lost_b] = [a.of(&all_a), b.of(&all_b)].map(|s| s.each_ref().map(lost));
+        [balls[0].less(lost_a), balls[1].less(lost_b)]
+    }
+
     /// Lists the tests of two primitives that touch at the start and may sink in `by` deeper, without their tips: each
-    /// part has a threshold of its own.
-    fn list_parts(&mut self, nodes: [u32; 2], pair: [u32; 2], by: f64, time: f64) -> bool {
+    /// part has a threshold of its own. `whole`: their signed distance at the start, and the direction between their
+    /// nearest spheres.
+    fn list_parts(
+        &mut self,
+        nodes: [u32; 2],
+        pair: [u32; 2],
+        by: f64,
+        time: f64,
+        whole: (f64, Option<Vec3<f64>>),
+    ) {
         let tolerance = self.earliest.limits.tolerance;
         let [(all_a, share_a), (all_b, share_b)] = self.spheres(pair);
         let (sa, sb) = (&all_a[..share_a.spheres], &all_b[..share_b.spheres]);
@@ -103,54 +210,114 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         });
         let parts_a = Parts::without_tips(sa, kept[0]);
         let parts_b = Parts::without_tips(sb, kept[1]);
-        let (start_a, start_b) = self.at_start(pair);
-        let swept = self.swept(nodes, pair);
+        let start = self.at_start(pair);
+        if self.stays_shallow(nodes, pair, by, whole.1) {
+            return;
+        }
         for (a, b) in parts_a
             .iter()
             .flat_map(|a| parts_b.iter().map(move |b| (a, b)))
         {
-            let (pa, pb) = (a.of(&start_a), b.of(&start_b));
+            let (pa, pb) = (a.of(&start.0), b.of(&start.1));
             let (pa, pb) = (&pa[..a.spheres], &pb[..b.spheres]);
+            let (distance, direction) = if a.is_whole() && b.is_whole() {
+                whole
+            } else {
+                signed_distance_along(pa, pb)
+            };
             // What is behind a tip may be farther off, and counts as touching as the tip does.
-            let distance = signed_distance(pa, pb).min(self.target + tolerance);
-            let axis = |s: &[Ball<f64>]| s.iter().map(|s| (s.0, 0.0)).collect::<Vec<_>>();
-            let axes = || signed_distance(&axis(pa), &axis(pb));
+            let distance = distance.min(self.target + tolerance);
+            let axes = || {
+                let axis = |s: [Ball<f64>; 3]| s.map(|(center, _)| (center, 0.0));
+                let (axis_a, axis_b) = (axis(a.of(&start.0)), axis(b.of(&start.1)));
+                signed_distance(&axis_a[..a.spheres], &axis_b[..b.spheres])
+            };
             let thinnest = thinnest(pa, pb);
-            let threshold = Threshold::deepened(distance, thinnest, by, tolerance, axes);
-            // What their contact needs, not the search's: what touches already has a target of its own, and mostly
-            // directions put it off for good.
-            let mut balls = [a.of_swept(&swept[0]), b.of_swept(&swept[1])];
-            if threshold.scale < 1.0 {
-                let lost = |s: &Ball<f64>| (1.0 - threshold.scale) * s.1;
-                let [lost_a, lost_b] = [a.of(&all_a), b.of(&all_b)].map(|s| s.each_ref().map(lost));
-                balls = [balls[0].less(lost_a), balls[1].less(lost_b)];
-            }
-            // One proof for all tests, where there are many.
-            let many = a.spheres.max(b.spheres) == 3;
-            if many
-                && self
-                    .above_until(balls.each_ref(), &threshold, time)
-                    .is_none()
-            {
-                continue;
-            }
             let tested = Tested {
+                nodes,
                 primitives: pair,
                 parts: [*a, *b],
-                threshold,
+                threshold: Threshold::deepened(distance, thinnest, by, tolerance, axes),
             };
+            // What their contact needs, not the search's: what touches already has a target of its own, and mostly
+            // directions put it off for good.
+            let balls = self.swept_parts(&tested);
             let shares = tested.parts.map(|part| Share::whole(part.spheres));
-            self.list(tested, shares, &balls, time);
+            if a.spheres.min(b.spheres) < 3 {
+                // One proof for all tests, where there are many.
+                let many = a.spheres.max(b.spheres) == 3;
+                let is_free = || {
+                    self.above_until(balls.each_ref(), &tested.threshold, time)
+                        .is_none()
+                };
+                if !(many && is_free()) {
+                    self.list(tested, shares, &balls, None, time);
+                }
+                continue;
+            }
+            let place = self.tested.len() as u32;
+            self.tested.push(tested);
+            self.list_or_wait(place, &balls, direction, time);
         }
-        true
+    }
+
+    /// Whether two primitives that touch at the start travel less in the step than any of their parts may sink in `by`, or
+    /// as much less as their axes are near. `direction` is between their nearest spheres.
+    fn stays_shallow(
+        &self,
+        nodes: [u32; 2],
+        pair: [u32; 2],
+        by: f64,
+        direction: Option<Vec3<f64>>,
+    ) -> bool {
+        let Some(n) = direction.filter(|_| self.times == [0.0, 1.0]) else {
+            return false;
+        };
+        let (start_a, start_b) = self.at_start(pair);
+        let along = |s: &Ball<f64>| n.dot(s.0);
+        let far = start_a.iter().map(along).fold(f64::MIN, f64::max);
+        let near = start_b.iter().map(along).fold(f64::MAX, f64::min);
+        if near <= far {
+            return false;
+        }
+        let swept = self.swept(nodes, pair);
+        let [(a, _), (b, _)] = self.spheres(pair);
+        let sagittas = swept[0].sagitta(a.map(|s| s.1)) + swept[1].sagitta(b.map(|s| s.1));
+        let way = free_way(by, near - far, self.earliest.limits.tolerance);
+        swept[0].travel(&swept[1], sagittas) < way
     }
 
     /// Lists the elementary tests of a part of each of two primitives, as far as directions do not prove them free.
-    fn list(&mut self, tested: Tested, shares: [Share; 2], balls: &[Balls; 2], time: f64) {
-        let of = self.tested.len() as u32;
-        let threshold = tested.threshold;
+    fn list(
+        &mut self,
+        tested: Tested,
+        shares: [Share; 2],
+        balls: &[Balls; 2],
+        direction: Option<Vec3<f64>>,
+        time: f64,
+    ) {
+        let place = self.tested.len() as u32;
         self.tested.push(tested);
+        self.list_tests_of(place, shares, balls, direction, time);
+    }
+
+    /// The same, of what is listed already; `direction` is tried on all of them first.
+    fn list_tests_of(
+        &mut self,
+        of: u32,
+        shares: [Share; 2],
+        balls: &[Balls; 2],
+        direction: Option<Vec3<f64>>,
+        time: f64,
+    ) {
+        let threshold = self.tested[of as usize].threshold;
+        let contact = threshold.target + threshold.tolerance;
+        let reach = direction.map(|n| Reach::new(balls.each_ref(), n, contact));
         for_each_test(shares[0], shares[1], |test| {
+            let span = self.span(time);
+            if reach.as_ref().is_some_and(|r| r.is_apart(&test, span)) {
+                return true;
+            }
             self.proofs += 1;
             let some = [
                 balls[0].only(test.corners.map(|c| c.0)),

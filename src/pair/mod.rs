@@ -21,6 +21,7 @@ mod search;
 mod swept;
 mod tips;
 pub mod volumes;
+mod waiting;
 
 pub use contacts::{SpherePair, contacts};
 pub use distance::nearest_spheres;

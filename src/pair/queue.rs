@@ -11,6 +11,8 @@ use std::cmp::Ordering;
 pub(super) enum Candidate {
     /// Two swept nodes: their balls meet then, or directions keep their primitives apart until then.
     Nodes([u32; 2]),
+    /// What of two primitives is tested: its place in the list of these.
+    Parts(u32),
     /// An elementary test: its place in the list of those not settled.
     Test(u32),
 }
@@ -18,6 +20,8 @@ pub(super) enum Candidate {
 /// What of two primitives is tested, and from when on it is in contact.
 #[derive(Clone, Copy)]
 pub(super) struct Tested {
+    /// The swept nodes that they are.
+    pub(super) nodes: [u32; 2],
     pub(super) primitives: [u32; 2],
     /// Of each, what is tested.
     pub(super) parts: [Part; 2],

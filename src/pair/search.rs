@@ -18,8 +18,6 @@
 //!
 //! On a device `walk` in `shaders/cull.wgsl` splits nodes in the same way, but looks at all that meet.
 
-use super::apart::{Balls, free_until};
-use super::deepening::Threshold;
 use super::outline::Left;
 use super::queue::{Candidate, Entry, Open, Tested};
 use super::swept::Side;
@@ -44,11 +42,6 @@ const ROOT_PIECES: u64 = 64;
 /// Angle in radians that a piece of the search turns at most: the sagitta is then below 3 % of the
 /// lever arm. Larger pieces cull worse, smaller ones repeat the walk down the trees.
 const PIECE_ANGLE: f64 = 0.5;
-
-/// Fraction of a piece by which directions must put off two primitives for them to wait in the queue;
-/// with less their elementary tests are listed. Smaller lets the last steps before a contact creep,
-/// larger runs tests that directions would have spared.
-const WORTH_WAITING: f64 = 1.0e-3;
 
 /// Up to this ratio of their radii two nodes are split together. With 1 (one at a time) approaches take a
 /// fifth longer, fast queries a tenth; 1.5 is nearly as good.
@@ -220,6 +213,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             looked = true;
             let open = match entry.candidate {
                 Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
+                Candidate::Parts(place) => self.list_later(place, entry.time),
                 Candidate::Test(index) => self.advance(index, entry.time),
             };
             if !open {
@@ -309,7 +303,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         };
         self.sweep_hulls([i, j]);
         let free = match primitives {
-            Some(pair) if self.cores.is_some() => {
+            Some(pair) if self.cores.is_some_and(|cores| cores.share > 0.0) => {
                 self.free_until(self.swept([i, j], pair).each_ref(), time)
             }
             _ => self.free_until(self.hulls([i, j]), time),
@@ -335,46 +329,5 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
             }
         }
         true
-    }
-
-    /// Whether directions gain too little for two candidates to wait.
-    fn soon(&self, free: f64, time: f64) -> bool {
-        free < time + WORTH_WAITING * (self.times[1] - self.times[0])
-    }
-
-    /// Has two nodes wait until `free`.
-    fn wait(&mut self, nodes: [u32; 2], free: f64) -> bool {
-        self.queue(Entry {
-            time: free,
-            depth: 0.0,
-            candidate: Candidate::Nodes(nodes),
-        });
-        true
-    }
-
-    /// Until when directions prove two primitives free from `time` on; `None` if as long as the
-    /// search asks.
-    fn free_until(&self, balls: [&Balls; 2], time: f64) -> Option<f64> {
-        let touching = Threshold::new(self.reach, self.earliest.limits.tolerance);
-        self.above_until(balls, &touching, time)
-    }
-
-    /// The same, until what counts as contact of them; its factor is not applied.
-    pub(super) fn above_until(
-        &self,
-        balls: [&Balls; 2],
-        threshold: &Threshold,
-        time: f64,
-    ) -> Option<f64> {
-        let [start, end] = self.times;
-        let length = end - start;
-        let until = (self.earliest.upper.min(end) - start) / length;
-        let from = (time - start) / length;
-        let free = free_until(balls, [from, until], threshold.target, threshold.tolerance)?;
-        if free <= from {
-            return Some(time);
-        }
-        // Rounding of the way to the piece's fractions and back.
-        Some((start + free * length).next_down().next_down().max(time))
     }
 }

@@ -26,7 +26,7 @@ impl Part {
         }
     }
 
-    fn is_whole(&self) -> bool {
+    pub(super) fn is_whole(&self) -> bool {
         *self == Self::whole(self.spheres)
     }
 

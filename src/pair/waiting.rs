@@ -1,0 +1,79 @@
+//! The part of the search for a first contact ([`super::search`]) that puts off what directions keep apart for a while.
+
+use super::apart::{Balls, free_until, held_until};
+use super::deepening::Threshold;
+use super::queue::{Candidate, Entry};
+use super::search::Search;
+use super::volumes::Volumes;
+use crate::math::lane::Vec3;
+
+/// Fraction of a piece by which directions must put off two primitives for them to wait in the queue;
+/// with less their elementary tests are listed. Smaller lets the last steps before a contact creep,
+/// larger runs tests that directions would have spared.
+const WORTH_WAITING: f64 = 1.0e-3;
+
+impl<A: Volumes, B: Volumes> Search<'_, A, B> {
+    /// Whether directions gain too little for two candidates to wait.
+    pub(super) fn soon(&self, free: f64, time: f64) -> bool {
+        free < time + WORTH_WAITING * (self.times[1] - self.times[0])
+    }
+
+    /// Has two nodes wait until `free`.
+    pub(super) fn wait(&mut self, nodes: [u32; 2], free: f64) -> bool {
+        self.queue(Entry {
+            time: free,
+            depth: 0.0,
+            candidate: Candidate::Nodes(nodes),
+        });
+        true
+    }
+
+    /// Until when directions prove two primitives free from `time` on; `None` if as long as the
+    /// search asks.
+    pub(super) fn free_until(&self, balls: [&Balls; 2], time: f64) -> Option<f64> {
+        let touching = Threshold::new(self.reach, self.earliest.limits.tolerance);
+        self.above_until(balls, &touching, time)
+    }
+
+    /// The same, until what counts as contact of them; its factor is not applied.
+    pub(super) fn above_until(
+        &self,
+        balls: [&Balls; 2],
+        threshold: &Threshold,
+        time: f64,
+    ) -> Option<f64> {
+        self.in_piece(time, |span| {
+            free_until(balls, span, threshold.target, threshold.tolerance)
+        })
+    }
+
+    /// The same by one direction alone, and until they come within the tolerance.
+    pub(super) fn held_until(
+        &self,
+        balls: [&Balls; 2],
+        n: Vec3<f64>,
+        threshold: &Threshold,
+        time: f64,
+    ) -> Option<f64> {
+        let contact = threshold.target + threshold.tolerance;
+        self.in_piece(time, |span| held_until(balls, n, span, contact))
+    }
+
+    /// What two fractions of the piece that is searched, from `time` to the end, have for an answer, as a time.
+    fn in_piece(&self, time: f64, free: impl Fn([f64; 2]) -> Option<f64>) -> Option<f64> {
+        let [start, length] = [self.times[0], self.times[1] - self.times[0]];
+        let [from, until] = self.span(time);
+        let free = free([from, until])?;
+        if free <= from {
+            return Some(time);
+        }
+        // Rounding of the way to the piece's fractions and back.
+        Some((start + free * length).next_down().next_down().max(time))
+    }
+
+    /// From `time` to the end of what is searched, in fractions of the piece.
+    pub(super) fn span(&self, time: f64) -> [f64; 2] {
+        let [start, end] = self.times;
+        [time, self.earliest.upper.min(end)].map(|t| (t - start) / (end - start))
+    }
+}
