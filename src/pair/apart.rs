@@ -284,7 +284,15 @@ pub(super) fn gap([a, b]: [&Balls; 2], enough: f64) -> f64 {
         let gap = near.fold(f64::MAX, f64::min) - far.fold(f64::MIN, f64::max);
         gap / length - rounding
     };
-    along(between([a, b], 0.0, y))
+    let mut most = along(between([a, b], 0.0, y));
+    // Flat faces keep slabs apart that lie side by side.
+    for n in [a.face(0.0, y), b.face(0.0, -y).map(|n| -n)] {
+        if most > enough {
+            break;
+        }
+        most = n.map_or(most, |n| most.max(along(n)));
+    }
+    most
 }
 
 /// A point in the plane of a hull's centres, by its shares of two edges.
