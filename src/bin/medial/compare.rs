@@ -32,7 +32,9 @@ use std::time::Instant;
 pub const SIZE: Real = 1.0;
 /// Points on each surface (a count) at which errors are measured, besides its vertices.
 const POINTS: usize = 20_000;
-/// Bodies in the heap whose steps are timed (a count).
+/// Heaps whose steps are timed, and bodies in each (counts). A heap falls as chance will have it, and takes half or twice
+/// as long as another.
+const HEAPS: u64 = 4;
 const BODIES: usize = 12;
 /// Share of the progress bar at which the medial mesh is built.
 const BUILT: f32 = 0.6;
@@ -53,7 +55,7 @@ pub struct CompareArguments {
     /// Round all edges of the medial mesh, also where sharp ones would make its error smaller.
     #[arg(long)]
     round_edges: bool,
-    /// Steps to time, of a heap of 12 bodies; 0 times none.
+    /// Steps to time, of each of 4 heaps of 12 bodies; 0 times none.
     #[arg(long, value_name = "N", default_value_t = 240)]
     steps: usize,
     /// Print the table as JSON.
@@ -68,8 +70,9 @@ struct Comparison {
     triangles: usize,
     /// In the unit of the file.
     longest_side: f32,
-    /// Bodies in the heap, and its steps.
+    /// Bodies in each heap, heaps, and steps of each.
     bodies: usize,
+    heaps: u64,
     steps: usize,
     colliders: Vec<Row>,
 }
@@ -89,7 +92,7 @@ struct Row {
 
 #[derive(Clone, Copy, Serialize)]
 struct StepTimes {
-    median: f64,
+    mean: f64,
     longest: f64,
 }
 
@@ -170,7 +173,7 @@ fn measure(
         (Kind::Triangles, "triangle mesh", triangles, made.triangles),
     ];
     let errors = [errors[0], errors[1], errors[2], 0.0];
-    let scene = heap(mesh, made.medial.0);
+    let heaps = heaps(mesh, made.medial.0);
     let mut colliders = Vec::new();
     for ((kind, collider, pieces, seconds_to_build), error) in rows.into_iter().zip(errors) {
         go_on(bar, "stepping", 0.84 + 0.04 * colliders.len() as f32)?;
@@ -179,7 +182,7 @@ fn measure(
             pieces,
             error,
             seconds_to_build,
-            step_milliseconds: step_times(&scene, kind, arguments.steps)?,
+            step_milliseconds: step_times(&heaps, kind, arguments.steps)?,
         });
     }
     Ok(Comparison {
@@ -187,6 +190,7 @@ fn measure(
         triangles,
         longest_side,
         bodies: BODIES,
+        heaps: HEAPS,
         steps: arguments.steps,
         colliders,
     })
@@ -239,38 +243,42 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (made, start.elapsed().as_secs_f64())
 }
 
-/// Bodies above each other, turned at random.
-fn heap(mesh: Mesh, medial: MedialMesh) -> Scene {
+/// Heaps of bodies above each other, turned at random.
+fn heaps(mesh: Mesh, medial: MedialMesh) -> Vec<Scene> {
     let skeleton = Skeleton::of_medial(&medial, 0.02 * SIZE);
     let model: Arc<Model> = Model::new(mesh, skeleton, medial);
-    let mut random = Random(3);
-    let actors = (0..BODIES).map(|k| {
-        let turn = random.direction() * 3.0;
-        let start = RigidBodyBuilder::dynamic()
-            .translation(random.direction() * 0.3 + Vector::Y * (1.0 + 0.8 * k as Real))
-            .rotation(turn);
-        Actor::new(&model, start, Vector::ONE)
-    });
-    Scene::new(actors.collect())
+    let heap = |seed| {
+        let mut random = Random(seed);
+        let actors = (0..BODIES).map(|k| {
+            let turn = random.direction() * 3.0;
+            let start = RigidBodyBuilder::dynamic()
+                .translation(random.direction() * 0.3 + Vector::Y * (1.0 + 0.8 * k as Real))
+                .rotation(turn);
+            Actor::new(&model, start, Vector::ONE)
+        });
+        Scene::new(actors.collect())
+    };
+    (1..=HEAPS).map(heap).collect()
 }
 
-/// The median and the longest of some steps of the falling heap; `None` of none.
-fn step_times(scene: &Scene, kind: Kind, steps: usize) -> Result<Option<StepTimes>, Failure> {
+/// The mean and the longest of some steps of each falling heap; `None` of none.
+fn step_times(heaps: &[Scene], kind: Kind, steps: usize) -> Result<Option<StepTimes>, Failure> {
     if steps == 0 {
         return Ok(None);
     }
-    let mut stage = scene.stage(kind);
     let mut all = Vec::new();
-    for _ in 0..steps {
-        if STOP.load(Ordering::Relaxed) {
-            return Err(Failure::Stopped("stepping"));
+    for heap in heaps {
+        let mut stage = heap.stage(kind);
+        for _ in 0..steps {
+            if STOP.load(Ordering::Relaxed) {
+                return Err(Failure::Stopped("stepping"));
+            }
+            all.push(timed(|| stage.step()).1 * 1.0e3);
         }
-        all.push(timed(|| stage.step()).1 * 1.0e3);
     }
-    all.sort_by(f64::total_cmp);
     Ok(Some(StepTimes {
-        median: all[steps / 2],
-        longest: all[steps - 1],
+        mean: all.iter().sum::<f64>() / all.len() as f64,
+        longest: all.into_iter().fold(0.0, f64::max),
     }))
 }
 
@@ -289,8 +297,8 @@ impl Comparison {
                 format!("{:.2}", 100.0 * row.error),
                 format!("{:.2}", row.seconds_to_build),
             ];
-            if let Some(StepTimes { median, longest }) = row.step_milliseconds {
-                cells.extend([median, longest].map(|ms| format!("{ms:.2}")));
+            if let Some(StepTimes { mean, longest }) = row.step_milliseconds {
+                cells.extend([mean, longest].map(|ms| format!("{ms:.2}")));
             }
             table.row(row.collider, cells);
         }
@@ -301,8 +309,8 @@ impl Comparison {
         );
         if timed {
             text += &format!(
-                "ms a step: median of {} steps, {} bodies fall into a heap\n",
-                self.steps, self.bodies
+                "ms a step: mean of {} steps of each of {} heaps, into which {} bodies fall\n",
+                self.steps, self.heaps, self.bodies
             );
         }
         text
