@@ -211,9 +211,9 @@ impl<'a> PrimitiveTree<'a> {
         p: Point,
         limit: f64,
         hint: u32,
-        keeps: impl Fn(&Nearest) -> bool,
+        mut keeps: impl FnMut(&Nearest) -> bool,
     ) -> bool {
-        let keep = |signed: Signed, primitive: u32| {
+        let mut keep = |signed: Signed, primitive: u32| {
             signed.distance >= limit || keeps(&Nearest { signed, primitive })
         };
         let mut all = keep(self.distance_to(hint, p), hint);
