@@ -1,46 +1,17 @@
 //! Slow pairs that bounce within the step do as rapier says: its combine rules, its events, its hooks.
 
+use crate::told::{Record, Told};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
-use std::sync::Mutex;
 
 /// Speed of approach, m/s: slow for balls of 0.2 m, so that only their restitution calls for the event loop.
 const SPEED: Real = 0.5;
-
-/// What was told: impulses in N s, and starts and stops.
-#[derive(Default)]
-struct Record(Mutex<(Real, Vec<bool>)>);
-
-impl EventHandler for Record {
-    fn handle_collision_event(
-        &self,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        event: CollisionEvent,
-        _: Option<&ContactPair>,
-    ) {
-        self.0.lock().expect("not poisoned").1.push(event.started());
-    }
-
-    fn handle_contact_force_event(
-        &self,
-        dt: Real,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        _: &ContactPair,
-        force: Real,
-    ) {
-        self.0.lock().expect("not poisoned").0 += force * dt;
-    }
-
-    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
-}
 
 /// Velocities of two balls that meet in the middle, each at half the speed, their mass, and what was told.
 fn meet(
     change: impl Fn(usize, ColliderBuilder) -> ColliderBuilder,
     hooks: &dyn PhysicsHooks,
-) -> ([Vector; 2], Real, (Real, Vec<bool>)) {
+) -> ([Vector; 2], Real, Told) {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;
     let bodies = [0, 1].map(|k| {
@@ -60,8 +31,7 @@ fn meet(
         pipeline.step_with_events(&mut world, hooks, &record);
     }
     let ends = bodies.map(|b| world.bodies[b].linvel());
-    let told = record.0.into_inner().expect("not poisoned");
-    (ends, world.bodies[bodies[0]].mass(), told)
+    (ends, world.bodies[bodies[0]].mass(), record.take())
 }
 
 /// Every combine rule gives the restitution that it stands for, and the impact is told once, with its whole impulse.
@@ -81,16 +51,17 @@ fn combine_rules_and_events_hold_for_bounces() {
             let c = c.restitution([0.3, 0.8][k]);
             c.restitution_combine_rule(rule)
         };
-        let ([left, right], mass, (impulse, told)) = meet(set, &());
+        let ([left, right], mass, told) = meet(set, &());
         let got = (right.x - left.x) / SPEED;
-        println!("{rule:?}: restitution {got}, impulse {impulse} N s, told {told:?}");
+        let impulse = told.impulse;
+        println!("{rule:?}: restitution {got}, {told:?}");
         assert!((got - known).abs() < 1.0e-3, "{rule:?}: {got}, not {known}");
         let change = 0.5 * mass * SPEED * (1.0 + known);
         assert!(
             (impulse / change - 1.0).abs() < 0.01,
             "{rule:?}: {impulse} of {change} N s"
         );
-        assert_eq!(told, [true, false], "{rule:?}");
+        assert_eq!(told.starts(), [true, false], "{rule:?}");
     }
 }
 
@@ -121,9 +92,9 @@ fn what_hooks_filter_does_not_bounce() {
     ];
     for (active, hooks) in hooks {
         let set = |_: usize, c: ColliderBuilder| c.restitution(1.0).active_hooks(active);
-        let ([left, right], _, (impulse, _)) = meet(set, hooks);
+        let ([left, right], _, told) = meet(set, hooks);
         assert_eq!([left.x, right.x], [0.5 * SPEED, -0.5 * SPEED]);
-        assert_eq!(impulse, 0.0);
+        assert_eq!(told.impulse, 0.0);
     }
     let ([left, _], ..) = meet(|_, c| c.restitution(1.0), &());
     assert!((left.x + 0.5 * SPEED).abs() < 1.0e-3, "{left}");

@@ -3,8 +3,8 @@
 
 use crate::bodies::attached;
 use crate::filters::rod;
+use crate::told::Record;
 use rapier3d::prelude::*;
-use std::sync::Mutex;
 
 /// Poses of all bodies after some steps.
 fn end(mut world: PhysicsWorld, steps: usize) -> Vec<Pose> {
@@ -84,38 +84,6 @@ fn every_kind_of_joint_holds_and_every_motor_turns() {
     }
 }
 
-/// Starts and stops, by step.
-#[derive(Default)]
-struct Told(Mutex<Vec<(usize, bool)>>, Mutex<usize>);
-
-impl EventHandler for Told {
-    fn handle_collision_event(
-        &self,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        event: CollisionEvent,
-        _: Option<&ContactPair>,
-    ) {
-        let step = *self.1.lock().expect("not poisoned");
-        self.0
-            .lock()
-            .expect("not poisoned")
-            .push((step, event.started()));
-    }
-
-    fn handle_contact_force_event(
-        &self,
-        _: Real,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        _: &ContactPair,
-        _: Real,
-    ) {
-    }
-
-    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
-}
-
 /// A rod flies through a sensor and lands on the ground: the sensor is told in rapier's steps, the landing in the step of the touch.
 #[test]
 fn sensors_and_contacts_are_told_when_rapiers_are() {
@@ -129,12 +97,13 @@ fn sensors_and_contacts_are_told_when_rapiers_are() {
         let body = RigidBodyBuilder::dynamic().translation(Vector::Y * 2.0);
         let collider = rod(medial).active_events(ActiveEvents::COLLISION_EVENTS);
         world.insert(body, collider);
-        let told = Told::default();
-        for step in 0..90 {
-            *told.1.lock().expect("not poisoned") = step;
-            pipeline.step_with_events(&mut world, &(), &told);
-        }
-        told.0.into_inner().expect("not poisoned")
+        let record = Record::default();
+        let told = |step: usize| {
+            pipeline.step_with_events(&mut world, &(), &record);
+            let starts = record.take().starts();
+            starts.into_iter().map(move |started| (step, started))
+        };
+        (0..90).flat_map(told).collect::<Vec<_>>()
     };
     let rapiers = told(false, false);
     assert_eq!(rapiers.len(), 3, "{rapiers:?}");

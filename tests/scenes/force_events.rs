@@ -3,49 +3,11 @@
 use crate::bodies::attached;
 use crate::filters::rod;
 use crate::random::Random;
+use crate::told::{Record, Told};
 use rapier3d::prelude::*;
-use std::sync::Mutex;
-
-/// What was told: impulses in N s (force times step), starts with and without a contact pair.
-#[derive(Default)]
-struct Record(Mutex<(Real, Vec<bool>)>);
-
-impl EventHandler for Record {
-    fn handle_collision_event(
-        &self,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        event: CollisionEvent,
-        pair: Option<&ContactPair>,
-    ) {
-        if event.started() {
-            let whole = pair.is_some_and(|p| {
-                let points = p.manifolds().iter().map(|m| m.points.len());
-                points.sum::<usize>() > 0
-            });
-            self.0.lock().expect("not poisoned").1.push(whole);
-        }
-    }
-
-    fn handle_contact_force_event(
-        &self,
-        dt: Real,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        pair: &ContactPair,
-        force: Real,
-    ) {
-        let told = ContactForceEvent::from_contact_pair(dt, pair, force);
-        let sum = told.total_force.length();
-        assert!((sum - force).abs() < 1.0e-3 * force, "{sum} N of {force}");
-        self.0.lock().expect("not poisoned").0 += force * dt;
-    }
-
-    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
-}
 
 /// One central meeting of two rods that cross: impulse told over change of momentum, and what was told of starts.
-fn meet(medial: bool, speed: Real, random: &mut Random) -> (Real, Vec<bool>) {
+fn meet(medial: bool, speed: Real, random: &mut Random) -> (Real, Told) {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;
     let mut pipeline = attached(&mut world);
@@ -72,8 +34,8 @@ fn meet(medial: bool, speed: Real, random: &mut Random) -> (Real, Vec<bool>) {
         let body = &world.bodies[rods[usize::from(side > 0.0)]];
         body.mass() * (body.linvel().z + side * 0.5 * speed).abs()
     });
-    let (impulse, starts) = record.0.into_inner().expect("not poisoned");
-    (impulse / changes[0].max(changes[1]), starts)
+    let told = record.take();
+    (told.impulse / changes[0].max(changes[1]), told)
 }
 
 /// `MEETINGS=1000` for the full count.
@@ -84,9 +46,10 @@ fn every_meeting_tells_its_impulse() {
     let (mut lost, mut worst, mut bare) = (0, 0.0, 0);
     for _ in 0..count {
         let speed = 0.3 * Real::powf(200.0 / 0.3, random.unit());
-        let (share, starts) = meet(true, speed, &mut random);
+        let (share, told) = meet(true, speed, &mut random);
+        let starts: Vec<_> = told.events.iter().filter(|e| e.started).collect();
         lost += usize::from(share == 0.0 || share.is_nan() || starts.is_empty());
-        bare += starts.iter().filter(|whole| !**whole).count();
+        bare += starts.iter().filter(|e| !e.has_points).count();
         worst = (share - 1.0).abs().max(worst);
     }
     let slow = meet(false, 1.0, &mut random).0;

@@ -330,7 +330,7 @@ fn what_was_told_before_saving_is_not_told_again() {
                 for _ in 0..5 {
                     pipeline.step_with_events(world, &(), &record);
                 }
-                record.0.into_inner().expect("not poisoned")
+                record.take().starts()
             });
         println!("restitution {restitution}: {:?}", after[0]);
         assert_eq!(after[0], after[1], "restitution {restitution}");

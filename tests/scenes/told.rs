@@ -3,9 +3,38 @@
 use rapier3d::prelude::*;
 use std::sync::Mutex;
 
-/// Collision starts and stops, in their order.
+/// A start or a stop of a collision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    pub started: bool,
+    /// Whether its contact pair came with it, with points.
+    pub has_points: bool,
+}
+
+/// What was told, in its order.
+#[derive(Debug, Default)]
+pub struct Told {
+    pub events: Vec<Event>,
+    /// Of the contact-force events, N s.
+    pub impulse: Real,
+}
+
+impl Told {
+    /// Of each collision event whether it is a start.
+    pub fn starts(&self) -> Vec<bool> {
+        self.events.iter().map(|event| event.started).collect()
+    }
+}
+
 #[derive(Default)]
-pub struct Record(pub Mutex<Vec<bool>>);
+pub struct Record(Mutex<Told>);
+
+impl Record {
+    /// What was told since it was asked last.
+    pub fn take(&self) -> Told {
+        std::mem::take(&mut self.0.lock().expect("not poisoned"))
+    }
+}
 
 impl EventHandler for Record {
     fn handle_collision_event(
@@ -13,18 +42,30 @@ impl EventHandler for Record {
         _: &RigidBodySet,
         _: &ColliderSet,
         event: CollisionEvent,
-        _: Option<&ContactPair>,
+        pair: Option<&ContactPair>,
     ) {
-        self.0.lock().expect("not poisoned").push(event.started());
+        let has_points = pair.is_some_and(|p| p.manifolds().iter().any(|m| !m.points.is_empty()));
+        let started = event.started();
+        let mut told = self.0.lock().expect("not poisoned");
+        told.events.push(Event {
+            started,
+            has_points,
+        });
     }
+
     fn handle_contact_force_event(
         &self,
-        _: Real,
+        dt: Real,
         _: &RigidBodySet,
         _: &ColliderSet,
-        _: &ContactPair,
-        _: Real,
+        pair: &ContactPair,
+        force: Real,
     ) {
+        let event = ContactForceEvent::from_contact_pair(dt, pair, force);
+        let sum = event.total_force.length();
+        assert!((sum - force).abs() < 1.0e-3 * force, "{sum} N of {force}");
+        self.0.lock().expect("not poisoned").impulse += force * dt;
     }
+
     fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
 }
