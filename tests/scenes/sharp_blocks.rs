@@ -170,19 +170,26 @@ fn heaps_of_blocks_with_sharp_edges_are_not_frozen() {
     let (corners, triangles) = l_shape();
     let decomposed = ColliderBuilder::convex_decomposition(&corners, &triangles);
     let ours = ColliderBuilder::medial_mesh(l_block(60));
-    for (seed, on_triangles) in [(1, false), (1, true), (3, false), (3, true)] {
+    let heaps = (1..=6).flat_map(|seed| [(seed, false), (seed, true)]);
+    let mut means = [[0.0; 2]; 2];
+    for (seed, on_triangles) in heaps {
         let own = heap(&decomposed, &corners, on_triangles, seed);
         let heap = heap(&ours, &corners, on_triangles, seed);
         println!("{heap:?}, as convex decompositions {own:?}");
         assert!(heap.frozen < 30 && heap.in_a_row <= 6, "{heap:?}");
-        // A tenth of the thickness of a block's arm, and what rapier's own sink in.
-        assert!(heap.lowest > own.lowest - 0.035, "{heap:?}, own {own:?}");
-        // Blocks come to lie at random: by less than half the thickness of an arm higher or lower.
-        assert!(
-            (heap.mean - own.mean).abs() < 0.175,
-            "{heap:?}, own {own:?}"
-        );
+        // Half way to the medial axis of an arm, as promised.
+        assert!(heap.lowest > -0.0875, "{heap:?}, own {own:?}");
+        for (mean, heap) in means.iter_mut().zip([heap, own]) {
+            mean[0] += heap.mean / 12.0;
+            mean[1] += heap.lowest / 12.0;
+        }
     }
+    // Single heaps are a matter of chance. All together are as high as rapier's own to a quarter of the thickness of an arm,
+    // and sink in by no more than a tenth of it beyond them.
+    println!("mean heights and lowest corners {means:?}");
+    let [ours, own] = means;
+    assert!((ours[0] - own[0]).abs() < 0.0875, "{means:?}");
+    assert!(ours[1] > own[1] - 0.035, "{means:?}");
 }
 
 /// Symptom: two of these blocks, which start across each other, hung in the air for ever, frozen in every step. Cause: they
@@ -199,4 +206,40 @@ fn blocks_put_across_each_other_come_apart() {
     println!("{heap:?}, as convex decompositions {own:?}");
     assert!(heap.frozen < 40 && heap.in_a_row <= 8, "{heap:?}");
     assert!(heap.highest < own.highest + 0.5, "{heap:?}, own {own:?}");
+}
+
+/// Pairs of T-shaped blocks that are put into each other at random, without weight, of which about half overlap. Symptom: one
+/// such pair in 1,500 (552) was held for ever. Cause: it was put less deep into each other than half of the thickness, so the
+/// event loop held it from the start, and what parted it at one place took it deeper at another.
+#[test]
+fn blocks_put_into_each_other_by_a_little_come_apart() {
+    let (corners, triangles) = t_shape();
+    let options = BuildOptions {
+        primitives: Some(60),
+        ..BuildOptions::default()
+    };
+    let built = MedialMesh::from_trimesh(&corners, &triangles, &options);
+    let mesh = built.expect("a T-shaped block").0;
+    let mut random = Random(7);
+    let poses = (0..600).map(|_| {
+        [0.0, 0.75].map(|height| {
+            let at = random.direction() * 0.3 + Vector::Y * height;
+            Pose::new(at, random.direction() * 3.0)
+        })
+    });
+    let mut held = Vec::new();
+    for (number, poses) in poses.enumerate().skip(540) {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        for pose in poses {
+            let block = RigidBodyBuilder::dynamic().pose(pose);
+            world.insert(block, ColliderBuilder::medial_mesh(mesh.clone()));
+        }
+        let mut pipeline = attached(&mut world);
+        let reports = (0..60).map(|_| pipeline.step(&mut world));
+        if reports.skip(40).all(|report| report.frozen > 0) {
+            held.push(number);
+        }
+    }
+    assert!(held.is_empty(), "{held:?}");
 }

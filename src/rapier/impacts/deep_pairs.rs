@@ -12,17 +12,25 @@ use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 /// on a surface without thickness may be taken for put into it.
 const SUNK: Real = 2.0e-3;
 
-/// Pairs whose contacts in rapier are deep enough that even a slow one may get to the axes; if any is below the floor and
-/// [`SUNK`], with the way from where that one would not count as deep, else with 0.
+/// How deep a pair is whose contacts are deep enough that even a slow one may get to the axes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Deep {
+    /// Whether a contact is deeper than [`SUNK`].
+    pub is_sunk: bool,
+    /// The way, a length, from where the deepest below the floor and [`SUNK`] would not count as deep; 0 if none is.
+    pub way: Real,
+}
+
+/// Pairs whose contacts in rapier are that deep.
 pub fn deep(
     view: &StepView,
     narrow_phase: &NarrowPhase,
     policy: &CcdPolicy,
-) -> FastMap<[usize; 2], Real> {
+) -> FastMap<[usize; 2], Deep> {
     let tuning = &policy.tuning;
     let parts = view.parts.iter().enumerate();
     let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
-    let mut deep = FastMap::default();
+    let mut deep: FastMap<_, Deep> = FastMap::default();
     for found in narrow_phase.contact_pairs() {
         let places = [found.collider1, found.collider2].map(|h| parts.get(&h));
         let [Some(&i), Some(&j)] = places else {
@@ -37,9 +45,12 @@ pub fn deep(
             let thickness = view.thickness_at([i, j], [m.subshape1, m.subshape2]);
             let guarded = tuning.guarded() * thickness;
             if depth > guarded {
-                let sunk = depth > (tuning.floor * thickness).max(SUNK * policy.unit);
-                let way = deep.entry(pair).or_insert(0.0);
-                *way = Real::max(*way, if sunk { depth - guarded } else { 0.0 });
+                let is_sunk = depth > SUNK * policy.unit;
+                let pair = deep.entry(pair).or_default();
+                pair.is_sunk |= is_sunk;
+                if is_sunk && depth > tuning.floor * thickness {
+                    pair.way = pair.way.max(depth - guarded);
+                }
             }
         }
     }

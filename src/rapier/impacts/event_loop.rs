@@ -13,7 +13,7 @@ use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
 use crate::medial::MedialMesh;
-use crate::rapier::impacts::deep_pairs::deep;
+use crate::rapier::impacts::deep_pairs::{Deep, deep};
 use crate::rapier::impacts::event_queue::EventQueue;
 use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
 use crate::rapier::impacts::lazy_toi_query::{LazyToiQuery, Meshes, QueryProgress};
@@ -87,7 +87,7 @@ pub(crate) struct Loop<'a> {
     pub(crate) policy: CcdPolicy<'a>,
     pub(crate) rules: Rules<'a>,
     /// Slow pairs near enough to their medial axes to be watched.
-    deep: FastMap<[usize; 2], Real>,
+    deep: FastMap<[usize; 2], Deep>,
     /// Whether the user's rules let a pair respond, as far as they were asked.
     allowed: FastMap<[usize; 2], bool>,
     pub(crate) response: Response,

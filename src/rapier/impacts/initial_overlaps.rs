@@ -7,12 +7,13 @@
 //! then on. A pair left to the solver until it is above the floor alone would be held there: next to the contact that is
 //! above it are edges that still cross.
 //!
-//! A pair counts as put into each other if one of the two is new and rapier had no contacts of the pair, or if the two
-//! were moved against each other, between two steps, by so much that they may have been apart before. A pair that
+//! A pair counts as put into each other if one of the two is new and rapier had no contacts of the pair, or if it is below
+//! the floor and the two were moved against each other, between two steps, by so much that they may have been apart before. A pair that
 //! forces pressed together is held, even if both are moved together.
 
 use crate::math::fast_hash::{FastMap, FastSet};
 use crate::math::{Pose, Real};
+use crate::rapier::impacts::deep_pairs::Deep;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::geometry::{ColliderHandle, ColliderSet, NarrowPhase};
 
@@ -55,19 +56,18 @@ impl InitialOverlaps {
             .collect();
     }
 
-    /// Of the pairs with deep contacts in this step, those that are left to the solver. `deep` has the least way, a length,
-    /// on which a pair below the floor got there if it was apart before, and 0 for those above it.
-    pub fn leave(&mut self, view: &StepView, deep: &FastMap<[usize; 2], Real>) -> Vec<[usize; 2]> {
+    /// Of the pairs with deep contacts in this step, those that are left to the solver.
+    pub fn leave(&mut self, view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize; 2]> {
         let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
-        let was_put = |pair: [usize; 2], way: Real| match self.moved(view, pair) {
-            Some(moved) => moved >= way,
-            None => !self.met.contains(&handles(pair)),
+        let was_put = |pair: [usize; 2], deep: &Deep| match self.moved(view, pair) {
+            Some(moved) => deep.way > 0.0 && moved >= deep.way,
+            None => deep.is_sunk && !self.met.contains(&handles(pair)),
         };
-        let is_left = |(pair, way): &([usize; 2], Real)| {
-            self.left.contains(&handles(*pair)) || *way > 0.0 && was_put(*pair, *way)
+        let is_left = |pair: &[usize; 2], deep: &Deep| {
+            self.left.contains(&handles(*pair)) || was_put(*pair, deep)
         };
-        let deep = deep.iter().map(|(pair, way)| (*pair, *way));
-        let pairs: Vec<_> = deep.filter(is_left).map(|(pair, _)| pair).collect();
+        let left = deep.iter().filter(|(pair, deep)| is_left(pair, deep));
+        let pairs: Vec<_> = left.map(|(pair, _)| *pair).collect();
         self.left = pairs.iter().map(|pair| handles(*pair)).collect();
         pairs
     }
