@@ -2,7 +2,6 @@
 //! at the first contact (section 4.5; rapier's solver does all contacts at once), and rapier's own shapes and step. Nothing
 //! has friction, and all but Euler's disc has no weight. Every test prints what `docs/measurements/hard-scenes.md` quotes.
 
-use crate::bodies::attached;
 use crate::eulers_disc::euler;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
@@ -268,45 +267,6 @@ fn eulers_disc_goes_round_as_theory_says_and_comes_to_rest() {
                     assert!(off < 0.2, "{hertz} Hz: {off} off the rate");
                 }
             }
-        }
-    }
-}
-
-/// A rod that two dumbbells strike from both sides, with both ends each, one a little after the other: what is pressed
-/// together in several places is solved in all of them at once. Solved one after the other, these are 8 or 9 impacts, and in a
-/// heap as many as a body may have in a step.
-#[test]
-fn what_touches_in_two_places_is_solved_in_both() {
-    let rod = {
-        let ends = [-1.0, 1.0].map(|z| MedialSphere::new(Vector::Z * z, 0.06));
-        MedialMesh::new(ends.to_vec(), vec![[0, 1]], vec![]).expect("a rod")
-    };
-    let dumbbell = {
-        let at = [(-0.5, 0.1), (-0.4, 0.04), (0.4, 0.04), (0.5, 0.1)];
-        let at = at.map(|(z, radius)| MedialSphere::new(Vector::Z * z, radius));
-        MedialMesh::new(at.to_vec(), vec![[0, 1], [1, 2], [2, 3]], vec![]).expect("a dumbbell")
-    };
-    for tilt in [0.005, 0.02, 0.05, 0.1] {
-        for aside in [0.0, 0.1, 0.3] {
-            let mut world = PhysicsWorld::new();
-            world.gravity = Vector::ZERO;
-            world.insert(
-                RigidBodyBuilder::dynamic(),
-                ColliderBuilder::medial_mesh(rod.clone()),
-            );
-            for side in [-1.0, 1.0] {
-                let flying = RigidBodyBuilder::dynamic()
-                    .translation(Vector::new(0.5 * side, 0.0, aside))
-                    .rotation(Vector::Y * tilt)
-                    .linvel(Vector::X * -60.0 * side);
-                world.insert(flying, ColliderBuilder::medial_mesh(dumbbell.clone()));
-            }
-            let mut pipeline = attached(&mut world);
-            let report = pipeline.step(&mut world);
-            assert!(
-                (2..=6).contains(&report.events),
-                "{tilt}, {aside}: {report:?}"
-            );
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::wire_heaps::Heap;
 /// the speed that its weight gave it.
 #[test]
 fn rings_of_no_thickness_stay_unlinked() {
-    for (seed, steps) in [(2, 200), (3, 170), (6, 200)] {
+    for (seed, steps) in [(2, 200), (3, 170)] {
         let heap = Heap::of_no_thickness(seed);
         let found = heap.fall(steps);
         assert_eq!(found.linked, 0, "seed {seed}: {found:?}");

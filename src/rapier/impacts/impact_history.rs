@@ -9,22 +9,11 @@ use crate::rapier::view::step_view::StepView;
 
 type Pair = [usize; 2];
 
-/// Contacts of a pair that are kept. Two bodies wedged in each other touch in 2 to 4 places; more, and what has opened
-/// long ago is looked at in vain.
-const CONTACTS: usize = 8;
-
-/// The meetings of a pair.
-#[derive(Default)]
-struct Meetings {
-    /// How often they met.
-    count: u32,
-    /// Where, the last one last; of the same primitives only the last one.
-    contacts: Vec<Meeting>,
-}
-
-/// A meeting of a pair.
+/// The last meeting of a pair.
 #[derive(Clone, Copy)]
 struct Meeting {
+    /// How often they met.
+    count: u32,
     /// The hit's point in the frames of both bodies.
     points: [Vector; 2],
     /// In the frame of the first body.
@@ -38,7 +27,7 @@ struct Meeting {
 /// All meetings of a step.
 #[derive(Default)]
 pub struct ImpactHistory {
-    of_pair: FastMap<Pair, Meetings>,
+    last: FastMap<Pair, Meeting>,
     /// Pairs of each body, in the order in which they met first.
     of_body: FastMap<usize, Vec<Pair>>,
 }
@@ -46,7 +35,7 @@ pub struct ImpactHistory {
 impl ImpactHistory {
     /// How often a pair met.
     pub fn count(&self, pair: Pair) -> u32 {
-        self.of_pair.get(&pair).map_or(0, |m| m.count)
+        self.last.get(&pair).map_or(0, |m| m.count)
     }
 
     /// A pair meets.
@@ -60,19 +49,13 @@ impl ImpactHistory {
             }
         }
         let meeting = Meeting {
+            count: count + 1,
             points: poses.map(|pose| pose.inverse_transform_point(hit.point)),
             normal: poses[0].rotation.inverse() * hit.normal,
             depth: hit.depth,
             primitives: hit.primitives,
         };
-        let meetings = self.of_pair.entry(pair).or_default();
-        meetings.count += 1;
-        let contacts = &mut meetings.contacts;
-        contacts.retain(|m| m.primitives != hit.primitives);
-        if contacts.len() == CONTACTS {
-            contacts.remove(0);
-        }
-        contacts.push(meeting);
+        self.last.insert(pair, meeting);
     }
 
     /// Pairs that any of some bodies met, each once.
@@ -86,8 +69,26 @@ impl ImpactHistory {
         pairs
     }
 
-    /// The contacts that a pair of dynamic bodies has left, those of them that are still there and close so fast that
-    /// they would be met again in this step; the last met first.
+    /// The contact of a pair that met, at `time` seconds into the step, and how far it has opened since, a
+    /// length, < 0 where it closed; `None` where no normal is known.
+    pub fn contact(&self, view: &StepView, pair: Pair, time: Real) -> Option<(Hit, Real)> {
+        let meeting = self.last.get(&pair)?;
+        let poses = poses(view, pair, time);
+        let [p, q] = [0, 1].map(|k| poses[k] * meeting.points[k]);
+        let normal = poses[0].rotation * meeting.normal;
+        let opened = (q - p).dot(normal);
+        let hit = Hit {
+            time,
+            normal,
+            point: (p + q) * 0.5,
+            depth: meeting.depth - opened,
+            primitives: meeting.primitives,
+        };
+        (normal != Vector::ZERO).then_some((hit, opened))
+    }
+
+    /// The contact that a pair of dynamic bodies has left, if it is still there and closes so fast that it
+    /// would be met again in this step.
     pub fn closing(
         &self,
         view: &StepView,
@@ -95,45 +96,29 @@ impl ImpactHistory {
         frozen: impl Fn(usize) -> bool,
         pair: Pair,
         time: Real,
-    ) -> Vec<Hit> {
+    ) -> Option<Hit> {
         let bodies = pair.map(|k| view.parts[k].body);
         let free = |b: usize| view.bodies[b].kind == Kind::Free;
         if !bodies.into_iter().all(free) || bodies.into_iter().all(frozen) {
-            return Vec::new();
+            return None;
         }
-        let poses = poses(view, pair, time);
-        let velocity = |b: usize, point: Vector| {
+        let (hit, opened) = self.contact(view, pair, time)?;
+        let thickness = view.thickness_at(pair, hit.primitives);
+        let gap = policy.gap(thickness);
+        if opened > gap {
+            return None;
+        }
+        let velocity = |b: usize| {
             let m = view.bodies[b].motion_from(time);
-            m.linvel + m.angvel.cross(point - m.start * m.local_center)
+            m.linvel + m.angvel.cross(hit.point - m.start * m.local_center)
         };
-        let closing = |meeting: &Meeting| {
-            let [p, q] = [0, 1].map(|k| poses[k] * meeting.points[k]);
-            let normal = poses[0].rotation * meeting.normal;
-            let opened = (q - p).dot(normal);
-            let hit = Hit {
-                time,
-                normal,
-                point: (p + q) * 0.5,
-                depth: meeting.depth - opened,
-                primitives: meeting.primitives,
-            };
-            let thickness = view.thickness_at(pair, hit.primitives);
-            let gap = policy.gap(thickness);
-            let slid = (q - p - normal * opened).length();
-            if normal == Vector::ZERO || opened > gap || slid > thickness.max(gap) {
-                return None;
-            }
-            let [v1, v2] = bodies.map(|b| velocity(b, hit.point));
-            let approach = (v1 - v2).dot(normal) * (policy.dt - time);
-            // What touches may sink in before it is met again, above the floor by more than below.
-            let tuning = &policy.tuning;
-            let above = tuning.floor * thickness - hit.depth;
-            let sinks = above.min(tuning.sink * thickness).max(tuning.hair * gap);
-            (approach > opened.max(0.0) + sinks).then_some(hit)
-        };
-        let meetings = self.of_pair.get(&pair).into_iter();
-        let contacts = meetings.flat_map(|m| m.contacts.iter().rev());
-        contacts.filter_map(closing).collect()
+        let [v1, v2] = bodies.map(velocity);
+        let approach = (v1 - v2).dot(hit.normal) * (policy.dt - time);
+        // What touches may sink in before it is met again, above the floor by more than below.
+        let tuning = &policy.tuning;
+        let above = tuning.floor * thickness - hit.depth;
+        let sinks = above.min(tuning.sink * thickness).max(tuning.hair * gap);
+        (approach > opened.max(0.0) + sinks).then_some(hit)
     }
 }
 

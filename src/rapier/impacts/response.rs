@@ -187,7 +187,14 @@ impl Response {
         for _ in 0..ROUNDS {
             let mut next = Vec::new();
             for pair in self.met.of(&last) {
-                for b in self.push_closing(view, policy, rules, pair, time) {
+                let frozen = |b: usize| self.courses[b].frozen;
+                let Some(hit) = self.met.closing(view, policy, frozen, pair, time) else {
+                    continue;
+                };
+                for b in self.push(view, policy, rules, pair, &hit) {
+                    if self.courses[b].frozen {
+                        continue;
+                    }
                     for list in [&mut next, &mut *changed] {
                         if !list.contains(&b) {
                             list.push(b);
@@ -200,24 +207,6 @@ impl Response {
             }
             last = next;
         }
-    }
-
-    /// Pushes all contacts of a pair that close, one after the other; returns the bodies whose motion that changes.
-    fn push_closing(
-        &mut self,
-        view: &mut StepView,
-        policy: &CcdPolicy,
-        rules: &Rules,
-        pair: Pair,
-        time: Real,
-    ) -> Vec<usize> {
-        let frozen = |b: usize| self.courses[b].frozen;
-        let mut moved = Vec::new();
-        for hit in self.met.closing(view, policy, frozen, pair, time) {
-            moved.extend(self.push(view, policy, rules, pair, &hit));
-        }
-        moved.retain(|b| !self.courses[*b].frozen);
-        moved
     }
 
     /// Gives both bodies the impulses of a contact, and what joints tie to them what they hand on; returns all of
