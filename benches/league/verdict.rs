@@ -132,16 +132,18 @@ impl Flights {
         let felt = end.iter().zip(&world.bodies).any(|(state, body)| {
             let free = |k: usize| body.position[k] + time * body.velocity[k];
             let off = length(minus(state.position(), std::array::from_fn(free)));
-            off.is_nan() || off > FELT
+            off > FELT
         });
+        // What ends nowhere is wrong in both cases.
+        let is_lost = end.iter().any(|s| !length(s.position()).is_finite());
         if !world.meets {
             self.passes += 1;
-            self.ghosts += usize::from(felt);
+            self.ghosts += usize::from(felt || is_lost);
             return;
         }
         self.hits += 1;
-        self.missed += usize::from(!felt);
-        if felt && world.scene.starts_with("rings") {
+        self.missed += usize::from(!felt || is_lost);
+        if felt && !is_lost && world.scene.starts_with("rings") {
             let ends = lines(end.iter().map(State::pose));
             self.linked += usize::from(linking(&ends[0], &ends[1]) != 0);
         }
