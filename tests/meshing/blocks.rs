@@ -12,14 +12,14 @@ use std::collections::{HashMap, HashSet};
 const EXACT: f32 = 1.2e-5;
 
 /// Cells of an uneven grid.
-struct Grid {
-    lines: [Vec<f64>; 3],
+pub struct Grid {
+    pub lines: [Vec<f64>; 3],
     cells: HashSet<[usize; 3]>,
 }
 
 impl Grid {
     /// A grid of `size` cells with random lines, of which a connected set is solid.
-    fn random(random: &mut Random, size: [usize; 3]) -> Self {
+    pub fn random(random: &mut Random, size: [usize; 3]) -> Self {
         let mut line = |n: usize| {
             let mut at = 0.0;
             let mut next = || {
@@ -113,7 +113,7 @@ impl Grid {
         [0, 1, 2].map(|k| self.lines[k][at[k]])
     }
 
-    fn holds(&self, p: [f64; 3]) -> bool {
+    pub fn holds(&self, p: [f64; 3]) -> bool {
         let cell = [0, 1, 2].map(|k| {
             self.lines[k]
                 .partition_point(|x| *x <= p[k])
@@ -123,7 +123,7 @@ impl Grid {
     }
 
     /// Distance of a point to the boundary.
-    fn distance(&self, p: [f64; 3]) -> f64 {
+    pub fn distance(&self, p: [f64; 3]) -> f64 {
         let to_side = |side: &[[usize; 3]; 4]| {
             let corners = side.map(|c| self.point(c));
             let off = [0, 1, 2].map(|k| {
@@ -136,7 +136,7 @@ impl Grid {
         self.sides().iter().map(to_side).fold(f64::MAX, f64::min)
     }
 
-    fn mesh(&self, place: impl Fn([f64; 3]) -> Vector) -> Mesh {
+    pub fn mesh(&self, place: impl Fn([f64; 3]) -> Vector) -> Mesh {
         let mut index: HashMap<[usize; 3], u32> = HashMap::new();
         let mut mesh = Mesh {
             vertices: Vec::new(),
@@ -156,14 +156,14 @@ impl Grid {
 }
 
 /// A turn, a scale and a move of bodies.
-struct Placed {
-    rotation: Rotation,
-    scale: f64,
-    offset: Vector,
+pub struct Placed {
+    pub rotation: Rotation,
+    pub scale: f64,
+    pub offset: Vector,
 }
 
 impl Placed {
-    fn random(random: &mut Random, straight: bool) -> Self {
+    pub fn random(random: &mut Random, straight: bool) -> Self {
         let turn = random.vector(3.0);
         let scale = 10.0f64.powf(random.within(-3.0, 3.0));
         Self {
@@ -173,13 +173,13 @@ impl Placed {
         }
     }
 
-    fn at(&self, p: [f64; 3]) -> Vector {
+    pub fn at(&self, p: [f64; 3]) -> Vector {
         let p = p.map(|x| (x * self.scale) as f32);
         self.rotation * Vector::new(p[0], p[1], p[2]) + self.offset
     }
 }
 
-fn built(mesh: &Mesh, quality: Quality) -> (MedialMesh, rapier3d_medial::BuildReport) {
+pub fn built(mesh: &Mesh, quality: Quality) -> (MedialMesh, rapier3d_medial::BuildReport) {
     let options = BuildOptions {
         quality,
         ..Default::default()

@@ -13,6 +13,7 @@ mod distance;
 mod enclosure;
 mod fitting;
 mod hidden;
+mod imperfect_blocks;
 mod machine;
 mod many;
 mod meshes;

@@ -54,6 +54,7 @@ struct Cells {
 impl Cells {
     fn new(
         planes: &[Plane],
+        on: f64,
         tree: &TriangleTree,
         watch: &mut Watch,
     ) -> Result<Option<Self>, BuildError> {
@@ -62,7 +63,7 @@ impl Cells {
             watch.again()?;
             all = all
                 .iter()
-                .flat_map(|cell| cell.cut(plane, i as u32))
+                .flat_map(|cell| cell.cut(plane, i as u32, on))
                 .flatten()
                 .collect();
             if all.len() > MOST_CELLS {
@@ -143,13 +144,14 @@ pub struct Piece {
 }
 
 /// The convex pieces whose union is the body with these faces, in a box of side 1 about the origin; `None` where they are
-/// too many, or where rounding spoils them.
+/// too many, or where rounding spoils them. Points within `on` of a plane are on it.
 pub fn convex_pieces(
     planes: &[Plane],
+    on: f64,
     tree: &TriangleTree,
     watch: &mut Watch,
 ) -> Result<Option<Vec<Piece>>, BuildError> {
-    let Some(cells) = Cells::new(planes, tree, watch)? else {
+    let Some(cells) = Cells::new(planes, on, tree, watch)? else {
         return Ok(None);
     };
     let mut pieces: Vec<(usize, u64, Vec<bool>)> = Vec::new();
@@ -188,13 +190,14 @@ pub fn convex_pieces(
             pieces.remove(k);
         }
     }
-    let solid =
-        |(at, kept, _): &(usize, u64, Vec<bool>)| bounded(planes, cells.inner[*at].below, *kept);
+    let solid = |(at, kept, _): &(usize, u64, Vec<bool>)| {
+        bounded(planes, on, cells.inner[*at].below, *kept)
+    };
     Ok(pieces.iter().map(solid).collect())
 }
 
 /// The polyhedron on the sides `below` of the planes `kept`.
-fn bounded(planes: &[Plane], below: u64, kept: u64) -> Option<Piece> {
+fn bounded(planes: &[Plane], on: f64, below: u64, kept: u64) -> Option<Piece> {
     let mut solid = Convex::cube(FAR, BOX);
     let mut outward = Vec::new();
     for (i, plane) in planes.iter().enumerate() {
@@ -206,7 +209,7 @@ fn bounded(planes: &[Plane], below: u64, kept: u64) -> Option<Piece> {
             normal: plane.normal * sign,
             offset: plane.offset * sign,
         };
-        let [inside, _] = solid.cut(&plane, outward.len() as u32);
+        let [inside, _] = solid.cut(&plane, outward.len() as u32, on);
         solid = inside?;
         outward.push(plane);
     }

@@ -2,10 +2,6 @@
 
 use crate::meshing::geometry::bounds::{Point, direction, perpendicular};
 
-/// Points nearer to a plane than this are on it (longest side 1): planes through vertices that were rounded to `f32` miss
-/// each other's corners by less.
-pub const ON: f64 = 1e-6;
-
 /// The plane of a face: `normal · x = offset`.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane {
@@ -85,23 +81,25 @@ impl Convex {
     }
 
     /// The parts below and above a plane, whose new face is of plane `index`; `None` for a part that has no thickness.
-    pub fn cut(&self, plane: &Plane, index: u32) -> [Option<Self>; 2] {
+    /// Points within `on` of the plane are on it: planes through vertices that were rounded miss each other's corners by
+    /// less.
+    pub fn cut(&self, plane: &Plane, index: u32, on: f64) -> [Option<Self>; 2] {
         let depths = || self.corners().map(|p| plane.depth(p));
         [1.0, -1.0].map(|sign| {
-            let reaches = |sign: f64| depths().any(|depth| sign * depth > ON);
+            let reaches = |sign: f64| depths().any(|depth| sign * depth > on);
             match (reaches(sign), reaches(-sign)) {
                 (false, _) => None,
                 (true, false) => Some(self.clone()),
-                (true, true) => self.side(plane, index, sign),
+                (true, true) => self.side(plane, (index, on), sign),
             }
         })
     }
 
     /// The part where `sign` times the depth is positive.
-    fn side(&self, plane: &Plane, index: u32, sign: f64) -> Option<Self> {
+    fn side(&self, plane: &Plane, (index, on): (u32, f64), sign: f64) -> Option<Self> {
         let height = |p: Point| {
             let height = sign * plane.depth(p);
-            if height.abs() <= ON { 0.0 } else { height }
+            if height.abs() <= on { 0.0 } else { height }
         };
         let mut faces = Vec::with_capacity(self.faces.len() + 1);
         let mut on_cut: Vec<Point> = Vec::new();
@@ -128,17 +126,18 @@ impl Convex {
         }
         faces.push(Face {
             plane: index,
-            corners: around(on_cut, plane.normal)?,
+            corners: around(on_cut, plane.normal, on)?,
         });
         Some(Self { faces })
     }
 }
 
-/// Points of a convex polygon across `normal`, each once, in order; `None` for fewer than three.
-fn around(points: Vec<Point>, normal: Point) -> Option<Vec<Point>> {
+/// Points of a convex polygon across `normal`, each once, in order; `None` for fewer than three. Points within `on` of
+/// each other are one.
+fn around(points: Vec<Point>, normal: Point, on: f64) -> Option<Vec<Point>> {
     let mut all: Vec<Point> = Vec::with_capacity(points.len());
     for p in points {
-        if all.iter().all(|q| (p - *q).length() > ON) {
+        if all.iter().all(|q| (p - *q).length() > on) {
             all.push(p);
         }
     }
@@ -167,7 +166,7 @@ mod tests {
         let axes = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
         for (i, (x, y, z)) in axes.into_iter().enumerate() {
             let cut = plane(Point::new(x, y, z), 0.1);
-            let halves = parts.iter().flat_map(|p| p.cut(&cut, i as u32));
+            let halves = parts.iter().flat_map(|p| p.cut(&cut, i as u32, 1e-6));
             parts = halves.flatten().collect();
         }
         let mut volumes: Vec<f64> = parts.iter().map(Convex::volume).collect();
@@ -181,9 +180,9 @@ mod tests {
     fn a_plane_that_touches_cuts_nothing_off() {
         let cube = Convex::cube(0.5, 9);
         let diagonal = direction(Point::new(1.0, 1.0, 0.0));
-        let [below, above] = cube.cut(&plane(diagonal, 0.5f64.sqrt()), 0);
+        let [below, above] = cube.cut(&plane(diagonal, 0.5f64.sqrt()), 0, 1e-6);
         assert!(below.is_some() && above.is_none());
-        let [below, above] = cube.cut(&plane(diagonal, 0.0), 0);
+        let [below, above] = cube.cut(&plane(diagonal, 0.0), 0, 1e-6);
         let volumes = [below, above].map(|p| p.map_or(0.0, |p| p.volume()));
         assert!(
             volumes.iter().all(|v| (v - 0.5).abs() < 1e-12),

@@ -6,27 +6,49 @@ use crate::meshing::axis::convex_pieces::{MOST_PLANES, Piece, convex_pieces};
 use crate::meshing::certify::largest::Effort;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::geometry::convex::{ON, Plane};
+use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::Variant;
 use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::recipe::polyhedron::{MOST, axis};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::checked_surface::{Surface, cross};
-use crate::meshing::surface::flat_faces::{FlatFaces, flat_faces};
+use crate::meshing::surface::flat_faces::{FLAT, FlatFaces, flat_faces};
 use crate::meshing::watch::Watch;
 
-/// Pieces are used if the medial mesh is off by less than this (longest side 1): what rounding of the source to `f32`
-/// makes of it, some sizes from its origin. Larger, and bodies whose faces are not quite flat count as exact.
-const CLOSE: f64 = 1e-5;
+/// How flat the faces of a body are: at most so many times its rounding ([`Source::rounding`]), tried in order. With the
+/// second, vertices may be moved by a millionth of the size.
+const FLATNESS: [f64; 2] = [1.0, 4.0];
 
-/// The union of the pieces misses the source by this at most (longest side 1): corners this near to a plane are on it, in
-/// cells and in pieces.
-const MISSED: f64 = 2.0 * ON;
+/// Points this many times as far from a plane as a corner of a flat face may be are on it.
+const ON: f64 = 2.0;
+
+/// Pieces are used if the medial mesh is off by less than so many times that. More, and bodies whose faces are not
+/// quite flat count as exact.
+const CLOSE: f64 = 20.0;
 
 impl Source {
     /// The medial axes of convex pieces of the body, if these are within the limit on the count.
     pub fn pieces(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+        for flatness in FLATNESS {
+            let pieces = self.pieces_of(flatness * self.rounding(), watch)?;
+            if pieces.is_some() {
+                return Ok(pieces);
+            }
+        }
+        Ok(None)
+    }
+
+    /// How far rounding to `f32` moves the source's vertices (longest side 1), some sizes from its origin or more.
+    fn rounding(&self) -> f64 {
+        let frame = &self.surface.frame;
+        let far = frame.center.length() / frame.scale;
+        FLAT.max(0.5 * f64::from(f32::EPSILON) * far)
+    }
+
+    /// The same, where corners of flat faces are off their planes by at most `flat`.
+    fn pieces_of(&self, flat: f64, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+        let (on, close) = (ON * flat, CLOSE * flat);
         let surface = &self.surface;
         let Some(angle) = self.limits.creases.angle_of_flat() else {
             return Ok(None);
@@ -35,14 +57,14 @@ impl Source {
             return Ok(None);
         }
         let body = (0..surface.triangles.len()).collect();
-        let Some(faces) = flat_faces(surface, body, 2 * MOST_PLANES, watch)? else {
+        let Some(faces) = flat_faces(surface, body, flat, 2 * MOST_PLANES, watch)? else {
             return Ok(None);
         };
-        let planes = distinct(faces.planes);
+        let (planes, beyond) = distinct(surface, &faces, flat, on);
         if planes.len() > MOST_PLANES {
             return Ok(None);
         }
-        let Some(pieces) = convex_pieces(&planes, &self.tree, watch)? else {
+        let Some(pieces) = convex_pieces(&planes, on, &self.tree, watch)? else {
             return Ok(None);
         };
         let most = self.limits.primitives.unwrap_or(MOST).min(MOST);
@@ -50,10 +72,10 @@ impl Source {
         let mut growth: f64 = 0.0;
         for piece in &pieces {
             let left = most.saturating_sub(draft.faces.len());
-            let (surface, faces) = self.surface_of(piece);
+            let (surface, faces) = self.surface_of(piece, on);
             let corners = |t: usize| surface.corners(t);
             let tree = TriangleTree::new(surface.triangles.len(), corners, watch)?;
-            let limits = (angle.cos(), CLOSE);
+            let limits = (angle.cos(), close);
             let Some(axis) = axis(&surface, &tree, &faces, limits, left, watch)? else {
                 return Ok(None);
             };
@@ -62,8 +84,10 @@ impl Source {
         }
         let count = draft.faces.len();
         let before = self.limits.enclose.then(|| draft.clone());
+        let beside = 2.0 * on + beyond;
         let grown = match self.limits.enclose {
-            true => (growth + MISSED + surface.welded - self.limits.allow_uncovered).max(0.0),
+            // Corners this near to a plane are on it, in cells and in pieces, and source corners beside it.
+            true => (growth + beside + surface.welded - self.limits.allow_uncovered).max(0.0),
             false => 0.0,
         };
         draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
@@ -71,7 +95,7 @@ impl Source {
         // Triangles without area may stick out of the pieces, which are of the others alone.
         let uncovered = f64::from(enclosed.hausdorff.uncovered);
         let is_short = self.limits.enclose && uncovered > self.limits.allow_uncovered;
-        if is_short || enclosed.error() > CLOSE {
+        if is_short || enclosed.error() > close {
             return Ok(None);
         }
         let mut candidate = self.reported(enclosed, watch)?;
@@ -84,10 +108,10 @@ impl Source {
     }
 
     /// The surface of a piece, with the source's own vertices where its corners are at these.
-    fn surface_of(&self, piece: &Piece) -> (Surface, FlatFaces) {
+    fn surface_of(&self, piece: &Piece, on: f64) -> (Surface, FlatFaces) {
         let mut vertices: Vec<Point> = Vec::new();
         let mut index = |p: Point| {
-            let near = |q: &Point| (p - *q).length() <= 2.0 * ON;
+            let near = |q: &Point| (p - *q).length() <= 2.0 * on;
             vertices.iter().position(near).unwrap_or_else(|| {
                 let own = self.surface.vertices.iter().find(|q| near(q));
                 vertices.push(*own.unwrap_or(&p));
@@ -139,19 +163,25 @@ impl Source {
     }
 }
 
-/// Planes less those that are others, of which faces look the other way or are apart.
-fn distinct(planes: Vec<Plane>) -> Vec<Plane> {
+/// Planes of faces less those that are others, of which faces look the other way or are apart: all corners of a face lie
+/// within `on` of them. And how far they do at most, beyond `flat`.
+fn distinct(surface: &Surface, faces: &FlatFaces, flat: f64, on: f64) -> (Vec<Plane>, f64) {
+    let mut corners = vec![Vec::new(); faces.planes.len()];
+    for &(t, face) in &faces.face_of {
+        corners[face as usize].extend(surface.corners(t));
+    }
     let mut all: Vec<Plane> = Vec::new();
-    for plane in planes {
-        let same = |other: &Plane| {
-            [1.0, -1.0].into_iter().any(|sign| {
-                let turned = (other.normal - plane.normal * sign).length();
-                turned <= ON && (other.offset - plane.offset * sign).abs() <= ON
-            })
+    let mut beyond: f64 = 0.0;
+    for (plane, corners) in faces.planes.iter().zip(corners) {
+        let off = |other: &Plane| {
+            let heights = corners.iter().map(|p| other.depth(*p).abs());
+            heights.fold(0.0, f64::max)
         };
-        if !all.iter().any(same) {
-            all.push(plane);
+        let nearest = all.iter().map(off).fold(f64::INFINITY, f64::min);
+        match nearest <= on {
+            true => beyond = beyond.max(nearest - flat),
+            false => all.push(*plane),
         }
     }
-    all
+    (all, beyond)
 }

@@ -1,14 +1,14 @@
 //! The flat faces of a body: its triangles, joined where they lie in one plane.
 
 use crate::error::BuildError;
-use crate::meshing::geometry::bounds::{Point, direction};
+use crate::meshing::geometry::bounds::{Point, direction, perpendicular};
 use crate::meshing::geometry::convex::Plane;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 
 /// Corners of a flat face may be off its plane by this (longest side 1): their rounding to `f32`, at a few
 /// sizes from the origin.
-const FLAT: f64 = 5e-7;
+pub const FLAT: f64 = 5e-7;
 
 /// The faces of a body.
 pub struct FlatFaces {
@@ -38,7 +38,7 @@ pub fn convex_faces(
     most: usize,
     watch: &mut Watch,
 ) -> Result<Option<FlatFaces>, BuildError> {
-    let Some(faces) = flat_faces(surface, body, most, watch)? else {
+    let Some(faces) = flat_faces(surface, body, FLAT, most, watch)? else {
         return Ok(None);
     };
     for (i, &(t, _)) in faces.face_of.iter().enumerate() {
@@ -53,10 +53,11 @@ pub fn convex_faces(
 }
 
 /// The faces that the triangles `body` of a surface make; `None` where there are more than `most`, or where a triangle
-/// is off the plane of its face.
+/// is off the plane of its face by more than `flat` (longest side 1).
 pub fn flat_faces(
     surface: &Surface,
     mut body: Vec<usize>,
+    flat: f64,
     most: usize,
     watch: &mut Watch,
 ) -> Result<Option<FlatFaces>, BuildError> {
@@ -76,7 +77,7 @@ pub fn flat_faces(
             face.first.normal.dot(normal) > 0.0
                 && corners.iter().all(|p| {
                     let turned = face.slack * (*p - face.middle).length();
-                    face.first.depth(*p).abs() <= FLAT + turned
+                    face.first.depth(*p).abs() <= flat + turned
                 })
         };
         let middle = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
@@ -89,7 +90,7 @@ pub fn flat_faces(
                     offset: normal.dot(middle),
                 },
                 middle,
-                slack: FLAT * sides.into_iter().fold(0.0, f64::max) / (2.0 * area(t)),
+                slack: flat * sides.into_iter().fold(0.0, f64::max) / (2.0 * area(t)),
                 area: Point::zero(),
                 moment: Point::zero(),
                 weight: 0.0,
@@ -110,14 +111,47 @@ pub fn flat_faces(
         let offset = normal.dot(face.moment) / face.weight;
         Plane { normal, offset }
     };
-    let planes: Vec<Plane> = faces.iter().map(plane).collect();
+    let mut planes: Vec<Plane> = faces.iter().map(plane).collect();
+    let mut corners = vec![Vec::new(); planes.len()];
     for (i, &(t, own)) in face_of.iter().enumerate() {
         watch.every(i)?;
-        let plane = &planes[own as usize];
-        let is_off = |p: Point| plane.depth(p).abs() > FLAT;
-        if surface.corners(t).into_iter().any(is_off) {
+        corners[own as usize].extend(surface.corners(t));
+    }
+    for (plane, corners) in planes.iter_mut().zip(&corners) {
+        let is_off = |plane: &Plane| corners.iter().any(|p| plane.depth(*p).abs() > flat);
+        if is_off(plane) {
+            *plane = through(corners, plane);
+        }
+        if is_off(plane) {
             return Ok(None);
         }
     }
     Ok(Some(FlatFaces { planes, face_of }))
+}
+
+/// The plane nearest to points by the squares of their distances, given one that is near. Normals of small triangles of
+/// noisy vertices say little; corners that are far apart say more.
+fn through(points: &[Point], near: &Plane) -> Plane {
+    let middle = points.iter().fold(Point::zero(), |sum, p| sum + *p) * (1.0 / points.len() as f64);
+    let u = perpendicular(near.normal);
+    let v = near.normal.cross(u);
+    // The plane `height = a x + b y` over the near one, about the middle.
+    let (mut xx, mut xy, mut yy, mut xh, mut yh) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for p in points {
+        let to = *p - middle;
+        let (x, y, h) = (to.dot(u), to.dot(v), to.dot(near.normal));
+        (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
+        (xh, yh) = (xh + x * h, yh + y * h);
+    }
+    let determinant = xx * yy - xy * xy;
+    if determinant <= 0.0 {
+        return *near;
+    }
+    let a = (xh * yy - yh * xy) / determinant;
+    let b = (yh * xx - xh * xy) / determinant;
+    let normal = direction(near.normal - u * a - v * b);
+    Plane {
+        normal,
+        offset: normal.dot(middle),
+    }
 }

@@ -1,16 +1,20 @@
-//! Seams: an edge of one triangle along which the edges of others run, cut at more vertices (T-junctions).
+//! Seams: an edge of one triangle along which the edges of others run, cut at more vertices (T-junctions), and chains of
+//! edges along each other, cut at different vertices.
 //!
-//! Nothing is missing there but a sliver without area between the edge and the chain of the others. Such
-//! slivers close the surface, and no vertex moves.
+//! Nothing is missing there but a sliver without area between the edge and the chain of the others, or between two
+//! chains. Such slivers close the surface, and no vertex moves.
 
 use crate::error::BuildError;
 use crate::math::fast_hash::{FastMap, FastSet};
-use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::surface::edges::Edges;
 use crate::meshing::watch::Watch;
 
 /// A chain's vertices may be off the edge by this (longest side 1): modellers round to four digits.
 const OFF: f64 = 1e-4;
+
+/// Vertices of two chains along each other, at most.
+const MOST_IN_LOOP: usize = 64;
 
 /// Slivers that close the seams of a surface.
 pub fn seam_slivers(
@@ -49,7 +53,57 @@ pub fn seam_slivers(
         let inner = &chain[..chain.len() - 1];
         slivers.extend(inner.windows(2).map(|link| [link[0], link[1], b]));
     }
+    open.retain(|edge| !closed.contains(&sorted(*edge)));
+    close_loops(vertices, &open, &mut slivers, watch)?;
     Ok(slivers)
+}
+
+/// Adds fans of slivers between open edges that lead back to where they start along one line.
+fn close_loops(
+    vertices: &[Point],
+    open: &[[u32; 2]],
+    slivers: &mut Vec<[u32; 3]>,
+    watch: &mut Watch,
+) -> Result<(), BuildError> {
+    // A sliver passes the edges that it closes in the other direction.
+    let mut onward: FastMap<u32, Vec<u32>> = FastMap::default();
+    for &[to, from] in open {
+        onward.entry(from).or_default().push(to);
+    }
+    let mut closed: FastSet<[u32; 2]> = FastSet::default();
+    for (i, &[second, first]) in open.iter().enumerate() {
+        watch.every(i)?;
+        if closed.contains(&[first, second]) {
+            continue;
+        }
+        let from = vertices[first as usize];
+        let way = direction(vertices[second as usize] - from);
+        let is_on = |v: u32| {
+            let to = vertices[v as usize] - from;
+            (to - way * to.dot(way)).length() <= OFF
+        };
+        let mut around = vec![first, second];
+        let mut here = second;
+        while here != first && around.len() <= MOST_IN_LOOP {
+            let next = onward.get(&here).into_iter().flatten().copied();
+            let mut next = next.filter(|&v| {
+                let is_new = v == first || !around.contains(&v);
+                is_new && !closed.contains(&[here, v]) && is_on(v)
+            });
+            let Some(v) = next.next() else {
+                break;
+            };
+            here = v;
+            around.push(v);
+        }
+        if here != first || around.len() < 4 {
+            continue;
+        }
+        closed.extend(around.windows(2).map(|edge| [edge[0], edge[1]]));
+        let fan = around[1..around.len() - 1].windows(2);
+        slivers.extend(fan.map(|edge| [first, edge[0], edge[1]]));
+    }
+    Ok(())
 }
 
 /// The vertices of open edges that lead from one end of an open edge to the other along it, ends included.
