@@ -170,6 +170,7 @@ impl Job for ToiJob {
             toi: Toi::separated(&self.options),
             counts: Counts::default(),
             deepest: f64::INFINITY,
+            met: None,
         }
     }
 }

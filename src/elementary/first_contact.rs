@@ -238,7 +238,7 @@ pub(crate) fn to_toi<S: Scalar>(
     };
     if let Some((test, b, primitives)) = &earliest.found {
         let t = b.lower.to_f64() as Real;
-        let weights = corner_weights(test.domain, &b.nearest);
+        let weights = corner_weights(test.domain, &b.nearest).map(|w| w as Real);
         let mut spheres = [MedialSphere::default(); 2];
         for ((i, j), w) in test.corners.iter().zip(weights) {
             for (side, k) in [(0, *i), (1, *j)] {
@@ -259,11 +259,10 @@ pub(crate) fn to_toi<S: Scalar>(
 }
 
 /// Weights of the corners at the nearest pair; the fourth only counts in the box.
-fn corner_weights<S: Scalar>(domain: Domain, s: &Nearest<S>) -> [Real; 4] {
+pub(crate) fn corner_weights<S: Scalar>(domain: Domain, s: &Nearest<S>) -> [f64; 4] {
     let (x, y) = (s.alpha.to_f64(), s.beta.to_f64());
-    let w = match domain {
+    match domain {
         Domain::Box => [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y],
         Domain::Triangle => [1.0 - x - y, x, y, 0.0],
-    };
-    w.map(|w| w as Real)
+    }
 }

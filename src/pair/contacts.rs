@@ -15,6 +15,7 @@ use crate::elementary::certificate::ActiveFace;
 use crate::elementary::distance::{
     Ends, crossing, deeper, face, family, is_beyond, nearest_in_family,
 };
+use crate::elementary::first_contact::corner_weights;
 use crate::elementary::test_list::{Domain, ElementaryTest, Share, for_each_test};
 use crate::elementary::{penetration, slab_crossing};
 use crate::math::lane::Vec3;
@@ -292,11 +293,7 @@ impl<'a> PrimitivePair<'a> {
         normal: Vec3<f64>,
         found: &mut Vec<SpherePair>,
     ) {
-        let (x, y) = (s.alpha, s.beta);
-        let w = match test.domain {
-            Domain::Box => [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y],
-            Domain::Triangle => [1.0 - x - y, x, y, 0.0],
-        };
+        let w = corner_weights(test.domain, s);
         let mut spheres = [(Vec3::zero(), 0.0); 2];
         for ((i, j), w) in test.corners.iter().zip(w) {
             for (side, k) in [(0, *i), (1, *j)] {
@@ -310,14 +307,17 @@ impl<'a> PrimitivePair<'a> {
         let point1 = a.0 + normal * a.1;
         let point2 = b.0 - normal * b.1;
         let near = SAME_POINT * (a.1 + b.1);
-        let seen = found.iter().rev().any(|c| {
+        let same = found.iter_mut().rev().find(|c| {
             let along = f64::from(c.points[0].x) - point1.x;
             along * along <= near * near
                 && (Vec3::<f64>::from_vector(c.points[0]) - point1).length_sq() <= near * near
                 && Vec3::<f64>::from_vector(c.normal).dot(normal) >= SAME_PATCH
         });
-        if !seen {
-            found.push(self.sphere_pair(feature, s.distance, normal, [point1, point2]));
+        let pair = self.sphere_pair(feature, s.distance, normal, [point1, point2]);
+        match same {
+            None => found.push(pair),
+            Some(c) if pair.distance < c.distance => *c = pair,
+            Some(_) => {}
         }
     }
 

@@ -2,6 +2,7 @@
 //! as swept spheres. The paper (§4.1) tests each primitive against each; here a best-first search over two trees of
 //! bounding spheres visits the few that can come first.
 
+use super::met::Met;
 use super::outline::Left;
 use super::search::Search;
 use super::volumes::Volumes;
@@ -78,6 +79,8 @@ pub struct ToiResult {
     pub counts: Counts,
     /// How deep primitives were that touched at the start ([`Query::deepest`]).
     pub deepest: f64,
+    /// The spheres that met ([`Query::met`]).
+    pub met: Option<Met>,
 }
 
 /// The query of [`first_contact`], which can be interrupted and resumed, so that it is computed only as far as its
@@ -150,6 +153,7 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
             toi: self.toi(),
             counts: self.counts(),
             deepest: self.deepest(),
+            met: self.met(),
         }
     }
 
@@ -186,6 +190,30 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
             MedialSphere::new(at * s.center, s.radius)
         };
         to_toi(earliest, &self.options, pose)
+    }
+
+    /// The spheres that met, once the query is settled and has found a contact.
+    pub fn met(&self) -> Option<Met> {
+        let search = self.search.as_ref()?;
+        let (_, _, primitives) = search.earliest.found?;
+        let (a, b) = (search.sides.0.body, search.sides.1.body);
+        let whole = [a.primitive(primitives[0]), b.primitive(primitives[1])];
+        let counted = |side: usize| {
+            let (all, share) = whole[side];
+            let Some(of) = search.found else {
+                return (all, share.spheres);
+            };
+            let spheres = [0, 1, 2].map(|k| {
+                let s = of.parts[side].sphere(&all, k);
+                MedialSphere::new(s.center, of.threshold.scale as Real * s.radius)
+            });
+            (spheres, of.parts[side].spheres)
+        };
+        let [(a, m), (b, n)] = [counted(0), counted(1)];
+        Some(Met {
+            spheres: [a, b],
+            counts: [m, n],
+        })
     }
 
     /// The work done so far.

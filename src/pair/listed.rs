@@ -1,8 +1,8 @@
 //! Contacts of two medial meshes from a list of primitive pairs that may be near each other, wherever the list comes from.
 //!
 //! The contacts of a pair of meshes depend on the set of its primitive pairs within the prediction distance, and on the
-//! order in which these are taken: a sphere pair that repeats one taken before, at the same place under the same normal,
-//! is left out. The order is that in which a walk down both trees comes to them (`Step`). It depends on the trees
+//! order in which these are taken: of sphere pairs at the same place under the same normal the first of the nearest is kept.
+//! The order is that in which a walk down both trees comes to them (`Step`). It depends on the trees
 //! alone: what a search rules out is missing in its walk, and moves nothing else. So a list that holds all primitive
 //! pairs within the distance, sorted in this order, has the contacts of [`contacts()`] bit by bit, whatever else it
 //! holds: farther pairs add none.

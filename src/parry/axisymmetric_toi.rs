@@ -58,6 +58,7 @@ pub fn first_contact(
             toi: Toi::bad_input(options),
             counts: Counts::default(),
             deepest: f64::INFINITY,
+            met: None,
         };
     }
     let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
@@ -85,6 +86,7 @@ pub fn first_contact(
         toi: search.answer(bodies, origin),
         counts: search.counts,
         deepest: search.deepest,
+        met: None,
     }
 }
 

@@ -58,6 +58,7 @@ impl Cast<'_> {
                 toi: Toi::bad_input(options),
                 counts: Counts::default(),
                 deepest: f64::INFINITY,
+                met: None,
             });
         }
         self.query(&motions[0], &motions[1], end - start, options, left)
@@ -220,12 +221,17 @@ impl Cast<'_> {
             found.counts.nodes += other.counts.nodes;
             found.counts.tests += other.counts.tests;
             found.toi = earlier(found.toi, other.toi);
+            // Of what met a cylinder or a cone the spheres alone do not tell the contact.
+            if found.toi.lower == other.toi.lower {
+                found.met = None;
+            }
             found.deepest = found.deepest.min(other.deepest);
         }
         if options.initial_contact == InitialContact::Stop
             && let Some(inside) = self.starts_inside(motion1, motion2, options)
         {
             found.toi = inside;
+            found.met = None;
         }
         Ok(found)
     }

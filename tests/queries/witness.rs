@@ -6,8 +6,10 @@ use crate::ccd::motion::{Ball, Motion, Paths, Query};
 use crate::ccd::rng::Rng;
 use crate::ccd::subject::{Subject, single_toi};
 use nalgebra::Vector3;
+use rapier3d_medial::MedialSphere;
 use rapier3d_medial::elementary::ToiStatus;
-use rapier3d_medial::math::Vector;
+use rapier3d_medial::math::{Pose, Real, Vector};
+use rapier3d_medial::pair::{Soup, contacts};
 
 fn wide(v: Vector) -> Vector3<f64> {
     Vector3::new(v.x, v.y, v.z).map(f64::from)
@@ -110,4 +112,62 @@ fn contacts_carry_the_nearest_spheres() {
         }
     }
     assert!(contacts > 2000, "{contacts}");
+}
+
+/// Spheres all over a slab, in steps of a twelfth of its sides.
+fn all_over(slab: &[MedialSphere; 3]) -> Vec<(Vector3<f64>, f64)> {
+    const STEPS: u32 = 12;
+    let mut spheres = Vec::new();
+    for i in 0..=STEPS {
+        for j in 0..=STEPS - i {
+            let shares = [i, j, STEPS - i - j].map(|k| f64::from(k) / f64::from(STEPS));
+            let parts = slab.iter().zip(shares);
+            spheres.push(parts.fold((Vector3::zeros(), 0.0), |sum, (s, share)| {
+                let radius = f64::from(s.radius);
+                (sum.0 + wide(s.center) * share, sum.1 + radius * share)
+            }));
+        }
+    }
+    spheres
+}
+
+/// Of two slabs with a common centre, several elementary tests have their nearest spheres at one point and along one
+/// normal, all the more where corners of a slab have one centre. The deepest of them is told: no sphere of one slab is
+/// nearer to any of the other.
+#[test]
+fn the_deepest_of_contacts_at_one_point_is_told() {
+    let mut rng = Rng::new(31);
+    for k in 0..3000 {
+        let slab = |rng: &mut Rng| {
+            [0; 3].map(|_| {
+                let at = rng.in_ball().cast::<f32>();
+                let radius = rng.log_range(0.01, 0.3) as Real;
+                MedialSphere::new(Vector::new(at.x, at.y, at.z), radius)
+            })
+        };
+        let (a, mut b) = (slab(&mut rng), slab(&mut rng));
+        let place = [0.0, 0.5, rng.range(0.0, 1.0)][k % 3] as Real;
+        b[0].center = a[0].center + (a[1].center - a[0].center) * place;
+        match k / 3 % 4 {
+            0 => {}
+            1 => b[2].center = b[1].center,
+            2 => b = b.map(|s| MedialSphere::new(b[0].center, s.radius)),
+            _ => b[1].center = a[1].center,
+        }
+        let soup = |slab: &[MedialSphere; 3]| {
+            let mut soup = Soup::default();
+            soup.push(slab);
+            soup
+        };
+        let (found, _) = contacts(&soup(&a), &soup(&b), &Pose::IDENTITY, 0.0);
+        let told = found.iter().map(|c| f64::from(c.distance));
+        let told = told.fold(f64::MAX, f64::min);
+        let mut nearest = f64::MAX;
+        for (p, r) in all_over(&a) {
+            for (q, s) in all_over(&b) {
+                nearest = nearest.min((q - p).norm() - r - s);
+            }
+        }
+        assert!(told < nearest + 1.0e-6, "{k}: {told}, but {nearest}");
+    }
 }

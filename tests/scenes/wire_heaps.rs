@@ -31,6 +31,8 @@ pub struct Outcome {
     pub linked: usize,
     /// Steps in which a body was held.
     pub held: usize,
+    /// Distance of the farthest body from the middle of the ground at the end.
+    pub farthest: Real,
     /// Speed of the fastest body at the end.
     pub speed: Real,
 }
@@ -107,7 +109,9 @@ impl Heap {
             linked = linked.max((1..lines.len()).map(with).sum());
         }
         let speeds = world.bodies.iter().map(|(_, b)| b.linvel().length());
+        let distances = world.bodies.iter().map(|(_, b)| b.translation().length());
         Outcome {
+            farthest: distances.fold(0.0, Real::max),
             linked,
             held,
             speed: speeds.fold(0.0, Real::max),

@@ -1,6 +1,6 @@
 //! Where two bodies meet: what their motions are there, and what an impulse there does.
 
-use crate::math::Vector;
+use crate::math::{Real, Vector};
 use crate::rapier::impacts::impulse::{Impact, Material};
 use crate::rapier::impacts::toi_query::Hit;
 use crate::rapier::joints::rows::Twist;
@@ -41,6 +41,12 @@ impl ContactPoint {
     /// Velocity there of body `k`, whose centre of mass moves so.
     pub fn velocity(&self, [linear, angular]: Twist, k: usize) -> Vector {
         linear + angular.cross(self.arms[k])
+    }
+
+    /// The fastest that points of two bodies so far from their centres move against each other, wherever they turn.
+    pub fn greatest_speed(&self, [[v1, w1], [v2, w2]]: [Twist; 2]) -> Real {
+        let [r1, r2] = self.arms.map(|arm| arm.length());
+        (v2 - v1).length() + w1.length() * r1 + w2.length() * r2
     }
 
     /// Velocity of the second body's motion there against the first's.

@@ -1,33 +1,40 @@
 //! Where pairs of colliders met in the impacts of this step. Most of them still touch there when one of the two is
-//! struck again, and the poses tell how far such a contact has opened since.
+//! struck again. The spheres that met tell where and how far that contact has opened since.
 
+use crate::math::Real;
 use crate::math::fast_hash::FastMap;
-use crate::math::{Pose, Real, Vector};
+use crate::pair::met::{Met, Touch};
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 
 type Pair = [usize; 2];
 
-/// The last meeting of a pair.
-#[derive(Clone, Copy)]
-struct Meeting {
+/// Places of one pair that are remembered. Bodies that are wedged in each other touch in several; with one alone, 24 heaps
+/// of 12 creatures freeze 18.5 bodies each in 240 steps, with eight 4.3.
+const PLACES: usize = 8;
+
+/// The meetings of a pair.
+#[derive(Default)]
+struct Meetings {
     /// How often they met.
     count: u32,
-    /// The hit's point in the frames of both bodies.
-    points: [Vector; 2],
-    /// In the frame of the first body.
-    normal: Vector,
-    /// Depth then, a length.
-    depth: Real,
-    /// The primitives that met.
-    primitives: [u32; 2],
+    /// Where, each primitive pair once, the last at the end.
+    places: Vec<Place>,
+}
+
+/// A place where a pair met.
+#[derive(Clone, Copy)]
+struct Place {
+    hit: Hit,
+    /// Signed distance of the spheres that met, a length. Their radii may be reduced, so it is not the hit's depth.
+    distance: Option<Real>,
 }
 
 /// All meetings of a step.
 #[derive(Default)]
 pub struct ImpactHistory {
-    last: FastMap<Pair, Meeting>,
+    of_pair: FastMap<Pair, Meetings>,
     /// Pairs of each body, in the order in which they met first.
     of_body: FastMap<usize, Vec<Pair>>,
 }
@@ -35,27 +42,51 @@ pub struct ImpactHistory {
 impl ImpactHistory {
     /// How often a pair met.
     pub fn count(&self, pair: Pair) -> u32 {
-        self.last.get(&pair).map_or(0, |m| m.count)
+        self.of_pair.get(&pair).map_or(0, |m| m.count)
+    }
+
+    /// When a pair met last, in seconds into the step.
+    fn last_time(&self, pair: Pair) -> Option<Real> {
+        let last = self.of_pair.get(&pair)?.places.last();
+        last.map(|place| place.hit.time)
+    }
+
+    /// Seconds since a pair met last, or since the start of the step, if neither body got another motion since and no
+    /// joint bends its path.
+    pub fn undisturbed(&self, view: &StepView, pair: Pair, time: Real) -> Option<Real> {
+        let since = self.last_time(pair).unwrap_or(0.0);
+        let own = pair.into_iter().all(|k| {
+            let body = &view.bodies[view.parts[k].body];
+            body.kind != Kind::Free || !body.jointed && body.time == since
+        });
+        (own && time > since).then_some(time - since)
     }
 
     /// A pair meets.
     pub fn add(&mut self, view: &StepView, pair: Pair, hit: &Hit) {
-        let poses = poses(view, pair, hit.time);
-        let count = self.count(pair);
-        if count == 0 {
+        let meetings = self.of_pair.entry(pair).or_default();
+        if meetings.count == 0 {
             for k in pair {
                 let body = view.parts[k].body;
                 self.of_body.entry(body).or_default().push(pair);
             }
         }
-        let meeting = Meeting {
-            count: count + 1,
-            points: poses.map(|pose| pose.inverse_transform_point(hit.point)),
-            normal: poses[0].rotation.inverse() * hit.normal,
-            depth: hit.depth,
-            primitives: hit.primitives,
-        };
-        self.last.insert(pair, meeting);
+        meetings.count += 1;
+        let places = &mut meetings.places;
+        places.retain(|place| place.hit.primitives != hit.primitives);
+        if places.len() == PLACES {
+            places.remove(0);
+        }
+        let touch = hit.met.and_then(|met| touch(view, pair, met, hit.time));
+        places.push(Place {
+            hit: *hit,
+            distance: touch.map(|touch| touch.distance),
+        });
+    }
+
+    /// Number of places of a pair that are remembered.
+    pub fn places(&self, pair: Pair) -> usize {
+        self.of_pair.get(&pair).map_or(0, |m| m.places.len())
     }
 
     /// Pairs that any of some bodies met, each once.
@@ -69,32 +100,35 @@ impl ImpactHistory {
         pairs
     }
 
-    /// The contact of a pair that met, at `time` seconds into the step, and how far it has opened since, a
-    /// length, < 0 where it closed; `None` where no normal is known.
-    pub fn contact(&self, view: &StepView, pair: Pair, time: Real) -> Option<(Hit, Real)> {
-        let meeting = self.last.get(&pair)?;
-        let poses = poses(view, pair, time);
-        let [p, q] = [0, 1].map(|k| poses[k] * meeting.points[k]);
-        let normal = poses[0].rotation * meeting.normal;
-        let opened = (q - p).dot(normal);
+    /// The contact of a pair at one of its places, at `time` seconds into the step, and how far it has opened since they met
+    /// there, a length, < 0 where it closed; `None` where that is not known.
+    fn contact(
+        &self,
+        view: &StepView,
+        (pair, place): (Pair, usize),
+        time: Real,
+    ) -> Option<(Hit, Real)> {
+        let Place { hit, distance } = self.of_pair.get(&pair)?.places.get(place)?;
+        let touch = touch(view, pair, hit.met?, time)?;
+        let opened = touch.distance - (*distance)?;
         let hit = Hit {
             time,
-            normal,
-            point: (p + q) * 0.5,
-            depth: meeting.depth - opened,
-            primitives: meeting.primitives,
+            normal: touch.normal,
+            point: touch.point,
+            depth: hit.depth - opened,
+            ..*hit
         };
-        (normal != Vector::ZERO).then_some((hit, opened))
+        Some((hit, opened))
     }
 
-    /// The contact that a pair of dynamic bodies has left, if it is still there and closes so fast that it
-    /// would be met again in this step.
+    /// The contact that a pair of dynamic bodies has left at one of its places, if it is still there and closes so fast that
+    /// it would be met again in this step.
     pub fn closing(
         &self,
         view: &StepView,
         policy: &CcdPolicy,
         frozen: impl Fn(usize) -> bool,
-        pair: Pair,
+        (pair, place): (Pair, usize),
         time: Real,
     ) -> Option<Hit> {
         let bodies = pair.map(|k| view.parts[k].body);
@@ -102,7 +136,7 @@ impl ImpactHistory {
         if !bodies.into_iter().all(free) || bodies.into_iter().all(frozen) {
             return None;
         }
-        let (hit, opened) = self.contact(view, pair, time)?;
+        let (hit, opened) = self.contact(view, (pair, place), time)?;
         let thickness = view.thickness_at(pair, hit.primitives);
         let gap = policy.gap(thickness);
         if opened > gap {
@@ -122,10 +156,8 @@ impl ImpactHistory {
     }
 }
 
-/// Of the bodies of both.
-fn poses(view: &StepView, pair: Pair, time: Real) -> [Pose; 2] {
-    pair.map(|k| {
-        let body = &view.bodies[view.parts[k].body];
-        body.motion_from(time).start
-    })
+/// The contact of what met, where the colliders are at `time` seconds into the step.
+fn touch(view: &StepView, pair: Pair, met: Met, time: Real) -> Option<Touch> {
+    let [first, second] = pair.map(|k| view.motion(k, time).start);
+    met.touch([&first, &second])
 }

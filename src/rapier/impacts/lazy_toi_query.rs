@@ -99,7 +99,7 @@ impl<'m> LazyToiQuery<'m> {
             work.add_since(query.counts(), before);
             match free {
                 Some(share) => QueryProgress::FreeUntil(from + share * seconds),
-                None => Hit::of(&query.toi(), from, seconds).into(),
+                None => Hit::of(&query.toi(), query.met(), from, seconds).into(),
             }
         };
         let query_options = &self.query_options;

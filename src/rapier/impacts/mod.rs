@@ -17,3 +17,4 @@ pub(crate) mod spent_budget;
 pub(crate) mod swept_boxes;
 pub(crate) mod thin_parts;
 pub(crate) mod toi_query;
+pub(crate) mod way_out;

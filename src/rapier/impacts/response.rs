@@ -15,6 +15,7 @@ use crate::rapier::impacts::impact_history::ImpactHistory;
 use crate::rapier::impacts::impulse::{Inertia, Material};
 use crate::rapier::impacts::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
+use crate::rapier::impacts::way_out::way_out;
 use crate::rapier::joints::jointed_bodies::{Joints, settle};
 use crate::rapier::joints::pieces::Pieces;
 use crate::rapier::joints::rows::Twist;
@@ -46,14 +47,6 @@ pub struct Response {
 
 fn bodies(view: &StepView, pair: Pair) -> [usize; 2] {
     pair.map(|k| view.parts[k].body)
-}
-
-/// How fast a hit's bodies are pushed out of each other, a length per second. Thin parts are kept as far from each other as
-/// the least gap.
-fn way_out(view: &StepView, policy: &CcdPolicy, pair: Pair, hit: &Hit) -> Real {
-    let thickness = view.thickness_at(pair, hit.primitives);
-    let sunk = hit.depth - (policy.tuning.push_from * thickness - policy.least_gap());
-    policy.tuning.push * sunk.max(0.0) / policy.dt
 }
 
 impl Response {
@@ -90,8 +83,9 @@ impl Response {
         pair: Pair,
         hit: Hit,
     ) -> Vec<usize> {
-        self.met.add(view, pair, &hit);
         let bodies = bodies(view, pair);
+        let undisturbed = self.met.undisturbed(view, pair, hit.time);
+        self.met.add(view, pair, &hit);
         let leads = [bodies, [bodies[1], bodies[0]]].map(|both| self.leads(view, policy, both));
         for (b, leads) in bodies.into_iter().zip(leads) {
             if self.advance(view, b, hit.time) && !leads {
@@ -105,14 +99,15 @@ impl Response {
                 *events = (*events).max(policy.tuning.max_events + 1);
             }
         } else {
-            changed = self.push(view, policy, rules, pair, &hit);
+            changed = self.push(view, policy, rules, pair, &hit, undisturbed);
         }
         for (both, leads) in [bodies, [bodies[1], bodies[0]]].into_iter().zip(leads) {
             if !leads {
                 self.freeze(view, policy, both, hit.time);
             }
         }
-        self.propagate_impulses(view, policy, rules, hit.time, &mut changed);
+        let curved = (pair, undisturbed);
+        self.propagate_impulses(view, policy, rules, hit.time, curved, &mut changed);
         for b in self.close_joints(view, policy, hit.time, &changed, false) {
             if !changed.contains(&b) {
                 changed.push(b);
@@ -173,25 +168,31 @@ impl Response {
         free
     }
 
-    /// Passes an impact at `time` on through the contacts of `changed`, to which it adds the bodies whose
-    /// motion it changes.
+    /// Passes an impact of a pair at `time` on through the contacts of `changed`, to which it adds the bodies whose
+    /// motion it changes. `undisturbed`: of the pair that was struck, whose other contacts are thrown back as its impact
+    /// was; otherwise they would take back what it gave.
     fn propagate_impulses(
         &mut self,
         view: &mut StepView,
         policy: &CcdPolicy,
         rules: &Rules,
         time: Real,
+        (struck, undisturbed): (Pair, Option<Real>),
         changed: &mut Vec<usize>,
     ) {
         let mut last = changed.clone();
         for _ in 0..ROUNDS {
             let mut next = Vec::new();
-            for pair in self.met.of(&last) {
+            let pairs = self.met.of(&last).into_iter();
+            let all = pairs.flat_map(|pair| (0..self.met.places(pair)).map(move |k| (pair, k)));
+            for (pair, place) in all.collect::<Vec<_>>() {
                 let frozen = |b: usize| self.courses[b].frozen;
-                let Some(hit) = self.met.closing(view, policy, frozen, pair, time) else {
+                let closing = self.met.closing(view, policy, frozen, (pair, place), time);
+                let Some(hit) = closing else {
                     continue;
                 };
-                for b in self.push(view, policy, rules, pair, &hit) {
+                let own = undisturbed.filter(|_| pair == struck);
+                for b in self.push(view, policy, rules, pair, &hit, own) {
                     if self.courses[b].frozen {
                         continue;
                     }
@@ -210,7 +211,7 @@ impl Response {
     }
 
     /// Gives both bodies the impulses of a contact, and what joints tie to them what they hand on; returns all of
-    /// these.
+    /// these. `undisturbed`: as [`ImpactHistory::undisturbed`] says.
     fn push(
         &mut self,
         view: &mut StepView,
@@ -218,6 +219,7 @@ impl Response {
         rules: &Rules,
         pair: Pair,
         hit: &Hit,
+        undisturbed: Option<Real>,
     ) -> Vec<usize> {
         let both = bodies(view, pair);
         let joints = self.joints(view, rules);
@@ -291,7 +293,11 @@ impl Response {
             .as_ref()
             .map_or(own, |system| point.impact(system, material));
         let system = moving.unwrap_or(system);
-        if let Some(j) = impact.impulse(point.relative_motion(), way_out(view, policy, pair, hit)) {
+        let motion = point.relative_motion();
+        let approach = -motion.dot(hit.normal);
+        let fastest = point.greatest_speed(both.map(|b| view.bodies[b].velocity));
+        let out = way_out(view, policy, pair, hit, approach, fastest, undisturbed);
+        if let Some(j) = impact.impulse(motion, out) {
             let change = system.change(&point.wrenches(j));
             for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
                 let motion = &mut view.bodies[b].motion;

@@ -13,6 +13,7 @@ use crate::batch::ToiJob;
 use crate::elementary::{Cores, InitialContact, Paths, Toi, ToiOptions, ToiStatus};
 use crate::math::{Real, Vector};
 use crate::pair::first_contact::{Counts, Query, ToiResult};
+use crate::pair::met::Met;
 use crate::pair::outline::Left;
 use crate::parry::cast::Cast;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
@@ -74,17 +75,20 @@ pub struct Hit {
     pub depth: Real,
     /// The primitives that meet; 0 of a shape that is not medial.
     pub primitives: [u32; 2],
+    /// The spheres of them that meet, where there are such.
+    pub met: Option<Met>,
 }
 
 impl Hit {
     /// The hit of a query over `seconds` from `time` on; `None` if it found none.
-    pub fn of(toi: &Toi, time: Real, seconds: Real) -> Option<Self> {
+    pub fn of(toi: &Toi, met: Option<Met>, time: Real, seconds: Real) -> Option<Self> {
         (toi.status != ToiStatus::Separated).then(|| Self {
             time: time + toi.lower * seconds,
             normal: toi.normal,
             point: (toi.points[0] + toi.points[1]) * 0.5,
             depth: (toi.points[0] - toi.points[1]).dot(toi.normal),
             primitives: toi.primitives,
+            met,
         })
     }
 }
@@ -299,7 +303,8 @@ impl CcdPolicy<'_> {
             let found = known.or_else(asked)?;
             work.begin(&motions, options);
             work.add(found.counts);
-            Some((Hit::of(&found.toi, time, seconds), found.deepest))
+            let hit = Hit::of(&found.toi, found.met, time, seconds);
+            Some((hit, found.deepest))
         };
         let (hit, deepest) = query(&query_options.first, known)?;
         let goes_on = hit.is_none_or(|h| h.time > time);
@@ -361,6 +366,7 @@ fn ask(
         toi.points.swap(0, 1);
         toi.spheres.swap(0, 1);
         toi.primitives.swap(0, 1);
+        found.met = found.met.map(|met| met.flipped());
     }
     Some(found)
 }
