@@ -51,6 +51,9 @@ pub struct Findings {
     pub triangles_hidden: usize,
     /// Patches of which all triangles lie entirely inside a solid.
     pub patches_hidden: usize,
+    /// Whether the surface is too tangled to tell in reasonable time what of it lies inside a solid, to 0.6 % of the
+    /// longest side: larger pieces count as seen if a part of them is, which may overstate the error.
+    pub boundary_coarse: bool,
     /// Whether solid patches overlap, or one passes through itself.
     pub overlapping: bool,
     /// How the mass properties were computed.
@@ -137,6 +140,13 @@ impl Findings {
             notes.push("sheets count nothing in the mass properties: they have no volume".into());
         }
         notes
+    }
+
+    /// That the boundary of the solid is coarse.
+    pub(crate) fn coarse_in_words(&self) -> Option<String> {
+        let text = "the surface is so tangled that only large pieces of it were tested for lying inside solid matter: \
+                    the error may be overstated";
+        self.boundary_coarse.then(|| text.into())
     }
 
     /// What is hidden inside matter: `share` of the area.

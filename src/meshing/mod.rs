@@ -119,6 +119,7 @@ impl MedialMesh {
         if hidden > 0.0 {
             notes.push(findings.hidden_in_words(hidden / surface.area));
         }
+        notes.extend(findings.coarse_in_words());
         notes.extend(candidate.notes);
         let frame = surface.frame;
         let report = BuildReport {

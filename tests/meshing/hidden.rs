@@ -3,6 +3,7 @@
 use crate::broken::*;
 use crate::combined::combined;
 use crate::meshes::*;
+use crate::oracle::Random;
 use crate::planted::uncovered;
 use parry3d::math::Vector;
 use rapier3d_medial::meshing::hausdorff::hausdorff;
@@ -152,4 +153,22 @@ fn a_mesh_in_hundreds_of_pieces_is_fitted() {
         report.longest_side * 1e-6,
     );
     assert!(out == 0 && points > 100, "{out} of {points} uncovered");
+}
+
+/// A closed surface whose vertices are anywhere: all of its triangles are inside it here and outside there. Cut into
+/// pieces of .6 % of the size to tell them apart it is millions, each with thousands of triangles to look at; the
+/// builder takes larger pieces, and says so.
+#[test]
+fn a_surface_of_noise_is_built() {
+    let mut random = Random(7);
+    let mut noise = torus(0.5, 0.2, 14, 6);
+    noise.vertices.fill_with(|| random.vector(0.5));
+    let (medial, report) = built(&noise, 100, Quality::Fast);
+    assert!(report.findings.overlapping && report.findings.boundary_coarse);
+    let said = report.notes.iter().any(|note| note.contains("tangled"));
+    assert!(said, "{:?}", report.notes);
+    let (points, out) = uncovered(&medial, &noise, report.longest_side, 1e-6);
+    assert!(points > 20 && out == 0, "{out} of {points} uncovered");
+    let (_, report) = built(&cube(), 100, Quality::Fast);
+    assert!(!report.findings.boundary_coarse);
 }

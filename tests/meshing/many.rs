@@ -99,9 +99,14 @@ fn hexagon(radius: f32, height: f32) -> Mesh {
     prism(&outline, height, &cap)
 }
 
-/// Moves vertices by a thousandth of the size.
+/// Moves vertices by a thousandth of the size of what triangles use.
 fn shaken(mut mesh: Mesh, random: &mut Random) -> Mesh {
-    let by = 1e-3 * mesh.longest_side();
+    let corners = mesh.indices.iter().flatten();
+    let used = Mesh {
+        vertices: corners.map(|&v| mesh.vertices[v as usize]).collect(),
+        indices: Vec::new(),
+    };
+    let by = 1e-3 * used.longest_side();
     for v in &mut mesh.vertices {
         *v += random.vector(1.0) * by;
     }

@@ -219,6 +219,12 @@ impl TriangleTree {
     /// How often the surface winds round `p`: 1 inside a closed outward surface, 0 outside, about
     /// the share of directions that hit it where it is open.
     pub fn winding(&self, p: Point) -> f64 {
+        self.winding_counted(p, &mut 0)
+    }
+
+    /// As [`Self::winding`]; adds 1 to `work`, and the number of triangles that were near enough to be looked at.
+    pub fn winding_counted(&self, p: Point, work: &mut usize) -> f64 {
+        *work += 1;
         let mut solid_angle = 0.0;
         // Halving keeps the depth below 32, and each level leaves one node waiting.
         let mut stack = [0u32; 64];
@@ -235,6 +241,7 @@ impl TriangleTree {
             }
             let first = node.first as usize;
             if node.count > 0 {
+                *work += node.count as usize;
                 for i in first..first + node.count as usize {
                     if self.counts[i] != 0 {
                         let angle = solid_angle_of(p, &self.nearest.corners()[i]);

@@ -24,8 +24,22 @@ const INSIDE: f64 = 0.5;
 const FINEST: f64 = 0.006;
 const LARGE: f64 = 0.08;
 
+/// Triangles and points that winding numbers may look at, and pieces that may be kept, before larger pieces are tried:
+/// so many, and so many for each triangle. The first is a few seconds' work, an eighth of which bodies of
+/// overlapping parts took at most; the second lets meshes of very many triangles look at each.
+const MOST_WORK: [usize; 2] = [100_000_000, 4_000];
+const MOST_PIECES: [usize; 2] = [200_000, 2];
+
+/// How much larger pieces become at least and at most at a time, and the largest length in the builder's frame.
+const COARSER: f64 = 2.0;
+const COARSEST: f64 = 16.0;
+const SPAN: f64 = 2.0;
+
 /// Share of the area that is lost by rounding.
 const ROUNDING: f64 = 1e-9;
+
+/// A piece of a triangle, and the triangle.
+type Piece = ([Point; 3], usize);
 
 /// What of a surface is not hidden inside matter.
 pub struct Boundary {
@@ -52,42 +66,18 @@ pub fn solid_boundary(
     if !hides && surface.lids.is_empty() {
         return Ok(None);
     }
-    let mut pieces: Vec<([Point; 3], usize)> = Vec::new();
-    let mut waiting = Vec::new();
+    let whole = || surface.all_corners().enumerate().map(|(t, c)| (c, t));
+    let sorted = match hides {
+        true => sort_out(surface, tree, findings, watch)?,
+        false => None,
+    };
+    let pieces = sorted.unwrap_or_else(|| whole().collect());
     let patches = surface.patch_of.iter().max().map_or(0, |&p| p as usize + 1);
     let mut is_seen = vec![false; patches];
-    let mut triangles = 0;
-    for (t, corners) in surface.all_corners().enumerate() {
-        let normal = surface.normals[t];
-        let before = pieces.len();
-        match hides {
-            true => waiting.push(corners),
-            false => pieces.push((corners, t)),
-        }
-        while let Some(piece) = waiting.pop() {
-            watch.again()?;
-            let longest_sq = longest_edge_sq(&piece);
-            let middle = middle(&piece);
-            let mut points = std::iter::once(middle).chain(probes(&piece, middle));
-            if longest_sq > LARGE * LARGE {
-                waiting.extend(halve(piece));
-            } else if longest_sq <= FINEST * FINEST {
-                if !points.all(|p| is_hidden(tree, p, normal)) {
-                    pieces.push((piece, t));
-                }
-            } else {
-                let here = is_hidden(tree, middle, normal);
-                match points.all(|p| is_hidden(tree, p, normal) == here) {
-                    true if here => {}
-                    true => pieces.push((piece, t)),
-                    false => waiting.extend(halve(piece)),
-                }
-            }
-        }
-        match pieces.len() > before {
-            true => is_seen[surface.patch_of[t] as usize] = true,
-            false => triangles += 1,
-        }
+    let mut triangles = surface.triangles.len();
+    for same in pieces.chunk_by(|a, b| a.1 == b.1) {
+        triangles -= 1;
+        is_seen[surface.patch_of[same[0].1] as usize] = true;
     }
     let boundary = surface.of_pieces(&pieces);
     let added: f64 = surface.lids.iter().map(|lid| area(&lid.0)).sum();
@@ -113,9 +103,111 @@ pub fn solid_boundary(
     }))
 }
 
-/// Whether there is matter behind a point of the surface and before it.
-fn is_hidden(tree: &TriangleTree, p: Point, normal: Point) -> bool {
-    tree.winding(p + normal * OFF) > INSIDE && tree.winding(p - normal * OFF) > INSIDE
+/// The pieces of triangles that are not hidden, in the order of the triangles. A surface so tangled that most of its
+/// pieces are partly hidden is cut into larger ones; `None` if that takes too much work too.
+fn sort_out(
+    surface: &Surface,
+    tree: &TriangleTree,
+    findings: &mut Findings,
+    watch: &mut Watch,
+) -> Result<Option<Vec<Piece>>, BuildError> {
+    let mut coarser = 1.0;
+    loop {
+        let mut cut = Cut::new(tree, surface.triangles.len(), coarser);
+        let mut area_done = 0.0;
+        for (t, corners) in surface.all_corners().enumerate() {
+            if !cut.triangle(t, corners, surface.normals[t], watch)? {
+                break;
+            }
+            area_done += area(&corners);
+        }
+        if !cut.is_exhausted() {
+            findings.boundary_coarse = coarser > 1.0;
+            return Ok(Some(cut.pieces));
+        }
+        if coarser * LARGE > SPAN {
+            findings.boundary_coarse = true;
+            return Ok(None);
+        }
+        // The work on pieces of one size is as the area over its square.
+        let done = area_done / surface.area;
+        coarser *= (COARSER / done.sqrt()).clamp(COARSER, COARSEST);
+    }
+}
+
+/// The triangles of a surface, cut up to a size of pieces and a budget.
+struct Cut<'a> {
+    tree: &'a TriangleTree,
+    finest: f64,
+    large: f64,
+    pieces: Vec<Piece>,
+    waiting: Vec<[Point; 3]>,
+    /// Points and triangles that winding numbers have looked at.
+    work: usize,
+    /// The most of both.
+    most_pieces: usize,
+    most_work: usize,
+}
+
+impl<'a> Cut<'a> {
+    fn new(tree: &'a TriangleTree, triangles: usize, coarser: f64) -> Self {
+        let most = |[fixed, of_each]: [usize; 2]| fixed + of_each * triangles;
+        Self {
+            tree,
+            finest: FINEST * coarser,
+            large: LARGE * coarser,
+            pieces: Vec::new(),
+            waiting: Vec::new(),
+            work: 0,
+            most_pieces: most(MOST_PIECES),
+            most_work: most(MOST_WORK),
+        }
+    }
+
+    fn is_exhausted(&self) -> bool {
+        self.work > self.most_work || self.pieces.len() > self.most_pieces
+    }
+
+    /// Keeps what is not hidden of a triangle; `false` if the budget ends before.
+    fn triangle(
+        &mut self,
+        t: usize,
+        corners: [Point; 3],
+        normal: Point,
+        watch: &mut Watch,
+    ) -> Result<bool, BuildError> {
+        self.waiting.push(corners);
+        while let Some(piece) = self.waiting.pop() {
+            watch.again()?;
+            if self.is_exhausted() {
+                return Ok(false);
+            }
+            let longest_sq = longest_edge_sq(&piece);
+            let middle = middle(&piece);
+            let mut points = std::iter::once(middle).chain(probes(&piece, middle));
+            if longest_sq > self.large * self.large {
+                self.waiting.extend(halve(piece));
+            } else if longest_sq <= self.finest * self.finest {
+                if !points.all(|p| self.is_hidden(p, normal)) {
+                    self.pieces.push((piece, t));
+                }
+            } else {
+                let here = self.is_hidden(middle, normal);
+                match points.all(|p| self.is_hidden(p, normal) == here) {
+                    true if here => {}
+                    true => self.pieces.push((piece, t)),
+                    false => self.waiting.extend(halve(piece)),
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    /// Whether there is matter behind a point of the surface and before it.
+    fn is_hidden(&mut self, p: Point, normal: Point) -> bool {
+        let mut is_inside = |p: Point| self.tree.winding_counted(p, &mut self.work) > INSIDE;
+        is_inside(p + normal * OFF) && is_inside(p - normal * OFF)
+    }
 }
 
 fn area(&[a, b, c]: &[Point; 3]) -> f64 {

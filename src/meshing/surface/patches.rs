@@ -39,6 +39,10 @@ const INSIDE_OUT: f64 = 0.3;
 /// An open patch with less than this behind it, on average, is a sheet: a card has ½.
 const ENCLOSING: f64 = 0.7;
 
+/// One that is left with less than this, once no patch is below [`ENCLOSING`], is a sheet too: between two plates at a
+/// third of their width there is .75 on average, behind what encloses something nearly 1.
+const ENCLOSING_LAST: f64 = 0.8;
+
 /// More than this behind the surface: it is inside something else.
 const BURIED: f64 = 1.3;
 
@@ -100,7 +104,10 @@ pub fn judge(
             }
             continue;
         }
-        let sheets = court.sheets(&behind, tree, watch)?;
+        let mut sheets = court.sheets(&behind, ENCLOSING, tree, watch)?;
+        if sheets.is_empty() {
+            sheets = court.sheets(&behind, ENCLOSING_LAST, tree, watch)?;
+        }
         if sheets.is_empty() {
             findings.overlapping = behind.overlapping;
             break;
@@ -191,10 +198,11 @@ impl Court<'_> {
         Ok(behind)
     }
 
-    /// Patches that turn out to be sheets.
+    /// Patches that turn out to be sheets: what is behind them, on average, is below `enclosing`.
     fn sheets(
         &self,
         behind: &Behind,
+        enclosing: f64,
         tree: &TriangleTree,
         watch: &mut Watch,
     ) -> Result<Vec<usize>, BuildError> {
@@ -202,7 +210,7 @@ impl Court<'_> {
         for (p, patch) in self.patches.list.iter().enumerate() {
             let doubtful = self.counts[p] != 0 && (!patch.closed || patch.twisted);
             let mean = behind.exposed_mean(self.group[p]);
-            sheets[p] = doubtful && mean.is_none_or(|m| m < ENCLOSING);
+            sheets[p] = doubtful && mean.is_none_or(|m| m < enclosing);
         }
         for opening in &self.openings {
             watch.at(0.0)?;
