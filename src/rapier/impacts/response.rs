@@ -225,11 +225,8 @@ impl Response {
         let joints = self.joints(view, rules);
         let [c1, c2] = pair.map(|k| &rules.colliders[view.parts[k].handle]);
         let material = Material::of(c1, c2);
-        let dominated = |b: usize| {
-            let other = both[usize::from(b == both[0])];
-            both.contains(&b) && view.bodies[b].dominance > view.bodies[other].dominance
-        };
-        let strong = both.map(dominated);
+        let dominance = both.map(|b| view.bodies[b].dominance);
+        let strong = [dominance[0] > dominance[1], dominance[1] > dominance[0]];
         for b in joints.tied_to(view, &both) {
             self.advance(view, b, hit.time);
         }
@@ -268,10 +265,8 @@ impl Response {
         let own = point.impact(&system, material);
         // What the two would do without their joints.
         let alone = |k: usize| {
-            let wrench = point.wrench(k, hit.normal);
-            point
-                .velocity(inertia(view, both[k], false).apply(wrench), k)
-                .dot(hit.normal)
+            let change = inertia(view, both[k], false).apply(point.wrench(k, hit.normal));
+            point.velocity(change, k).dot(hit.normal)
         };
         if own.resistance() < HELD * (alone(0) + alone(1)) {
             let moved = system.bodies;
