@@ -297,11 +297,18 @@ fn units_from_a_thousandth_to_a_hundred_thousand() {
 fn combinations(seeds: std::ops::Range<u64>) {
     for seed in seeds {
         let mesh = combined(seed);
-        let mut options = BuildOptions::default();
-        options.quality = Quality::Fast;
-        options.primitives = Some(PRIMITIVES);
-        let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
-        let (medial, report) = built.unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        let build = |primitives: usize| {
+            let mut options = BuildOptions::default();
+            options.quality = Quality::Fast;
+            options.primitives = Some(primitives);
+            let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
+            built.unwrap_or_else(|e| panic!("seed {seed}: {e}"))
+        };
+        let (mut medial, mut report) = build(PRIMITIVES);
+        // Loose pieces that are more than the primitives get one each.
+        if report.findings.patches > PRIMITIVES {
+            (medial, report) = build(report.findings.patches);
+        }
         let side = report.longest_side;
         let magnitude = mesh.vertices.iter().map(|v| v.abs().max_element());
         let rounding = 4.0 * f32::EPSILON * magnitude.fold(side, f32::max);
