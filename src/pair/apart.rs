@@ -7,7 +7,7 @@ use crate::elementary::test_list::ElementaryTest;
 use crate::math::lane::Vec3;
 
 /// Centre at the start of the piece, chord, and radius grown by the sagitta.
-type Ball = (Vec3<f64>, Vec3<f64>, f64);
+pub(super) type Ball = (Vec3<f64>, Vec3<f64>, f64);
 
 /// Spheres of one primitive, or of one side of an elementary test, over a piece: position at the
 /// start, chord, and radius grown by the sagitta; the last again where there are fewer than four.
@@ -16,7 +16,7 @@ pub(super) struct Balls {
     spheres: [Ball; 4],
     len: usize,
     /// Bound of the coordinates in play.
-    size: f64,
+    pub(super) size: f64,
 }
 
 impl Balls {
@@ -90,7 +90,7 @@ impl Balls {
         mixed
     }
 
-    fn all(&self) -> &[Ball] {
+    pub(super) fn all(&self) -> &[Ball] {
         &self.spheres[..self.len]
     }
 
@@ -104,7 +104,7 @@ impl Balls {
     }
 
     /// The outer normal, of any length, of that face of a slab that looks along `y` at a time; `None` if there is none.
-    fn face(&self, t: f64, y: Vec3<f64>) -> Option<Vec3<f64>> {
+    pub(super) fn face(&self, t: f64, y: Vec3<f64>) -> Option<Vec3<f64>> {
         let [a, b, c, _] = &self.spheres;
         (self.len == 3)
             .then(|| face(self.edges(t), [b.2 - a.2, c.2 - a.2], y))
@@ -112,7 +112,7 @@ impl Balls {
     }
 
     /// The plane of the first three centres at a time.
-    fn plane(&self, t: f64) -> Plane {
+    pub(super) fn plane(&self, t: f64) -> Plane {
         let edges = self.edges(t);
         let used = [self.len > 1, self.len > 2];
         let inverse = [0, 1].map(|k| match (used[k], edges[k].length_sq()) {
@@ -139,13 +139,13 @@ impl Balls {
         ends
     }
 
-    fn middle(&self, t: f64) -> Vec3<f64> {
+    pub(super) fn middle(&self, t: f64) -> Vec3<f64> {
         let sum = (self.all().iter()).fold(Vec3::zero(), |m, s| m + s.0 + s.1 * t);
         sum * (1.0 / self.len as f64)
     }
 
     /// Radius of a ball round the middle that is within the hull.
-    fn core(&self) -> f64 {
+    pub(super) fn core(&self) -> f64 {
         self.all().iter().map(|s| s.2).sum::<f64>() / self.len as f64
     }
 }
@@ -266,37 +266,9 @@ fn across(a: [Vec3<f64>; 2], b: [Vec3<f64>; 2], y: Vec3<f64>) -> [Option<Vec3<f6
     ]
 }
 
-/// A lower bound of the distance of two hulls at rest; as soon as it is more than `enough` no better one is looked for.
-pub(super) fn gap([a, b]: [&Balls; 2], enough: f64) -> f64 {
-    let rounding = 64.0 * f64::EPSILON * (a.size + b.size);
-    let y = b.middle(0.0) - a.middle(0.0);
-    // No direction says more.
-    if y.length() - a.core() - b.core() <= enough {
-        return f64::MIN;
-    }
-    let along = |n: Vec3<f64>| {
-        let length = n.length();
-        if length <= 0.0 {
-            return f64::MIN;
-        }
-        let far = a.all().iter().map(|s| n.dot(s.0) + length * s.2);
-        let near = b.all().iter().map(|s| n.dot(s.0) - length * s.2);
-        let gap = near.fold(f64::MAX, f64::min) - far.fold(f64::MIN, f64::max);
-        gap / length - rounding
-    };
-    let mut most = along(between([a, b], 0.0, y));
-    // Flat faces keep slabs apart that lie side by side.
-    for n in [a.face(0.0, y), b.face(0.0, -y).map(|n| -n)] {
-        if most > enough {
-            break;
-        }
-        most = n.map_or(most, |n| most.max(along(n)));
-    }
-    most
-}
-
 /// A point in the plane of a hull's centres, by its shares of two edges.
-struct Plane {
+#[derive(Clone, Copy)]
+pub(super) struct Plane {
     edges: [Vec3<f64>; 2],
     /// 1 over the squared lengths; 0 where there is none.
     inverse: [f64; 2],
@@ -327,8 +299,12 @@ const ROUNDS: usize = 2;
 
 /// From one of two hulls to the other at a time, about as between the nearest points of the polygons of their centres,
 /// found by solving for one parameter after the other. `y`: from middle to middle.
-fn between([a, b]: [&Balls; 2], t: f64, mut y: Vec3<f64>) -> Vec3<f64> {
-    let (mut first, mut second) = (a.plane(t), b.plane(t));
+fn between([a, b]: [&Balls; 2], t: f64, y: Vec3<f64>) -> Vec3<f64> {
+    approached(a.plane(t), b.plane(t), y)
+}
+
+/// The same, of their planes.
+pub(super) fn approached(mut first: Plane, mut second: Plane, mut y: Vec3<f64>) -> Vec3<f64> {
     for _ in 0..ROUNDS {
         y = first.approach(y);
         y = -second.approach(-y);

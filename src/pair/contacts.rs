@@ -30,6 +30,14 @@ const SAME_PATCH: f64 = 0.985;
 /// Squared sine under which two cones count as parallel for a second contact point (6°).
 const PARALLEL_SINE_SQ: f64 = 0.01;
 
+/// Times that a node pair is split before directions are tried on it again, once they have failed on [`FAILED`] of the inner
+/// nodes, and on three of four. In threads, whose ridges lie in each other's grooves, directions keep few nodes apart but
+/// most primitives: with 1 a nut and its bolt take 7,300 tries, with 3 from the start 5,000.
+const SPLITS: u8 = 3;
+
+/// Failures after which that is done: what are fewer costs less than it may save.
+const FAILED: u32 = 256;
+
 /// Two contact points closer than this, in units of the radius sum, are one: a sphere shared by two
 /// cones is reported by both.
 const SAME_POINT: f64 = 1.0e-4;
@@ -73,13 +81,16 @@ pub fn contacts(
     let Some(near) = outline::near(body1, body2, |p| place.point(p), prediction) else {
         return (found, counts);
     };
-    let mut stack: Vec<[u32; 2]> = Vec::new();
+    // With the splits since directions were tried.
+    let mut stack: Vec<([u32; 2], u8)> = Vec::new();
     for i in 0..body1.roots() {
-        stack.extend((0..body2.roots()).map(|j| [i, j]));
+        stack.extend((0..body2.roots()).map(|j| ([i, j], SPLITS)));
     }
     let margin = f64::from(prediction);
     let mut hulls = Hulls::new((body1, body2), &place);
-    while let Some([i, j]) = stack.pop() {
+    // Inner nodes that directions kept apart, and that they did not.
+    let mut inner = [0; 2];
+    while let Some(([i, j], splits)) = stack.pop() {
         if !near.meet([i, j]) {
             continue;
         }
@@ -94,16 +105,30 @@ pub fn contacts(
         }
         let step = Step::new([body1.below(i), body2.below(j)], [ra, rb]);
         let is_leaf = matches!(step, Step::Leaves(_));
-        if (is_leaf || !near.is_exact()) && hulls.gap([i, j], margin) > margin {
+        let [kept, split] = inner;
+        let is_idle = split >= FAILED && 3 * kept <= split && margin >= 0.0;
+        let is_tried = is_leaf || !(near.is_exact() || is_idle && splits < SPLITS);
+        let is_apart = is_tried && hulls.gap([i, j], margin) > margin;
+        inner[usize::from(!is_apart)] += u32::from(is_tried && !is_leaf);
+        if is_apart {
             continue;
         }
+        let splits = if is_tried {
+            1
+        } else {
+            splits.saturating_add(1)
+        };
         match step {
             Step::Leaves(primitives) => {
                 let pair = PrimitivePair::new(body1, body2, primitives, &place);
                 pair.contacts(margin, &mut found, &mut counts);
             }
-            Step::First([c, d]) => stack.extend([[d, j], [c, j]]),
-            Step::Second([c, d]) => stack.extend([[i, d], [i, c]]),
+            Step::First(children) => {
+                stack.extend(children.map(|c| ([c, j], splits)).into_iter().rev())
+            }
+            Step::Second(children) => {
+                stack.extend(children.map(|c| ([i, c], splits)).into_iter().rev())
+            }
         }
     }
     (found, counts)

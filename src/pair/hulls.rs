@@ -1,12 +1,63 @@
 //! The hulls of the nodes of two bodies at fixed poses, each placed once, and a lower bound of the distance of two.
 
-use super::apart::{Balls, gap};
+use super::apart::{Balls, Plane, approached};
 use super::placement::Placement;
 use super::volumes::Volumes;
 use crate::math::Vector;
 use crate::math::lane::Vec3;
 use crate::medial::MedialSphere;
 use crate::medial::tree::Below;
+
+/// A hull at rest, with what each look at it would compute again.
+struct Resting {
+    balls: Balls,
+    middle: Vec3<f64>,
+    core: f64,
+    plane: Plane,
+}
+
+impl Resting {
+    fn new(balls: Balls) -> Self {
+        Self {
+            middle: balls.middle(0.0),
+            core: balls.core(),
+            plane: balls.plane(0.0),
+            balls,
+        }
+    }
+}
+
+/// A lower bound of the distance of two hulls at rest; as soon as it is more than `enough` no better one is looked for.
+fn gap([first, second]: [&Resting; 2], enough: f64) -> f64 {
+    let (a, b) = (&first.balls, &second.balls);
+    let rounding = 64.0 * f64::EPSILON * (a.size + b.size);
+    let y = second.middle - first.middle;
+    // No direction says more.
+    if y.length() - first.core - second.core <= enough {
+        return f64::MIN;
+    }
+    let along = |n: Vec3<f64>| {
+        let length = n.length();
+        if length <= 0.0 {
+            return f64::MIN;
+        }
+        let far = a.all().iter().map(|s| n.dot(s.0) + length * s.2);
+        let near = b.all().iter().map(|s| n.dot(s.0) - length * s.2);
+        let gap = near.fold(f64::MAX, f64::min) - far.fold(f64::MIN, f64::max);
+        gap / length - rounding
+    };
+    let mut most = along(approached(first.plane, second.plane, y));
+    // Flat faces keep slabs apart that lie side by side.
+    if most <= enough {
+        for n in [a.face(0.0, y), b.face(0.0, -y).map(|n| -n)] {
+            if most > enough {
+                break;
+            }
+            most = n.map_or(most, |n| most.max(along(n)));
+        }
+    }
+    most
+}
 
 /// Hulls of two bodies' nodes in the frame of the first.
 pub(super) struct Hulls<'a, A, B> {
@@ -20,7 +71,7 @@ pub(super) struct Hulls<'a, A, B> {
 struct Placed {
     /// One more than the place of each node's hull; 0 where it was not asked for.
     places: Vec<u32>,
-    hulls: Vec<Balls>,
+    hulls: Vec<Resting>,
 }
 
 impl Placed {
@@ -33,7 +84,7 @@ impl Placed {
             let (spheres, len) = body.hull(node);
             let ball = |s: &MedialSphere| (place(s.center), Vec3::zero(), f64::from(s.radius));
             let hull = Balls::new(spheres[..len].iter().map(ball), 0.0);
-            self.hulls.push(hull);
+            self.hulls.push(Resting::new(hull));
             self.places[at] = self.hulls.len() as u32;
         }
         self.places[at] - 1
