@@ -95,50 +95,74 @@ impl Net {
         changed
     }
 
-    /// Steps the net; the fastest ring on the way, m/s, and milliseconds of a step.
-    fn run(&mut self, steps: usize) -> (Real, f64) {
+    /// Heavy loads hang on the first links: rapier's contacts, made stiff enough for them.
+    fn with_stiff_contacts(mut self) -> Self {
+        let parameters = &mut self.world.integration_parameters;
+        parameters.contact_softness.natural_frequency = 120.0;
+        parameters.num_solver_iterations = 12;
+        self
+    }
+
+    fn run(&mut self, steps: usize) -> Ran {
         let mut pipeline = MedialPipeline::default();
-        let mut fastest: Real = 0.0;
+        let mut ran = Ran::default();
         let clock = cpu_time::ProcessTime::now();
         for _ in 0..steps {
-            pipeline.step(&mut self.world);
+            ran.frozen += pipeline.step(&mut self.world).frozen;
             let speeds = self.world.bodies.iter().map(|(_, b)| b.linvel().length());
-            fastest = speeds.fold(fastest, Real::max);
+            ran.fastest = speeds.fold(ran.fastest, Real::max);
         }
-        (
-            fastest,
-            1.0e3 * clock.elapsed().as_secs_f64() / steps as f64,
-        )
+        ran.milliseconds = 1.0e3 * clock.elapsed().as_secs_f64() / steps as f64;
+        ran.changed = self.changed();
+        ran
     }
+
+    /// Runs so many hundreds of steps; no link may change in any of them.
+    fn stays_linked(&mut self, hundreds: usize) {
+        let rings = self.rings.len();
+        for k in 1..=hundreds {
+            let ran = self.run(100);
+            println!("net of {rings} rings, step {k}00: {ran:?}");
+            assert_eq!(ran.changed, 0);
+        }
+    }
+}
+
+/// What came of some steps.
+#[derive(Debug, Default)]
+struct Ran {
+    /// Links that changed since the start.
+    changed: usize,
+    /// Speed of the fastest ring, m/s.
+    fastest: Real,
+    /// Bodies stopped after too many impacts, summed over the steps.
+    frozen: usize,
+    /// CPU time of a step.
+    milliseconds: f64,
 }
 
 /// 153 rings: no link changes, and nothing is faster than by falling through the net's depth.
 #[test]
 fn a_chain_net_stays_linked() {
     let mut net = Net::new(7, 8);
-    let (fastest, milliseconds) = net.run(200);
-    let changed = net.changed();
-    println!(
-        "net of {} rings: {changed} links changed, fastest {fastest} m/s, {milliseconds:.2} ms of CPU a step",
-        net.rings.len()
-    );
-    assert_eq!(changed, 0);
-    assert!(fastest < 15.0, "{fastest} m/s");
+    let ran = net.run(200);
+    println!("net of {} rings: {ran:?}", net.rings.len());
+    assert_eq!(ran.changed, 0);
+    assert!(ran.fastest < 15.0, "{} m/s", ran.fastest);
 }
 
+/// The corners carry some 700 rings each: rapier's contacts are stiffer and its iterations more than by default.
 #[test]
 #[ignore = "minutes: 2,913 rings over 1,000 steps, for docs/measurements/hard-scenes.md"]
 fn a_large_chain_net_stays_linked() {
-    let mut net = Net::new(31, 32);
-    for hundreds in 1..=10 {
-        let (fastest, milliseconds) = net.run(100);
-        let changed = net.changed();
-        println!(
-            "net of {} rings, step {hundreds}00: {changed} links changed, fastest {fastest} m/s, {milliseconds:.1} ms of CPU a step",
-            net.rings.len()
-        );
-        assert_eq!(changed, 0);
-    }
+    Net::new(31, 32).with_stiff_contacts().stays_linked(10);
+}
+
+/// The same with rapier's default contacts: what the solver does not hold, impacts hold, one pair after another.
+#[test]
+#[ignore = "an hour: 2,913 rings over 1,000 steps, for docs/measurements/hard-scenes.md"]
+fn a_large_chain_net_of_soft_contacts_stays_linked() {
+    Net::new(31, 32).stays_linked(10);
 }
 
 /// Spikes and wedges fall on others, tip on tip, edge on edge, across, and between each other. Edges of radius 0 that
