@@ -319,26 +319,28 @@ impl Response {
             return Vec::new();
         };
         let courses = &self.courses;
-        let inertia = |view: &StepView, b: usize| {
-            let body = &view.bodies[b];
-            if body.kind == Kind::Free && !courses[b].frozen {
-                Inertia::of(body)
-            } else {
-                Inertia::INFINITE
-            }
-        };
+        let frozen = |b: usize| courses[b].frozen;
         let mut moved: Vec<usize> = Vec::new();
         for &body in from {
             if moved.contains(&body) {
                 continue;
             }
-            let piece = joints.close(view, body, [time, policy.dt], goes_on, inertia);
+            let piece = joints.close(view, body, [time, policy.dt], goes_on, frozen);
             moved.extend(&piece.moved);
             self.pieces.begin(piece);
         }
         for &b in &moved {
             self.courses[b].moved = true;
             view.bodies[b].awake = true;
+        }
+        // What joints give one of theirs they take from others: of a system all velocities are told, or none.
+        for &body in from {
+            let tied = joints.tied_to(view, &[body]);
+            if tied.iter().any(|b| self.courses[*b].struck) {
+                for b in tied {
+                    self.courses[b].struck |= view.bodies[b].kind == Kind::Free;
+                }
+            }
         }
         self.joints = Some(joints);
         moved

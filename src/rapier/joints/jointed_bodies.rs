@@ -137,19 +137,27 @@ impl Joints {
 
     /// Gives a body and what joints tie to it the motions from `time` on that joints let them make, and lets
     /// their velocities follow, which together gain no energy. At the end of the step, `dt`, joints are to be as open
-    /// as rapier's step left them. `inertia`: of each body, infinite where nothing moves it. `goes_on`: nothing was
-    /// struck; a piece of their motion has ended.
+    /// as rapier's step left them. `frozen`: of a body, whether it stays on its path; it takes what joints give it for the
+    /// next step. `goes_on`: nothing was struck; a piece of their motion has ended.
     pub fn close(
         &self,
         view: &mut StepView,
         from: usize,
         [time, dt]: [Real; 2],
         goes_on: bool,
-        inertia: impl Fn(&StepView, usize) -> Inertia,
+        frozen: impl Fn(usize) -> bool,
     ) -> Piece {
         if !self.of_body.contains_key(&from) || time >= dt {
             return Piece::default();
         }
+        let inertia = |view: &StepView, b: usize| {
+            let body = &view.bodies[b];
+            if body.kind == Kind::Free && !frozen(b) {
+                Inertia::of(body)
+            } else {
+                Inertia::INFINITE
+            }
+        };
         let mut system = self.system(view, &[from], time, |b| inertia(view, b));
         for &b in &system.bodies {
             if view.bodies[b].kind == Kind::Free {
@@ -198,23 +206,50 @@ impl Joints {
             .map(|b| view.bodies[*b].velocity)
             .collect();
         let mut end = own.clone();
-        for (k, end) in end.iter_mut().enumerate() {
-            *end = [0, 1].map(|i| own[k][i] + after[k][i] - before[k][i]);
+        if system.bodies.iter().any(|b| frozen(*b)) {
+            end = self.without_path(view, from, time, &system, &own);
+        } else {
+            for (k, end) in end.iter_mut().enumerate() {
+                *end = [0, 1].map(|i| own[k][i] + after[k][i] - before[k][i]);
+            }
+            if until.is_none() {
+                // A multibody has no others.
+                system.hold(&mut end);
+            }
+            system.take_no_energy(&own, &mut end);
         }
-        if until.is_none() {
-            // A multibody has no others.
-            system.hold(&mut end);
-        }
-        system.take_no_energy(&own, &mut end);
         let mut moved = Vec::new();
         for (k, &b) in system.bodies.iter().enumerate() {
+            let gained = [0, 1].map(|i| end[k][i] - own[k][i]);
             if !system.is_infinite(k) {
-                let gained = [0, 1].map(|i| end[k][i] - own[k][i]);
                 view.bodies[b].aim(system.moved(k), [before[k], gained], seconds);
                 moved.push(b);
+            } else if view.bodies[b].kind == Kind::Free {
+                view.bodies[b].gain(gained, seconds);
             }
         }
         Piece { moved, until }
+    }
+
+    /// The velocities that joints leave of some, where a frozen body keeps others from the path that they make: where
+    /// `moved` has them, with the inertia that they have in the next step. A joint gives both its bodies the same then.
+    fn without_path(
+        &self,
+        view: &StepView,
+        from: usize,
+        time: Real,
+        moved: &System,
+        own: &[Twist],
+    ) -> Vec<Twist> {
+        let inertia = |b: usize| match view.bodies[b].kind {
+            Kind::Free => Inertia::of(&view.bodies[b]),
+            Kind::Fixed | Kind::Driven => Inertia::INFINITE,
+        };
+        let whole = self.system(view, &[from], time, inertia).moved_as(moved);
+        let mut end = own.to_vec();
+        whole.hold(&mut end);
+        whole.take_no_energy(own, &mut end);
+        end
     }
 }
 
@@ -253,8 +288,9 @@ pub fn settle(
         if !system.is_infinite(k) {
             body.velocity = velocities[k];
         }
-        if !moving.unwrap_or(system).is_infinite(k) {
-            body.go(tangents[k]);
+        match moving.unwrap_or(system).is_infinite(k) {
+            true => body.gain_no_more(),
+            false => body.go(tangents[k]),
         }
     }
 }

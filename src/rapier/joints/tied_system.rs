@@ -82,6 +82,14 @@ impl<'a> System<'a> {
         system
     }
 
+    /// The same bodies, moved as another system of them is.
+    pub fn moved_as(mut self, other: &Self) -> Self {
+        self.poses.clone_from(&other.poses);
+        self.moved.clone_from(&other.moved);
+        self.factor();
+        self
+    }
+
     /// Whether nothing moves a body.
     pub fn is_infinite(&self, k: usize) -> bool {
         self.inertias[k].is_infinite()

@@ -34,8 +34,8 @@ struct Bend {
     rate: [Vector; 2],
     /// Seconds into the step until which they do.
     until: Real,
-    /// By how much its velocities exceed the tangent of the path.
-    excess: [Vector; 2],
+    /// By how much its velocities exceed the tangent of the path; `None` of a body that they leave on its path.
+    excess: Option<[Vector; 2]>,
 }
 
 /// A body in a step.
@@ -252,8 +252,9 @@ impl Body {
     /// Linear velocity of its centre of mass at `time`, where it is advanced to, and angular velocity: of its path,
     /// where that is bent.
     pub fn twist(&self, time: Real) -> [Vector; 2] {
-        if let Some(bend) = self.bend.filter(|_| self.time == time) {
-            return [0, 1].map(|i| self.velocity[i] - bend.excess[i]);
+        let bend = self.bend.filter(|_| self.time == time);
+        if let Some(excess) = bend.and_then(|bend| bend.excess) {
+            return [0, 1].map(|i| self.velocity[i] - excess[i]);
         }
         let m = self.motion_from(time);
         // A body that is carried along turns about another's centre.
@@ -278,9 +279,23 @@ impl Body {
         self.bend = Some(Bend {
             rate: [gained[0] / seconds, spin / seconds],
             until: self.time + seconds,
-            excess: [0, 1].map(|i| self.velocity[i] - tangent[i]),
+            excess: Some([0, 1].map(|i| self.velocity[i] - tangent[i])),
         });
         self.is_rapiers = false;
+    }
+
+    /// Lets it stay on its path, while joints add so much to its velocities in some seconds.
+    pub fn gain(&mut self, gained: [Vector; 2], seconds: Real) {
+        self.bend = Some(Bend {
+            rate: gained.map(|gained| gained / seconds),
+            until: self.time + seconds,
+            excess: None,
+        });
+    }
+
+    /// Has joints add nothing to the velocities of a body that they leave on its path.
+    pub fn gain_no_more(&mut self) {
+        self.bend = self.bend.filter(|bend| bend.excess.is_some());
     }
 
     /// Gives it a motion along these velocities.
