@@ -9,6 +9,7 @@
 
 use crate::math::Real;
 use crate::rapier::contacts::predicted_contacts::{Start, Starts, reach};
+use crate::rapier::host::contact_depth::deepest;
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
 use rapier3d::dynamics::IntegrationParameters;
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, ContactPair};
@@ -41,10 +42,10 @@ const FORCE_UPDATE_BIT: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
 /// would have.
 pub fn find(sets: &Sets, items: &MedialColliders, starts: &Starts) -> (Vec<bool>, Real) {
     let mut anew = vec![false; items.all.len()];
-    let mut deepest: Real = 0.0;
+    let mut depth_of_all: Real = 0.0;
     let touching = sets.narrow_phase.contact_pairs();
     for pair in touching.filter(|pair| !pair.manifolds().is_empty()) {
-        deepest = deepest.max(depth(pair));
+        depth_of_all = depth_of_all.max(depth(pair, sets.colliders));
         let places = [pair.collider1, pair.collider2].map(|h| items.place(h));
         let [Some(i), Some(j)] = places else {
             continue;
@@ -68,13 +69,17 @@ pub fn find(sets: &Sets, items: &MedialColliders, starts: &Starts) -> (Vec<bool>
                 &starts.parameters,
             );
     }
-    (anew, deepest)
+    (anew, depth_of_all)
 }
 
-/// How deep the deepest contact of a pair is, a length; 0 if none is.
-pub fn depth(pair: &ContactPair) -> Real {
-    let points = pair.manifolds().iter().flat_map(|m| &m.points);
-    points.map(|p| -p.dist).fold(0.0, Real::max)
+/// How deep the deepest contact of a pair is where its colliders are, a length; 0 if none is.
+fn depth(pair: &ContactPair, colliders: &ColliderSet) -> Real {
+    let [Some(c1), Some(c2)] = [pair.collider1, pair.collider2].map(|h| colliders.get(h)) else {
+        return 0.0;
+    };
+    let poses = [c1.position(), c2.position()];
+    let depths = pair.manifolds().iter().map(|m| deepest(m, poses));
+    depths.fold(0.0, Real::max)
 }
 
 /// Which medial colliders touch another so that the contact pulls their body away from its centre of mass,

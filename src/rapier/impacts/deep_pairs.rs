@@ -2,6 +2,7 @@
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
+use crate::rapier::host::contact_depth::deepest;
 use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::view::eligible_pairs::in_order;
 use crate::rapier::view::step_view::StepView;
@@ -37,8 +38,9 @@ pub fn deep(
             continue;
         };
         let pair = in_order(view, [i, j]);
+        let [start1, start2] = [i, j].map(|k| view.motion(k, 0.0).start);
         for m in found.manifolds() {
-            let depth = m.points.iter().map(|p| -p.dist).fold(0.0, Real::max);
+            let depth = deepest(m, [&start1, &start2]);
             if depth <= 0.0 {
                 continue;
             }

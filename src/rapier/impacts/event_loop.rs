@@ -86,7 +86,7 @@ pub(crate) struct Loop<'a> {
     pub(crate) view: &'a mut StepView,
     pub(crate) policy: CcdPolicy<'a>,
     pub(crate) rules: Rules<'a>,
-    /// Slow pairs near enough to their medial axes to be watched.
+    /// Pairs near enough to their medial axes to be watched, however slow they are: in rapier's contacts, or in an impact.
     deep: FastMap<[usize; 2], Deep>,
     /// Whether the user's rules let a pair respond, as far as they were asked.
     allowed: FastMap<[usize; 2], bool>,
@@ -283,6 +283,11 @@ impl Loop<'_> {
     fn impact(&mut self, pair: [usize; 2], hit: Hit, work: &mut Work) {
         self.events += 1;
         let (policy, rules) = (self.policy, self.rules);
+        // An impact may make a deep pair slow, and another one push it on.
+        let thickness = self.view.thickness_at(pair, hit.primitives);
+        if hit.depth > policy.tuning.guarded() * thickness {
+            self.deep.entry(pair).or_default();
+        }
         let bodies = self.response.impact(self.view, &policy, &rules, pair, hit);
         self.ask_again(&bodies, hit.time, work);
     }
