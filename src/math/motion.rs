@@ -69,6 +69,15 @@ impl<S: Scalar> Frame<S> {
         self.center + self.arm(local)
     }
 
+    /// At least the angle of the rotation between two poses, in radians: `2 tan(θ/2)`, infinite at a half turn. The
+    /// difference of two rotations has the Frobenius norm `2√2 sin(θ/2)`.
+    pub fn angle_at_most(&self, other: &Self) -> S {
+        let off = |k: usize| (self.columns[k] - other.columns[k]).length_sq();
+        let square = (off(0) + off(1) + off(2)) * S::splat(0.125);
+        let rest = (S::one() - square).max(S::zero());
+        (square / rest).sqrt() * S::splat(2.0)
+    }
+
     /// Rows of the matrix that does so: where the axes and the origin go.
     pub fn rows(&self) -> [[S; 4]; 3] {
         let [x, y, z] = &self.columns;

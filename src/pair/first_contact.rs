@@ -3,6 +3,7 @@
 //! bounding spheres visits the few that can come first.
 
 use super::met::Met;
+use super::near_pairs::NearPairs;
 use super::outline::Left;
 use super::search::Search;
 use super::volumes::Volumes;
@@ -12,6 +13,7 @@ use crate::math::Real;
 use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
 use parry3d::query::NonlinearRigidMotion;
+use std::sync::Arc;
 
 /// How much work a query did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -123,6 +125,16 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
             search: (finite && bounds_finite).then(search),
             settled: false,
         }
+    }
+
+    /// Has the search go down to the primitives of a list only, which has to hold for its motions
+    /// ([`NearPairs::holds_for`]). The answer is the same.
+    pub fn among(mut self, near: Option<&NearPairs>) -> Self {
+        if let (Some(search), Some(near)) = (&mut self.search, near) {
+            search.sides.0.keep_near(Arc::clone(&near.below), 0);
+            search.sides.1.keep_near(Arc::clone(&near.below), 1);
+        }
+        self
     }
 
     /// Continues the search until it is proven that nothing meets before a time of at least `until`, a fraction of the

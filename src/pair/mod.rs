@@ -15,6 +15,7 @@ mod hulls;
 mod leaves;
 pub mod listed;
 pub mod met;
+pub mod near_pairs;
 pub mod outline;
 mod placement;
 mod queue;

@@ -40,12 +40,15 @@ pub(super) struct Open {
 }
 
 /// A candidate, ordered by the time until which it is free; of several at the same time, first the
-/// tests, then primitives, then the node pair that overlaps deepest for its size.
+/// tests, then primitives, then the node pair that overlaps deepest for its size. Of several of these it is the one whose
+/// nodes come first in their trees, so that the order does not depend on what else is looked at.
 pub(super) struct Entry {
     pub(super) time: f64,
     /// Signed distance of two node balls at the start of the piece, in units of their radii, so at
     /// least −1; below that for what is not a node pair.
     pub(super) depth: f64,
+    /// The bodies' nodes; 0 for what is not a node pair.
+    of: [u32; 2],
     pub(super) candidate: Candidate,
 }
 
@@ -55,7 +58,18 @@ impl Entry {
         Self {
             time,
             depth: -2.0,
+            of: [0; 2],
             candidate,
+        }
+    }
+
+    /// Two swept nodes, which are these nodes of their bodies.
+    pub(super) fn of_nodes(time: f64, depth: f64, swept: [u32; 2], of: [u32; 2]) -> Self {
+        Self {
+            time,
+            depth,
+            of,
+            candidate: Candidate::Nodes(swept),
         }
     }
 }
@@ -78,6 +92,7 @@ impl Ord for Entry {
     fn cmp(&self, other: &Self) -> Ordering {
         (other.time.total_cmp(&self.time))
             .then_with(|| other.depth.total_cmp(&self.depth))
+            .then_with(|| other.of.cmp(&self.of))
             .then_with(|| other.candidate.cmp(&self.candidate))
     }
 }

@@ -20,12 +20,11 @@
 
 use super::outline::Left;
 use super::queue::{Candidate, Entry, Open, Tested};
-use super::swept::Side;
+use super::swept::{Side, Touch, split};
 use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
 use crate::elementary::first_contact::{Earliest, options_limits};
 use crate::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
-use crate::math::approach::first_touch;
 use crate::math::motion::RigidMotion;
 use crate::medial::tree::Below;
 use std::collections::BinaryHeap;
@@ -42,10 +41,6 @@ const ROOT_PIECES: u64 = 64;
 /// Angle in radians that a piece of the search turns at most: the sagitta is then below 3 % of the
 /// lever arm. Larger pieces cull worse, smaller ones repeat the walk down the trees.
 const PIECE_ANGLE: f64 = 0.5;
-
-/// Up to this ratio of their radii two nodes are split together. With 1 (one at a time) approaches take a
-/// fifth longer, fast queries a tenth; 1.5 is nearly as good.
-const SIMILAR: f64 = 3.0;
 
 /// One query on its way.
 pub(super) struct Search<'a, A, B> {
@@ -260,35 +255,22 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
     /// piece. Balls of parts may stick out of those of the whole, and would meet before.
     fn push(&mut self, nodes: [u32; 2], from: f64) {
         let (a, b) = (self.sides.0.node(nodes[0]), self.sides.1.node(nodes[1]));
-        if !(a.wanted && b.wanted) {
+        if a.near & b.near == 0 {
             return;
         }
         self.nodes += 1;
-        let y = b.start - a.start;
-        let rate = b.chord - a.chord;
         // Within the tolerance they touch.
-        let tolerance = self.earliest.limits.tolerance;
-        let radius = a.radius + b.radius + self.reach + tolerance;
-        let radius = (radius + 64.0 * f64::EPSILON * radius.abs()).max(0.0);
+        let reach = self.reach + self.earliest.limits.tolerance;
         let (mut time, mut depth) = (self.times[0], 0.0);
-        let distance = y.length();
-        if distance <= radius {
-            depth = (distance - radius) / radius.max(f64::MIN_POSITIVE);
-        } else {
-            // The margins of the radii cover its rounding.
-            let (entry, exists) = first_touch(y, rate, radius);
-            if !exists || y.dot(rate) >= 0.0 || entry > 1.0 {
-                return;
-            }
-            time += entry * (self.times[1] - self.times[0]);
+        match a.touch(b, reach) {
+            Touch::AtStart(deep) => depth = deep,
+            Touch::At(share) => time += share * (self.times[1] - self.times[0]),
+            Touch::Never => return,
         }
         time = time.max(from);
         if time <= self.earliest.upper.min(self.times[1]) {
-            self.queue(Entry {
-                time,
-                depth,
-                candidate: Candidate::Nodes(nodes),
-            });
+            let of = [a.node, b.node];
+            self.queue(Entry::of_nodes(time, depth, nodes, of));
         }
     }
 
@@ -317,12 +299,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         if primitives.is_some() {
             return self.list_tests([i, j], free);
         }
-        // Both at once where they are about as large: the pairs in between would be looked at only to
-        // be split. Below that, the larger one.
-        let (small, large) = (a.radius * SIMILAR < b.radius, b.radius * SIMILAR < a.radius);
-        let inner = [a.below, b.below].map(|below| matches!(below, Below::Nodes(..)));
-        let parts_of_a = self.sides.0.parts(i, !(small && inner[1]));
-        let parts_of_b = self.sides.1.parts(j, !(large && inner[0]));
+        let [parts_of_a, parts_of_b] = split(&mut self.sides, [i, j]);
         for a in parts_of_a.clone() {
             for b in parts_of_b.clone() {
                 self.push([a, b], free);

@@ -2,7 +2,7 @@
 
 use super::apart::{Balls, free_until, held_until};
 use super::deepening::Threshold;
-use super::queue::{Candidate, Entry};
+use super::queue::Entry;
 use super::search::Search;
 use super::volumes::Volumes;
 use crate::math::lane::Vec3;
@@ -20,11 +20,11 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
 
     /// Has two nodes wait until `free`.
     pub(super) fn wait(&mut self, nodes: [u32; 2], free: f64) -> bool {
-        self.queue(Entry {
-            time: free,
-            depth: 0.0,
-            candidate: Candidate::Nodes(nodes),
-        });
+        let of = [
+            self.sides.0.node(nodes[0]).node,
+            self.sides.1.node(nodes[1]).node,
+        ];
+        self.queue(Entry::of_nodes(free, 0.0, nodes, of));
         true
     }
 

@@ -31,6 +31,7 @@ mod judge;
 mod lanes;
 mod listed;
 mod meshes;
+mod near_pairs;
 mod oracle;
 mod outlines;
 mod penetration;

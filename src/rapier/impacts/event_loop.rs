@@ -17,6 +17,7 @@ use crate::rapier::impacts::deep_pairs::{Deep, deep};
 use crate::rapier::impacts::event_queue::EventQueue;
 use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
 use crate::rapier::impacts::lazy_toi_query::{LazyToiQuery, Meshes, QueryProgress};
+use crate::rapier::impacts::near_lists::NearLists;
 use crate::rapier::impacts::pair_culling::PairCulling;
 use crate::rapier::impacts::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::response::Response;
@@ -99,6 +100,7 @@ pub(crate) struct Loop<'a> {
     shapes: &'a [SharedShape],
     pub(crate) waiting: EventQueue<Awaited<'a>>,
     pub(crate) outlines: PairCulling,
+    lists: NearLists,
     jobs: usize,
     events: usize,
     /// Whether the budget was spent, so that nothing waits any more but for what a driven body does.
@@ -149,6 +151,7 @@ pub fn resolve(
         shapes: &shapes,
         waiting: EventQueue::default(),
         outlines: PairCulling::new(shapes.len(), policy.dt),
+        lists: NearLists::default(),
         jobs: 0,
         events: 0,
         is_spent: false,
@@ -206,7 +209,8 @@ impl Loop<'_> {
                 .fold(self.policy.dt, Real::min);
             let shapes = self.shapes;
             let meshes: Meshes = pair.map(|k| shapes[k].as_shape::<MedialMesh>());
-            match inquiry.advance_to(&self.policy, self.view, pair, meshes, until, work) {
+            let known = ((&mut self.outlines, &mut self.lists), &mut *work);
+            match inquiry.advance_to(&self.policy, self.view, pair, meshes, until, known) {
                 QueryProgress::FreeUntil(time) => self.waiting.reschedule_first(time),
                 QueryProgress::Hit(hit) => self.expect(pair, hit),
                 QueryProgress::Never => self.waiting.remove(pair),

@@ -5,11 +5,18 @@ use crate::elementary::ToiOptions;
 use crate::math::Real;
 use crate::medial::MedialMesh;
 use crate::pair::first_contact::Query;
+use crate::pair::near_pairs::NearPairs;
+use crate::rapier::impacts::near_lists::NearLists;
+use crate::rapier::impacts::pair_culling::PairCulling;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit, QueryOptions, Work};
 use crate::rapier::view::step_view::StepView;
+use std::sync::Arc;
 
 /// The medial meshes of both, where they are.
 pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
+
+/// What is known of the pairs of a step.
+pub type Known<'k> = (&'k mut PairCulling, &'k mut NearLists);
 
 /// A question about a pair from some time on, while neither of the two has another motion.
 pub struct LazyToiQuery<'m> {
@@ -22,6 +29,8 @@ pub struct LazyToiQuery<'m> {
 type MeshQuery<'m> = Query<'m, MedialMesh, MedialMesh>;
 
 struct Begun<'m> {
+    /// What may come near, where that is listed.
+    near: Option<Arc<NearPairs>>,
     first: Box<MeshQuery<'m>>,
     /// The query for the floor; `None` outside before it is known whether there is one.
     floor: Option<Option<Box<MeshQuery<'m>>>>,
@@ -71,7 +80,7 @@ impl<'m> LazyToiQuery<'m> {
         pair: [usize; 2],
         meshes: Meshes<'m>,
         until: Real,
-        work: &mut Work,
+        (known, work): (Known, &mut Work),
     ) -> QueryProgress {
         let from = self.from;
         let [Some(mesh1), Some(mesh2)] = meshes else {
@@ -80,17 +89,12 @@ impl<'m> LazyToiQuery<'m> {
         };
         let seconds = policy.dt - from;
         let left = &self.query_options.left;
-        let begin = |options: &ToiOptions, work: &mut Work| {
+        let begin = |options: &ToiOptions, near: Option<&NearPairs>, work: &mut Work| {
             let motions = pair.map(|k| view.motion(k, from));
             work.begin(&motions, options);
             let motions = motions.each_ref();
-            Box::new(Query::new(
-                motions,
-                (mesh1, mesh2),
-                seconds,
-                options,
-                left.clone(),
-            ))
+            let query = Query::new(motions, (mesh1, mesh2), seconds, options, left.clone());
+            Box::new(query.among(near))
         };
         let look_on = |query: &mut MeshQuery, work: &mut Work| {
             let before = query.counts();
@@ -103,9 +107,15 @@ impl<'m> LazyToiQuery<'m> {
             }
         };
         let query_options = &self.query_options;
-        let begun = self.begun.get_or_insert_with(|| Begun {
-            first: begin(&query_options.first, work),
-            floor: None,
+        let begun = self.begun.get_or_insert_with(|| {
+            let (outlines, lists) = known;
+            let (of, options) = ((pair, [mesh1, mesh2]), &query_options.first);
+            let near = lists.list(view, outlines, of, [from, policy.dt], options, work);
+            Begun {
+                first: begin(options, near.as_deref(), work),
+                floor: None,
+                near,
+            }
         });
         let first = look_on(&mut begun.first, work);
         if first.time() <= from {
@@ -115,7 +125,7 @@ impl<'m> LazyToiQuery<'m> {
         let floor = begun.floor.get_or_insert_with(|| {
             let deep = policy.is_deep(begun.first.deepest());
             let asked = query_options.floor.as_ref().filter(|_| deep);
-            asked.map(|options| begin(options, work))
+            asked.map(|options| begin(options, begun.near.as_deref(), work))
         });
         match floor.as_mut().map(|query| look_on(query, work)) {
             Some(floor) if floor.time() < first.time() => floor,
