@@ -63,6 +63,8 @@ struct Outcome {
     /// Deepest that the ball was in a brick, and the longest that the chain was over its length when taut, metres.
     depth: Real,
     stretch: Real,
+    /// The fastest that the ball flew towards the wall, metres per second.
+    fastest: Real,
     /// Bricks that moved by more than half a metre, and those under the ground.
     fallen: usize,
     lost: usize,
@@ -160,7 +162,8 @@ impl Site {
         let at = |world: &PhysicsWorld, h: &RigidBodyHandle| world.bodies[*h].translation();
         let start: Vec<_> = self.bricks.iter().map(|h| at(&self.world, h)).collect();
         let length = 2.0 * (LINK[0] - LINK[1]) * LINKS as Real;
-        let (mut broken, mut depth, mut stretch): (_, Real, Real) = (0, 0.0, 0.0);
+        let (mut broken, mut depth, mut stretch, mut fastest): (_, Real, Real, Real) =
+            (0, 0.0, 0.0, 0.0);
         for _ in 0..steps {
             if kind == Kind::Medial {
                 pipeline.step(&mut self.world);
@@ -169,6 +172,8 @@ impl Site {
             }
             broken = broken.max(self.broken());
             depth = self.depth().max(depth);
+            let ball = &self.world.bodies[self.chain[LINKS]];
+            fastest = ball.linvel().x.max(fastest);
             let ends = [0, LINKS].map(|k| at(&self.world, &self.chain[k]));
             stretch = (ends[0].distance(ends[1]) - length).max(stretch);
         }
@@ -177,6 +182,7 @@ impl Site {
             broken: if kind == Kind::Joints { 0 } else { broken },
             depth,
             stretch,
+            fastest,
             fallen: ends()
                 .zip(&start)
                 .filter(|(e, s)| e.distance(**s) > 0.5)
@@ -187,12 +193,14 @@ impl Site {
 }
 
 /// Where the middle of the wall stands, m: how many bricks fall depends on a centimetre.
-const WALLS: [Real; 4] = [0.56, 0.59, 0.62, 0.65];
+const WALLS: [Real; 4] = [0.57, 0.6, 0.63, 0.66];
 
-/// The ball, 0.5 t and 2 t, knocks the wall down as one on joints does; the chain of links of 21 kg holds.
+/// The ball, 0.5 t and 2 t, strikes a wall as fast as one on joints does, and knocks it down; the chain of links of 21 kg
+/// holds.
 #[test]
 fn a_wrecking_ball_stays_on_its_chain() {
-    for density in [2000.0, 7800.0] {
+    // The chain of the heavier ball gives by more: at 100 times a link's mass the solver is soft.
+    for (density, share) in [(2000.0, 0.25), (7800.0, 0.5)] {
         let run = |kind, wall| {
             let end = Site::new(kind, density, wall).run(kind, 300);
             println!("ball of {density} kg/m³, {kind:?}, wall at {wall} m: {end:?}");
@@ -201,16 +209,15 @@ fn a_wrecking_ball_stays_on_its_chain() {
         run(Kind::Capsules, WALLS[0]);
         let mut fallen = [0; 2];
         for wall in WALLS {
-            let ours = run(Kind::Medial, wall);
+            let [ours, joints] = [Kind::Medial, Kind::Joints].map(|kind| run(kind, wall));
             assert_eq!((ours.broken, ours.lost), (0, 0), "{ours:?}");
-            // The heavier ball, at 100 times a link's mass, gets deeper into bricks than it should: docs/guarantee.md.
-            assert!(density > 5000.0 || ours.depth < 0.05, "{ours:?}");
-            // Its chain gives by more, too: the solver is soft.
+            assert!(ours.depth < 0.05, "{ours:?}");
             let thickness = 2.0 * LINK[1] * LINKS as Real;
-            let share = if density < 5000.0 { 0.25 } else { 1.0 };
             assert!(ours.stretch < share * thickness, "{ours:?}");
+            let slower = 1.0 - ours.fastest / joints.fastest;
+            assert!(slower.abs() < 0.1, "{ours:?}, {joints:?}");
             fallen[0] += ours.fallen;
-            fallen[1] += run(Kind::Joints, wall).fallen;
+            fallen[1] += joints.fallen;
         }
         let [ours, joints] = fallen;
         assert!(

@@ -121,8 +121,8 @@ impl ImpactHistory {
         Some((hit, opened))
     }
 
-    /// The contact that a pair of dynamic bodies has left at one of its places, if it is still there and closes so fast that
-    /// it would be met again in this step.
+    /// The contact that a pair has left at one of its places, if it is still there and closes so fast that it would be met
+    /// again in this step. None of a driven body's.
     pub fn closing(
         &self,
         view: &StepView,
@@ -132,8 +132,8 @@ impl ImpactHistory {
         time: Real,
     ) -> Option<Hit> {
         let bodies = pair.map(|k| view.parts[k].body);
-        let free = |b: usize| view.bodies[b].kind == Kind::Free;
-        if !bodies.into_iter().all(free) || bodies.into_iter().all(frozen) {
+        let driven = |b: usize| view.bodies[b].kind == Kind::Driven;
+        if bodies.into_iter().any(driven) || bodies.into_iter().all(frozen) {
             return None;
         }
         let (hit, opened) = self.contact(view, (pair, place), time)?;
