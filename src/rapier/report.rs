@@ -2,7 +2,7 @@
 
 use crate::batch::{BatchReport, PairResult};
 use crate::parry::answers::Counted;
-use crate::rapier::impacts::event_loop::Outcome;
+use crate::rapier::impacts::outcome::Outcome;
 use crate::rapier::impacts::toi_query::Work;
 
 /// Counters and times of one step of a [`crate::MedialPipeline`], about medial colliders only. Three counters tell

@@ -4,7 +4,7 @@
 
 use crate::math::Real;
 use crate::medial::MedialMesh;
-use crate::rapier::impacts::event_loop::Impulse;
+use crate::rapier::impacts::outcome::Impulse;
 use crate::rapier::impacts::reported_impulse::ReportedImpulse;
 use crate::rapier::view::filter_answers::sorted;
 use parry3d::query::TrackedContact;

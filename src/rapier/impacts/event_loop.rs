@@ -18,8 +18,8 @@ use crate::rapier::impacts::event_queue::EventQueue;
 use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
 use crate::rapier::impacts::lazy_toi_query::{LazyToiQuery, Meshes, QueryProgress};
 use crate::rapier::impacts::near_lists::NearLists;
+use crate::rapier::impacts::outcome::{Impulse, Outcome};
 use crate::rapier::impacts::pair_culling::PairCulling;
-use crate::rapier::impacts::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::response::Response;
 use crate::rapier::impacts::swept_boxes::SweptBoxes;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit, Work};
@@ -28,7 +28,7 @@ use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::SharedShape;
-use rapier3d::geometry::{ColliderHandle, NarrowPhase};
+use rapier3d::geometry::NarrowPhase;
 
 /// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
 /// which grows a little with each meeting of a pair.
@@ -37,34 +37,6 @@ const MARGIN: Real = 5.0e-3;
 /// Shares of a step before and after which the world does not stop: what is left would be no step, and
 /// a stop at the start would change nothing.
 const STOPS_WITHIN: [Real; 2] = [1.0e-3, 1.0 - 1.0e-3];
-
-/// What two colliders gave each other in the impacts of a step.
-#[derive(Clone, Debug)]
-pub struct Impulse {
-    /// Both colliders, in the narrow phase's order.
-    pub colliders: [ColliderHandle; 2],
-    /// Where and how much.
-    pub blows: Vec<ReportedImpulse>,
-}
-
-/// What the event loop did.
-#[derive(Default)]
-pub struct Outcome {
-    /// Pairs of medial meshes asked about at the start.
-    pub jobs: usize,
-    /// Impacts.
-    pub events: usize,
-    /// Bodies that stayed where they were before the step's end, after too many impacts, and because the budget was spent.
-    pub frozen: usize,
-    /// As above.
-    pub waiting: usize,
-    /// Pairs that exchanged an impulse.
-    pub impulses: Vec<Impulse>,
-    /// Bodies to be written back: index, and whether their velocity changed.
-    pub changed: Vec<(usize, bool)>,
-    /// Seconds into the step at which the world stopped, all bodies with it.
-    pub stopped: Option<Real>,
-}
 
 /// What comes next.
 enum Next {

@@ -11,6 +11,7 @@ pub(crate) mod impulse;
 pub(crate) mod initial_overlaps;
 pub(crate) mod lazy_toi_query;
 mod near_lists;
+pub(crate) mod outcome;
 pub(crate) mod pair_culling;
 pub(crate) mod reported_impulse;
 pub(crate) mod response;
