@@ -54,6 +54,9 @@ pub struct Findings {
     /// Whether the surface is too tangled to tell in reasonable time what of it lies inside a solid, to 0.6 % of the
     /// longest side: larger pieces count as seen if a part of them is, which may overstate the error.
     pub boundary_coarse: bool,
+    /// Whether fits ended early, after a fixed amount of work, because the surface is so tangled that its nearest points
+    /// take long to find: they may not have reached the least error.
+    pub fit_cut_short: bool,
     /// Whether solid patches overlap, or one passes through itself.
     pub overlapping: bool,
     /// How the mass properties were computed.
@@ -142,11 +145,17 @@ impl Findings {
         notes
     }
 
-    /// That the boundary of the solid is coarse.
-    pub(crate) fn coarse_in_words(&self) -> Option<String> {
-        let text = "the surface is so tangled that only large pieces of it were tested for lying inside solid matter: \
+    /// What was left undone because the surface is tangled: the boundary of the solid is coarse, fits ended early.
+    pub(crate) fn undone_in_words(&self) -> impl Iterator<Item = String> + use<> {
+        let coarse = "the surface is so tangled that only large pieces of it were tested for lying inside solid matter: \
                     the error may be overstated";
-        self.boundary_coarse.then(|| text.into())
+        let cut_short = "the surface is so tangled that the fit was ended after a fixed amount of work: a smaller error \
+                         may be possible with this many primitives";
+        let said = [
+            (self.boundary_coarse, coarse),
+            (self.fit_cut_short, cut_short),
+        ];
+        said.into_iter().filter(|s| s.0).map(|s| s.1.into())
     }
 
     /// What is hidden inside matter: `share` of the area.

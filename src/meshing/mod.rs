@@ -115,11 +115,12 @@ impl MedialMesh {
         }
         let mut findings = surface.findings;
         findings.mass = mass_source;
+        findings.fit_cut_short = watch.is_fit_cut();
         let mut notes = findings.notes();
         if hidden > 0.0 {
             notes.push(findings.hidden_in_words(hidden / surface.area));
         }
-        notes.extend(findings.coarse_in_words());
+        notes.extend(findings.undone_in_words());
         notes.extend(candidate.notes);
         let frame = surface.frame;
         let report = BuildReport {

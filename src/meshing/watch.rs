@@ -1,5 +1,5 @@
-//! Progress and cancellation: the stages of a build report to one object, which calls the user's callback, times the
-//! stages and adds up the memory of their arrays.
+//! Progress, cancellation and the budget of fits: the stages of a build report to one object, which calls the user's
+//! callback, times the stages and adds up the memory of their arrays and the work of fits.
 
 use crate::error::BuildError;
 use crate::math::Real;
@@ -31,6 +31,11 @@ const EVERY: usize = 1 << 14;
 /// Share of what is left that an attempt has: how many there will be is not known.
 const ATTEMPT: f64 = 0.25;
 
+/// Nodes and triangles that the searches of all fits of a build may look at: so many, and so many for each search.
+/// Clean meshes take 5 to 31 for each, the more the larger the error, a surface of 1,600 random triangles 430: each is
+/// as long as the body, and its box holds most of it. The first is five to ten seconds' work.
+const MOST_FIT_WORK: [u64; 2] = [100_000_000, 32];
+
 /// Bytes of an array, with what it has in reserve.
 pub fn bytes_of<T>(array: &Vec<T>) -> usize {
     array.capacity() * size_of::<T>()
@@ -52,6 +57,10 @@ pub struct Watch<'a> {
     /// Bytes held to the end, and the most held at any time.
     kept: usize,
     peak: usize,
+    /// Searches of fits, and nodes and triangles that they have looked at.
+    fit_searches: u64,
+    fit_work: u64,
+    is_fit_cut: bool,
 }
 
 impl<'a> Watch<'a> {
@@ -69,6 +78,9 @@ impl<'a> Watch<'a> {
             seconds: Vec::new(),
             kept: 0,
             peak: 0,
+            fit_searches: 0,
+            fit_work: 0,
+            is_fit_cut: false,
         }
     }
 
@@ -133,6 +145,27 @@ impl<'a> Watch<'a> {
     /// Most bytes held at any time.
     pub fn peak(&self) -> usize {
         self.peak
+    }
+
+    /// Takes down searches of a fit, and how many nodes and triangles they looked at.
+    pub fn count_fit(&mut self, searches: usize, work: u64) {
+        self.fit_searches += searches as u64;
+        self.fit_work += work;
+    }
+
+    /// Whether a fit is to end here, or not to begin, because fits have looked at more than a `share` of what a build
+    /// may spend on them. That this happened is kept.
+    pub fn ends_fit(&mut self, share: f64) -> bool {
+        let [fixed, of_each] = MOST_FIT_WORK;
+        let most = (share * fixed as f64) as u64 + of_each * self.fit_searches;
+        let ends = self.fit_work > most;
+        self.is_fit_cut |= ends;
+        ends
+    }
+
+    /// Whether a fit ended early, or was left out.
+    pub fn is_fit_cut(&self) -> bool {
+        self.is_fit_cut
     }
 
     /// Ends the build: the last report, and the seconds of each stage in order of first entry.

@@ -7,6 +7,7 @@ use crate::meshing::geometry::bounds::{Bounds, Point};
 use crate::meshing::geometry::four_boxes::{Child, FourBoxes, FourPoints, nearest_first, slack};
 use crate::meshing::geometry::triangle::closest_on_triangle;
 use crate::meshing::watch::{Watch, bytes_of};
+use std::cell::Cell;
 use std::ops::{ControlFlow, Range};
 
 struct Node {
@@ -94,9 +95,16 @@ impl NearestTriangle {
     /// Squared distance to the nearest triangle within the squared distance `limit_sq` and its index
     /// (of those as near the last), infinite if there is none; with `any`, of the first one found.
     pub fn search(&self, p: Point, limit_sq: f64, any: bool) -> (f64, u32) {
+        self.search_counted(p, limit_sq, any, &mut 0)
+    }
+
+    /// As [`Self::search`]; adds the number of nodes and triangles that were looked at to `work`.
+    pub fn search_counted(&self, p: Point, limit_sq: f64, any: bool, work: &mut u64) -> (f64, u32) {
         let mut found = (f64::INFINITY, 0);
         let mut best_sq = limit_sq;
-        self.visit(p, limit_sq.sqrt(), |triangle| {
+        let mut triangles = 0;
+        *work += self.visit(p, limit_sq.sqrt(), |triangle| {
+            triangles += 1;
             let distance_sq = self.distance_sq_to(triangle, p);
             if distance_sq > best_sq || distance_sq == found.0 && triangle < found.1 {
                 return ControlFlow::Continue(None);
@@ -108,6 +116,7 @@ impl NearestTriangle {
                 false => ControlFlow::Continue(Some(best_sq.sqrt())),
             }
         });
+        *work += triangles;
         found
     }
 
@@ -121,13 +130,23 @@ impl NearestTriangle {
         });
     }
 
-    fn visit(&self, p: Point, limit: f64, see: impl FnMut(u32) -> ControlFlow<(), Option<f64>>) {
+    /// Calls `see` for triangles that may be within `limit` of `p`, nearer groups first; `see` may return a new limit,
+    /// or end the search. Returns the number of nodes that were looked at.
+    fn visit(
+        &self,
+        p: Point,
+        limit: f64,
+        see: impl FnMut(u32) -> ControlFlow<(), Option<f64>>,
+    ) -> u64 {
         let point = FourPoints::splat(p);
+        let nodes = Cell::new(0);
         let look = |group: u32| {
+            nodes.set(nodes.get() + 1);
             let node = &self.nodes[group as usize];
             let bounds = node.boxes.distance_sq(&point).sqrt();
             (bounds.to_array(), node.children)
         };
         nearest_first(limit, slack(p, self.reach), look, see);
+        nodes.get()
     }
 }

@@ -12,11 +12,12 @@ impl Cloud {
         Self(points)
     }
 
-    /// The point nearest to `p`, if one is nearer than `limit`.
-    pub fn nearer(&self, p: Point, limit: f64) -> Option<Point> {
+    /// The point nearest to `p`, if one is nearer than `limit`. Adds the number of points that were looked at to `work`.
+    pub fn nearer(&self, p: Point, limit: f64, work: &mut u64) -> Option<Point> {
         let (below, above) = self.0.split_at(self.0.partition_point(|q| q.x < p.x));
         let mut best = (limit * limit, None);
         let mut look = |q: &Point| {
+            *work += 1;
             let to = *q - p;
             if to.length_sq() < best.0 {
                 best = (to.length_sq(), Some(*q));

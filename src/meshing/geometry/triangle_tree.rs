@@ -137,8 +137,13 @@ impl TriangleTree {
     /// Distance to the surface, and the triangle that gives it; `hint` is a triangle that is likely
     /// near.
     pub fn distance_from(&self, p: Point, hint: u32) -> (f64, u32) {
+        self.distance_counted(p, hint, &mut 0)
+    }
+
+    /// As [`Self::distance_from`]; adds the number of nodes and triangles that were looked at to `work`.
+    fn distance_counted(&self, p: Point, hint: u32, work: &mut u64) -> (f64, u32) {
         let at_hint = self.nearest.distance_sq_to(hint, p);
-        let (distance_sq, triangle) = self.nearest.search(p, at_hint, false);
+        let (distance_sq, triangle) = self.nearest.search_counted(p, at_hint, false, work);
         match distance_sq <= at_hint {
             true => (distance_sq.sqrt(), triangle),
             false => (at_hint.sqrt(), hint),
@@ -147,7 +152,12 @@ impl TriangleTree {
 
     /// As [`Self::distance_from`], but the point of the surface.
     pub fn closest_from(&self, p: Point, hint: u32) -> (Point, u32) {
-        let (_, triangle) = self.distance_from(p, hint);
+        self.closest_counted(p, hint, &mut 0)
+    }
+
+    /// As [`Self::closest_from`]; adds the number of nodes and triangles that were looked at to `work`.
+    pub fn closest_counted(&self, p: Point, hint: u32, work: &mut u64) -> (Point, u32) {
+        let (_, triangle) = self.distance_counted(p, hint, work);
         let corners = &self.nearest.corners()[triangle as usize];
         (closest_on_triangle(p, corners), triangle)
     }

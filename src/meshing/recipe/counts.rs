@@ -24,6 +24,10 @@ pub const LARGEST_GAIN: f64 = 2.0;
 const GAIN_OF_CREASED: f64 = 1.3;
 const GAIN_OF_ROUNDED: f64 = 1.5;
 
+/// Samples of an envelope need be no nearer to each other than what is known of the boundary is fine; but they are at
+/// most this many times farther apart than usual, for bulges between them are not seen.
+const COARSER: f64 = 3.0;
+
 /// A round body's counts ([`fit::round_from`]) are tried upwards until this many in turn fit no better.
 const FAILURES: usize = 2;
 
@@ -169,7 +173,14 @@ impl Source {
     /// What `most` primitives are fitted to.
     pub fn target(&self, most: usize) -> Target<'_> {
         let (surface, tree) = self.bounds();
-        fit::target(surface, tree, most)
+        let mut target = fit::target(surface, tree, most);
+        if let Some(boundary) = &self.boundary
+            && self.surface.findings.boundary_coarse
+        {
+            let spacing = target.spacing;
+            target.spacing = spacing.max(boundary.finest.min(COARSER * spacing));
+        }
+        target
     }
 
     /// The same, of few samples, to tell drafts that may serve from those that cannot.
@@ -177,7 +188,8 @@ impl Source {
         self.target(1)
     }
 
-    /// The best of `best` and what each quality gives for a count.
+    /// The best of `best` and what each quality gives for a count; of the plain collapse alone once the budget of
+    /// fits is spent.
     pub fn fitted(
         &self,
         collapsed: &Collapsed,
@@ -191,6 +203,10 @@ impl Source {
         }
         let mut target = self.target(collapsed.most);
         target.creases = creases;
+        if watch.ends_fit(target.budget) {
+            let best = self.or_better(best, collapsed.plain.clone(), Some(&target), watch)?;
+            return Ok(best.counted_for_lower_quality());
+        }
         let balanced = fit::balanced(collapsed, &target, watch)?;
         let mut best = self.or_better(best, balanced.0.clone(), Some(&target), watch)?;
         let clear = target.residuals(&balanced.0, watch)?.largest / CLEARLY_BETTER;
@@ -201,7 +217,7 @@ impl Source {
             best = self.or_better(Some(best), plain.clone(), Some(&target), watch)?;
         }
         best = best.counted_for_lower_quality();
-        if self.limits.quality == Quality::Best {
+        if self.limits.quality == Quality::Best && !watch.ends_fit(target.budget) {
             // The first is the balanced one itself.
             let drafts = fit::more(balanced, collapsed, &target, watch)?;
             for (draft, _) in drafts.into_iter().skip(1) {

@@ -237,7 +237,7 @@ impl Search<'_, '_> {
             }
             let (collapsed, kept_topology) = self.ladders[ladder].collapsed(count, watch)?;
             let mut keeping = None;
-            if self.source.fits() {
+            if self.source.fits() && !watch.ends_fit(fit::BUDGET) {
                 let creases = &self.ladders[ladder].creases;
                 let mut target = self.source.target(count);
                 target.creases = creases;

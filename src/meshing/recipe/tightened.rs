@@ -33,6 +33,9 @@ const ROUNDS: usize = 4;
 const FITS: usize = 2;
 const ITERATIONS: usize = 3;
 
+/// Share of a build's budget of fits beyond which no round begins.
+const BUDGET: f64 = 1.0;
+
 /// Points that are examined for that, besides vertices, and how far one sticks out to be added, as a share of the
 /// error.
 const POINTS: usize = 30_000;
@@ -40,7 +43,7 @@ const STICKS_OUT: f64 = 0.02;
 
 impl Source {
     /// A draft that covers the surface more closely than `loose`; `None` where none was found, or where `loose` is off
-    /// by more than `most`, or need not cover it.
+    /// by more than `most`, need not cover it, or the budget of fits is spent.
     pub fn tightened(
         &self,
         loose: &Draft,
@@ -48,11 +51,12 @@ impl Source {
         target: &Target,
         watch: &mut Watch,
     ) -> Result<Option<Draft>, BuildError> {
-        if !self.limits.enclose {
+        if !self.limits.enclose || watch.ends_fit(BUDGET) {
             return Ok(None);
         }
         watch.begin("refit")?;
         let mut target = target.clone();
+        target.budget = BUDGET;
         target.beyond = OFFSET * target.residuals(loose, watch)?.largest;
         let mut error = target.beyond + target.residuals(loose, watch)?.largest;
         if error > most {
@@ -79,7 +83,7 @@ impl Source {
             if now < error {
                 (best, error) = (Some(draft), now);
             }
-            if !gains {
+            if !gains || watch.ends_fit(BUDGET) {
                 break;
             }
         }

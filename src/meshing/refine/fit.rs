@@ -32,6 +32,10 @@ const SAMPLES_PER_PRIMITIVE: [usize; 2] = [10, 15];
 const LEAST_SAMPLES: usize = 3_000;
 const MOST_SAMPLES: usize = 33_000;
 
+/// Share of a build's budget of fits that may be spent before drafts are made to cover the surface more closely: of
+/// tangled surfaces that gains most.
+pub const BUDGET: f64 = 0.5;
+
 /// The samples to fit `most` primitives to.
 pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> Target<'a> {
     let (over_small, over_large) = (usize::from(most > SMALL), usize::from(most > LARGE));
@@ -49,6 +53,7 @@ pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> Tar
         spacing: ENVELOPE_SPACING[over_small + over_large],
         creases: &[],
         beyond: 0.0,
+        budget: BUDGET,
     }
 }
 

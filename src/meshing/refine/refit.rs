@@ -56,6 +56,8 @@ pub struct Target<'a> {
     /// How far the solid may reach beyond the surface without being wrong (longest side 1): 0 but where it is to
     /// cover the surface.
     pub beyond: f64,
+    /// Share of a build's budget of fits beyond which a fit to this ends.
+    pub budget: f64,
 }
 
 impl Target<'_> {
@@ -122,7 +124,7 @@ impl Target<'_> {
 }
 
 /// Moves balls so that the solid fits the surface better, in up to `iterations` steps; the draft is
-/// never made worse by its score, which is returned.
+/// never made worse by its score, which is returned. Ends early where the budget of fits is spent.
 pub fn refit(
     draft: &mut Draft,
     target: &Target,
@@ -151,7 +153,7 @@ pub fn refit(
         } else {
             failures += 1;
         }
-        if iteration == iterations || failures >= 4 {
+        if iteration == iterations || failures >= 4 || watch.ends_fit(target.budget) {
             break;
         }
         let mut energy = energies(&found.rows, n);

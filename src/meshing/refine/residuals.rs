@@ -22,6 +22,9 @@ use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::{Watch, bytes_of};
 
+/// Points of a cloud whose distances take as long as a look at a node of a tree.
+const POINTS_OF_NODE: u64 = 16;
+
 /// First guess of an envelope sample's distance (longest side 1); only time depends on it.
 pub const GUESS: f64 = 0.004;
 
@@ -140,17 +143,22 @@ pub fn residuals(
         true => envelope.iter().map(|e| e.at(draft, &solid).0).collect(),
         false => Vec::new(),
     };
-    let mut rows = surface_rows(&solid, &paired, &Cloud::new(boundary), beyond, watch)?;
+    let counted = surface_rows(&solid, &paired, &Cloud::new(boundary), beyond, watch)?;
+    let points: u64 = counted.iter().map(|c| c.1).sum();
+    let mut rows: Vec<Row> = counted.into_iter().map(|c| c.0).collect();
     for (hint, row) in hints.iter_mut().zip(&rows) {
         *hint = row.primitive;
     }
     let surface_rows = rows.len();
     let share = surface_rows as f64 / envelope.len().max(1) as f64;
     let outer = envelope_rows(draft, &solid, tree, (envelope, share), beyond, watch)?;
-    for (sample, (row, triangle)) in envelope.iter_mut().zip(outer) {
+    let mut work = points / POINTS_OF_NODE;
+    for (sample, (row, triangle, looked_at)) in envelope.iter_mut().zip(outer) {
         sample.triangle = triangle;
         rows.push(row);
+        work += looked_at;
     }
+    watch.count_fit(envelope.len(), work);
     watch.hold(bytes_of(&rows) + bytes_of(&paired) + size_of_val(envelope));
     let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
     let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();
@@ -164,14 +172,14 @@ pub fn residuals(
     })
 }
 
-/// Rows of surface samples, each with the primitive it had last.
+/// Rows of surface samples, each with the primitive it had last, and the number of points of `boundary` looked at.
 fn surface_rows(
     solid: &Solid,
     paired: &[(Sample, u32)],
     boundary: &Cloud,
     beyond: f64,
     watch: &mut Watch,
-) -> Result<Vec<Row>, BuildError> {
+) -> Result<Vec<(Row, u64)>, BuildError> {
     map_chunks(paired, watch, |chunk| {
         let mut last = 0;
         let row = |&(sample, hint): &(Sample, u32)| {
@@ -180,8 +188,9 @@ fn surface_rows(
             last = near.primitive;
             let mut residual = near.signed.distance;
             let mut on_boundary = point;
+            let mut points = 0;
             if beyond > 0.0 && residual < 0.0 {
-                if let Some(exit) = far_exit(solid, &sample, &near, beyond, boundary) {
+                if let Some(exit) = far_exit(solid, &sample, &near, beyond, boundary, &mut points) {
                     residual = -(exit - point).length();
                     // Shrinking the ball there shortens the way.
                     near = solid.nearest(exit, last);
@@ -189,7 +198,7 @@ fn surface_rows(
                 }
                 residual = (residual + beyond).min(0.0);
             }
-            Row {
+            let row = Row {
                 corners: solid.primitives()[near.primitive as usize],
                 weights: near.signed.weights,
                 normal: direction(on_boundary - solid.ball(&near).center),
@@ -197,13 +206,15 @@ fn surface_rows(
                 weight: 1.0,
                 point,
                 primitive: near.primitive,
-            }
+            };
+            (row, points)
         };
         chunk.iter().map(row).collect()
     })
 }
 
-/// Rows of envelope samples of which each weighs `share`, and the triangle nearest to each.
+/// Rows of envelope samples of which each weighs `share`, the triangle nearest to each, and the number of nodes and
+/// triangles that the search for it looked at.
 fn envelope_rows(
     draft: &Draft,
     solid: &Solid,
@@ -211,7 +222,7 @@ fn envelope_rows(
     (envelope, share): (&[EnvelopeSample], f64),
     beyond: f64,
     watch: &mut Watch,
-) -> Result<Vec<(Row, u32)>, BuildError> {
+) -> Result<Vec<(Row, u32, u64)>, BuildError> {
     map_chunks(envelope, watch, |chunk| {
         let mut hint = 0;
         let row = |sample: &EnvelopeSample| {
@@ -219,7 +230,8 @@ fn envelope_rows(
             if sample.triangle != UNKNOWN {
                 hint = sample.triangle;
             }
-            let (nearest, triangle) = tree.closest_from(point, hint);
+            let mut work = 0;
+            let (nearest, triangle) = tree.closest_counted(point, hint, &mut work);
             hint = triangle;
             let off = point - nearest;
             let (distance, along) = (off.length(), off.dot(sample.normal));
@@ -242,20 +254,22 @@ fn envelope_rows(
                 point,
                 primitive: sample.primitive,
             };
-            (row, triangle)
+            (row, triangle, work)
         };
         chunk.iter().map(row).collect()
     })
 }
 
 /// Where the way out of the solid from a sample within it is likely shortest, if it is longer than `beyond` and leads
-/// past the primitive that is deepest there. `boundary` are points of the solid's boundary.
+/// past the primitive that is deepest there. `boundary` are points of the solid's boundary; those looked at are added to
+/// `points`.
 fn far_exit(
     solid: &Solid,
     sample: &Sample,
     near: &Nearest,
     beyond: f64,
     boundary: &Cloud,
+    points: &mut u64,
 ) -> Option<Point> {
     let (p, hint) = (sample.point, near.primitive);
     if solid.is_out(p + sample.normal * beyond, hint) || solid.onto_boundary(p, near).is_some() {
@@ -263,5 +277,5 @@ fn far_exit(
     }
     let way = solid.way_out(p, sample.normal, hint);
     let straight = way.is_finite().then(|| p + sample.normal * way);
-    boundary.nearer(p, way).or(straight)
+    boundary.nearer(p, way, points).or(straight)
 }

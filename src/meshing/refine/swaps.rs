@@ -50,8 +50,8 @@ pub fn swap(
     for round in 0..swaps.rounds {
         let removed = swaps.share * most as f64 / (1.0 + 0.5 * round as f64);
         let removed = (removed as usize).max(2);
-        // Below that nothing is left to hang the new ones on.
-        if removed + 2 > most {
+        // Below that nothing is left to hang the new ones on. A round beyond the budget of fits is not begun.
+        if removed + 2 > most || watch.ends_fit(target.budget) {
             break;
         }
         watch.begin("swaps")?;
@@ -94,7 +94,8 @@ pub fn remove(
     Ok(simplifier.draft())
 }
 
-/// Inserts up to `most` primitives in `rounds`, with a short refit after each but the last.
+/// Inserts up to `most` primitives in `rounds`, with a short refit after each but the last, as far as the budget of
+/// fits goes.
 pub fn grow(
     draft: &mut Draft,
     target: &Target,
@@ -104,7 +105,7 @@ pub fn grow(
 ) -> Result<(), BuildError> {
     for round in 0..rounds {
         let left = most.saturating_sub(draft.primitives().len());
-        if left == 0 {
+        if left == 0 || watch.ends_fit(target.budget) {
             break;
         }
         watch.begin("insert")?;

@@ -49,6 +49,8 @@ pub struct Boundary {
     pub tree: TriangleTree,
     /// Area of what is hidden (longest side 1).
     pub hidden: f64,
+    /// Longest edge of the smallest pieces, which are kept if they are partly hidden: what is finer is not known.
+    pub finest: f64,
 }
 
 /// The boundary of the matter that a surface winds around, with the sheets outside it; `None` where nothing is
@@ -71,7 +73,7 @@ pub fn solid_boundary(
         true => sort_out(surface, tree, findings, watch)?,
         false => None,
     };
-    let pieces = sorted.unwrap_or_else(|| whole().collect());
+    let (pieces, finest) = sorted.unwrap_or_else(|| (whole().collect(), FINEST));
     let patches = surface.patch_of.iter().max().map_or(0, |&p| p as usize + 1);
     let mut is_seen = vec![false; patches];
     let mut triangles = surface.triangles.len();
@@ -100,17 +102,19 @@ pub fn solid_boundary(
         surface: boundary,
         tree,
         hidden,
+        finest,
     }))
 }
 
-/// The pieces of triangles that are not hidden, in the order of the triangles. A surface so tangled that most of its
+/// The pieces of triangles that are not hidden, in the order of the triangles, and the longest edge of the smallest. A
+/// surface so tangled that most of its
 /// pieces are partly hidden is cut into larger ones; `None` if that takes too much work too.
 fn sort_out(
     surface: &Surface,
     tree: &TriangleTree,
     findings: &mut Findings,
     watch: &mut Watch,
-) -> Result<Option<Vec<Piece>>, BuildError> {
+) -> Result<Option<(Vec<Piece>, f64)>, BuildError> {
     let mut coarser = 1.0;
     loop {
         let mut cut = Cut::new(tree, surface.triangles.len(), coarser);
@@ -123,7 +127,7 @@ fn sort_out(
         }
         if !cut.is_exhausted() {
             findings.boundary_coarse = coarser > 1.0;
-            return Ok(Some(cut.pieces));
+            return Ok(Some((cut.pieces, cut.finest)));
         }
         if coarser * LARGE > SPAN {
             findings.boundary_coarse = true;
