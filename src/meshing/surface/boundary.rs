@@ -107,8 +107,8 @@ pub fn solid_boundary(
 }
 
 /// The pieces of triangles that are not hidden, in the order of the triangles, and the longest edge of the smallest. A
-/// surface so tangled that most of its
-/// pieces are partly hidden is cut into larger ones; `None` if that takes too much work too.
+/// surface so tangled that most of its pieces are partly hidden is cut into larger ones; `None` if that takes too much
+/// work too.
 fn sort_out(
     surface: &Surface,
     tree: &TriangleTree,
