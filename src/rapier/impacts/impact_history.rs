@@ -11,7 +11,7 @@ use crate::rapier::view::step_view::StepView;
 type Pair = [usize; 2];
 
 /// Places of one pair that are remembered. Bodies that are wedged in each other touch in several; with one alone, 16 heaps
-/// of 12 creatures freeze 22.8 bodies each in 240 steps, with eight 1.1.
+/// of 12 creatures freeze 25 bodies each in 240 steps, with eight 1.6.
 const PLACES: usize = 8;
 
 /// The meetings of a pair.
@@ -89,10 +89,14 @@ impl ImpactHistory {
         self.of_pair.get(&pair).map_or(0, |m| m.places.len())
     }
 
-    /// Pairs that any of some bodies met, each once.
-    pub fn of(&self, bodies: &[usize]) -> Vec<Pair> {
+    /// Pairs that any of some bodies met, each once. Those of fixed bodies are left out: they hand nothing on from one body
+    /// to another.
+    pub fn of(&self, view: &StepView, bodies: &[usize]) -> Vec<Pair> {
         let mut pairs = Vec::new();
-        for pair in bodies.iter().filter_map(|b| self.of_body.get(b)).flatten() {
+        let free = bodies
+            .iter()
+            .filter(|b| view.bodies[**b].kind == Kind::Free);
+        for pair in free.filter_map(|b| self.of_body.get(b)).flatten() {
             if !pairs.contains(pair) {
                 pairs.push(*pair);
             }

@@ -186,7 +186,7 @@ impl Response {
         let mut last = changed.clone();
         for round in 0..ROUNDS {
             let mut next = Vec::new();
-            let pairs = self.met.of(&last).into_iter();
+            let pairs = self.met.of(view, &last).into_iter();
             let all = pairs.flat_map(|pair| (0..self.met.places(pair)).map(move |k| (pair, k)));
             for (pair, place) in all.collect::<Vec<_>>() {
                 let own = undisturbed.filter(|_| pair == struck);
