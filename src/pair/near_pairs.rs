@@ -2,7 +2,7 @@
 //! pair that is searched again and again in one step goes down its trees only to these.
 //!
 //! **What is listed.** On the motion known, from a time `t0` to the end of the step, all primitive pairs that the bounds of
-//! the search ([`super::search`]) do not prove farther apart than a reach `r` plus a margin `m`.
+//! the search (`pair::search`) do not prove farther apart than a reach `r` plus a margin `m`.
 //!
 //! **How long it holds.** On another motion, from `t ≥ t0` to the same end, a point of a body is never farther from where the
 //! known motion has it at that time than the two motions drift apart. Let `e(τ)` be the difference of the positions of the
