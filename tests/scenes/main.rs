@@ -33,6 +33,7 @@ mod golden;
 mod grasps;
 mod hanging;
 mod heaps;
+mod heavy_on_light;
 mod held;
 mod impact_laws;
 mod impacts;

@@ -49,6 +49,11 @@ impl ContactPoint {
         (v2 - v1).length() + w1.length() * r1 + w2.length() * r2
     }
 
+    /// Velocity of the motion of body `k` there.
+    pub fn motion(&self, k: usize) -> Vector {
+        self.motions[k]
+    }
+
     /// Velocity of the second body's motion there against the first's.
     pub fn relative_motion(&self) -> Vector {
         self.motions[1] - self.motions[0]

@@ -2,6 +2,7 @@
 
 pub(crate) mod body_state;
 mod bounces;
+mod contact_impulses;
 pub(crate) mod contact_point;
 pub(crate) mod deep_pairs;
 pub(crate) mod event_loop;
@@ -10,6 +11,7 @@ pub(crate) mod impact_history;
 pub(crate) mod impulse;
 pub(crate) mod initial_overlaps;
 pub(crate) mod lazy_toi_query;
+mod lost_gains;
 mod near_lists;
 pub(crate) mod outcome;
 pub(crate) mod pair_culling;

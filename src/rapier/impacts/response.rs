@@ -1,5 +1,5 @@
-//! What an impact does to bodies: the impulse, when a body stops after too many impacts, and how an impact is passed on
-//! to bodies that touch already.
+//! What an impact does to bodies: when a body stops after too many impacts, and how an impact is passed on to bodies that
+//! touch already. The impulses of one contact are in [`crate::rapier::impacts::contact_impulses`].
 //!
 //! In a crowd an impact presses on contacts that earlier impacts of the step left. Found one by one, each a hair
 //! later than the last, these would be three impacts of four, and freeze the bodies in the middle. So all that
@@ -11,15 +11,11 @@
 
 use crate::math::{Real, Vector};
 use crate::rapier::impacts::body_state::BodyImpactState;
-use crate::rapier::impacts::contact_point::ContactPoint;
 use crate::rapier::impacts::impact_history::ImpactHistory;
-use crate::rapier::impacts::impulse::{Inertia, Material};
 use crate::rapier::impacts::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
-use crate::rapier::impacts::way_out::way_out;
-use crate::rapier::joints::jointed_bodies::{Joints, settle};
+use crate::rapier::joints::jointed_bodies::Joints;
 use crate::rapier::joints::pieces::Pieces;
-use crate::rapier::joints::rows::Twist;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
@@ -31,10 +27,6 @@ type Pair = [usize; 2];
 /// or 3.2 t, draws a chain of ten rings of 21 kg out by 0.27 and 0.48 m with 8 rounds, by 0.18 and 0.27 m with 64. Heaps of
 /// creatures are the same with 16, 32 and 64.
 const ROUNDS: usize = 64;
-
-/// Share of the speed that an impulse gives two bodies which joints leave of it, below which joints hold the contact
-/// itself, as between neighbours in a chain: there is nothing to push, and the impulse would have no bound.
-const HELD: Real = 0.02;
 
 /// What the impacts of a step did so far.
 pub struct Response {
@@ -48,7 +40,8 @@ pub struct Response {
     pub(crate) pieces: Pieces,
 }
 
-fn bodies(view: &StepView, pair: Pair) -> [usize; 2] {
+/// The bodies of two colliders.
+pub(crate) fn bodies(view: &StepView, pair: Pair) -> [usize; 2] {
     pair.map(|k| view.parts[k].body)
 }
 
@@ -216,101 +209,6 @@ impl Response {
         }
     }
 
-    /// Gives both bodies the impulses of a contact, and what joints tie to them what they hand on; returns all of
-    /// these. `undisturbed`: as [`ImpactHistory::undisturbed`] says.
-    fn push(
-        &mut self,
-        view: &mut StepView,
-        policy: &CcdPolicy,
-        rules: &Rules,
-        pair: Pair,
-        hit: &Hit,
-        undisturbed: Option<Real>,
-    ) -> Vec<usize> {
-        let both = bodies(view, pair);
-        let joints = self.joints(view, rules);
-        let [c1, c2] = pair.map(|k| &rules.colliders[view.parts[k].handle]);
-        let material = Material::of(c1, c2);
-        let dominance = both.map(|b| view.bodies[b].dominance);
-        let strong = [dominance[0] > dominance[1], dominance[1] > dominance[0]];
-        for b in joints.tied_to(view, &both) {
-            self.advance(view, b, hit.time);
-        }
-        // A frozen body keeps its motion, and takes impulses for the next step.
-        let inertia = |view: &StepView, b: usize, frozen: bool| {
-            let body = &view.bodies[b];
-            let strong = (0..2).any(|k| both[k] == b && strong[k]);
-            if body.kind == Kind::Free && !strong && !frozen {
-                Inertia::of(body)
-            } else {
-                Inertia::INFINITE
-            }
-        };
-        let mut system = joints.system(view, &both, hit.time, |b| inertia(view, b, false));
-        let free = system.bodies.iter().all(|b| !self.courses[*b].frozen);
-        let mut moving = (!free).then(|| {
-            let frozen = |b: usize| self.courses[b].frozen;
-            joints.system(view, &both, hit.time, |b| inertia(view, b, frozen(b)))
-        });
-        settle(view, hit.time, &system, moving.as_ref(), |view| {
-            let end = joints.system(view, &both, policy.dt, |b| inertia(view, b, false));
-            let twists = end.bodies.iter().map(|b| view.bodies[*b].twist(policy.dt));
-            let mut twists: Vec<Twist> = twists.collect();
-            end.hold(&mut twists);
-            twists
-        });
-        let point = ContactPoint::new(view, both, hit);
-        // What stands at its limit resists as the stop does.
-        for system in [Some(&mut system), moving.as_mut()].into_iter().flatten() {
-            let of = |b: &usize| view.bodies[*b].velocity;
-            let twists: Vec<Twist> = system.bodies.iter().map(of).collect();
-            system.stand_at_limits(&twists, |system| system.change(&point.wrenches(hit.normal)));
-        }
-        let [v1, v2] = [0, 1].map(|k| point.velocity(view.bodies[both[k]].velocity, k));
-        let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, material);
-        let own = point.impact(&system, material);
-        // What the two would do without their joints.
-        let alone = |k: usize| {
-            let change = inertia(view, both[k], false).apply(point.wrench(k, hit.normal));
-            point.velocity(change, k).dot(hit.normal)
-        };
-        if own.resistance() < HELD * (alone(0) + alone(1)) {
-            let moved = system.bodies;
-            self.joints = Some(joints);
-            return moved;
-        }
-        if let Some(j) = own.impulse(approach, 0.0) {
-            let blow = ReportedImpulse::new(view, pair, hit, j.dot(hit.normal));
-            blow.add_to(self.impulses.entry(pair).or_default());
-            let change = system.change(&point.wrenches(j));
-            for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
-                let body = &mut view.bodies[b];
-                body.velocity[0] += dv;
-                body.velocity[1] += dw;
-                self.courses[b].struck |= body.kind == Kind::Free;
-            }
-        }
-        let impact = moving
-            .as_ref()
-            .map_or(own, |system| point.impact(system, material));
-        let system = moving.unwrap_or(system);
-        let motion = point.relative_motion();
-        let approach = -motion.dot(hit.normal);
-        let fastest = point.greatest_speed(both.map(|b| view.bodies[b].velocity));
-        let out = way_out(view, policy, pair, hit, approach, fastest, undisturbed);
-        if let Some(j) = impact.impulse(motion, out) {
-            let change = system.change(&point.wrenches(j));
-            for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
-                let motion = &mut view.bodies[b].motion;
-                motion.linvel += dv;
-                motion.angvel += dw;
-            }
-        }
-        let moved = system.bodies;
-        self.joints = Some(joints);
-        moved
-    }
-
     /// Lets bodies go on from `time` as their joints let them, and what is tied to them; returns those whose motion
     /// that changes.
     fn close_joints(
@@ -373,19 +271,16 @@ impl Response {
             return;
         }
         let carrier = &view.bodies[other];
-        let carrier_driven = carrier.kind == Kind::Driven || self.courses[other].driven;
-        let carries = carrier_driven || self.courses[other].frozen;
+        let carries = carrier.kind == Kind::Driven || self.courses[other].driven;
         let carried = carries && course.events <= tuning.max_carried();
         let carrying = carrier.motion_from(time);
         self.courses[body].frozen = true;
-        self.courses[body].driven = carried && carrier_driven;
+        self.courses[body].driven = carried;
         let held = &mut view.bodies[body];
         if carried {
             held.follow(&carrying);
         } else {
-            // What it lost of the step is told once.
-            let left = 1.0 - time / policy.dt;
-            held.hold(if course.frozen { 0.0 } else { left });
+            held.hold(1.0 - time / policy.dt);
             self.courses[body].struck = true;
         }
     }

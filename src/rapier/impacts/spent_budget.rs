@@ -85,15 +85,10 @@ impl Response {
         for &b in &stopped {
             self.advance(view, b, time);
             let course = &mut self.courses[b];
-            let left = if course.frozen {
-                0.0
-            } else {
-                1.0 - time / policy.dt
-            };
             (course.frozen, course.waits, course.struck) = (true, true, true);
             course.driven = false;
             course.events = course.events.max(policy.tuning.max_events + 1);
-            view.bodies[b].hold(left);
+            view.bodies[b].hold(1.0 - time / policy.dt);
         }
         stopped
     }

@@ -66,6 +66,8 @@ pub struct Body {
     pub velocity_before: [Vector; 2],
     /// Linear velocity that gravity and forces of the user give it in the whole step.
     pull: Vector,
+    /// What of it was taken back for times in which the body gets nowhere.
+    taken_back: Vector,
     /// Largest distance of a point of its colliders from the centre of mass, a length.
     pub reach: Real,
     /// Mass, centre and inertia in the body's frame.
@@ -111,6 +113,7 @@ impl Body {
             is_rapiers: true,
             velocity_before: [body.linvel(), body.angvel()],
             pull: Vector::ZERO,
+            taken_back: Vector::ZERO,
             reach: 0.0,
             mass: properties.local_mprops,
             inverse_mass: properties.effective_inv_mass,
@@ -147,6 +150,7 @@ impl Body {
             is_rapiers: true,
             velocity_before: [Vector::ZERO; 2],
             pull: Vector::ZERO,
+            taken_back: Vector::ZERO,
             reach: 0.0,
             mass: MassProperties::default(),
             inverse_mass: Vector::ZERO,
@@ -215,16 +219,27 @@ impl Body {
         }
     }
 
+    /// Linear velocity that gravity and forces of the user give it in the last `share` of the step, but for what was taken
+    /// back of it.
+    pub fn gains(&self, share: Real) -> Vector {
+        self.pull * share - self.taken_back
+    }
+
+    /// Changes its velocities so that it loses what forces give it.
+    pub fn lose_gains(&mut self, [linear, angular]: [Vector; 2]) {
+        self.velocity[0] += linear;
+        self.velocity[1] += angular;
+        self.taken_back -= linear;
+    }
+
     /// Stops it for the last `share` of the step: it gains no speed by forces in a time in which it gets nowhere.
     /// What contacts took of that already is not taken twice.
     pub fn hold(&mut self, share: Real) {
-        let pull = self.pull * share;
-        let length = pull.length();
-        if length > 0.0 {
-            let along = pull / length;
-            let gained = self.velocity[0].dot(along).clamp(0.0, length);
-            self.velocity[0] -= along * gained;
-        }
+        let along = self.pull.normalize_or_zero();
+        let length = self.gains(share).dot(along).max(0.0);
+        let gained = self.velocity[0].dot(along).clamp(0.0, length);
+        self.velocity[0] -= along * gained;
+        self.taken_back += along * length;
         self.motion = NonlinearRigidMotion::constant_position(self.motion.start);
         self.bend = None;
     }

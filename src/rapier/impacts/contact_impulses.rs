@@ -1,0 +1,169 @@
+//! The two impulses of one contact within the step. One changes the velocities that the solver left, so that the next step
+//! begins right; the other changes the motions of this step, so that the rest of it is right. They differ where a body was
+//! stopped after too many impacts: it takes impulses for the next step, and keeps its motion. What joints tie to the two
+//! bodies takes part.
+
+use crate::math::{Real, Vector};
+use crate::rapier::impacts::contact_point::ContactPoint;
+use crate::rapier::impacts::impulse::{Inertia, Material};
+use crate::rapier::impacts::lost_gains::lose_gains;
+use crate::rapier::impacts::reported_impulse::ReportedImpulse;
+use crate::rapier::impacts::response::{Response, bodies};
+use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
+use crate::rapier::impacts::way_out::way_out;
+use crate::rapier::joints::jointed_bodies::{Joints, settle};
+use crate::rapier::joints::rows::Twist;
+use crate::rapier::joints::tied_system::System;
+use crate::rapier::view::eligible_pairs::Rules;
+use crate::rapier::view::motion::Kind;
+use crate::rapier::view::step_view::StepView;
+
+/// Share of the speed that an impulse gives two bodies which joints leave of it, below which joints hold the contact
+/// itself, as between neighbours in a chain: there is nothing to push, and the impulse would have no bound.
+const HELD: Real = 0.02;
+
+impl Response {
+    /// Gives both bodies the impulses of a contact, and what joints tie to them what they hand on; returns all of
+    /// these. `undisturbed`: as [`ImpactHistory::undisturbed`](crate::rapier::impacts::impact_history::ImpactHistory::undisturbed)
+    /// says.
+    pub(super) fn push(
+        &mut self,
+        view: &mut StepView,
+        policy: &CcdPolicy,
+        rules: &Rules,
+        pair: [usize; 2],
+        hit: &Hit,
+        undisturbed: Option<Real>,
+    ) -> Vec<usize> {
+        let both = bodies(view, pair);
+        let joints = self.joints(view, rules);
+        for b in joints.tied_to(view, &both) {
+            self.advance(view, b, hit.time);
+        }
+        let (system, moving, point) = self.at_contact(view, policy, &joints, both, hit);
+        let [c1, c2] = pair.map(|k| &rules.colliders[view.parts[k].handle]);
+        let [v1, v2] = [0, 1].map(|k| point.velocity(view.bodies[both[k]].velocity, k));
+        let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, Material::of(c1, c2));
+        let own = point.impact(&system, material);
+        let (mut moved, mut impact) = (system, own);
+        if own.resistance() >= HELD * resistance_alone(view, both, &point, hit.normal) {
+            if let Some(j) = own.impulse(approach, 0.0) {
+                let blow = ReportedImpulse::new(view, pair, hit, j.dot(hit.normal));
+                blow.add_to(self.impulses.entry(pair).or_default());
+                self.change_velocities(view, &moved, &point, j);
+            }
+            if let Some(moving) = moving {
+                impact = point.impact(&moving, material);
+                let stands = both.map(|b| self.stands(view, b));
+                let share = 1.0 - hit.time / policy.dt;
+                lose_gains(view, both, stands, &point, (&moving, &impact), share);
+                moved = moving;
+            }
+            let motion = point.relative_motion();
+            let approach = -motion.dot(hit.normal);
+            let fastest = point.greatest_speed(both.map(|b| view.bodies[b].velocity));
+            let out = way_out(view, policy, pair, hit, approach, fastest, undisturbed);
+            if let Some(j) = impact.impulse(motion, out) {
+                change_motions(view, &moved, &point, j);
+            }
+        }
+        let moved = moved.bodies;
+        self.joints = Some(joints);
+        moved
+    }
+
+    /// Whether nothing changes the motion of a body any more.
+    fn stands(&self, view: &StepView, body: usize) -> bool {
+        self.courses[body].frozen || view.bodies[body].kind != Kind::Free
+    }
+
+    /// What resists the impulse on the velocities and, where that differs, the one on the motions; and the point of the
+    /// contact. Bodies that joints hold have the velocities and motions there that these let them have.
+    fn at_contact<'j>(
+        &self,
+        view: &mut StepView,
+        policy: &CcdPolicy,
+        joints: &'j Joints,
+        both: [usize; 2],
+        hit: &Hit,
+    ) -> (System<'j>, Option<System<'j>>, ContactPoint) {
+        let resists = |view: &StepView, b: usize| inertia(view, both, b);
+        let mut system = joints.system(view, &both, hit.time, |b| resists(view, b));
+        let free = system.bodies.iter().all(|b| !self.courses[*b].frozen);
+        let mut moving = (!free).then(|| {
+            joints.system(view, &both, hit.time, |b| match self.courses[b].frozen {
+                true => Inertia::INFINITE,
+                false => resists(view, b),
+            })
+        });
+        settle(view, hit.time, &system, moving.as_ref(), |view| {
+            let end = joints.system(view, &both, policy.dt, |b| resists(view, b));
+            let twists = end.bodies.iter().map(|b| view.bodies[*b].twist(policy.dt));
+            let mut twists: Vec<Twist> = twists.collect();
+            end.hold(&mut twists);
+            twists
+        });
+        let point = ContactPoint::new(view, both, hit);
+        // What stands at its limit resists as the stop does.
+        for system in [Some(&mut system), moving.as_mut()].into_iter().flatten() {
+            let of = |b: &usize| view.bodies[*b].velocity;
+            let twists: Vec<Twist> = system.bodies.iter().map(of).collect();
+            system.stand_at_limits(&twists, |system| system.change(&point.wrenches(hit.normal)));
+        }
+        (system, moving, point)
+    }
+
+    /// Gives the velocities of a system an impulse at a contact.
+    fn change_velocities(
+        &mut self,
+        view: &mut StepView,
+        system: &System,
+        point: &ContactPoint,
+        impulse: Vector,
+    ) {
+        let change = system.change(&point.wrenches(impulse));
+        for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
+            let body = &mut view.bodies[b];
+            body.velocity[0] += dv;
+            body.velocity[1] += dw;
+            self.courses[b].struck |= body.kind == Kind::Free;
+        }
+    }
+}
+
+/// Gives the motions of a system an impulse at a contact.
+fn change_motions(view: &mut StepView, system: &System, point: &ContactPoint, impulse: Vector) {
+    let change = system.change(&point.wrenches(impulse));
+    for (&b, [dv, dw]) in system.bodies.iter().zip(change) {
+        let motion = &mut view.bodies[b].motion;
+        motion.linvel += dv;
+        motion.angvel += dw;
+    }
+}
+
+/// What resists an impulse on a body, where the two bodies of a contact are `both`.
+fn inertia(view: &StepView, both: [usize; 2], body: usize) -> Inertia {
+    let dominance = both.map(|b| view.bodies[b].dominance);
+    let [first, second] = both.map(|b| b == body);
+    let is_strong = first && dominance[0] > dominance[1] || second && dominance[1] > dominance[0];
+    if view.bodies[body].kind == Kind::Free && !is_strong {
+        Inertia::of(&view.bodies[body])
+    } else {
+        Inertia::INFINITE
+    }
+}
+
+/// Relative speed along the normal that a unit impulse along it would give the two bodies of a contact without their
+/// joints.
+fn resistance_alone(
+    view: &StepView,
+    both: [usize; 2],
+    point: &ContactPoint,
+    normal: Vector,
+) -> Real {
+    let alone = |k: usize| {
+        let change = inertia(view, both, both[k]).apply(point.wrench(k, normal));
+        point.velocity(change, k).dot(normal)
+    };
+    alone(0) + alone(1)
+}
