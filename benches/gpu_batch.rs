@@ -27,7 +27,7 @@ use rapier3d_medial::elementary::test_list::{Domain, for_each_test};
 use rapier3d_medial::elementary::{ToiOptions, ToiStatus};
 use rapier3d_medial::error::GpuError;
 use rapier3d_medial::math::lane::Vec3;
-use rapier3d_medial::pair::Volumes;
+use rapier3d_medial::pair::PrimitiveTree;
 use rapier3d_medial::{MedialMesh, MedialSphere};
 use serde_json::{Value, json};
 use std::hint::black_box;
@@ -231,9 +231,9 @@ fn every_test(devices: &mut Devices) -> Value {
     };
     let count = mesh.primitive_count() as u32;
     for i in 0..count {
-        let (a, share_a) = Volumes::primitive(&mesh, i);
+        let (a, share_a) = PrimitiveTree::primitive(&mesh, i);
         for j in 0..count {
-            let (b, share_b) = Volumes::primitive(&mesh, j);
+            let (b, share_b) = PrimitiveTree::primitive(&mesh, j);
             for_each_test(share_a, share_b, |test| {
                 let path = LinearPath::new(&test, 0.0, |second, k| {
                     place(if second { b } else { a }[k as usize], second)

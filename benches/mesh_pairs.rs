@@ -20,7 +20,7 @@ use rapier3d_medial::elementary::test_list::{Domain, for_each_test};
 use rapier3d_medial::elementary::{MovingSphere, ToiOptions, ToiStatus};
 use rapier3d_medial::math::lane::Vec3;
 use rapier3d_medial::math::tolerance;
-use rapier3d_medial::pair::Volumes;
+use rapier3d_medial::pair::PrimitiveTree;
 use rapier3d_medial::pair::first_contact::{Counts, first_contact_counted};
 use rapier3d_medial::{MedialMesh, MedialSphere};
 use std::time::Instant;
@@ -79,10 +79,10 @@ fn brute_force_lanes(mesh: &MedialMesh, offset: Vector, displacement: Vector) ->
     let (mut count, mut first) = (0, 1.0);
     let n = mesh.primitive_count() as u32;
     for i in 0..n {
-        let (a, share_a) = Volumes::primitive(mesh, i);
+        let (a, share_a) = PrimitiveTree::primitive(mesh, i);
         let mut paths = [Vec::new(), Vec::new()];
         for j in 0..n {
-            let (b, share_b) = Volumes::primitive(mesh, j);
+            let (b, share_b) = PrimitiveTree::primitive(mesh, j);
             for_each_test(share_a, share_b, |test| {
                 let path = LinearPath::new(&test, 0.0, |second, k| {
                     let s = if second { b } else { a }[k as usize];

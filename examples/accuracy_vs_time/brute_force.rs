@@ -10,7 +10,7 @@ use rapier3d_medial::elementary::test_list::{Domain, for_each_test};
 use rapier3d_medial::elementary::{MovingSphere, ToiOptions, alternating};
 use rapier3d_medial::math::lane::Vec3;
 use rapier3d_medial::math::tolerance;
-use rapier3d_medial::pair::Volumes;
+use rapier3d_medial::pair::PrimitiveTree;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -48,7 +48,13 @@ pub fn brute_force(scene: &Scene, before: &[Pose], after: &[Pose]) -> Brute {
                 }
             };
             let mesh = &scene.actors[b].model.medial;
-            let one = |k| Volumes::primitive(mesh, k).0.iter().map(place).collect();
+            let one = |k| {
+                PrimitiveTree::primitive(mesh, k)
+                    .0
+                    .iter()
+                    .map(place)
+                    .collect()
+            };
             (0..mesh.primitive_count() as u32).map(one).collect()
         })
         .collect();
@@ -77,11 +83,11 @@ fn in_lanes(scene: &Scene, moving: &[Moving], [i, j]: [usize; 2]) -> usize {
     let [a, b] = [i, j].map(|k| &scene.actors[k].model.medial);
     let mut count = 0;
     for first in 0..a.primitive_count() as u32 {
-        let share1 = Volumes::primitive(a, first).1;
+        let share1 = PrimitiveTree::primitive(a, first).1;
         let spheres1 = &moving[i][first as usize];
         let mut paths = [Vec::new(), Vec::new()];
         for second in 0..b.primitive_count() as u32 {
-            let share2 = Volumes::primitive(b, second).1;
+            let share2 = PrimitiveTree::primitive(b, second).1;
             let spheres2 = &moving[j][second as usize];
             for_each_test(share1, share2, |test| {
                 let path = LinearPath::new(&test, 0.0, |other, k| {

@@ -11,7 +11,7 @@
 
 use super::first_contact::Mover;
 use super::path::{LinearPath, Path};
-use super::test_list::{Domain, Share, for_each_test};
+use super::test_list::{Domain, OwnedFeatures, for_each_test};
 use super::{AlternatingStart, MovingSphere, Toi, ToiOptions, ToiStatus, cone_cone, sphere_slab};
 use crate::math::lane::{Scalar, Vec3};
 use crate::math::nearest::Nearest;
@@ -72,17 +72,21 @@ pub(crate) fn search<S: Scalar>(
     limits: &Limits<S>,
 ) -> (Option<S>, u32) {
     let (mut first, mut iterations) = (None, 0);
-    for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
-        let path = LinearPath::new(&test, S::zero(), |second, i| {
-            if second { b[i as usize] } else { a[i as usize] }
-        });
-        let (time, count) = iterate(&path, test.domain, limits);
-        iterations += count;
-        if let Some(t) = time {
-            first = Some(first.map_or(t, |f: S| f.min(t)));
-        }
-        true
-    });
+    for_each_test(
+        OwnedFeatures::whole(a.len()),
+        OwnedFeatures::whole(b.len()),
+        |test| {
+            let path = LinearPath::new(&test, S::zero(), |second, i| {
+                if second { b[i as usize] } else { a[i as usize] }
+            });
+            let (time, count) = iterate(&path, test.domain, limits);
+            iterations += count;
+            if let Some(t) = time {
+                first = Some(first.map_or(t, |f: S| f.min(t)));
+            }
+            true
+        },
+    );
     (first, iterations)
 }
 

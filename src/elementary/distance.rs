@@ -1,7 +1,7 @@
 //! Signed distance of two primitives at a fixed time: paper Eq. (2), minimised over all pairs of spheres. Where medial
 //! surfaces cross it is minus the sum of the radii there, which the elementary tests alone do not find.
 
-use super::test_list::{Domain, ElementaryTest, Share, edges, for_each_test};
+use super::test_list::{Domain, ElementaryTest, OwnedFeatures, edges, for_each_test};
 use super::{certificate, cone_cone, slab_crossing, sphere_slab};
 use crate::math::lane::{Scalar, Vec3};
 use crate::math::nearest::{Family, Nearest};
@@ -58,7 +58,7 @@ pub fn is_beyond<S: Scalar>(f: &Family<S>, margin: S) -> bool {
     certificate::lower_bound(Domain::Box, f, n) > margin + slack
 }
 
-/// The deepest crossing of an edge of one primitive (of those in `mask`, as in [`Share::edges`]) with
+/// The deepest crossing of an edge of one primitive (of those in `mask`, as in [`OwnedFeatures::edges`]) with
 /// the slab of the other. Two triangles cross along a segment, on which the radius sum is linear:
 /// the deepest point is one of its ends, where an edge of either passes through the other.
 pub fn crossing<S: Scalar>(
@@ -111,23 +111,27 @@ pub fn signed_distance_along<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Opt
 fn in_order<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
     let mut least: Option<S> = None;
     let mut normal = None;
-    for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
-        let family = family(&test, a, b);
-        // No sphere pair of a test is nearer than its corners along any one direction: mostly that of the nearest yet.
-        let bound = normal.map(|n| certificate::lower_bound(test.domain, &family, n));
-        if !least
-            .zip(bound)
-            .is_some_and(|(least, bound)| bound >= least)
-        {
-            let nearest = nearest_in_family(test.domain, &family);
-            if least.is_none_or(|least| nearest.distance < least) {
-                least = Some(nearest.distance);
-                let length = nearest.length;
-                normal = (length > S::zero()).then(|| nearest.y * (S::one() / length));
+    for_each_test(
+        OwnedFeatures::whole(a.len()),
+        OwnedFeatures::whole(b.len()),
+        |test| {
+            let family = family(&test, a, b);
+            // No sphere pair of a test is nearer than its corners along any one direction: mostly that of the nearest yet.
+            let bound = normal.map(|n| certificate::lower_bound(test.domain, &family, n));
+            if !least
+                .zip(bound)
+                .is_some_and(|(least, bound)| bound >= least)
+            {
+                let nearest = nearest_in_family(test.domain, &family);
+                if least.is_none_or(|least| nearest.distance < least) {
+                    least = Some(nearest.distance);
+                    let length = nearest.length;
+                    normal = (length > S::zero()).then(|| nearest.y * (S::one() / length));
+                }
             }
-        }
-        true
-    });
+            true
+        },
+    );
     for c in [crossing(a, u8::MAX, b), crossing(b, u8::MAX, a)]
         .into_iter()
         .flatten()
@@ -142,11 +146,15 @@ fn in_order<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
 fn nearest_first<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
     let mut waiting = [Waiting::new(ElementaryTest::cone_cone([0, 0], [0, 0]), a, b); MOST_TESTS];
     let mut count = 0;
-    for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
-        waiting[count] = Waiting::new(test, a, b);
-        count += 1;
-        count < MOST_TESTS
-    });
+    for_each_test(
+        OwnedFeatures::whole(a.len()),
+        OwnedFeatures::whole(b.len()),
+        |test| {
+            waiting[count] = Waiting::new(test, a, b);
+            count += 1;
+            count < MOST_TESTS
+        },
+    );
     let middle = |s: &[Ball<S>]| {
         let sum = s.iter().fold(Vec3::zero(), |sum, s| sum + s.0);
         sum * (S::one() / S::splat(s.len() as f64))

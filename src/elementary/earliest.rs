@@ -8,7 +8,7 @@ use super::cone_cone::family;
 use super::distance::Ball;
 use super::distance::crossing;
 use super::path::Path;
-use super::test_list::{ElementaryTest, Share, for_each_test};
+use super::test_list::{ElementaryTest, OwnedFeatures, for_each_test};
 use crate::math::lane::Scalar;
 
 /// The earliest contact over many elementary tests.
@@ -120,7 +120,7 @@ impl<S: Scalar> Earliest<S> {
         };
         let first = path(&test);
         let mut best = (test, witness(&first, test.domain, self.lower));
-        let [a, b] = spheres.map(Share::whole);
+        let [a, b] = spheres.map(OwnedFeatures::whole);
         for_each_test(a, b, |test| {
             let path = path(&test);
             let (old, normal) = &best.1;

@@ -6,7 +6,7 @@ use super::distance::Ball;
 use super::distance::thinnest;
 pub use super::earliest::Earliest;
 use super::path::{LinearPath, RigidPath};
-use super::test_list::{Domain, ElementaryTest, Share, for_each_test};
+use super::test_list::{Domain, ElementaryTest, OwnedFeatures, for_each_test};
 use super::{MovingSphere, Toi, ToiOptions};
 use crate::math::Real;
 use crate::math::lane::{Scalar, Vec3};
@@ -46,7 +46,10 @@ impl<S: Scalar> Straight<S> {
 
     /// Calls `visit` with every test of the two, until it returns `false`.
     pub(super) fn for_each_test(&self, visit: impl FnMut(ElementaryTest) -> bool) {
-        let [a, b] = self.movers.each_ref().map(|side| Share::whole(side.len()));
+        let [a, b] = self
+            .movers
+            .each_ref()
+            .map(|side| OwnedFeatures::whole(side.len()));
         for_each_test(a, b, visit);
     }
 
@@ -91,9 +94,11 @@ pub(crate) fn rigid<S: Scalar>(
         })
     };
     let mut earliest = Earliest::new(limits);
-    for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
-        earliest.test(test, &path(&test), [0, 0])
-    });
+    for_each_test(
+        OwnedFeatures::whole(a.len()),
+        OwnedFeatures::whole(b.len()),
+        |test| earliest.test(test, &path(&test), [0, 0]),
+    );
     earliest.conclude(&start_a, &start_b, target_distance, path);
     earliest
 }

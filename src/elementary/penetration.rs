@@ -11,7 +11,7 @@
 //! `n = g ± h N/|N|` with `N = e1 × e2`, as in [`crate::math::nearest`].
 
 use super::distance::{Ball, nearest_in_test};
-use super::test_list::{Share, edges, for_each_test};
+use super::test_list::{OwnedFeatures, edges, for_each_test};
 use crate::math::lane::{Scalar, Vec3};
 
 /// Difference of two gaps that counts as none, in units of `EPSILON × gap`: a gap is a sum of 8
@@ -85,13 +85,17 @@ pub fn deepest<S: Scalar>(
 /// Directions that the two bodies alone decide: of the nearest spheres, and tangent to both.
 fn steady_directions<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> Vec<Vec3<S>> {
     let mut found = Vec::new();
-    for_each_test(Share::whole(a.len()), Share::whole(b.len()), |test| {
-        let s = nearest_in_test(&test, a, b).1;
-        if s.length > S::splat(LOST) * (s.length - s.distance) {
-            found.extend(unit(s.y));
-        }
-        true
-    });
+    for_each_test(
+        OwnedFeatures::whole(a.len()),
+        OwnedFeatures::whole(b.len()),
+        |test| {
+            let s = nearest_in_test(&test, a, b).1;
+            if s.length > S::splat(LOST) * (s.length - s.distance) {
+                found.extend(unit(s.y));
+            }
+            true
+        },
+    );
     let (of_first, of_second) = slopes(a, b);
     let mut tangent = |e1, e2| found.extend(tangent_directions(e1, e2).into_iter().flatten());
     if let [e1, _, e3] = of_first[..] {

@@ -62,7 +62,7 @@ pub fn edges(n: usize) -> &'static [[u8; 2]] {
 /// What a primitive brings to the tests of a mesh: how many spheres, and which of its edges and
 /// spheres it tests (bit `i` of each mask; all ones for a primitive on its own).
 #[derive(Clone, Copy, Debug)]
-pub struct Share {
+pub struct OwnedFeatures {
     /// 1, 2 or 3.
     pub spheres: usize,
     /// Mask over [`edges`].
@@ -71,7 +71,7 @@ pub struct Share {
     pub vertices: u8,
 }
 
-impl Share {
+impl OwnedFeatures {
     /// All edges and spheres of a primitive on its own.
     pub fn whole(spheres: usize) -> Self {
         Self {
@@ -83,7 +83,11 @@ impl Share {
 }
 
 /// Calls `visit` with every test that the two shares own; stops early when it returns `false`.
-pub fn for_each_test(a: Share, b: Share, mut visit: impl FnMut(ElementaryTest) -> bool) {
+pub fn for_each_test(
+    a: OwnedFeatures,
+    b: OwnedFeatures,
+    mut visit: impl FnMut(ElementaryTest) -> bool,
+) {
     let owned = |mask: u8, i: usize| mask >> i & 1 == 1;
     let sphere_on_slab = (a.spheres == 1 && b.spheres == 3) || (a.spheres == 3 && b.spheres == 1);
     if !sphere_on_slab {

@@ -28,7 +28,7 @@ use super::files::{self, file_error};
 use super::mesh::{MedialMesh, Parts};
 use super::simplex::Simplex;
 use super::sphere::MedialSphere;
-use super::tree::{Below, Node, SphereTree};
+use super::tree::{Node, NodeKind, SphereTree};
 use crate::error::{AssetError, MeshError};
 use crate::math::{Real, Rotation, Vector};
 use parry3d::mass_properties::MassProperties;
@@ -96,9 +96,9 @@ impl MedialMesh {
         }
         for node in parts.tree.nodes() {
             out.sphere(node.center, node.radius);
-            out.words([match node.below() {
-                Below::Primitive(index) => index << 1 | 1,
-                Below::Nodes(index, _) => index << 1,
+            out.words([match node.kind() {
+                NodeKind::Primitive(index) => index << 1 | 1,
+                NodeKind::Nodes(index, _) => index << 1,
             }]);
         }
         let checksum = checksum(&out.0);
@@ -272,8 +272,8 @@ fn read(content: &[u8], counts: &Counts) -> Result<MedialMesh, AssetError> {
             let MedialSphere { center, radius } = sphere(&words);
             let index = words[4] >> 1;
             let below = match words[4] & 1 {
-                1 => Below::Primitive(index),
-                _ => Below::Nodes(index, index.wrapping_add(1)),
+                1 => NodeKind::Primitive(index),
+                _ => NodeKind::Nodes(index, index.wrapping_add(1)),
             };
             Node::new(center, radius, below)
         })

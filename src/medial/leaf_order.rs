@@ -1,6 +1,6 @@
 //! Order of the leaves of a sphere tree, from which it is known below which of two children a primitive is.
 
-use super::tree::{Below, SphereTree};
+use super::tree::{NodeKind, SphereTree};
 
 /// Ranks of a tree's leaves, first children first: those below a node follow each other.
 #[derive(Clone, Debug, Default)]
@@ -27,9 +27,9 @@ impl LeafOrder {
         let mut waiting = vec![0];
         while let Some(node) = waiting.pop() {
             order.first[node as usize] = order.primitives.len() as u32;
-            match nodes[node as usize].below() {
-                Below::Nodes(first, second) => waiting.extend([second, first]),
-                Below::Primitive(primitive) => {
+            match nodes[node as usize].kind() {
+                NodeKind::Nodes(first, second) => waiting.extend([second, first]),
+                NodeKind::Primitive(primitive) => {
                     order.ranks[primitive as usize] = order.primitives.len() as u32;
                     order.primitives.push(primitive);
                 }

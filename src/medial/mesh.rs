@@ -6,8 +6,8 @@ use super::exact::balls;
 use super::leaf_order::LeafOrder;
 use super::mass;
 use super::primitive::MedialPrimitive;
+use super::proxy_hull::ProxyHull;
 use super::rectangle::SweptRectangles;
-use super::shell::Shell;
 use super::simplex::{Simplex, primitive_of, primitives_of, sorted};
 use super::sphere::MedialSphere;
 use super::thickness::{self, Thicknesses};
@@ -40,7 +40,7 @@ struct MedialData {
     aabb: Aabb,
     solid_mass: OnceLock<MassProperties>,
     boxes: OnceLock<Bvh>,
-    shell: OnceLock<Arc<Shell>>,
+    proxy: OnceLock<Arc<ProxyHull>>,
     rectangles: OnceLock<SweptRectangles>,
     thicknesses: OnceLock<Thicknesses>,
     leaf_order: OnceLock<LeafOrder>,
@@ -131,7 +131,7 @@ impl MedialMesh {
             aabb,
             solid_mass,
             boxes: OnceLock::new(),
-            shell: OnceLock::new(),
+            proxy: OnceLock::new(),
             rectangles: OnceLock::new(),
             thicknesses: OnceLock::new(),
             leaf_order: OnceLock::new(),
@@ -217,10 +217,10 @@ impl MedialMesh {
     }
 
     /// A few balls that hold it. Made at the first call.
-    pub(crate) fn shell(&self) -> &Arc<Shell> {
-        let shell = &self.data.shell;
-        let of_mesh = || Shell::of_mesh(self.spheres(), self.simplices(), self.tree());
-        shell.get_or_init(|| Arc::new(of_mesh()))
+    pub(crate) fn proxy_hull(&self) -> &Arc<ProxyHull> {
+        let proxy = &self.data.proxy;
+        let of_mesh = || ProxyHull::of_mesh(self.spheres(), self.simplices(), self.tree());
+        proxy.get_or_init(|| Arc::new(of_mesh()))
     }
 
     /// Swept rectangles round what is below the inner nodes of its tree. Made at the first call.

@@ -15,12 +15,12 @@ pub mod mass;
 pub mod mesh;
 pub mod polygon;
 pub mod primitive;
+pub mod proxy_hull;
 pub mod rectangle;
 #[cfg(feature = "serde")]
 mod saved;
 pub(crate) mod scaled;
 mod sheet;
-pub mod shell;
 pub mod simplex;
 pub mod solids;
 pub mod sphere;

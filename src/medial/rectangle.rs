@@ -8,7 +8,7 @@
 
 use super::simplex::Simplex;
 use super::sphere::MedialSphere;
-use super::tree::{Below, SphereTree};
+use super::tree::{NodeKind, SphereTree};
 use crate::math::Real;
 use crate::math::lane::Vec3;
 
@@ -45,14 +45,14 @@ impl SweptRectangles {
         primitives: &[Simplex],
         tree: &SphereTree,
     ) -> Vec<u32> {
-        match tree.nodes()[node as usize].below() {
-            Below::Primitive(primitive) => {
+        match tree.nodes()[node as usize].kind() {
+            NodeKind::Primitive(primitive) => {
                 let simplex = &primitives[primitive as usize];
                 let mut members = simplex.vertices[..simplex.len as usize].to_vec();
                 members.sort_unstable();
                 members
             }
-            Below::Nodes(first, second) => {
+            NodeKind::Nodes(first, second) => {
                 let mut members = self.fit(first, spheres, primitives, tree);
                 members.extend(self.fit(second, spheres, primitives, tree));
                 members.sort_unstable();

@@ -6,7 +6,7 @@
 
 use super::simplex::Simplex;
 use super::sphere::MedialSphere;
-use super::tree::{Below, SphereTree};
+use super::tree::{NodeKind, SphereTree};
 use crate::math::{Real, Vector};
 
 /// Way, in units of the radius, in which a blunt tip grows from nothing to that radius: a tip whose radius
@@ -73,9 +73,9 @@ impl Thicknesses {
         let mut nodes = vec![0.0; tree.nodes().len()];
         // Children come after their parents.
         for (k, node) in tree.nodes().iter().enumerate().rev() {
-            nodes[k] = match node.below() {
-                Below::Primitive(p) => primitives[p as usize],
-                Below::Nodes(i, j) => Real::min(nodes[i as usize], nodes[j as usize]),
+            nodes[k] = match node.kind() {
+                NodeKind::Primitive(p) => primitives[p as usize],
+                NodeKind::Nodes(i, j) => Real::min(nodes[i as usize], nodes[j as usize]),
             };
         }
         Self { primitives, nodes }

@@ -21,7 +21,7 @@ pub struct Node {
 
 /// What is below a [`Node`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Below {
+pub enum NodeKind {
     /// One primitive.
     Primitive(u32),
     /// Two nodes.
@@ -30,10 +30,10 @@ pub enum Below {
 
 impl Node {
     /// A node from its parts, for a tree that [`SphereTree::from_nodes`] checks.
-    pub(super) fn new(center: Vector, radius: Real, below: Below) -> Self {
+    pub(super) fn new(center: Vector, radius: Real, below: NodeKind) -> Self {
         let (index, leaf) = match below {
-            Below::Primitive(index) => (index, true),
-            Below::Nodes(index, _) => (index, false),
+            NodeKind::Primitive(index) => (index, true),
+            NodeKind::Nodes(index, _) => (index, false),
         };
         Self {
             center,
@@ -44,11 +44,11 @@ impl Node {
     }
 
     /// Its primitive or its children.
-    pub fn below(&self) -> Below {
+    pub fn kind(&self) -> NodeKind {
         if self.leaf {
-            Below::Primitive(self.index)
+            NodeKind::Primitive(self.index)
         } else {
-            Below::Nodes(self.index, self.index + 1)
+            NodeKind::Nodes(self.index, self.index + 1)
         }
     }
 }

@@ -10,19 +10,19 @@ use super::first_contact::Counts;
 use super::hulls::Hulls;
 use super::outline;
 use super::placement::Placement;
-use super::volumes::Volumes;
+use super::primitive_tree::PrimitiveTree;
 use crate::elementary::certificate::ActiveFace;
 use crate::elementary::distance::{
     Ends, crossing, deeper, face, family, is_beyond, nearest_in_family,
 };
 use crate::elementary::first_contact::corner_weights;
-use crate::elementary::test_list::{Domain, ElementaryTest, Share, for_each_test};
+use crate::elementary::test_list::{Domain, ElementaryTest, OwnedFeatures, for_each_test};
 use crate::elementary::{penetration, slab_crossing};
 use crate::math::lane::Vec3;
 use crate::math::nearest::{Family, Nearest, edge_minimum};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 
 /// Cosine from which two directions of one primitive pair belong to one contact patch (10°).
 const SAME_PATCH: f64 = 0.985;
@@ -67,8 +67,8 @@ type Ball = (Vec3<f64>, f64);
 /// the pose of the second body in the frame of the first. Computed in double precision; result and order depend on
 /// the input only. A pose that is not finite gives no contacts.
 pub fn contacts(
-    body1: &impl Volumes,
-    body2: &impl Volumes,
+    body1: &impl PrimitiveTree,
+    body2: &impl PrimitiveTree,
     pos12: &Pose,
     prediction: Real,
 ) -> (Vec<SpherePair>, Counts) {
@@ -103,7 +103,7 @@ pub fn contacts(
         if y.length_sq() > reach * reach * (1.0 + 1.0e-12) {
             continue;
         }
-        let step = Step::new([body1.below(i), body2.below(j)], [ra, rb]);
+        let step = Step::new([body1.kind(i), body2.kind(j)], [ra, rb]);
         let is_leaf = matches!(step, Step::Leaves(_));
         let [kept, split] = inner;
         let is_idle = split >= FAILED && 3 * kept <= split && margin >= 0.0;
@@ -146,12 +146,12 @@ pub(super) enum Step {
 }
 
 impl Step {
-    pub(super) fn new(below: [Below; 2], [ra, rb]: [f64; 2]) -> Self {
+    pub(super) fn new(below: [NodeKind; 2], [ra, rb]: [f64; 2]) -> Self {
         match below {
-            [Below::Primitive(p), Below::Primitive(q)] => Self::Leaves([p, q]),
-            [Below::Nodes(c, d), Below::Primitive(_)] => Self::First([c, d]),
-            [Below::Nodes(c, d), Below::Nodes(..)] if ra >= rb => Self::First([c, d]),
-            [_, Below::Nodes(c, d)] => Self::Second([c, d]),
+            [NodeKind::Primitive(p), NodeKind::Primitive(q)] => Self::Leaves([p, q]),
+            [NodeKind::Nodes(c, d), NodeKind::Primitive(_)] => Self::First([c, d]),
+            [NodeKind::Nodes(c, d), NodeKind::Nodes(..)] if ra >= rb => Self::First([c, d]),
+            [_, NodeKind::Nodes(c, d)] => Self::Second([c, d]),
         }
     }
 }
@@ -160,8 +160,8 @@ impl Step {
 /// before, among those hardly deeper than the least ([`penetration::HYSTERESIS`]). `at`: their
 /// deepest contact now; the points stay in the middle of its.
 pub(crate) fn along_old_normal(
-    body1: &impl Volumes,
-    body2: &impl Volumes,
+    body1: &impl PrimitiveTree,
+    body2: &impl PrimitiveTree,
     pos12: &Pose,
     at: &SpherePair,
     old: Vector,
@@ -178,14 +178,14 @@ pub(crate) fn along_old_normal(
 pub(super) struct PrimitivePair<'a> {
     indices: [u32; 2],
     balls: [[Ball; 3]; 2],
-    shares: [Share; 2],
+    shares: [OwnedFeatures; 2],
     place: &'a Placement,
 }
 
 impl<'a> PrimitivePair<'a> {
     pub(super) fn new(
-        body1: &impl Volumes,
-        body2: &impl Volumes,
+        body1: &impl PrimitiveTree,
+        body2: &impl PrimitiveTree,
         indices: [u32; 2],
         place: &'a Placement,
     ) -> Self {

@@ -9,10 +9,10 @@ use super::first_contact::Counts;
 use super::hulls::Hulls;
 use super::outline;
 use super::placement::Placement;
-use super::volumes::Volumes;
+use super::primitive_tree::PrimitiveTree;
 use crate::math::lane::Vec3;
 use crate::math::{Pose, Real};
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -29,8 +29,8 @@ pub enum Wanted {
 /// other. `pos12` is the pose of the second body in the frame of the first. Computed in double precision. A pose
 /// that is not finite gives `None`.
 pub fn nearest_spheres(
-    body1: &impl Volumes,
-    body2: &impl Volumes,
+    body1: &impl PrimitiveTree,
+    body2: &impl PrimitiveTree,
     pos12: &Pose,
     max_distance: Real,
 ) -> (Option<SpherePair>, Counts) {
@@ -39,8 +39,8 @@ pub fn nearest_spheres(
 
 /// A sphere pair of two bodies that is within `max_distance`: as [`nearest_spheres`], or any.
 pub fn near_spheres(
-    body1: &impl Volumes,
-    body2: &impl Volumes,
+    body1: &impl PrimitiveTree,
+    body2: &impl PrimitiveTree,
     pos12: &Pose,
     max_distance: Real,
     wanted: Wanted,
@@ -56,7 +56,7 @@ pub fn near_spheres(
     let near = if body1.roots() > 0 && max_distance < body1.bound(0).1 {
         outline::near(body1, body2, |p| place.point(p), max_distance)
     } else {
-        Some(outline::Near::default())
+        Some(outline::NearPrimitives::default())
     };
     let Some(near) = near else {
         return (None, counts);
@@ -97,8 +97,8 @@ pub fn near_spheres(
                 break;
             }
         }
-        match (body1.below(i), body2.below(j)) {
-            (Below::Primitive(p), Below::Primitive(q)) => {
+        match (body1.kind(i), body2.kind(j)) {
+            (NodeKind::Primitive(p), NodeKind::Primitive(q)) => {
                 found.clear();
                 let pair = PrimitivePair::new(body1, body2, [p, q], &place);
                 pair.contacts(limit, &mut found, &mut counts);
@@ -112,14 +112,14 @@ pub fn near_spheres(
                     break;
                 }
             }
-            (Below::Nodes(c, d), other)
-                if e.first_is_larger || matches!(other, Below::Primitive(_)) =>
+            (NodeKind::Nodes(c, d), other)
+                if e.first_is_larger || matches!(other, NodeKind::Primitive(_)) =>
             {
                 heap.extend([entry(c, j), entry(d, j)]);
             }
-            (_, Below::Nodes(c, d)) => heap.extend([entry(i, c), entry(i, d)]),
+            (_, NodeKind::Nodes(c, d)) => heap.extend([entry(i, c), entry(i, d)]),
             // The guard above takes every pair with nodes on the left and none on the right.
-            (Below::Nodes(..), Below::Primitive(_)) => {}
+            (NodeKind::Nodes(..), NodeKind::Primitive(_)) => {}
         }
     }
     (best, counts)

@@ -3,23 +3,23 @@
 
 use super::apart::Balls;
 use super::deepening::Threshold;
+use super::primitive_tree::PrimitiveTree;
 use super::queue::{Candidate, Tested};
 use super::search::Search;
 use super::tips::Part;
-use super::volumes::Volumes;
 use crate::elementary::bracket::{Bracket, Limits, witness};
 use crate::elementary::distance::{nearest_in_test, signed_distance};
 use crate::elementary::path::RigidPath;
-use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
+use crate::elementary::test_list::{ElementaryTest, OwnedFeatures, for_each_test};
 use crate::elementary::{InitialContact, Loss, ToiStatus};
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 
 type Spheres = [(Vec3<f64>, f64); 3];
 
-impl<A: Volumes, B: Volumes> Search<'_, A, B> {
+impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Ends unresolved: nothing meets before `time`, and nothing is known from there on. The witness is of
     /// primitives that may come first.
     pub(super) fn give_up(&mut self, time: f64, first: Option<Candidate>) {
@@ -44,7 +44,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             ..self.earliest.limits
         };
         let [(_, share_a), (_, share_b)] = self.spheres(primitives);
-        let shares = [share_a, share_b].map(|s| Share::whole(s.spheres));
+        let shares = [share_a, share_b].map(|s| OwnedFeatures::whole(s.spheres));
         for_each_test(shares[0], shares[1], |test| {
             let mut bracket = Bracket::free(&limits);
             bracket.lower = time;
@@ -75,13 +75,13 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
     }
 
     /// Spheres of two primitives, or of their cores, in the bodies' frames, and what they test.
-    pub(super) fn spheres(&self, [i, j]: [u32; 2]) -> [(Spheres, Share); 2] {
+    pub(super) fn spheres(&self, [i, j]: [u32; 2]) -> [(Spheres, OwnedFeatures); 2] {
         let losses = self.losses([i, j]);
         let (a, mut share_a) = self.sides.0.body.primitive(i);
         let (b, mut share_b) = self.sides.1.body.primitive(j);
         if self.cores.is_some_and(|c| c.share > 0.0) {
             // What a core loses depends on its partner, so none leaves a test to a neighbour.
-            [share_a, share_b] = [share_a, share_b].map(|s| Share::whole(s.spheres));
+            [share_a, share_b] = [share_a, share_b].map(|s| OwnedFeatures::whole(s.spheres));
         }
         let local = |s: MedialSphere, loss: Loss| {
             let radius = f64::from(s.radius);
@@ -177,7 +177,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         let [a, b] = [a, b].map(|s| s.map(|(center, radius)| (center, scale * radius)));
         let then = |side: usize, spheres: Spheres| placed(&self.motions[side], spheres, lower);
         let (pa, pb) = (then(0, a), then(1, b));
-        let shares = parts.map(|part| Share::whole(part.spheres));
+        let shares = parts.map(|part| OwnedFeatures::whole(part.spheres));
         let mut least = f64::INFINITY;
         for_each_test(shares[0], shares[1], |other| {
             let distance = nearest_in_test(&other, &pa, &pb).1.distance;
@@ -201,11 +201,11 @@ fn placed(motion: &RigidMotion<f64>, spheres: Spheres, time: f64) -> Spheres {
 }
 
 /// A primitive below a node.
-fn some_leaf(body: &impl Volumes, mut below: Below) -> u32 {
+fn some_leaf(body: &impl PrimitiveTree, mut below: NodeKind) -> u32 {
     loop {
         match below {
-            Below::Primitive(primitive) => return primitive,
-            Below::Nodes(first, _) => below = body.below(first),
+            NodeKind::Primitive(primitive) => return primitive,
+            NodeKind::Nodes(first, _) => below = body.kind(first),
         }
     }
 }

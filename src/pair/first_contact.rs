@@ -4,9 +4,9 @@
 
 use super::met::Met;
 use super::near_pairs::NearPairs;
-use super::outline::Left;
+use super::outline::ActivePrimitives;
+use super::primitive_tree::PrimitiveTree;
 use super::search::Search;
-use super::volumes::Volumes;
 use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
 use crate::elementary::{Paths, Toi, ToiOptions};
 use crate::math::Real;
@@ -60,9 +60,9 @@ pub fn first_contact(
 
 /// Does the same as [`first_contact`] for any two bodies made of primitives, and also returns the work it took.
 pub fn first_contact_counted(
-    body1: &impl Volumes,
+    body1: &impl PrimitiveTree,
     motion1: &NonlinearRigidMotion,
-    body2: &impl Volumes,
+    body2: &impl PrimitiveTree,
     motion2: &NonlinearRigidMotion,
     seconds: Real,
     options: &ToiOptions,
@@ -96,7 +96,7 @@ pub struct Query<'a, A, B> {
     settled: bool,
 }
 
-impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
+impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
     /// A query of which nothing is computed yet. If it is known which primitives of two meshes are `left`, because all
     /// others cannot meet, only these are searched.
     pub fn new(
@@ -104,7 +104,7 @@ impl<'a, A: Volumes, B: Volumes> Query<'a, A, B> {
         bodies: (&'a A, &'a B),
         seconds: Real,
         options: &ToiOptions,
-        left: Option<[Left; 2]>,
+        left: Option<[ActivePrimitives; 2]>,
     ) -> Self {
         let finite = motions.iter().all(|m| motion_is_finite(m)) && seconds.is_finite();
         let bounds_finite = options.tolerance.is_finite()

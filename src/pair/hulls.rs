@@ -2,11 +2,11 @@
 
 use super::apart::{Balls, Plane, approached};
 use super::placement::Placement;
-use super::volumes::Volumes;
+use super::primitive_tree::PrimitiveTree;
 use crate::math::Vector;
 use crate::math::lane::Vec3;
 use crate::medial::MedialSphere;
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 
 /// A hull at rest, with what each look at it would compute again.
 struct Resting {
@@ -75,7 +75,12 @@ struct Placed {
 }
 
 impl Placed {
-    fn get(&mut self, body: &impl Volumes, node: u32, place: impl Fn(Vector) -> Vec3<f64>) -> u32 {
+    fn get(
+        &mut self,
+        body: &impl PrimitiveTree,
+        node: u32,
+        place: impl Fn(Vector) -> Vec3<f64>,
+    ) -> u32 {
         let at = node as usize;
         if self.places.len() <= at {
             self.places.resize(at + 1, 0);
@@ -91,7 +96,7 @@ impl Placed {
     }
 }
 
-impl<'a, A: Volumes, B: Volumes> Hulls<'a, A, B> {
+impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
     pub(super) fn new(bodies: (&'a A, &'a B), place: &'a Placement) -> Self {
         Self {
             bodies,
@@ -104,7 +109,7 @@ impl<'a, A: Volumes, B: Volumes> Hulls<'a, A, B> {
     /// elementary test takes no longer.
     pub(super) fn gap(&mut self, [i, j]: [u32; 2], enough: f64) -> f64 {
         let (first, second) = self.bodies;
-        if let (Below::Primitive(p), Below::Primitive(q)) = (first.below(i), second.below(j))
+        if let (NodeKind::Primitive(p), NodeKind::Primitive(q)) = (first.kind(i), second.kind(j))
             && first
                 .primitive(p)
                 .1

@@ -3,26 +3,26 @@
 
 use super::apart::{Balls, Reach};
 use super::deepening::{Threshold, free_way};
+use super::primitive_tree::PrimitiveTree;
 use super::queue::{Candidate, Entry, Open, Tested};
 use super::search::Search;
 use super::tips::{Part, Parts};
-use super::volumes::Volumes;
 use crate::elementary::InitialContact;
 use crate::elementary::bracket::{Bracket, Limits};
 use crate::elementary::distance::{
     Ball, crossing, signed_distance, signed_distance_along, thinnest,
 };
 use crate::elementary::resumed::bracket_until;
-use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
+use crate::elementary::test_list::{ElementaryTest, OwnedFeatures, for_each_test};
 use crate::math::Real;
 use crate::math::lane::Vec3;
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 
-impl<A: Volumes, B: Volumes> Search<'_, A, B> {
+impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Lists the elementary tests of two primitives that are free until `time`; returns whether an
     /// earlier contact is still possible.
     pub(super) fn list_tests(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
-        let (Below::Primitive(p), Below::Primitive(q)) =
+        let (NodeKind::Primitive(p), NodeKind::Primitive(q)) =
             (self.sides.0.node(i).below, self.sides.1.node(j).below)
         else {
             return true;
@@ -82,7 +82,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
         let shares = if threshold.target == self.target && !own {
             [share_a, share_b]
         } else {
-            [share_a, share_b].map(|s| Share::whole(s.spheres))
+            [share_a, share_b].map(|s| OwnedFeatures::whole(s.spheres))
         };
         let tested = Tested {
             nodes: [i, j],
@@ -99,7 +99,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
     fn list_whole(
         &mut self,
         tested: Tested,
-        shares: [Share; 2],
+        shares: [OwnedFeatures; 2],
         at_start: Option<Vec3<f64>>,
         time: f64,
     ) {
@@ -169,7 +169,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
                 self.queue(Entry::at(free, Candidate::Parts(place)));
             }
             _ => {
-                let shares = tested.parts.map(|part| Share::whole(part.spheres));
+                let shares = tested.parts.map(|part| OwnedFeatures::whole(part.spheres));
                 self.list_tests_of(place, shares, balls, direction, time);
             }
         }
@@ -242,7 +242,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
             // What their contact needs, not the search's: what touches already has a target of its own, and mostly
             // directions put it off for good.
             let balls = self.swept_parts(&tested);
-            let shares = tested.parts.map(|part| Share::whole(part.spheres));
+            let shares = tested.parts.map(|part| OwnedFeatures::whole(part.spheres));
             if a.spheres.min(b.spheres) < 3 {
                 // One proof for all tests, where there are many.
                 let many = a.spheres.max(b.spheres) == 3;
@@ -291,7 +291,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
     fn list(
         &mut self,
         tested: Tested,
-        shares: [Share; 2],
+        shares: [OwnedFeatures; 2],
         balls: &[Balls; 2],
         direction: Option<Vec3<f64>>,
         time: f64,
@@ -305,7 +305,7 @@ impl<A: Volumes, B: Volumes> Search<'_, A, B> {
     fn list_tests_of(
         &mut self,
         of: u32,
-        shares: [Share; 2],
+        shares: [OwnedFeatures; 2],
         balls: &[Balls; 2],
         direction: Option<Vec3<f64>>,
         time: f64,

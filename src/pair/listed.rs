@@ -87,7 +87,7 @@ impl Walk<'_> {
         while pairs.iter().any(|pair| *pair != first) {
             let [a, b] = [0, 1].map(|k| &self.nodes[k][at[k] as usize]);
             let radii = [a, b].map(|node| f64::from(node.radius));
-            let (side, [c, d]) = match Step::new([a.below(), b.below()], radii) {
+            let (side, [c, d]) = match Step::new([a.kind(), b.kind()], radii) {
                 Step::First(children) => (0, children),
                 Step::Second(children) => (1, children),
                 // Not reached: below two leaves there is one pair.

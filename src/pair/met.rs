@@ -4,7 +4,7 @@
 use super::placement::Placement;
 use crate::elementary::distance::nearest_in_test;
 use crate::elementary::first_contact::corner_weights;
-use crate::elementary::test_list::{ElementaryTest, Share, for_each_test};
+use crate::elementary::test_list::{ElementaryTest, OwnedFeatures, for_each_test};
 use crate::math::lane::Vec3;
 use crate::math::nearest::Nearest;
 use crate::math::{Pose, Real, Vector};
@@ -46,7 +46,7 @@ impl Met {
         let [a, b] = &self.spheres;
         let a = a.map(|s| (Vec3::from_vector(s.center), f64::from(s.radius)));
         let b = b.map(|s| (place.point(s.center), f64::from(s.radius)));
-        let shares = self.counts.map(Share::whole);
+        let shares = self.counts.map(OwnedFeatures::whole);
         let mut found: Option<(ElementaryTest, Nearest<f64>)> = None;
         for_each_test(shares[0], shares[1], |test| {
             let (_, nearest) = nearest_in_test(&test, &a, &b);

@@ -21,14 +21,14 @@
 //! looks at all others at the same times in the same order.
 
 use super::apart::free_until;
-use super::outline::Left;
+use super::outline::ActivePrimitives;
+use super::primitive_tree::PrimitiveTree;
 use super::swept::{Bits, Listed, Side, Touch, split};
-use super::volumes::Volumes;
 use crate::elementary::first_contact::motion_is_finite;
 use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
 
@@ -68,11 +68,11 @@ impl NearPairs {
     /// Lists what may come within `reach` plus `margin` (lengths) in `seconds`; of what is `left`, where it is known that
     /// nothing else does. `None` for motions that turn too far or are not finite, and where too much is near.
     pub fn new(
-        bodies: (&impl Volumes, &impl Volumes),
+        bodies: (&impl PrimitiveTree, &impl PrimitiveTree),
         motions: &[NonlinearRigidMotion; 2],
         seconds: Real,
         reaches: [f64; 2],
-        left: Option<[Left; 2]>,
+        left: Option<[ActivePrimitives; 2]>,
     ) -> Option<Self> {
         let finite = motions.iter().all(motion_is_finite) && reaches.iter().all(|r| r.is_finite());
         if !(finite && seconds.is_finite()) {
@@ -94,7 +94,7 @@ impl NearPairs {
     }
 
     /// Whether no more than [`MOST`] are near.
-    fn walk<A: Volumes, B: Volumes>(&mut self, sides: &mut (Side<A>, Side<B>)) -> bool {
+    fn walk<A: PrimitiveTree, B: PrimitiveTree>(&mut self, sides: &mut (Side<A>, Side<B>)) -> bool {
         let reach = self.reach + self.margin;
         let mut listed: [Vec<Bits>; 2] = Default::default();
         let mut count = 0;
@@ -114,7 +114,7 @@ impl NearPairs {
             if free_until(hulls, [0.0, 1.0], reach, 0.0).is_none() {
                 continue;
             }
-            if let (Below::Primitive(_), Below::Primitive(_)) = (a.below, b.below) {
+            if let (NodeKind::Primitive(_), NodeKind::Primitive(_)) = (a.below, b.below) {
                 for (bits, at) in listed.iter_mut().zip([i, j]) {
                     if bits.len() <= at as usize {
                         bits.resize(at as usize + 1, 0);

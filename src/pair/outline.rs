@@ -10,11 +10,11 @@
 //! direction gets no further, the next one is its mirror image at the line between the two balls that overlap
 //! most (Chung and Wang, "Quick collision detection of polytopes in virtual environments", 1996).
 
-use super::volumes::Volumes;
+use super::primitive_tree::PrimitiveTree;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::{Real, Vector};
-use crate::medial::shell::{MOST, Shell};
+use crate::medial::proxy_hull::{MOST, ProxyHull};
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
 
@@ -28,16 +28,16 @@ pub struct Outline {
     times: [f64; 2],
     /// Position at the start, displacement, and radius grown by the sagitta.
     balls: Vec<(Vec3<f64>, Vec3<f64>, f64)>,
-    shell: Arc<Shell>,
+    proxy: Arc<ProxyHull>,
     /// Bound of the coordinates in play.
     size: f64,
 }
 
 impl Outline {
     /// The outline of a body at rest, whose points `place` moves into the common frame.
-    pub fn resting(shell: &Arc<Shell>, place: impl Fn(Vector) -> Vec3<f64>) -> Self {
+    pub fn resting(proxy: &Arc<ProxyHull>, place: impl Fn(Vector) -> Vec3<f64>) -> Self {
         let mut size = 0.0;
-        let placed = shell.balls.iter().map(|(center, radius)| {
+        let placed = proxy.balls.iter().map(|(center, radius)| {
             let (center, radius) = (place(*center), f64::from(*radius));
             size = f64::max(size, center.taxicab() + radius);
             (center, Vec3::zero(), radius)
@@ -45,18 +45,22 @@ impl Outline {
         Self {
             times: [0.0, 1.0],
             balls: placed.collect(),
-            shell: Arc::clone(shell),
+            proxy: Arc::clone(proxy),
             size,
         }
     }
 
     /// The outline of a body on a motion from `from` to `end`, in seconds.
-    pub fn new(shell: &Arc<Shell>, motion: &NonlinearRigidMotion, [from, end]: [Real; 2]) -> Self {
+    pub fn new(
+        proxy: &Arc<ProxyHull>,
+        motion: &NonlinearRigidMotion,
+        [from, end]: [Real; 2],
+    ) -> Self {
         let times = [f64::from(from), f64::from(end) - f64::from(from)];
         let rigid = RigidMotion::<f64>::alone(motion, times[1]);
         let ends = [0.0, 1.0].map(|t| rigid.frame(t));
         let mut size = 0.0;
-        let moved = shell.balls.iter().map(|(center, radius)| {
+        let moved = proxy.balls.iter().map(|(center, radius)| {
             let center = Vec3::from_vector(*center);
             let [start, last] = ends.map(|frame| frame.point(center));
             let sagitta = rigid.acceleration(ends[0].arm(center)) / 8.0;
@@ -67,14 +71,14 @@ impl Outline {
         Self {
             times,
             balls: moved.collect(),
-            shell: Arc::clone(shell),
+            proxy: Arc::clone(proxy),
             size,
         }
     }
 }
 
-/// What is left of a body, seen between two times.
-struct Rest<'a> {
+/// What was not culled of a body yet, seen between two times.
+struct CullState<'a> {
     outline: &'a Outline,
     /// Fractions of its motion at both times.
     shares: [f64; 2],
@@ -94,23 +98,23 @@ fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-impl<'a> Rest<'a> {
+impl<'a> CullState<'a> {
     fn new(outline: &'a Outline, from: f64) -> Self {
         let [start, length] = outline.times;
-        let count = outline.shell.primitives.len();
-        let mut rest = Self {
+        let count = outline.proxy.primitives.len();
+        let mut state = Self {
             outline,
             shares: [(from - start) / length, 1.0],
             primitives: (0..count).fold(0, |m, k| m | 1 << k),
             balls: 0,
             reach: [[0.0; 2]; MOST],
         };
-        rest.keep(rest.primitives);
-        rest
+        state.keep(state.primitives);
+        state
     }
 
     fn keep(&mut self, primitives: u64) {
-        let of = &self.outline.shell.primitives;
+        let of = &self.outline.proxy.primitives;
         self.primitives = primitives;
         self.balls = bits(primitives).fold(0, |all, k| all | of[k]);
     }
@@ -135,7 +139,7 @@ impl<'a> Rest<'a> {
     fn keep_beyond(&mut self, limits: [f64; 2]) -> bool {
         let reach = &self.reach;
         let beyond = |k: usize| !(reach[k][0] < limits[0] && reach[k][1] < limits[1]);
-        let of = &self.outline.shell.primitives;
+        let of = &self.outline.proxy.primitives;
         let kept = bits(self.primitives).filter(|p| bits(of[*p]).any(beyond));
         let kept = kept.fold(0, |m, p| m | 1 << p);
         let fewer = kept != self.primitives;
@@ -163,26 +167,26 @@ impl<'a> Rest<'a> {
 
 /// The primitives of a body that may still meet the other body.
 #[derive(Clone)]
-pub struct Left {
+pub struct ActivePrimitives {
     /// The body.
-    shell: Arc<Shell>,
+    proxy: Arc<ProxyHull>,
     /// Its primitives that are not done with.
     primitives: u64,
 }
 
-impl Left {
+impl ActivePrimitives {
     /// Whether any of these primitives is below a node of the mesh's tree.
     pub fn meets(&self, node: u32) -> bool {
-        let primitives = self.shell.nodes.get(node as usize);
+        let primitives = self.proxy.nodes.get(node as usize);
         primitives.is_none_or(|p| p & self.primitives != 0)
     }
 }
 
 /// The primitives of two bodies at rest that may be near each other; by default all.
 #[derive(Default)]
-pub struct Near(Option<[Left; 2]>);
+pub struct NearPrimitives(Option<[ActivePrimitives; 2]>);
 
-impl Near {
+impl NearPrimitives {
     /// Whether any of these primitives are below a node of each body.
     pub fn meet(&self, [i, j]: [u32; 2]) -> bool {
         let left = self.0.as_ref();
@@ -192,25 +196,25 @@ impl Near {
     /// Whether directions were tried on every primitive, so that others would hardly tell more.
     pub fn is_exact(&self) -> bool {
         let left = self.0.as_ref();
-        left.is_some_and(|left| left.iter().all(|left| left.shell.is_exact))
+        left.is_some_and(|left| left.iter().all(|left| left.proxy.is_exact))
     }
 }
 
 /// The primitives of two bodies at rest that may be within `reach` (a length) of each other; `None` if there are none.
 /// `place` moves points of the second body into the frame of the first.
 pub fn near(
-    body1: &impl Volumes,
-    body2: &impl Volumes,
+    body1: &impl PrimitiveTree,
+    body2: &impl PrimitiveTree,
     place: impl Fn(Vector) -> Vec3<f64>,
     reach: Real,
-) -> Option<Near> {
-    let (Some(shell1), Some(shell2)) = (body1.shell(), body2.shell()) else {
-        return Some(Near::default());
+) -> Option<NearPrimitives> {
+    let (Some(proxy1), Some(proxy2)) = (body1.proxy_hull(), body2.proxy_hull()) else {
+        return Some(NearPrimitives::default());
     };
-    let a = Outline::resting(shell1, Vec3::from_vector);
-    let b = Outline::resting(shell2, place);
+    let a = Outline::resting(proxy1, Vec3::from_vector);
+    let b = Outline::resting(proxy2, place);
     let apart = apart_until(&a, &b, 0.0, reach)?;
-    Some(Near(Some(apart.left)))
+    Some(NearPrimitives(Some(apart.left)))
 }
 
 /// Until when two bodies certainly stay apart.
@@ -218,7 +222,7 @@ pub struct Apart {
     /// They stay apart until this time, in seconds into the step.
     pub until: Real,
     /// The primitives that may meet after that. All others stay apart until the motions end.
-    pub left: [Left; 2],
+    pub left: [ActivePrimitives; 2],
 }
 
 /// Until when two bodies certainly stay farther apart than `target`, from `from` on (seconds into the step), as far
@@ -229,7 +233,7 @@ pub struct Apart {
 pub fn apart_until(a: &Outline, b: &Outline, from: Real, target: Real) -> Option<Apart> {
     let least = f64::from(target) + 16.0 * f64::from(Real::EPSILON) * (a.size + b.size);
     let (start, end) = (f64::from(from), a.times[0] + a.times[1]);
-    let (mut a, mut b) = (Rest::new(a, start), Rest::new(b, start));
+    let (mut a, mut b) = (CullState::new(a, start), CullState::new(b, start));
     // Fraction of the time that the best direction keeps them apart.
     let mut free = 0.0;
     let mut n = b.middle() - a.middle();
@@ -271,9 +275,9 @@ pub fn apart_until(a: &Outline, b: &Outline, from: Real, target: Real) -> Option
     let until = (start + free * (end - start)) as Real;
     Some(Apart {
         until: until.next_down().max(from),
-        left: [&a, &b].map(|rest| Left {
-            shell: Arc::clone(&rest.outline.shell),
-            primitives: rest.primitives,
+        left: [&a, &b].map(|state| ActivePrimitives {
+            proxy: Arc::clone(&state.outline.proxy),
+            primitives: state.primitives,
         }),
     })
 }

@@ -18,15 +18,15 @@
 //!
 //! On a device `walk` in `shaders/cull.wgsl` splits nodes in the same way, but looks at all that meet.
 
-use super::outline::Left;
+use super::outline::ActivePrimitives;
+use super::primitive_tree::PrimitiveTree;
 use super::queue::{Candidate, Entry, Open, Tested};
 use super::swept::{Side, Touch, split};
-use super::volumes::Volumes;
 use crate::elementary::bracket::Limits;
 use crate::elementary::first_contact::{Earliest, options_limits};
 use crate::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
 use crate::math::motion::RigidMotion;
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 use std::collections::BinaryHeap;
 
 /// Node pairs, proofs by directions, iterations of elementary tests (twice) and pieces of one search,
@@ -89,12 +89,12 @@ enum Reached {
     Answer,
 }
 
-impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
+impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
     pub(super) fn new(
         bodies: (&'a A, &'a B),
         motions: [RigidMotion<f64>; 2],
         options: &ToiOptions,
-        left: Option<[Left; 2]>,
+        left: Option<[ActivePrimitives; 2]>,
     ) -> Self {
         let (left1, left2) = left.map_or((None, None), |[a, b]| (Some(a), Some(b)));
         let target = f64::from(options.target_distance);
@@ -280,7 +280,7 @@ impl<'a, A: Volumes, B: Volumes> Search<'a, A, B> {
         let (a, b) = (*self.sides.0.node(i), *self.sides.1.node(j));
         self.proofs += 1;
         let primitives = match (a.below, b.below) {
-            (Below::Primitive(p), Below::Primitive(q)) => Some([p, q]),
+            (NodeKind::Primitive(p), NodeKind::Primitive(q)) => Some([p, q]),
             _ => None,
         };
         self.sweep_hulls([i, j]);

@@ -3,12 +3,12 @@
 //! centre may be off its chord. Twin of `Side::chord` on a device: `sweep` in `shaders/swept.wgsl`.
 
 use super::apart::Balls;
-use super::outline::Left;
-use super::volumes::Volumes;
+use super::outline::ActivePrimitives;
+use super::primitive_tree::PrimitiveTree;
 use crate::math::approach::first_touch;
 use crate::math::lane::Vec3;
 use crate::math::motion::{Frame, RigidMotion};
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub(super) struct Swept {
     pub(super) start: Vec3<f64>,
     pub(super) chord: Vec3<f64>,
     pub(super) radius: f64,
-    pub(super) below: Below,
+    pub(super) below: NodeKind,
     /// What of the list of near primitives is below it; all bits where there is no list, none where nothing of it may
     /// meet the other side.
     pub(super) near: Bits,
@@ -83,13 +83,17 @@ pub(super) struct Side<'a, V> {
     nodes: Vec<Swept>,
     balls: Vec<Balls>,
     /// What may meet the other side; `None`: all.
-    left: Option<Left>,
+    left: Option<ActivePrimitives>,
     /// What may come near it, and which of the bodies this is.
     near: Option<(Arc<Listed>, usize)>,
 }
 
-impl<'a, V: Volumes> Side<'a, V> {
-    pub(super) fn new(body: &'a V, motion: RigidMotion<f64>, left: Option<Left>) -> Self {
+impl<'a, V: PrimitiveTree> Side<'a, V> {
+    pub(super) fn new(
+        body: &'a V,
+        motion: RigidMotion<f64>,
+        left: Option<ActivePrimitives>,
+    ) -> Self {
         Self {
             body,
             motion,
@@ -141,7 +145,7 @@ impl<'a, V: Volumes> Side<'a, V> {
     /// Where the two children of a swept node are; itself if it is a leaf, or not to be split.
     pub(super) fn parts(&mut self, at: u32, split: bool) -> Range<u32> {
         let Swept { below, next, .. } = *self.node(at);
-        let Below::Nodes(first, second) = below else {
+        let NodeKind::Nodes(first, second) = below else {
             return at..at + 1;
         };
         if !split {
@@ -208,7 +212,7 @@ impl<'a, V: Volumes> Side<'a, V> {
             start,
             chord,
             radius: radius + 64.0 * f64::EPSILON * size,
-            below: self.body.below(node),
+            below: self.body.kind(node),
             near: self.near(node),
             node,
             next: NOT_YET,
@@ -232,7 +236,7 @@ impl<'a, V: Volumes> Side<'a, V> {
 const SIMILAR: f64 = 3.0;
 
 /// What two swept nodes, not both of them leaves, are replaced by.
-pub(super) fn split<A: Volumes, B: Volumes>(
+pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
     sides: &mut (Side<A>, Side<B>),
     [i, j]: [u32; 2],
 ) -> [Range<u32>; 2] {
@@ -240,7 +244,7 @@ pub(super) fn split<A: Volumes, B: Volumes>(
     // Both at once where they are about as large: the pairs in between would be looked at only to
     // be split. Below that, the larger one.
     let (small, large) = (a.radius * SIMILAR < b.radius, b.radius * SIMILAR < a.radius);
-    let inner = [a.below, b.below].map(|below| matches!(below, Below::Nodes(..)));
+    let inner = [a.below, b.below].map(|below| matches!(below, NodeKind::Nodes(..)));
     [
         sides.0.parts(i, !(small && inner[1])),
         sides.1.parts(j, !(large && inner[0])),

@@ -14,9 +14,9 @@ use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::{Real, Vector};
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 use crate::medial::{MedialMesh, MedialSphere};
-use crate::pair::Volumes;
+use crate::pair::PrimitiveTree;
 use crate::pair::deepening::Threshold;
 use crate::pair::first_contact::{Counts, ToiResult};
 use parry3d::query::NonlinearRigidMotion;
@@ -151,13 +151,13 @@ impl Search<'_> {
             if entry.time > self.upper || self.status == ToiStatus::Overlapping {
                 return;
             }
-            match self.mesh.below(entry.node) {
+            match self.mesh.kind(entry.node) {
                 _ if self.work >= WORK => return self.give_up(body, &entry),
-                Below::Nodes(i, j) => {
+                NodeKind::Nodes(i, j) => {
                     self.push(body, entry.body, i, entry.time);
                     self.push(body, entry.body, j, entry.time);
                 }
-                Below::Primitive(i) => self.leaf(body, [i, entry.body], &entry),
+                NodeKind::Primitive(i) => self.leaf(body, [i, entry.body], &entry),
             }
         }
     }
@@ -165,11 +165,11 @@ impl Search<'_> {
     /// Ends unresolved: nothing meets before the entry's time, and nothing is known from there on. The
     /// witness is of a primitive that may come first.
     fn give_up(&mut self, body: &Axisymmetric, entry: &Entry) {
-        let mut below = self.mesh.below(entry.node);
+        let mut below = self.mesh.kind(entry.node);
         let primitive = loop {
             match below {
-                Below::Primitive(primitive) => break primitive,
-                Below::Nodes(first, _) => below = self.mesh.below(first),
+                NodeKind::Primitive(primitive) => break primitive,
+                NodeKind::Nodes(first, _) => below = self.mesh.kind(first),
             }
         };
         let (balls, len) = self.balls(primitive);
@@ -191,7 +191,7 @@ impl Search<'_> {
     }
 
     fn balls(&self, primitive: u32) -> ([Ball; 3], usize) {
-        let (spheres, share) = Volumes::primitive(self.mesh, primitive);
+        let (spheres, share) = PrimitiveTree::primitive(self.mesh, primitive);
         let balls = spheres.map(|s| (Vec3::from_vector(s.center), f64::from(s.radius)));
         (balls, share.spheres.clamp(1, 3))
     }

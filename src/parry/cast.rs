@@ -12,8 +12,8 @@ use crate::math::{Pose, Real, Vector};
 use crate::medial::simplex::Simplex;
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::first_contact::{Counts, Query, ToiResult};
-use crate::pair::outline::Left;
-use crate::pair::{Volumes, nearest_spheres};
+use crate::pair::outline::ActivePrimitives;
+use crate::pair::{PrimitiveTree, nearest_spheres};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
 use parry3d::shape::Shape;
@@ -48,7 +48,7 @@ impl Cast<'_> {
     pub fn toi(
         &self,
         options: &ToiOptions,
-        left: Option<[Left; 2]>,
+        left: Option<[ActivePrimitives; 2]>,
     ) -> Result<ToiResult, Unsweepable> {
         let [start, end] = self.times;
         let motions = [self.motion1, self.motion2].map(|m| started(m, start));
@@ -187,7 +187,7 @@ impl Cast<'_> {
         motion2: &NonlinearRigidMotion,
         seconds: Real,
         options: &ToiOptions,
-        left: Option<[Left; 2]>,
+        left: Option<[ActivePrimitives; 2]>,
     ) -> Result<ToiResult, Unsweepable> {
         if let Some(other) = self.other.as_shape::<MedialMesh>() {
             return Ok(self.search(other, motion1, motion2, seconds, options, left));
@@ -238,12 +238,12 @@ impl Cast<'_> {
 
     fn search(
         &self,
-        other: &impl Volumes,
+        other: &impl PrimitiveTree,
         motion1: &NonlinearRigidMotion,
         motion2: &NonlinearRigidMotion,
         seconds: Real,
         options: &ToiOptions,
-        left: Option<[Left; 2]>,
+        left: Option<[ActivePrimitives; 2]>,
     ) -> ToiResult {
         let (motions, bodies) = ([motion1, motion2], (self.mesh, other));
         let found = Query::new(motions, bodies, seconds, options, left).settle();
@@ -301,7 +301,7 @@ impl Cast<'_> {
     fn with_normal(
         &self,
         mut toi: Toi,
-        other: &impl Volumes,
+        other: &impl PrimitiveTree,
         motion1: &NonlinearRigidMotion,
         motion2: &NonlinearRigidMotion,
     ) -> Toi {

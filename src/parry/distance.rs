@@ -12,11 +12,11 @@ use super::inside;
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::math::lane::Vec3;
 use crate::math::{Pose, Real, Vector};
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::distance::{Wanted, near_spheres};
 use crate::pair::first_contact::Counts;
-use crate::pair::{SpherePair, Volumes};
+use crate::pair::{PrimitiveTree, SpherePair};
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
 use std::cmp::Reverse;
@@ -162,16 +162,16 @@ fn nearest_axisymmetric(
             break;
         }
         counts.nodes += 1;
-        match mesh.below(node) {
-            Below::Nodes(i, j) => heap.extend([i, j].map(|n| {
+        match mesh.kind(node) {
+            NodeKind::Nodes(i, j) => heap.extend([i, j].map(|n| {
                 let (center, radius) = mesh.bound(n);
                 let near = body.nearest(&place, &[ball((center, radius))]);
                 let rounding = 8.0 * f64::from(Real::EPSILON) * f64::from(center.length() + radius);
                 Reverse(Entry(out_of(body, &place, &near).1 - rounding, n))
             })),
-            Below::Primitive(i) => {
+            NodeKind::Primitive(i) => {
                 counts.tests += 1;
-                let (spheres, share) = Volumes::primitive(mesh, i);
+                let (spheres, share) = PrimitiveTree::primitive(mesh, i);
                 let balls = spheres.map(|s| ball((s.center, s.radius)));
                 let near = body.nearest(&place, &balls[..share.spheres.clamp(1, 3)]);
                 let (_, distance) = out_of(body, &place, &near);

@@ -5,8 +5,8 @@
 use crate::math::lane::Vec3;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::medial::tree::Below;
-use crate::pair::Volumes;
+use crate::medial::tree::NodeKind;
+use crate::pair::PrimitiveTree;
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{Cuboid, PackedFeatureId, Shape, TypedShape};
@@ -138,9 +138,9 @@ fn near(mesh: &MedialMesh, face: &Face, prediction: Real) -> Vec<[u32; 2]> {
         if !within(center, radius) {
             continue;
         }
-        match mesh.below(node) {
-            Below::Nodes(i, j) => open.extend([i, j]),
-            Below::Primitive(i) => {
+        match mesh.kind(node) {
+            NodeKind::Nodes(i, j) => open.extend([i, j]),
+            NodeKind::Primitive(i) => {
                 let simplex = &mesh.simplices()[i as usize];
                 let ends = &simplex.vertices[..simplex.len as usize];
                 let near = ends.iter().filter(|&&v| {

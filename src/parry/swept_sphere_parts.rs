@@ -7,7 +7,7 @@
 use super::axisymmetric::Axisymmetric;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
-use crate::pair::Soup;
+use crate::pair::PrimitiveList;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
 
@@ -26,7 +26,7 @@ pub struct Unsweepable;
 #[derive(Clone, Debug, Default)]
 pub struct Parts {
     /// Swept spheres.
-    pub soup: Soup,
+    pub soup: PrimitiveList,
     /// Cylinders and cones.
     pub axisymmetric: Vec<Axisymmetric>,
     /// parry's subshape of each primitive of the soup: child, triangle, segment, cell or voxel.
@@ -169,7 +169,7 @@ fn seen_from(pose: &Pose, region: &Aabb) -> Aabb {
 }
 
 /// The faces of a cuboid, as far as `region` (in its frame) meets them.
-fn add_cuboid(soup: &mut Soup, cuboid: &Cuboid, pose: &Pose, border: Real, region: &Aabb) {
+fn add_cuboid(soup: &mut PrimitiveList, cuboid: &Cuboid, pose: &Pose, border: Real, region: &Aabb) {
     let h = cuboid.half_extents;
     for axis in 0..3 {
         for side in [-h[axis], h[axis]] {
@@ -221,7 +221,7 @@ impl Side {
 /// What of a rectangle is nearest to anything within `spans` along its two sides: one triangle where it has the
 /// room, two else. `at` puts a point of its plane in place.
 fn add_rectangle(
-    soup: &mut Soup,
+    soup: &mut PrimitiveList,
     half: [Real; 2],
     spans: [[Real; 2]; 2],
     at: impl Fn([Real; 2]) -> MedialSphere,
@@ -241,7 +241,7 @@ fn add_rectangle(
 
 /// The faces of a hull as triangles, as far as `region` (in the parts' frame) meets their boxes.
 fn add_polyhedron(
-    soup: &mut Soup,
+    soup: &mut PrimitiveList,
     hull: &ConvexPolyhedron,
     pose: &Pose,
     border: Real,
@@ -267,7 +267,7 @@ fn add_polyhedron(
 }
 
 /// A triangle of the half-space's plane that `region` (in its frame) cannot look past.
-fn add_plane(soup: &mut Soup, plane: &HalfSpace, pose: &Pose, region: &Aabb) {
+fn add_plane(soup: &mut PrimitiveList, plane: &HalfSpace, pose: &Pose, region: &Aabb) {
     let n = plane.normal;
     let foot = region.center() - n * n.dot(region.center());
     let reach = PLANE_REACH * (region.half_extents().length() + n.dot(region.center()).abs());

@@ -64,7 +64,7 @@ pub fn bits(mesh: &MedialMesh) -> Vec<u32> {
     }
     for node in mesh.tree().nodes() {
         all.extend(sphere(node.center, node.radius));
-        let below = format!("{:?}", Node::below(node));
+        let below = format!("{:?}", Node::kind(node));
         all.extend(below.bytes().map(u32::from));
     }
     all.extend(mass(1.0).map(f32::to_bits));

@@ -3,7 +3,7 @@
 use crate::oracle::{Random, random_mesh};
 use proptest::prelude::*;
 use rapier3d_medial::math::Vector;
-use rapier3d_medial::medial::tree::Below;
+use rapier3d_medial::medial::tree::NodeKind;
 use rapier3d_medial::{MedialMesh, MedialPrimitive, MedialSphere, MeshError};
 use std::collections::HashSet;
 
@@ -128,12 +128,12 @@ fn spheres_and_edges_have_one_owner() {
 fn check_node(mesh: &MedialMesh, node: u32, above: &mut Vec<u32>, found: &mut Vec<u32>) {
     above.push(node);
     let nodes = mesh.tree().nodes();
-    match nodes[node as usize].below() {
-        Below::Nodes(left, right) => {
+    match nodes[node as usize].kind() {
+        NodeKind::Nodes(left, right) => {
             check_node(mesh, left, above, found);
             check_node(mesh, right, above, found);
         }
-        Below::Primitive(primitive) => {
+        NodeKind::Primitive(primitive) => {
             found.push(primitive);
             for sphere in mesh.primitive(primitive as usize).spheres() {
                 for &ancestor in above.iter() {

@@ -6,7 +6,7 @@ use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d::parry::shape::Cuboid;
 use rapier3d_medial::elementary::{ToiOptions, ToiStatus};
 use rapier3d_medial::math::{Pose, Real, Vector};
-use rapier3d_medial::pair::Soup;
+use rapier3d_medial::pair::PrimitiveList;
 use rapier3d_medial::pair::first_contact::first_contact_counted;
 use rapier3d_medial::{MedialMesh, MedialSphere};
 
@@ -60,7 +60,7 @@ fn what_is_apart_when_a_contact_is_found_is_not_tested() {
     let edges = (0..12).map(|k| [k, (k + 1) % 12]).collect();
     let ring = MedialMesh::new((0..12).map(around).collect(), edges, vec![]).expect("a ring");
     let (points, triangles) = Cuboid::new(Vector::new(20.0, 0.5, 20.0)).to_trimesh();
-    let mut cuboid = Soup::default();
+    let mut cuboid = PrimitiveList::default();
     for triangle in triangles {
         cuboid.push(&triangle.map(|k| MedialSphere::new(points[k as usize], 0.0)));
     }

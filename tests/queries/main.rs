@@ -26,7 +26,7 @@ mod extremes;
 mod families;
 mod first_contact;
 mod fuzz;
-mod held;
+mod held_back;
 mod judge;
 mod lanes;
 mod listed;

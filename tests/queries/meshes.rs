@@ -5,14 +5,14 @@ use crate::ccd::rng::Rng;
 use crate::detailed::{Form, detailed};
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::elementary::distance::signed_distance;
-use rapier3d_medial::elementary::test_list::Share;
+use rapier3d_medial::elementary::test_list::OwnedFeatures;
 use rapier3d_medial::elementary::{
     self, MovingSphere, Paths, ToiOptions, ToiStatus, f64 as double,
 };
 use rapier3d_medial::math::lane::Vec3;
 use rapier3d_medial::math::{Pose, Real, Vector};
-use rapier3d_medial::medial::tree::Below;
-use rapier3d_medial::pair::{Volumes, contacts, first_contact, nearest_spheres};
+use rapier3d_medial::medial::tree::NodeKind;
+use rapier3d_medial::pair::{PrimitiveTree, contacts, first_contact, nearest_spheres};
 use rapier3d_medial::{MedialMesh, MedialSphere};
 
 pub(crate) fn vector(rng: &mut Rng) -> Vector {
@@ -174,18 +174,18 @@ fn distance_and_contacts_are_those_of_brute_force() {
 /// A mesh of which no directions are tried before the search.
 struct Bare<'a>(&'a MedialMesh);
 
-impl Volumes for Bare<'_> {
+impl PrimitiveTree for Bare<'_> {
     fn roots(&self) -> u32 {
         self.0.roots()
     }
     fn bound(&self, node: u32) -> (Vector, Real) {
         self.0.bound(node)
     }
-    fn below(&self, node: u32) -> Below {
-        self.0.below(node)
+    fn kind(&self, node: u32) -> NodeKind {
+        self.0.kind(node)
     }
-    fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share) {
-        Volumes::primitive(self.0, index)
+    fn primitive(&self, index: u32) -> ([MedialSphere; 3], OwnedFeatures) {
+        PrimitiveTree::primitive(self.0, index)
     }
 }
 
@@ -317,9 +317,9 @@ fn hulls_hold_what_is_below_their_nodes() {
             let below = |node: u32| {
                 let (mut all, mut stack) = (Vec::new(), vec![node]);
                 while let Some(node) = stack.pop() {
-                    match mesh.below(node) {
-                        Below::Primitive(p) => all.extend(Volumes::primitive(&mesh, p).0),
-                        Below::Nodes(a, b) => stack.extend([a, b]),
+                    match mesh.kind(node) {
+                        NodeKind::Primitive(p) => all.extend(PrimitiveTree::primitive(&mesh, p).0),
+                        NodeKind::Nodes(a, b) => stack.extend([a, b]),
                     }
                 }
                 all

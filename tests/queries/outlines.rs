@@ -8,10 +8,10 @@ use nalgebra::Vector3;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::elementary::{InitialContact, ToiOptions, ToiStatus};
 use rapier3d_medial::math::{Pose, Real, Vector};
-use rapier3d_medial::medial::shell::Shell;
-use rapier3d_medial::medial::tree::Below;
+use rapier3d_medial::medial::proxy_hull::ProxyHull;
+use rapier3d_medial::medial::tree::NodeKind;
 use rapier3d_medial::pair::first_contact::{Query, first_contact_counted};
-use rapier3d_medial::pair::outline::{Left, Outline, apart_until};
+use rapier3d_medial::pair::outline::{ActivePrimitives, Outline, apart_until};
 use rapier3d_medial::{MedialMesh, MedialSphere};
 use std::sync::Arc;
 
@@ -63,15 +63,15 @@ fn later(motion: &NonlinearRigidMotion, time: Real) -> NonlinearRigidMotion {
     }
 }
 
-fn holds(mesh: &MedialMesh, left: &Left, primitive: usize) -> bool {
+fn holds(mesh: &MedialMesh, left: &ActivePrimitives, primitive: usize) -> bool {
     let nodes = mesh.tree().nodes();
-    let leaf = |n: u32| nodes[n as usize].below() == Below::Primitive(primitive as u32);
+    let leaf = |n: u32| nodes[n as usize].kind() == NodeKind::Primitive(primitive as u32);
     let leaf = (0..nodes.len() as u32).find(|n| leaf(*n));
     left.meets(leaf.expect("a leaf of each primitive"))
 }
 
-fn shell(mesh: &MedialMesh) -> Arc<Shell> {
-    Arc::new(Shell::of_mesh(
+fn proxy_hull(mesh: &MedialMesh) -> Arc<ProxyHull> {
+    Arc::new(ProxyHull::of_mesh(
         mesh.spheres(),
         mesh.simplices(),
         mesh.tree(),
@@ -87,9 +87,9 @@ fn judge(
     each: usize,
     what: &str,
 ) -> (usize, bool) {
-    let shells = meshes.map(shell);
-    let a = Outline::new(&shells[0], motions[0], [0.0, 1.0]);
-    let b = Outline::new(&shells[1], &later(motions[1], from), [from, 1.0]);
+    let proxies = meshes.map(proxy_hull);
+    let a = Outline::new(&proxies[0], motions[0], [0.0, 1.0]);
+    let b = Outline::new(&proxies[1], &later(motions[1], from), [from, 1.0]);
     let apart = apart_until(&a, &b, from, target);
     let some = |m| sampled(m).into_iter().step_by(each).collect();
     let spheres: [Sampled; 2] = meshes.map(some);
@@ -188,7 +188,7 @@ fn a_query_that_pauses_gives_the_same_answer() {
             ..Default::default()
         };
         let (whole, all) = first_contact_counted(&a, &still, &b, &moving, 1.0, &options);
-        let outline = |m, motion| Outline::new(&shell(m), motion, [0.0, 1.0]);
+        let outline = |m, motion| Outline::new(&proxy_hull(m), motion, [0.0, 1.0]);
         let target = options.target_distance.max(0.0) + options.tolerance;
         let apart = apart_until(&outline(&a, &still), &outline(&b, &moving), 0.0, target);
         for left in [None, apart.map(|apart| apart.left)] {

@@ -8,7 +8,7 @@ use rapier3d_medial::elementary::penetration::deepest;
 use rapier3d_medial::elementary::{MovingSphere, first_contact};
 use rapier3d_medial::math::lane::{Scalar, Vec3};
 use rapier3d_medial::math::{Pose, Vector};
-use rapier3d_medial::pair::{Soup, SpherePair, contacts};
+use rapier3d_medial::pair::{PrimitiveList, SpherePair, contacts};
 use rapier3d_medial::{MedialSphere, ToiOptions};
 
 /// Directions of a first look: neighbours are 0.07 apart.
@@ -262,7 +262,7 @@ fn at_rest(spheres: &Spheres) -> Vec<MovingSphere> {
 
 fn contacts_of(a: &Spheres, b: &Spheres) -> Vec<SpherePair> {
     let soup = |s: &Spheres| {
-        let mut soup = Soup::default();
+        let mut soup = PrimitiveList::default();
         soup.push(&s.iter().map(sphere).collect::<Vec<_>>());
         soup
     };

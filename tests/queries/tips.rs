@@ -7,7 +7,7 @@ use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d_medial::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
 use rapier3d_medial::math::{Real, Vector};
 use rapier3d_medial::pair::first_contact::first_contact_counted;
-use rapier3d_medial::pair::{Soup, first_contact};
+use rapier3d_medial::pair::{PrimitiveList, first_contact};
 use rapier3d_medial::{MedialMesh, MedialSphere};
 
 /// Queries with normals.
@@ -80,7 +80,7 @@ fn what_is_behind_an_edge_that_has_passed_is_stopped() {
         corner(0.0, 0.59, 0.3),
     ];
     let slab = MedialMesh::new(spheres, vec![], vec![[0, 1, 2]]).expect("a slab");
-    let mut floor = Soup::default();
+    let mut floor = PrimitiveList::default();
     let corners = [(-9.0, -9.0), (9.0, -9.0), (0.0, 9.0)];
     floor.push(&corners.map(|(x, z)| MedialSphere::new(Vector::new(x, 0.0, z), 0.0)));
     floor.end_part();

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use rapier3d_medial::MedialSphere;
 use rapier3d_medial::elementary::ToiStatus;
 use rapier3d_medial::math::{Pose, Real, Vector};
-use rapier3d_medial::pair::{Soup, contacts};
+use rapier3d_medial::pair::{PrimitiveList, contacts};
 
 fn wide(v: Vector) -> Vector3<f64> {
     Vector3::new(v.x, v.y, v.z).map(f64::from)
@@ -155,7 +155,7 @@ fn the_deepest_of_contacts_at_one_point_is_told() {
             _ => b[1].center = a[1].center,
         }
         let soup = |slab: &[MedialSphere; 3]| {
-            let mut soup = Soup::default();
+            let mut soup = PrimitiveList::default();
             soup.push(slab);
             soup
         };

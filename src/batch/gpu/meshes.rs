@@ -4,7 +4,7 @@
 use super::layout::{Node, Primitive};
 use super::near::Range;
 use crate::math::fast_hash::FastMap;
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
 
 /// Marks a leaf in [`Node::below`].
@@ -107,9 +107,9 @@ impl Meshes {
         let root = self.nodes.len() as u32;
         let first = self.primitives.len() as u32;
         let nodes = mesh.tree().nodes().iter().map(|node| {
-            let below = match node.below() {
-                Below::Nodes(child, _) => root + child,
-                Below::Primitive(index) => (first + index) | LEAF,
+            let below = match node.kind() {
+                NodeKind::Nodes(child, _) => root + child,
+                NodeKind::Primitive(index) => (first + index) | LEAF,
             };
             Node {
                 bound: packed(MedialSphere::new(node.center, node.radius)),

@@ -20,7 +20,7 @@
 use crate::batch::{Job, PairJob, PairResult};
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::medial::MedialMesh;
-use crate::pair::{Play, SpherePair};
+use crate::pair::{RelativeMotionBound, SpherePair};
 use crate::parry::answers::Key;
 use crate::rapier::view::motion::velocities;
 use parry3d::math::AngularInertia;
@@ -224,7 +224,7 @@ pub struct PredictedMotion {
     rotation: Rotation,
     inverse_inertias: [AngularInertia; 2],
     /// How far they may move.
-    play: Play,
+    bound: RelativeMotionBound,
     /// Where a joint of a multibody holds them to each other, in the first's frame at the start, and the lever below
     /// which it holds a contact too.
     joint: Option<(Vector, Real)>,
@@ -284,9 +284,9 @@ impl PredictedMotion {
             rotation: a.start.rotation,
             inverse_inertias: starts.map(|s| s.inverse_inertia),
             asked: job.prediction,
-            play: Play {
-                way,
-                turn: way / arm(&job.mesh1).min(arm(&job.mesh2)),
+            bound: RelativeMotionBound {
+                travel: way,
+                angle: way / arm(&job.mesh1).min(arm(&job.mesh2)),
                 skins,
             },
             joint: joint(0).or_else(|| joint(1)),
@@ -350,7 +350,7 @@ impl PredictedMotion {
             let lever = |c: &SpherePair| (c.points[0] - anchor).cross(c.normal).length();
             result.contacts.retain(|c| lever(c) > least);
         }
-        self.play.drop_held_back(&mut result.contacts);
+        self.bound.drop_held_back(&mut result.contacts);
     }
 }
 

@@ -4,8 +4,8 @@
 use crate::math::Real;
 use crate::math::approach::first_touch;
 use crate::math::lane::Vec3;
-use crate::medial::shell::Shell;
-use crate::pair::outline::{Left, Outline, apart_until};
+use crate::medial::proxy_hull::ProxyHull;
+use crate::pair::outline::{ActivePrimitives, Outline, apart_until};
 use crate::rapier::view::step_view::StepView;
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ const UNBOUNDED: Real = 1.0e12;
 /// Outlines of the colliders on their bodies' motions, each made when first wanted.
 pub struct PairCulling {
     made: Vec<Option<Made>>,
-    shells: Vec<Option<Arc<Shell>>>,
+    proxies: Vec<Option<Arc<ProxyHull>>>,
     /// End of the step in seconds.
     end: Real,
 }
@@ -30,7 +30,7 @@ impl PairCulling {
     pub fn new(parts: usize, end: Real) -> Self {
         Self {
             made: (0..parts).map(|_| None).collect(),
-            shells: vec![None; parts],
+            proxies: vec![None; parts],
             end,
         }
     }
@@ -48,7 +48,7 @@ impl PairCulling {
         pair: [usize; 2],
         time: Real,
         reach: Real,
-    ) -> Option<(Real, Option<[Left; 2]>)> {
+    ) -> Option<(Real, Option<[ActivePrimitives; 2]>)> {
         let until = spheres_apart_until(view, pair, [time, self.end], reach)?;
         for k in pair {
             if self.made[k].is_none() {
@@ -68,21 +68,21 @@ impl PairCulling {
     /// their box.
     fn outline(&mut self, view: &StepView, part: usize) -> Made {
         let p = &view.parts[part];
-        if self.shells[part].is_none() {
-            let shell = match p.medial() {
-                Some(mesh) => Arc::clone(mesh.shell()),
+        if self.proxies[part].is_none() {
+            let proxy = match p.medial() {
+                Some(mesh) => Arc::clone(mesh.proxy_hull()),
                 None => {
                     let aabb = p.shape.compute_local_aabb();
                     let bounded = aabb.extents().max_element() < UNBOUNDED;
-                    bounded.then(|| Arc::new(Shell::of_points(&aabb.vertices())))?
+                    bounded.then(|| Arc::new(ProxyHull::of_points(&aabb.vertices())))?
                 }
             };
-            self.shells[part] = Some(shell);
+            self.proxies[part] = Some(proxy);
         }
         let from = view.bodies[p.body].time;
         let motion = view.motion(part, from);
-        let shell = self.shells[part].as_ref()?;
-        Some(Outline::new(shell, &motion, [from, self.end]))
+        let proxy = self.proxies[part].as_ref()?;
+        Some(Outline::new(proxy, &motion, [from, self.end]))
     }
 }
 

@@ -4,7 +4,7 @@
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 use crate::rapier::view::step_view::{Part, StepView};
 use parry3d::bounding_volume::Aabb;
 
@@ -59,15 +59,15 @@ impl Thin {
                 continue;
             }
             looked += 1;
-            match (p.below(), q.below()) {
+            match (p.kind(), q.kind()) {
                 _ if looked > MOST => return true,
-                (Below::Primitive(_), Below::Primitive(_)) => return true,
-                (Below::Nodes(c, d), Below::Primitive(_)) => open.extend([(c, j), (d, j)]),
-                (Below::Primitive(_), Below::Nodes(c, d)) => open.extend([(i, c), (i, d)]),
-                (Below::Nodes(c, d), Below::Nodes(..)) if p.radius >= q.radius => {
+                (NodeKind::Primitive(_), NodeKind::Primitive(_)) => return true,
+                (NodeKind::Nodes(c, d), NodeKind::Primitive(_)) => open.extend([(c, j), (d, j)]),
+                (NodeKind::Primitive(_), NodeKind::Nodes(c, d)) => open.extend([(i, c), (i, d)]),
+                (NodeKind::Nodes(c, d), NodeKind::Nodes(..)) if p.radius >= q.radius => {
                     open.extend([(c, j), (d, j)]);
                 }
-                (Below::Nodes(..), Below::Nodes(c, d)) => open.extend([(i, c), (i, d)]),
+                (NodeKind::Nodes(..), NodeKind::Nodes(c, d)) => open.extend([(i, c), (i, d)]),
             }
         }
         false
@@ -85,9 +85,9 @@ impl Thin {
             if mesh.thicknesses().nodes[i as usize] >= self.thickness || apart > self.reach {
                 continue;
             }
-            match node.below() {
-                Below::Primitive(_) => return true,
-                Below::Nodes(c, d) => open.extend([c, d]),
+            match node.kind() {
+                NodeKind::Primitive(_) => return true,
+                NodeKind::Nodes(c, d) => open.extend([c, d]),
             }
         }
         false

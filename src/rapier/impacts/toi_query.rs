@@ -14,7 +14,7 @@ use crate::elementary::{Cores, InitialContact, Paths, Toi, ToiOptions, ToiStatus
 use crate::math::{Real, Vector};
 use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::met::Met;
-use crate::pair::outline::Left;
+use crate::pair::outline::ActivePrimitives;
 use crate::parry::cast::Cast;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::impacts::thin_parts::Thin;
@@ -100,7 +100,7 @@ pub struct QueryOptions {
     /// Asked for too where the pair is deep: what it must not sink below.
     pub floor: Option<ToiOptions>,
     /// All of both that may come as near as is asked, where that is known.
-    pub left: Option<[Left; 2]>,
+    pub left: Option<[ActivePrimitives; 2]>,
 }
 
 /// Asks for first contacts in a step of `dt` seconds.
@@ -337,7 +337,7 @@ fn ask(
     motions: &[NonlinearRigidMotion; 2],
     seconds: Real,
     options: &ToiOptions,
-    left: Option<&[Left; 2]>,
+    left: Option<&[ActivePrimitives; 2]>,
 ) -> Option<ToiResult> {
     let [p, q] = pair.map(|k| &view.parts[k]);
     if let (Some(a), Some(b)) = (p.medial(), q.medial()) {

@@ -15,16 +15,16 @@ use crate::math::Real;
 
 /// How far two bodies may move against each other before their contacts are computed again.
 #[derive(Clone, Copy, Debug)]
-pub struct Play {
+pub struct RelativeMotionBound {
     /// Upper bound of how far any place of one body moves against the other, a length.
-    pub way: Real,
+    pub travel: Real,
     /// Upper bound of the angle by which one body turns against the other, in radians.
-    pub turn: Real,
+    pub angle: Real,
     /// Gap at which a contact begins to hold, a length: the sum of both contact skins.
     pub skins: Real,
 }
 
-impl Play {
+impl RelativeMotionBound {
     /// Removes the contacts that cannot close because nearer ones hold, and sorts the others, the nearest first.
     pub fn drop_held_back(&self, contacts: &mut Vec<SpherePair>) {
         contacts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -41,17 +41,17 @@ impl Play {
     fn holds_back(&self, k: &SpherePair, c: &SpherePair) -> bool {
         let [gap_k, gap_c] = [k, c].map(|c| (c.distance - self.skins).max(0.0));
         // Too far by more than rounding, before any root is taken.
-        let turned = self.turn * self.turn * k.points[0].distance_squared(c.points[0]);
+        let turned = self.angle * self.angle * k.points[0].distance_squared(c.points[0]);
         if turned > gap_c * gap_c * (1.0 + 64.0 * Real::EPSILON) {
             return false;
         }
         let cosine = k.normal.dot(c.normal).clamp(-1.0, 1.0);
-        let closed = if gap_k < self.way * cosine {
-            let across = (self.way - gap_k) * (self.way + gap_k);
+        let closed = if gap_k < self.travel * cosine {
+            let across = (self.travel - gap_k) * (self.travel + gap_k);
             gap_k * cosine + (across * (1.0 - cosine * cosine)).sqrt()
         } else {
-            self.way
+            self.travel
         };
-        closed + self.turn * k.points[0].distance(c.points[0]) < gap_c
+        closed + self.angle * k.points[0].distance(c.points[0]) < gap_c
     }
 }

@@ -2,11 +2,11 @@
 //! mesh is one; a few loose primitives (the faces of a cuboid, a capsule, the triangles of a terrain near the body)
 //! are another.
 
-use crate::elementary::test_list::Share;
+use crate::elementary::test_list::OwnedFeatures;
 use crate::math::{Real, Vector};
-use crate::medial::shell::Shell;
+use crate::medial::proxy_hull::ProxyHull;
 use crate::medial::simplex::Simplex;
-use crate::medial::tree::Below;
+use crate::medial::tree::NodeKind;
 use crate::medial::{MedialMesh, MedialSphere};
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,13 +20,13 @@ fn hull_of([a, b, c]: [MedialSphere; 3], len: usize) -> Hull {
 }
 
 /// A body made of primitives, in its own frame.
-pub trait Volumes {
+pub trait PrimitiveTree {
     /// Number of root nodes; they are the nodes `0..roots()`.
     fn roots(&self) -> u32;
     /// Bounding sphere of a node.
     fn bound(&self, node: u32) -> (Vector, Real);
     /// What is below a node.
-    fn below(&self, node: u32) -> Below;
+    fn kind(&self, node: u32) -> NodeKind;
     /// One to four spheres whose hull holds what is below a node, a tighter bound than its sphere: those of its
     /// primitive, or the corners of a swept rectangle. By default the node's sphere.
     fn hull(&self, node: u32) -> Hull {
@@ -34,7 +34,7 @@ pub trait Volumes {
         ([MedialSphere::new(center, radius); 4], 1)
     }
     /// Spheres of a primitive (unused entries repeat the last one), and which edges and spheres it tests.
-    fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share);
+    fn primitive(&self, index: u32) -> ([MedialSphere; 3], OwnedFeatures);
     /// Thickness of a primitive, a length ([`crate::medial::thickness`]). Infinite for surfaces, and for solids
     /// that are represented by their surface.
     fn thickness(&self, _primitive: u32) -> Real {
@@ -45,12 +45,12 @@ pub trait Volumes {
         index..index + 1
     }
     /// A few balls that enclose the body, if there are any.
-    fn shell(&self) -> Option<&Arc<Shell>> {
+    fn proxy_hull(&self) -> Option<&Arc<ProxyHull>> {
         None
     }
 }
 
-impl Volumes for MedialMesh {
+impl PrimitiveTree for MedialMesh {
     fn roots(&self) -> u32 {
         1
     }
@@ -58,22 +58,22 @@ impl Volumes for MedialMesh {
         let n = &self.tree().nodes()[node as usize];
         (n.center, n.radius)
     }
-    fn below(&self, node: u32) -> Below {
-        self.tree().nodes()[node as usize].below()
+    fn kind(&self, node: u32) -> NodeKind {
+        self.tree().nodes()[node as usize].kind()
     }
     fn hull(&self, node: u32) -> Hull {
-        match self.tree().nodes()[node as usize].below() {
-            Below::Nodes(first, _) => (self.rectangles().of(first).corners, 4),
-            Below::Primitive(index) => {
-                let (spheres, share) = Volumes::primitive(self, index);
+        match self.tree().nodes()[node as usize].kind() {
+            NodeKind::Nodes(first, _) => (self.rectangles().of(first).corners, 4),
+            NodeKind::Primitive(index) => {
+                let (spheres, share) = PrimitiveTree::primitive(self, index);
                 hull_of(spheres, share.spheres)
             }
         }
     }
-    fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share) {
+    fn primitive(&self, index: u32) -> ([MedialSphere; 3], OwnedFeatures) {
         let s: &Simplex = &self.simplices()[index as usize];
         let spheres = s.vertices.map(|v| self.spheres()[v as usize]);
-        let share = Share {
+        let share = OwnedFeatures {
             spheres: s.len as usize,
             edges: s.owns_edge,
             vertices: s.owns_vertex,
@@ -83,21 +83,21 @@ impl Volumes for MedialMesh {
     fn thickness(&self, primitive: u32) -> Real {
         self.thicknesses().primitives[primitive as usize]
     }
-    fn shell(&self) -> Option<&Arc<Shell>> {
-        Some(MedialMesh::shell(self))
+    fn proxy_hull(&self) -> Option<&Arc<ProxyHull>> {
+        Some(MedialMesh::proxy_hull(self))
     }
 }
 
 /// A list of loose primitives without a hierarchy.
 #[derive(Clone, Debug, Default)]
-pub struct Soup {
+pub struct PrimitiveList {
     primitives: Vec<([MedialSphere; 3], usize)>,
     bounds: Vec<(Vector, Real)>,
     /// Of each primitive of a part that has ended, the part's first and the one behind its last.
     parts: Vec<[u32; 2]>,
 }
 
-impl Soup {
+impl PrimitiveList {
     /// Adds a primitive of 1 to 3 spheres; others are ignored.
     pub fn push(&mut self, spheres: &[MedialSphere]) {
         let &[a, ..] = spheres else { return };
@@ -137,23 +137,23 @@ impl Soup {
     }
 }
 
-impl Volumes for Soup {
+impl PrimitiveTree for PrimitiveList {
     fn roots(&self) -> u32 {
         self.primitives.len() as u32
     }
     fn bound(&self, node: u32) -> (Vector, Real) {
         self.bounds[node as usize]
     }
-    fn below(&self, node: u32) -> Below {
-        Below::Primitive(node)
+    fn kind(&self, node: u32) -> NodeKind {
+        NodeKind::Primitive(node)
     }
     fn hull(&self, node: u32) -> Hull {
         let (spheres, len) = self.primitives[node as usize];
         hull_of(spheres, len)
     }
-    fn primitive(&self, index: u32) -> ([MedialSphere; 3], Share) {
+    fn primitive(&self, index: u32) -> ([MedialSphere; 3], OwnedFeatures) {
         let (spheres, n) = self.primitives[index as usize];
-        (spheres, Share::whole(n))
+        (spheres, OwnedFeatures::whole(n))
     }
     fn convex_part(&self, index: u32) -> Range<u32> {
         let part = self.parts.get(index as usize);

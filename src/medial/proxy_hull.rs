@@ -3,7 +3,7 @@
 
 use super::simplex::Simplex;
 use super::sphere::MedialSphere;
-use super::tree::{Below, SphereTree};
+use super::tree::{NodeKind, SphereTree};
 use crate::math::{Real, Vector};
 
 /// Most balls and primitives of an outline: the bits of a mask. A larger mesh is taken for nodes of its
@@ -12,7 +12,7 @@ pub const MOST: usize = 64;
 
 /// A body as a few balls and primitives, in its own frame.
 #[derive(Clone, Debug, Default)]
-pub struct Shell {
+pub struct ProxyHull {
     /// Balls whose hull holds it: centre and radius.
     pub balls: Vec<(Vector, Real)>,
     /// The balls of each primitive, whose hull holds it.
@@ -23,46 +23,46 @@ pub struct Shell {
     pub is_exact: bool,
 }
 
-impl Shell {
+impl ProxyHull {
     /// Of a mesh: its spheres and primitives, or nodes of its tree.
     pub fn of_mesh(spheres: &[MedialSphere], simplices: &[Simplex], tree: &SphereTree) -> Self {
         let count = tree.nodes().len();
-        let mut shell = Self {
+        let mut proxy = Self {
             nodes: vec![0; count],
             ..Self::default()
         };
         if spheres.len() <= MOST && simplices.len() <= MOST {
-            shell.is_exact = true;
+            proxy.is_exact = true;
             let bits = |vertices: &[u32]| vertices.iter().fold(0, |m, &v| m | 1 << v);
-            shell.balls = spheres.iter().map(|s| (s.center, s.radius)).collect();
-            shell.primitives = simplices.iter().map(|s| bits(&s.vertices)).collect();
-            for (at, node) in shell.nodes.iter_mut().enumerate() {
-                if let Below::Primitive(primitive) = tree.nodes()[at].below() {
+            proxy.balls = spheres.iter().map(|s| (s.center, s.radius)).collect();
+            proxy.primitives = simplices.iter().map(|s| bits(&s.vertices)).collect();
+            for (at, node) in proxy.nodes.iter_mut().enumerate() {
+                if let NodeKind::Primitive(primitive) = tree.nodes()[at].kind() {
                     *node = 1 << primitive;
                 }
             }
         } else {
             for (k, at) in front(tree).into_iter().enumerate() {
                 let node = &tree.nodes()[at as usize];
-                shell.balls.push((node.center, node.radius));
-                shell.primitives.push(1 << k);
-                shell.nodes[at as usize] = 1 << k;
+                proxy.balls.push((node.center, node.radius));
+                proxy.primitives.push(1 << k);
+                proxy.nodes[at as usize] = 1 << k;
             }
         }
-        let nodes = &mut shell.nodes;
+        let nodes = &mut proxy.nodes;
         // Children come after their parents.
         for at in 0..count {
-            if let Below::Nodes(first, second) = tree.nodes()[at].below() {
+            if let NodeKind::Nodes(first, second) = tree.nodes()[at].kind() {
                 nodes[first as usize] |= nodes[at];
                 nodes[second as usize] |= nodes[at];
             }
         }
         for at in (0..count).rev() {
-            if let Below::Nodes(first, second) = tree.nodes()[at].below() {
+            if let NodeKind::Nodes(first, second) = tree.nodes()[at].kind() {
                 nodes[at] |= nodes[first as usize] | nodes[second as usize];
             }
         }
-        shell
+        proxy
     }
 
     /// Of a shape that the hull of these points holds, of which there are [`MOST`] at most.
@@ -81,9 +81,9 @@ impl Shell {
 fn front(tree: &SphereTree) -> Vec<u32> {
     let mut front = vec![0];
     while front.len() <= MOST / 2 {
-        let split = |at: u32| match tree.nodes()[at as usize].below() {
-            Below::Nodes(first, second) => [Some(first), Some(second)],
-            Below::Primitive(_) => [Some(at), None],
+        let split = |at: u32| match tree.nodes()[at as usize].kind() {
+            NodeKind::Nodes(first, second) => [Some(first), Some(second)],
+            NodeKind::Primitive(_) => [Some(at), None],
         };
         let next: Vec<u32> = front.iter().flat_map(|&at| split(at)).flatten().collect();
         if next.len() == front.len() {
