@@ -300,6 +300,36 @@ pub fn self_crossing() -> Mesh {
     })
 }
 
+/// A ball of radius 1 whose top goes through itself to a bulb, which is inside out: it lies from z = 1.1 to 1.35, and has
+/// radius .2.
+pub fn turned_bulb() -> Mesh {
+    let around = 16u32;
+    let ball = (1..10).map(|k| (18.0 * k as f32 - 90.0).to_radians().sin_cos());
+    let ball = ball.map(|(z, r)| (r, z));
+    let rings: Vec<(f32, f32)> = ball
+        .chain([(-0.1, 1.1), (-0.2, 1.2), (-0.1, 1.3)])
+        .collect();
+    let mut vertices = vec![Vector::NEG_Z, Vector::new(0.0, 0.0, 1.35)];
+    let mut indices = Vec::new();
+    for (k, &(r, z)) in rings.iter().enumerate() {
+        let first = 2 + around * k as u32;
+        for i in 0..around {
+            let (sin, cos) = (i as f32 / around as f32 * std::f32::consts::TAU).sin_cos();
+            // Mirrored where r is negative.
+            vertices.push(Vector::new(r.abs() * cos, r * sin, z));
+            let (a, b) = (first + i, first + (i + 1) % around);
+            match k {
+                0 => indices.push([0, b, a]),
+                _ => indices.extend([[a - around, b, a], [a - around, b - around, b]]),
+            }
+            if k + 1 == rings.len() {
+                indices.push([1, a, b]);
+            }
+        }
+    }
+    Mesh { vertices, indices }
+}
+
 /// A thick octagonal body whose closed wings are a thousandth thick, in one patch.
 pub fn winged() -> Mesh {
     let n = 48;

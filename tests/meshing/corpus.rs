@@ -68,6 +68,15 @@ fn open_bodies() {
         .outside(&[[0.0; 3]])
         .error(0.35),
         case(
+            "a bowl with a post in it",
+            cut(ball(1.0), |v| v.z < 0.6)
+                .and(cuboid(Vector::new(0.9, 0.9, 1.4)).map(|v| v - Vector::new(0.45, 0.45, 0.2))),
+            (1, 1),
+        )
+        .primitives(60)
+        .volume(0.9 * 0.9 * 1.4, 1e-3)
+        .inside(&[[0.0, 0.0, 0.5]]),
+        case(
             "a pipe",
             cut(capsule(1.0, 0.4, 16, 4), |v| v.z.abs() < 1.01),
             (0, 1),
@@ -87,6 +96,44 @@ fn open_bodies() {
             .volume(ball_volume(), 0.03)
             .inside(&[[0.0; 3]]),
     ]);
+}
+
+/// What lies along a loose seam says which way a triangle faces.
+#[test]
+fn bodies_that_fell_apart_and_were_turned() {
+    let mut cases = Vec::new();
+    for seed in 1..5 {
+        let some_turned = apart(turn_some(block(), seed), 0.002);
+        cases.push(
+            case("a box that fell apart, some turned", some_turned, (12, 0))
+                .volume(BLOCK_VOLUME, 0.03)
+                .inside(&[[0.5, 0.35, 0.2]])
+                .found(|f| f.triangles_turned > 0),
+        );
+    }
+    let fine = turn_some(refine(block(), 2), 3);
+    cases.extend([
+        case(
+            "a fine box that fell apart, some turned",
+            apart(fine, 0.002),
+            (192, 0),
+        )
+        .volume(BLOCK_VOLUME, 0.03)
+        .inside(&[[0.5, 0.35, 0.2]]),
+        case(
+            "a ball that fell apart, some turned",
+            apart(turn_some(ball(1.0), 2), 0.003),
+            (90, 0),
+        )
+        .volume(ball_volume(), 0.03)
+        .inside(&[[0.0; 3]]),
+        case(
+            "discs beside each other, that fell apart, some turned",
+            apart(turn_some(disc(1), 7), 0.003),
+            (0, 36),
+        ),
+    ]);
+    all_pass(cases);
 }
 
 #[test]
@@ -164,6 +211,7 @@ fn thin_solids() {
 fn several_bodies() {
     let at = |x: f32| ball(1.0).map(move |v| v + Vector::new(x, 0.0, 0.0));
     let overlapping = |f: &Findings| f.overlapping;
+    let over_bulb = cuboid(Vector::splat(1.2)).map(|v| v + Vector::new(-0.6, -0.6, 0.6));
     all_pass(vec![
         case("two apart", at(0.0).and(at(3.0)), (2, 0))
             .volume(2.0 * ball_volume(), 1e-3)
@@ -207,6 +255,14 @@ fn several_bodies() {
         .outside(&[[0.0; 3]])
         .primitives(60)
         .found(|f| f.patches_cavity == 1 && f.triangles_turned > 0),
+        case(
+            "one in another, inside out in part",
+            turned_bulb().and(over_bulb.clone()),
+            (2, 0),
+        )
+        .volume(union_volume(&capsule(0.0, 1.0, 16, 5), &over_bulb), 0.02)
+        .inside(&[[0.0, 0.0, 1.2], [0.1, 0.1, 1.2], [0.0, 0.0, 1.5]])
+        .found(|f| f.triangles_hidden > 100),
         case("a copy at 1e-4", ball(1.0).and(ball(0.9998)), (2, 0))
             .volume(ball_volume(), 0.01)
             .inside(&[[0.0; 3]]),

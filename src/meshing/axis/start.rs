@@ -11,6 +11,7 @@ use crate::meshing::draft::Draft;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
+use crate::meshing::surface::folds::Folds;
 use crate::meshing::surface::samples::{Sample, blue_noise};
 use crate::meshing::watch::Watch;
 use std::borrow::Cow;
@@ -21,9 +22,6 @@ const TOUCHED: f64 = 0.5;
 /// Distance before the surface at which the winding number tells whether it lies inside matter
 /// (longest side 1): below any two layers that welding leaves apart.
 const BEFORE: f64 = 1e-7;
-
-/// Winding number inside matter.
-const INSIDE: f64 = 0.5;
 
 /// The initial medial mesh.
 pub struct Start {
@@ -60,7 +58,10 @@ pub fn start(
         let mut samples = blue_noise(&part, count, watch)?;
         if findings.overlapping {
             // No ball touches what lies inside matter, and none may be stopped by it.
-            samples.retain(|s| tree.winding(s.point + s.normal * BEFORE) < INSIDE);
+            let folds = Folds::new(surface, tree, watch)?;
+            let patch_of = |s: &Sample| part.patch_of[s.triangle as usize];
+            let before = |s: &Sample| s.point + s.normal * BEFORE;
+            samples.retain(|s| !folds.is_inside(before(s), patch_of(s), &mut 0));
         }
         watch.begin("delaunay")?;
         let delaunay = tetrahedra(&samples, watch)?;

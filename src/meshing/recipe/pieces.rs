@@ -155,6 +155,7 @@ impl Source {
             area,
             sheet: vec![false; count],
             patch_of: vec![0; count],
+            whole: vec![true],
             lids: Vec::new(),
             simple: true,
             findings: Default::default(),

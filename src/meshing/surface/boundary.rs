@@ -3,7 +3,8 @@
 //!
 //! Source of the inside test: Jacobson et al., "Robust Inside-Outside Segmentation using Generalized Winding
 //! Numbers" (2013). A triangle that another part passes through is halved until its pieces lie on one side; of the
-//! smallest, those that are partly hidden stay. Small openings have lids there.
+//! smallest, those that are partly hidden stay. Small openings have lids there. Folds (`folds.rs`) that matter encloses are
+//! hidden too.
 
 use crate::error::BuildError;
 use crate::meshing::findings::Findings;
@@ -11,6 +12,7 @@ use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::subdivide::{halve, longest_edge_sq};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
+use crate::meshing::surface::folds::Folds;
 use crate::meshing::watch::Watch;
 
 /// Distance before and behind the surface at which the winding number is asked for (longest side 1).
@@ -115,12 +117,14 @@ fn sort_out(
     findings: &mut Findings,
     watch: &mut Watch,
 ) -> Result<Option<(Vec<Piece>, f64)>, BuildError> {
+    let folds = Folds::new(surface, tree, watch)?;
     let mut coarser = 1.0;
     loop {
-        let mut cut = Cut::new(tree, surface.triangles.len(), coarser);
+        let mut cut = Cut::new(tree, &folds, surface.triangles.len(), coarser);
         let mut area_done = 0.0;
         for (t, corners) in surface.all_corners().enumerate() {
-            if !cut.triangle(t, corners, surface.normals[t], watch)? {
+            let normal = surface.normals[t];
+            if !cut.triangle((corners, t), surface.patch_of[t], normal, watch)? {
                 break;
             }
             area_done += area(&corners);
@@ -142,6 +146,7 @@ fn sort_out(
 /// The triangles of a surface, cut up to a size of pieces and a budget.
 struct Cut<'a> {
     tree: &'a TriangleTree,
+    folds: &'a Folds<'a>,
     finest: f64,
     large: f64,
     pieces: Vec<Piece>,
@@ -154,10 +159,11 @@ struct Cut<'a> {
 }
 
 impl<'a> Cut<'a> {
-    fn new(tree: &'a TriangleTree, triangles: usize, coarser: f64) -> Self {
+    fn new(tree: &'a TriangleTree, folds: &'a Folds<'a>, triangles: usize, coarser: f64) -> Self {
         let most = |[fixed, of_each]: [usize; 2]| fixed + of_each * triangles;
         Self {
             tree,
+            folds,
             finest: FINEST * coarser,
             large: LARGE * coarser,
             pieces: Vec::new(),
@@ -175,8 +181,8 @@ impl<'a> Cut<'a> {
     /// Keeps what is not hidden of a triangle; `false` if the budget ends before.
     fn triangle(
         &mut self,
-        t: usize,
-        corners: [Point; 3],
+        (corners, t): Piece,
+        patch: u32,
         normal: Point,
         watch: &mut Watch,
     ) -> Result<bool, BuildError> {
@@ -187,21 +193,31 @@ impl<'a> Cut<'a> {
                 return Ok(false);
             }
             let longest_sq = longest_edge_sq(&piece);
-            let middle = middle(&piece);
-            let mut points = std::iter::once(middle).chain(probes(&piece, middle));
             if longest_sq > self.large * self.large {
                 self.waiting.extend(halve(piece));
-            } else if longest_sq <= self.finest * self.finest {
-                if !points.all(|p| self.is_hidden(p, normal)) {
-                    self.pieces.push((piece, t));
-                }
-            } else {
-                let here = self.is_hidden(middle, normal);
-                match points.all(|p| self.is_hidden(p, normal) == here) {
-                    true if here => {}
-                    true => self.pieces.push((piece, t)),
-                    false => self.waiting.extend(halve(piece)),
-                }
+                continue;
+            }
+            let middle = middle(&piece);
+            let points = || std::iter::once(middle).chain(probes(&piece, middle));
+            let is_finest = longest_sq <= self.finest * self.finest;
+            let here = self.is_hidden(middle, normal);
+            let is_alike = match is_finest && !here {
+                true => false,
+                false => points().skip(1).all(|p| self.is_hidden(p, normal) == here),
+            };
+            if is_alike && here {
+                continue;
+            }
+            if !is_alike && !is_finest {
+                self.waiting.extend(halve(piece));
+                continue;
+            }
+            // Most pieces that are seen are in no fold: one point tells.
+            match self.is_in_fold(middle, patch, normal) {
+                false => self.pieces.push((piece, t)),
+                true if points().skip(1).all(|p| self.is_in_fold(p, patch, normal)) => {}
+                true if is_finest => self.pieces.push((piece, t)),
+                true => self.waiting.extend(halve(piece)),
             }
         }
         Ok(true)
@@ -210,6 +226,12 @@ impl<'a> Cut<'a> {
     /// Whether there is matter behind a point of the surface and before it.
     fn is_hidden(&mut self, p: Point, normal: Point) -> bool {
         let mut is_inside = |p: Point| self.tree.winding_counted(p, &mut self.work) > INSIDE;
+        is_inside(p + normal * OFF) && is_inside(p - normal * OFF)
+    }
+
+    /// The same where what looks like a void is a fold of the surface's own patch.
+    fn is_in_fold(&mut self, p: Point, patch: u32, normal: Point) -> bool {
+        let mut is_inside = |p: Point| self.folds.is_inside(p, patch, &mut self.work);
         is_inside(p + normal * OFF) && is_inside(p - normal * OFF)
     }
 }

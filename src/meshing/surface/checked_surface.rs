@@ -46,6 +46,8 @@ pub struct Surface {
     pub sheet: Vec<bool>,
     /// The patch of each triangle; see [`crate::meshing::surface::orient`].
     pub patch_of: Vec<u32>,
+    /// Of each patch, whether it bounds matter by itself, but for small openings, and faces outward.
+    pub whole: Vec<bool>,
     /// Triangles that close the small openings of patches that bound matter, and their normals: the boundary of the
     /// solid, where the source has none.
     pub lids: Vec<([Point; 3], Point)>,
@@ -82,6 +84,7 @@ impl Surface {
             lids: Vec::new(),
             sheet: chosen.iter().map(|&i| self.sheet[i]).collect(),
             patch_of: chosen.iter().map(|&i| self.patch_of[i]).collect(),
+            whole: self.whole.clone(),
             simple: self.simple,
             findings: self.findings.clone(),
         }
@@ -126,6 +129,7 @@ impl Surface {
                 .map(|t| self.patch_of[t])
                 .chain(lids.map(|_| 0))
                 .collect(),
+            whole: self.whole.clone(),
             lids: Vec::new(),
             simple: self.simple,
             welded: self.welded,

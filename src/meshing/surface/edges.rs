@@ -87,6 +87,7 @@ impl Edges {
 }
 
 /// Triangles joined into shells.
+#[derive(Clone)]
 pub struct Shells {
     parent: Vec<u32>,
     /// Whether a triangle faces against its parent; never of a root.
@@ -119,7 +120,12 @@ impl Shells {
     /// Joins the triangles of an edge of two; false if they cannot face the same way.
     pub fn join(&mut self, a: &Use, b: &Use) -> bool {
         let against = a.forward() == b.forward();
-        let ((root_a, odd_a), (root_b, odd_b)) = (self.find(a.triangle()), self.find(b.triangle()));
+        self.join_triangles([a.triangle(), b.triangle()], against)
+    }
+
+    /// Joins two triangles, which face `against` each other or the same way; false if that contradicts what is known.
+    pub fn join_triangles(&mut self, [a, b]: [usize; 2], against: bool) -> bool {
+        let ((root_a, odd_a), (root_b, odd_b)) = (self.find(a), self.find(b));
         if root_a == root_b {
             return (odd_a ^ odd_b) == against;
         }

@@ -23,8 +23,9 @@ const UNDECIDED: f64 = 0.3;
 /// Lids are of openings whose area is at most this share of their patch's.
 const MOST_OPEN: f64 = 0.2;
 
-/// Points of a rim that a lid is looked at towards, at most.
+/// Points of a rim that a lid is looked at towards, at most, and the shares of the way: something else may cover the middle.
 const RIM: usize = 16;
+const SHARES: [f64; 3] = [0.5, 0.25, 0.75];
 
 /// A rim of open edges of one patch.
 pub struct Opening {
@@ -146,7 +147,11 @@ impl Opening {
     pub fn is_wide(&self, tree: &TriangleTree) -> bool {
         let step = self.edges.len().div_ceil(RIM).max(1);
         let rim = self.edges.iter().step_by(step);
-        let towards = rim.map(|&[p, _]| (self.center + p) * 0.5);
+        let part_of_way = |share: f64| {
+            let at = move |&[p, _]: &[Point; 2]| self.center * (1.0 - share) + p * share;
+            rim.clone().map(at)
+        };
+        let towards = SHARES.into_iter().flat_map(part_of_way);
         std::iter::once(self.center)
             .chain(towards)
             .any(|p| is_at_boundary(tree, p) && !tree.any_within(p, WIDE))

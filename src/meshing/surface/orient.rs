@@ -6,11 +6,15 @@
 //! An edge of more than two triangles does not say who belongs together. But a fin on a body leaves
 //! the body whole: patches that end somewhere are taken away, and where two triangles of an edge
 //! are then left, they join.
+//!
+//! Patches along loose seams (`sew.rs`) stay what they are, but face one way together.
 
 use crate::error::BuildError;
 use crate::meshing::findings::Findings;
-use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::bounds::{Point, direction};
+use crate::meshing::surface::checked_surface::{corners, cross};
 use crate::meshing::surface::edges::{Edges, Shells, Use};
+use crate::meshing::surface::sew::{OpenEdge, loose_seams};
 use crate::meshing::watch::Watch;
 
 /// Triangles joined across edges of two.
@@ -28,6 +32,9 @@ pub struct Patch {
     pub triangles: usize,
     /// How many of them were turned round.
     pub turned: usize,
+    /// The first of the patches that are joined to it along loose seams, and face the same way as it does: itself if there
+    /// are none.
+    pub sewn: u32,
 }
 
 /// All patches, and what of them ends where.
@@ -81,7 +88,12 @@ pub fn orient(
         }
     }
     findings.edges_twisted = twisted.len();
-    let (of, mut list) = number(&mut shells, vertices, triangles, watch)?;
+    let mut sewn = shells.clone();
+    let loose: Vec<OpenEdge> = open_as_used(vertices, triangles, &single);
+    for seam in loose_seams(&loose, watch)? {
+        sewn.join_triangles(seam.triangles, seam.against);
+    }
+    let (of, mut list) = number(&mut shells, &mut sewn, vertices, triangles, watch)?;
     findings.patches = list.len();
     for triangle in twisted {
         list[of[triangle] as usize].twisted = true;
@@ -105,6 +117,27 @@ pub fn orient(
         of,
         list,
     })
+}
+
+/// Open edges as their triangles use them.
+fn open_as_used(
+    vertices: &[Point],
+    triangles: &[[u32; 3]],
+    single: &[([u32; 2], usize)],
+) -> Vec<OpenEdge> {
+    let as_used = |&([lo, hi], triangle): &([u32; 2], usize)| {
+        let [a, b, c] = triangles[triangle];
+        let forward = [[a, b], [b, c], [c, a]].contains(&[lo, hi]);
+        let ends = if forward { [lo, hi] } else { [hi, lo] };
+        let ends = ends.map(|v| vertices[v as usize]);
+        let normal = cross(corners(vertices, &triangles[triangle]));
+        OpenEdge {
+            ends,
+            inward: direction(normal.cross(ends[1] - ends[0])),
+            triangle,
+        }
+    };
+    single.iter().map(as_used).collect()
 }
 
 /// Marks as open the shells that end at crowded edges once the open ones are away, and so on.
@@ -150,49 +183,51 @@ fn strip(
     Ok(())
 }
 
-/// Numbers the shells, turns the minority of each, and sums up areas and volumes.
+/// Numbers the shells, turns the minority of each set of them that is sewn, and sums up areas and volumes.
 fn number(
     shells: &mut Shells,
+    sewn: &mut Shells,
     vertices: &[Point],
     triangles: &mut [[u32; 3]],
     watch: &mut Watch,
 ) -> Result<(Vec<u32>, Vec<Patch>), BuildError> {
     let mut number_of = vec![u32::MAX; triangles.len()];
     let mut of = Vec::with_capacity(triangles.len());
-    let mut odd = Vec::with_capacity(triangles.len());
-    // Triangles that face against the root, and those that face with it.
-    let mut votes: Vec<[usize; 2]> = Vec::new();
+    let mut list: Vec<Patch> = Vec::new();
+    // Per root of what is sewn: its first patch; triangles that face against the root, and those that face with it.
+    let mut first = vec![u32::MAX; triangles.len()];
+    let mut votes = vec![[0u32; 2]; triangles.len()];
     for t in 0..triangles.len() {
         watch.every(t)?;
-        let (root, against) = shells.find(t);
+        let root = shells.find(t).0;
+        let (whole, against) = sewn.find(t);
         let patch = &mut number_of[root];
         if *patch == u32::MAX {
-            *patch = votes.len() as u32;
-            votes.push([0; 2]);
+            *patch = list.len() as u32;
+            let sewn = &mut first[whole];
+            *sewn = (*sewn).min(*patch);
+            list.push(Patch {
+                closed: true,
+                sewn: *sewn,
+                ..Default::default()
+            });
         }
-        votes[*patch as usize][usize::from(!against)] += 1;
+        votes[whole][usize::from(!against)] += 1;
         of.push(*patch);
-        odd.push(against);
     }
-    let mut list = vec![
-        Patch {
-            closed: true,
-            ..Default::default()
-        };
-        votes.len()
-    ];
     for (t, triangle) in triangles.iter_mut().enumerate() {
         watch.every(t)?;
-        let patch = of[t] as usize;
-        let [against, with] = votes[patch];
-        list[patch].triangles += 1;
-        if odd[t] != (against > with) {
+        let (whole, odd) = sewn.find(t);
+        let patch = &mut list[of[t] as usize];
+        let [against, with] = votes[whole];
+        patch.triangles += 1;
+        if odd != (against > with) {
             triangle.swap(1, 2);
-            list[patch].turned += 1;
+            patch.turned += 1;
         }
         let [a, b, c] = triangle.map(|v| vertices[v as usize]);
-        list[patch].volume += a.dot(b.cross(c)) / 6.0;
-        list[patch].area += 0.5 * (b - a).cross(c - a).length();
+        patch.volume += a.dot(b.cross(c)) / 6.0;
+        patch.area += 0.5 * (b - a).cross(c - a).length();
     }
     Ok((of, list))
 }

@@ -25,8 +25,8 @@ const POINTS: usize = 4_096;
 /// Points of each patch at least.
 const POINTS_PER_PATCH: u32 = 6;
 
-/// Open patches below this share of the area are judged together: a soup of triangles is either a
-/// body that fell apart or nothing.
+/// Open patches below this share of the area, with what is sewn to them, are judged together: a soup of triangles is
+/// either a body that fell apart or nothing.
 const CRUMB: f64 = 1e-3;
 
 /// Distance behind the surface at which the winding number is asked for (longest side 1): below
@@ -78,7 +78,12 @@ pub fn judge(
     watch: &mut Watch,
 ) -> Result<Vec<Kind>, BuildError> {
     let total: f64 = patches.list.iter().map(|p| p.area).sum();
-    let crumb = |p: &Patch| p.area < CRUMB * total;
+    let mut areas = vec![0.0; patches.list.len()];
+    patches
+        .list
+        .iter()
+        .for_each(|p| areas[p.sewn as usize] += p.area);
+    let crumb = |p: usize| areas[patches.list[p].sewn as usize] < CRUMB * total;
     let witnesses = witnesses(surface, patches, &crumb, watch)?;
     let openings = openings(&surface.vertices, patches, watch)?;
     let mut court = Court {
@@ -225,30 +230,32 @@ fn is_flat(patch: &Patch) -> bool {
     patch.closed && patch.volume.abs() < FLAT * patch.area
 }
 
-/// The group of each patch: itself if it is large, or closed and facing inward; all small open
-/// ones together; none for small closed ones that face outward.
-fn groups(list: &[Patch], crumb: &impl Fn(&Patch) -> bool) -> Vec<Option<u32>> {
-    let crumbs = list.iter().position(|p| crumb(p) && !p.closed);
-    let group = |(i, p): (usize, &Patch)| match (crumb(p), p.closed) {
+/// The group of each patch: itself, with what is sewn to it, if that is large, or closed and facing inward; all small
+/// open ones together; none for small closed ones that face outward.
+fn groups(list: &[Patch], crumb: &impl Fn(usize) -> bool) -> Vec<Option<u32>> {
+    let crumbs = (0..list.len()).position(|p| crumb(p) && !list[p].closed);
+    let group = |p: usize| match (crumb(p), list[p].closed) {
         (true, false) => crumbs.map(|c| c as u32),
-        (true, true) if p.volume >= 0.0 => None,
-        _ => Some(i as u32),
+        (true, true) if list[p].volume >= 0.0 => None,
+        (true, true) => Some(p as u32),
+        (false, _) => Some(list[p].sewn),
     };
-    list.iter().enumerate().map(group).collect()
+    (0..list.len()).map(group).collect()
 }
 
-/// Points spread by area, and some more of patches that have few and are judged for themselves.
+/// Points spread by area, and some more of patches, with what is sewn to them, that have few and are judged for
+/// themselves.
 fn witnesses(
     surface: &Surface,
     patches: &Patches,
-    crumb: &impl Fn(&Patch) -> bool,
+    crumb: &impl Fn(usize) -> bool,
     watch: &mut Watch,
 ) -> Result<Vec<Witness>, BuildError> {
     let mut have = vec![0u32; patches.list.len()];
     let mut witnesses = Vec::new();
     for sample in even_samples(surface, POINTS, &mut Random::new(5)) {
         let patch = patches.of[sample.triangle as usize];
-        have[patch as usize] += 1;
+        have[patches.list[patch as usize].sewn as usize] += 1;
         witnesses.push(Witness {
             point: sample.point,
             normal: sample.normal,
@@ -259,9 +266,10 @@ fn witnesses(
         watch.every(t)?;
         let patch = patches.of[t] as usize;
         let info = &patches.list[patch];
-        let alone = !crumb(info) || (info.closed && info.volume < 0.0);
-        if alone && have[patch] < POINTS_PER_PATCH {
-            have[patch] += 1;
+        let alone = !crumb(patch) || (info.closed && info.volume < 0.0);
+        let have = &mut have[info.sewn as usize];
+        if alone && *have < POINTS_PER_PATCH {
+            *have += 1;
             let [a, b, c] = surface.corners(t);
             witnesses.push(Witness {
                 point: (a + b + c) * (1.0 / 3.0),

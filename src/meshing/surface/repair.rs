@@ -7,8 +7,8 @@ use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::{Frame, Surface, corners, cross};
-use crate::meshing::surface::openings::lids;
-use crate::meshing::surface::orient::{Patches, orient};
+use crate::meshing::surface::openings::{lids, openings};
+use crate::meshing::surface::orient::{Patch, Patches, orient};
 use crate::meshing::surface::patches::{Kind, judge};
 use crate::meshing::surface::seams::seam_slivers;
 use crate::meshing::surface::weld::{Welded, weld};
@@ -76,6 +76,7 @@ impl Surface {
             sheet: Vec::new(),
             lids: Vec::new(),
             patch_of: Vec::new(),
+            whole: Vec::new(),
             simple: false,
             findings,
         };
@@ -117,6 +118,11 @@ impl Surface {
         let closed = |p: u32| kinds[p as usize] == Kind::Solid;
         self.lids = lids(&self.vertices, &patches, closed, tree, watch)?;
         self.simple = simple;
+        let is_whole = |(patch, kind): (&Patch, &Kind)| *kind == Kind::Solid && patch.volume > 0.0;
+        self.whole = patches.list.iter().zip(&kinds).map(is_whole).collect();
+        for wide in openings(&self.vertices, &patches, watch)? {
+            self.whole[wide.patch as usize] = false;
+        }
         self.sheet = patches
             .of
             .iter()
