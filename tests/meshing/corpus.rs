@@ -127,6 +127,13 @@ fn bodies_that_fell_apart_and_were_turned() {
         )
         .volume(ball_volume(), 0.03)
         .inside(&[[0.0; 3]]),
+        // As of a whole box, a wide opening makes it a sheet.
+        case(
+            "a box that fell apart and lost a quarter of a face, some turned",
+            lose(apart(turn_some(refine(block(), 1), 3), 0.002), 1, 3),
+            (0, 47),
+        )
+        .primitives(60),
         case(
             "discs beside each other, that fell apart, some turned",
             apart(turn_some(disc(1), 7), 0.003),

@@ -29,7 +29,7 @@ const SHARES: [f64; 3] = [0.5, 0.25, 0.75];
 
 /// A rim of open edges of one patch.
 pub struct Opening {
-    /// The patch that ends here.
+    /// The patch that ends here, or the first of those that are sewn together.
     pub patch: u32,
     /// Mean of the rim, by length.
     center: Point,
@@ -57,6 +57,7 @@ pub fn lids(
     watch: &mut Watch,
 ) -> Result<Vec<([Point; 3], Point)>, BuildError> {
     let mut lids = Vec::new();
+    let areas = patches.sewn_areas();
     for opening in all_openings(vertices, patches, watch)? {
         watch.again()?;
         let fan: Vec<[Point; 3]> = opening
@@ -66,10 +67,10 @@ pub fn lids(
             .collect();
         let cross = |[a, b, c]: [Point; 3]| (b - a).cross(c - a);
         let area: f64 = fan.iter().map(|t| 0.5 * cross(*t).length()).sum();
-        let patch = &patches.list[opening.patch as usize];
+        let sewn = areas[opening.patch as usize];
         // A crumb's rim is all around it.
         if !closed(opening.patch)
-            || area > MOST_OPEN * patch.area
+            || area > MOST_OPEN * sewn
             || !is_at_boundary(tree, opening.center)
         {
             continue;
@@ -99,8 +100,8 @@ fn all_openings(
 ) -> Result<Vec<Opening>, BuildError> {
     let mut places: FastMap<[u32; 2], u32> = FastMap::default();
     let mut rims = Rims::default();
-    let mut edges: Vec<u32> = Vec::with_capacity(patches.open_edges.len());
-    for (i, &([a, b], patch)) in patches.open_edges.iter().enumerate() {
+    let mut edges: Vec<u32> = Vec::with_capacity(patches.rims.len());
+    for (i, &([a, b], patch)) in patches.rims.iter().enumerate() {
         watch.every(i)?;
         let mut place = |v: u32| *places.entry([patch, v]).or_insert_with(|| rims.add());
         let [a, b] = [a, b].map(&mut place);
@@ -110,7 +111,7 @@ fn all_openings(
     for (i, place) in edges.iter().enumerate() {
         watch.every(i)?;
         let root = rims.root(*place);
-        let ([a, b], patch) = patches.open_edges[i];
+        let ([a, b], patch) = patches.rims[i];
         let opening = found.entry(root).or_insert_with(|| Opening {
             patch,
             center: Point::zero(),

@@ -12,9 +12,10 @@
 use crate::error::BuildError;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Point, direction};
+use crate::meshing::geometry::union_find::Groups;
 use crate::meshing::surface::checked_surface::{corners, cross};
 use crate::meshing::surface::edges::{Edges, Shells, Use};
-use crate::meshing::surface::sew::{OpenEdge, loose_seams};
+use crate::meshing::surface::sew::{OpenEdge, Seam, loose_seams};
 use crate::meshing::watch::Watch;
 
 /// Triangles joined across edges of two.
@@ -45,6 +46,20 @@ pub struct Patches {
     pub list: Vec<Patch>,
     /// Edges of one triangle: their vertices, and their patches.
     pub open_edges: Vec<([u32; 2], u32)>,
+    /// Those of them that are at no loose seam: their vertices, of which those at a seam count as one, and the first of the
+    /// patches that are sewn together.
+    pub rims: Vec<([u32; 2], u32)>,
+}
+
+impl Patches {
+    /// Of each patch that is the first of those sewn to it, the area of all of them; of the others 0.
+    pub fn sewn_areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.list.len()];
+        for patch in &self.list {
+            areas[patch.sewn as usize] += patch.area;
+        }
+        areas
+    }
 }
 
 /// Finds the patches, and turns triangles so that each patch faces one way.
@@ -90,8 +105,9 @@ pub fn orient(
     findings.edges_twisted = twisted.len();
     let mut sewn = shells.clone();
     let loose: Vec<OpenEdge> = open_as_used(vertices, triangles, &single);
-    for seam in loose_seams(&loose, watch)? {
-        sewn.join_triangles(seam.triangles, seam.against);
+    let seams = loose_seams(&loose, watch)?;
+    for seam in &seams {
+        sewn.join_triangles(seam.edges.map(|e| loose[e].triangle), seam.against);
     }
     let (of, mut list) = number(&mut shells, &mut sewn, vertices, triangles, watch)?;
     findings.patches = list.len();
@@ -111,8 +127,12 @@ pub fn orient(
             list[own[0] as usize].closed = false;
         }
     }
+    let rims = rims(vertices.len(), &loose, &seams, |t| {
+        list[of[t] as usize].sewn
+    });
     let patch_of = |(ends, triangle): ([u32; 2], usize)| (ends, of[triangle]);
     Ok(Patches {
+        rims,
         open_edges: single.into_iter().map(patch_of).collect(),
         of,
         list,
@@ -128,16 +148,38 @@ fn open_as_used(
     let as_used = |&([lo, hi], triangle): &([u32; 2], usize)| {
         let [a, b, c] = triangles[triangle];
         let forward = [[a, b], [b, c], [c, a]].contains(&[lo, hi]);
-        let ends = if forward { [lo, hi] } else { [hi, lo] };
-        let ends = ends.map(|v| vertices[v as usize]);
+        let used = if forward { [lo, hi] } else { [hi, lo] };
+        let ends = used.map(|v| vertices[v as usize]);
         let normal = cross(corners(vertices, &triangles[triangle]));
         OpenEdge {
+            vertices: used,
             ends,
             inward: direction(normal.cross(ends[1] - ends[0])),
             triangle,
         }
     };
     single.iter().map(as_used).collect()
+}
+
+/// Open edges without those at seams, whose ends become one.
+fn rims(
+    vertices: usize,
+    open: &[OpenEdge],
+    seams: &[Seam],
+    sewn: impl Fn(usize) -> u32,
+) -> Vec<([u32; 2], u32)> {
+    let mut places = Groups::new(vertices);
+    let mut at_seam = vec![false; open.len()];
+    for seam in seams {
+        let [one, other] = seam.edges.map(|e| open[e].vertices);
+        let [first, last] = if seam.against { [0, 1] } else { [1, 0] };
+        places.join(one[0], other[first]);
+        places.join(one[1], other[last]);
+        seam.edges.into_iter().for_each(|e| at_seam[e] = true);
+    }
+    let left = open.iter().zip(at_seam).filter(|(_, at_seam)| !at_seam);
+    left.map(|(edge, _)| (edge.vertices.map(|v| places.find(v)), sewn(edge.triangle)))
+        .collect()
 }
 
 /// Marks as open the shells that end at crowded edges once the open ones are away, and so on.

@@ -222,6 +222,10 @@ impl Court<'_> {
             let p = opening.patch as usize;
             sheets[p] |= self.counts[p] != 0 && opening.is_wide(tree);
         }
+        // What is sewn is of one kind.
+        for (p, patch) in self.patches.list.iter().enumerate() {
+            sheets[p] |= self.counts[p] != 0 && sheets[patch.sewn as usize];
+        }
         Ok((0..sheets.len()).filter(|&p| sheets[p]).collect())
     }
 }

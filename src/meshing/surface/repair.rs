@@ -8,7 +8,7 @@ use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::{Frame, Surface, corners, cross};
 use crate::meshing::surface::openings::{lids, openings};
-use crate::meshing::surface::orient::{Patch, Patches, orient};
+use crate::meshing::surface::orient::{Patches, orient};
 use crate::meshing::surface::patches::{Kind, judge};
 use crate::meshing::surface::seams::seam_slivers;
 use crate::meshing::surface::weld::{Welded, weld};
@@ -17,6 +17,9 @@ use crate::meshing::watch::Watch;
 /// A triangle lower than this over its longest edge has no usable normal and no area that matters
 /// (longest side 1). It still closes the surface: it counts as a neighbour, not as a triangle.
 const NEEDLE: f64 = 1e-7;
+
+/// Openings of a patch that bounds matter by itself, as a share of its area.
+const OPEN: f64 = 0.1;
 
 impl Surface {
     /// Checks and cleans a triangle mesh given in the user's unit, and finds out what bounds matter
@@ -118,8 +121,17 @@ impl Surface {
         let closed = |p: u32| kinds[p as usize] == Kind::Solid;
         self.lids = lids(&self.vertices, &patches, closed, tree, watch)?;
         self.simple = simple;
-        let is_whole = |(patch, kind): (&Patch, &Kind)| *kind == Kind::Solid && patch.volume > 0.0;
-        self.whole = patches.list.iter().zip(&kinds).map(is_whole).collect();
+        // The vectors of the areas of what is closed add up to nothing.
+        let mut vectors = vec![Point::zero(); kinds.len()];
+        for (t, &patch) in patches.of.iter().enumerate() {
+            vectors[patch as usize] = vectors[patch as usize] + cross(self.corners(t)) * 0.5;
+        }
+        let is_whole = |p: usize| {
+            let patch = &patches.list[p];
+            let is_closed = vectors[p].length() < OPEN * patch.area;
+            kinds[p] == Kind::Solid && is_closed && patch.volume > 0.0
+        };
+        self.whole = (0..kinds.len()).map(is_whole).collect();
         for wide in openings(&self.vertices, &patches, watch)? {
             self.whole[wide.patch as usize] = false;
         }

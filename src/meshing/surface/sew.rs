@@ -22,7 +22,8 @@ const SHARPEST: f64 = 0.8;
 
 /// An open edge of a triangle.
 pub struct OpenEdge {
-    /// From and to, as the triangle uses it.
+    /// From and to, as the triangle uses it, and where they are.
+    pub vertices: [u32; 2],
     pub ends: [Point; 2],
     /// From the edge into the triangle: a unit vector.
     pub inward: Point,
@@ -30,11 +31,11 @@ pub struct OpenEdge {
     pub triangle: usize,
 }
 
-/// Two triangles at a loose seam, and whether they face against each other.
+/// Two open edges along a loose seam.
 pub struct Seam {
-    /// The triangles.
-    pub triangles: [usize; 2],
-    /// Whether one of them must be turned for both to face one way.
+    /// Their places among the open edges.
+    pub edges: [usize; 2],
+    /// Whether both run the same way: then one of the triangles must be turned for both to face one way.
     pub against: bool,
 }
 
@@ -59,8 +60,8 @@ pub fn loose_seams(edges: &[OpenEdge], watch: &mut Watch) -> Result<Vec<Seam>, B
     let mutual = (0..edges.len()).filter_map(|i| {
         let (other, against) = partners[i]?;
         let back = partners[other].is_some_and(|(back, _)| back == i);
-        let triangles = [i, other].map(|e| edges[e].triangle);
-        (i < other && back).then_some(Seam { triangles, against })
+        let edges = [i, other];
+        (i < other && back).then_some(Seam { edges, against })
     });
     Ok(mutual.collect())
 }
