@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// There is no sphere.
+    /// The mesh has no sphere.
     #[error("a medial mesh needs at least one sphere")]
     Empty,
     /// A coordinate or radius is NaN or infinite.
@@ -14,9 +14,9 @@ pub enum MeshError {
     NotFinite {
         /// Index of the sphere.
         index: usize,
-        /// Its centre.
+        /// Centre of the sphere.
         center: [f32; 3],
-        /// Its radius.
+        /// Radius of the sphere.
         radius: f32,
     },
     /// A sphere reaches so far from the origin that the squares of lengths would be infinite.
@@ -24,9 +24,9 @@ pub enum MeshError {
     TooFar {
         /// Index of the sphere.
         index: usize,
-        /// Its centre.
+        /// Centre of the sphere.
         center: [f32; 3],
-        /// Its radius.
+        /// Radius of the sphere.
         radius: f32,
         /// Largest coordinate that a sphere may reach.
         most: f32,
@@ -36,7 +36,7 @@ pub enum MeshError {
     NegativeRadius {
         /// Index of the sphere.
         index: usize,
-        /// Its radius.
+        /// Radius of the sphere.
         radius: f32,
     },
     /// An edge or face names a sphere that is not there.
@@ -66,7 +66,7 @@ pub enum MeshError {
     ZeroSize {
         /// How many spheres there are.
         count: usize,
-        /// Where they are.
+        /// Position of both.
         center: [f32; 3],
     },
     /// A length, radius or number given to a constructor of a simple solid is out of its range.
@@ -94,7 +94,7 @@ pub enum MeshError {
         path: PathBuf,
         /// Line number, from 1.
         line: usize,
-        /// What is wrong, with the offending text.
+        /// Description of the fault, with the offending text.
         message: String,
     },
     /// A file is not a baked medial mesh, or is damaged.
@@ -102,7 +102,7 @@ pub enum MeshError {
     Asset {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Fault of the asset.
         source: AssetError,
     },
     /// A file cannot be read or written.
@@ -188,7 +188,7 @@ impl AssetError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// There is no triangle.
+    /// The mesh has no triangle.
     #[error("the mesh has no triangles ({vertices} vertices)")]
     Empty {
         /// How many vertices there are.
@@ -199,7 +199,7 @@ pub enum BuildError {
     NotFinite {
         /// Index of the vertex.
         index: usize,
-        /// Its position.
+        /// Position of the vertex.
         position: [f32; 3],
     },
     /// A triangle names a vertex that is not there.
@@ -241,7 +241,7 @@ pub enum BuildError {
     UnknownFormat {
         /// The file.
         path: PathBuf,
-        /// Its ending.
+        /// Ending of the file's name.
         extension: String,
     },
     /// A file ends early or breaks the rules of its format.
@@ -251,7 +251,7 @@ pub enum BuildError {
         path: PathBuf,
         /// Line number or byte offset, like `line 7` or `byte 84`.
         location: String,
-        /// What is wrong, with the offending text.
+        /// Description of the fault, with the offending text.
         message: String,
     },
     /// A file cannot be read.
@@ -274,7 +274,7 @@ pub enum GpuError {
     /// The crate was built without feature `gpu`.
     #[error("built without feature `gpu`")]
     NotBuilt,
-    /// There is no graphics driver, or no GPU (adapter).
+    /// No graphics driver was found, or no GPU (adapter).
     #[error("no GPU adapter: {message}")]
     NoAdapter {
         /// The message of the graphics library.
@@ -283,7 +283,7 @@ pub enum GpuError {
     /// The only adapter is a program on the CPU, which is slower than this crate's own code for the CPU.
     #[error("adapter {name} is not a GPU")]
     Software {
-        /// Its name.
+        /// Name of the adapter.
         name: String,
     },
     /// The adapter cannot be opened with the limits that WebGPU guarantees.
@@ -291,7 +291,7 @@ pub enum GpuError {
     NoDevice {
         /// Name of the adapter.
         name: String,
-        /// Its message.
+        /// Message of the driver.
         message: String,
     },
     /// The GPU was lost (unplugged, reset). To use one again, open a new [`Batch`](crate::batch::Batch).
@@ -311,7 +311,7 @@ pub enum GpuError {
     TooLarge {
         /// The data that does not fit.
         what: &'static str,
-        /// Its size in bytes.
+        /// Size in bytes.
         bytes: u64,
         /// The largest size in bytes.
         limit: u64,
@@ -319,7 +319,7 @@ pub enum GpuError {
     /// The GPU refused a call.
     #[error("GPU call failed: {message}")]
     Refused {
-        /// Its message.
+        /// Message of the driver.
         message: String,
     },
 }
@@ -335,7 +335,7 @@ pub enum CalibrationError {
     Line {
         /// Number of the line, from 1.
         number: usize,
-        /// Its text.
+        /// Text of the line.
         text: String,
     },
     /// A line is missing.

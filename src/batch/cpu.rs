@@ -20,7 +20,7 @@ pub fn run<J: Job>(jobs: &[J]) -> Vec<J::Answer> {
     jobs.iter().map(Job::answer).collect()
 }
 
-/// As [`run`], but with what a GPU said of each job.
+/// Does the same as [`run`], with what a GPU said of each job.
 #[cfg(feature = "gpu")]
 pub(super) fn run_told<J: Job>(
     jobs: &[J],

@@ -43,7 +43,7 @@ impl Key {
 pub(super) struct Early {
     /// Index of each.
     pub(super) sent: FastMap<Key, u32>,
-    /// What the device said of them, once they are collected.
+    /// Answers of the device to the jobs sent, once they are collected.
     pub(super) proposals: Proposals,
     /// Whether the device still has them.
     pub(super) pending: bool,
@@ -57,7 +57,7 @@ impl Early {
         self.pending = false;
     }
 
-    /// What the device said of this one, if it was sent.
+    /// Answer of the device to this sweep, if it was sent.
     pub(super) fn proposal(&self, sweep: &Sweep<'_>) -> Option<Proposal> {
         let index = self.sent.get(&Key::of(sweep))?;
         self.proposals.get(*index as usize).copied()

@@ -45,7 +45,7 @@ pub struct Limits<L> {
     pub max_iterations: u32,
 }
 
-/// What is known of one elementary test.
+/// Time bracket of the first contact in one elementary test, as far as it is known.
 #[derive(Clone, Copy, Debug)]
 pub struct Bracket<L: Lane> {
     /// No contact before.
@@ -72,7 +72,7 @@ pub struct Bracket<L: Lane> {
 }
 
 impl<S: Scalar> Bracket<S> {
-    /// Of a test that something else has proven free until the horizon: no nearest spheres.
+    /// The bracket of a test that something else has proven free until the horizon; it has no nearest spheres.
     pub(crate) fn free(limits: &Limits<S>) -> Self {
         let zero = S::zero();
         Self {
@@ -116,7 +116,7 @@ fn fixed_pair_root<L: Lane>(s: &Nearest<L>, y_rate: Vec3<L>, reach: L) -> L {
     L::select(exists, root, L::splat(NEVER))
 }
 
-/// What a certified step proves, a little less than it says, for rounding.
+/// Times that a certified step proves, shortened a little for rounding.
 struct Proven<L> {
     /// Free until here.
     end: L,
@@ -139,7 +139,7 @@ impl<L: Lane> Proven<L> {
 /// A bracket on its way, in every lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Running<L: Lane> {
-    /// What is known so far.
+    /// Bracket found so far.
     pub bracket: Bracket<L>,
     /// Lanes that are not finished.
     pub active: L::Mask,
@@ -150,8 +150,8 @@ pub struct Running<L: Lane> {
 }
 
 impl<L: Lane> Running<L> {
-    /// At the start of the search. On straight paths [`first_step`] finishes some lanes at once and
-    /// lets the others begin later.
+    /// A search at its start. On straight paths [`first_step`] finishes some lanes at once and lets the others begin
+    /// later.
     #[inline(always)]
     pub fn new<P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Self {
         let slack = path.scale() * L::splat(SLACK_ULPS * L::EPSILON) + L::splat(L::TINY).sqrt();

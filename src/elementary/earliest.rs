@@ -16,7 +16,7 @@ use crate::math::lane::Scalar;
 pub struct Earliest<S: Scalar> {
     /// How far and how exact each test is followed.
     pub limits: Limits<S>,
-    /// What is known so far.
+    /// Status found so far.
     pub status: ToiStatus,
     /// No contact before, over all tests so far.
     pub lower: S,
@@ -145,7 +145,7 @@ impl<S: Scalar> Earliest<S> {
         self.found = Some((test, settled, primitives));
     }
 
-    /// What the tests of two primitives leave: whether they cross at the start, and the witness. Both
+    /// Finishes the tests of two primitives: decides whether they cross at the start, and finds the witness. Both
     /// primitives at the start, with the target distance of their paths.
     pub(super) fn conclude<P: Path<S>>(
         &mut self,

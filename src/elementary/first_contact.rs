@@ -22,7 +22,8 @@ pub(crate) type Mover<S> = (Vec3<S>, Vec3<S>, S);
 pub(super) struct Straight<S> {
     movers: [Vec<Mover<S>>; 2],
     start: [Vec<Ball<S>>; 2],
-    /// As asked, or raised to what the primitives' thinnest places allow.
+    /// Distance that counts as contact, a length: the one asked for, or raised to what the primitives' thinnest places
+    /// allow.
     target_distance: S,
 }
 
@@ -141,7 +142,7 @@ pub fn first_contact(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOption
     straight_toi(&earliest, [a, b], options)
 }
 
-/// Both primitives; `None` if they or the options are refused.
+/// Checks and converts both primitives; `None` if they or the options are refused.
 pub(super) fn movers(
     a: &[MovingSphere],
     b: &[MovingSphere],

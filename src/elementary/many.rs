@@ -21,7 +21,7 @@ const LANES: usize = 8;
 /// Which code runs the lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lanes {
-    /// What any processor of the target has.
+    /// Lanes that any processor of the target has.
     Baseline,
     /// AVX2, if the processor has it; else the baseline.
     Fastest,
@@ -139,7 +139,7 @@ fn by_domain<L: Octet>(
 #[derive(Clone, Copy)]
 struct Open {
     index: usize,
-    /// As [`to_rows`] and [`from_rows`] have it.
+    /// State of a query in the rows of [`to_rows`] and [`from_rows`].
     state: [f32; LANES],
 }
 
@@ -235,7 +235,7 @@ fn rows_of<L: Octet>(columns: [[f32; LANES]; LANES]) -> [L; LANES] {
     ])
 }
 
-/// What passes from round to round, query by query.
+/// Packs the state that passes from round to round, one row a query.
 #[inline(always)]
 fn to_rows<L: Octet>(running: &Running<L>, rounds: L) -> [[f32; LANES]; LANES] {
     let b = &running.bracket;

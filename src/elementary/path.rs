@@ -37,7 +37,7 @@ pub trait Path<L: Lane> {
 pub struct LinearPath<L> {
     /// Corners at the start.
     pub start: [Vec3<L>; 4],
-    /// Their displacement over the step.
+    /// Displacement of the corners over the step, a length.
     pub rate: [Vec3<L>; 4],
     /// Radius sums.
     pub radius: [L; 4],
@@ -117,7 +117,7 @@ pub struct RigidPath<S> {
     motions: [RigidMotion<S>; 2],
     corners: [[PointPath<S>; 2]; 4],
     radius: [S; 4],
-    /// As [`LinearPath::size`].
+    /// Bound on the size of the numbers, as [`LinearPath::size`].
     size: S,
 }
 

@@ -1,6 +1,6 @@
-//! Where an edge of one medial primitive passes through the medial triangle of another. The cone–cone and sphere–slab
-//! tests do not find this deep overlap, and the paper does not treat it: of 1,415 pairs of thin crossing slabs those
-//! tests alone call 914 separated.
+//! Point at which an edge of one medial primitive passes through the medial triangle of another. The cone–cone and
+//! sphere–slab tests do not find this deep overlap, and the paper does not treat it: of 1,415 pairs of thin crossing
+//! slabs those tests alone call 914 separated.
 //!
 //! Unknowns: `x` along the edge, `α, β` on the triangle, with
 //! `p + x e = a + α u + β v`. Cramer's rule with `N = u × v`, `D = e·N`, `w = p − a`:

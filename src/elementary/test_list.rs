@@ -5,7 +5,7 @@
 //! A lone sphere is an edge of length zero; against a slab its one sphere–slab test covers the
 //! slab's edges too.
 
-/// What the parameters of a test range over.
+/// Domain of the parameters of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {
     /// Cone–cone: `α, β ∈ [0, 1]`.
@@ -59,8 +59,8 @@ pub fn edges(n: usize) -> &'static [[u8; 2]] {
     }
 }
 
-/// What a primitive brings to the tests of a mesh: how many spheres, and which of its edges and
-/// spheres it tests (bit `i` of each mask; all ones for a primitive on its own).
+/// Features that a primitive owns in the tests of a mesh: how many spheres it has, and which of its edges and spheres
+/// it tests (bit `i` of each mask; all ones for a primitive on its own).
 #[derive(Clone, Copy, Debug)]
 pub struct OwnedFeatures {
     /// 1, 2 or 3.

@@ -1,5 +1,5 @@
-//! When a point that moves straight first comes within a distance of the origin: the smaller root of
-//! `|y + t ẏ| = R`, paper Eq. (4), for every pair of balls on straight paths.
+//! Time at which a point that moves straight first comes within a distance of the origin: the smaller root of `|y + t
+//! ẏ| = R`, paper Eq. (4), for every pair of balls on straight paths.
 //!
 //! It is found from the point of closest approach, `y + t₀ ẏ` with `t₀ = −y·ẏ/|ẏ|²`, as
 //! `t₀ − √(R² − |y + t₀ ẏ|²)/|ẏ|`. The discriminant of the parabola, `(y·ẏ)² − |ẏ|²(|y|² − R²)`, is a difference of

@@ -8,7 +8,7 @@
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use wide::f32x8;
 
-/// What a comparison of lanes gives: `bool`, or one bit pattern per lane.
+/// Result of a comparison of lanes: `bool`, or one bit pattern per lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// True in all lanes, or in none.
     fn splat(value: bool) -> Self;
@@ -72,17 +72,17 @@ pub trait Scalar: Lane<Mask = bool> + PartialOrd {
     fn sin_cos(self) -> (Self, Self);
     /// Whether neither infinite nor NaN.
     fn is_finite(self) -> bool;
-    /// From rapier's scalar, exactly.
+    /// Converts rapier's scalar, exactly.
     fn from_real(value: parry3d::math::Real) -> Self;
-    /// To double precision, exactly.
+    /// Converts to double precision, exactly.
     fn to_f64(self) -> f64;
 }
 
 /// Eight lanes of `f32` whose members can be read.
 pub trait Octet: Lane {
-    /// From its members.
+    /// Packs eight members.
     fn from_array(values: [f32; 8]) -> Self;
-    /// Its members.
+    /// Unpacks the eight members.
     fn to_array(self) -> [f32; 8];
     /// Truth values as bits, lane 0 lowest.
     fn bits(mask: Self::Mask) -> u8;
@@ -244,7 +244,7 @@ pub struct Vec3<L> {
 }
 
 impl<L: Lane> Vec3<L> {
-    /// From three coordinates.
+    /// A vector from three coordinates.
     #[inline(always)]
     pub fn new(x: L, y: L, z: L) -> Self {
         Self { x, y, z }
@@ -295,12 +295,12 @@ impl<L: Lane> Vec3<L> {
 }
 
 impl<S: Scalar> Vec3<S> {
-    /// From rapier's vector, exactly when `S` is `f64`.
+    /// Converts rapier's vector, exactly when `S` is `f64`.
     #[inline(always)]
     pub fn from_vector(v: parry3d::math::Vector) -> Self {
         Self::new(S::from_real(v.x), S::from_real(v.y), S::from_real(v.z))
     }
-    /// To rapier's vector, rounded when `S` is `f64`.
+    /// Converts to rapier's vector, rounded when `S` is `f64`.
     #[inline(always)]
     pub fn to_vector(self) -> parry3d::math::Vector {
         let r = |s: S| s.to_f64() as parry3d::math::Real;

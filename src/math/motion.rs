@@ -14,7 +14,7 @@ use parry3d::query::NonlinearRigidMotion;
 pub struct RigidMotion<S> {
     /// Position of the centre of rotation at the start, in the pair's frame.
     center: Vec3<S>,
-    /// Its displacement over the step.
+    /// Displacement of the centre over the step, a length.
     displacement: Vec3<S>,
     /// Unit axis of rotation; any unit vector when there is none.
     axis: Vec3<S>,
@@ -22,7 +22,7 @@ pub struct RigidMotion<S> {
     angle: S,
     /// Columns of the rotation at the start.
     columns: [Vec3<S>; 3],
-    /// What a step of straight paths adds to the columns; zero where the motion is rigid.
+    /// Change of the columns over a step of straight paths; zero where the motion is rigid.
     drift: [Vec3<S>; 3],
     /// Centre of rotation in the body's frame.
     local_center: Vec3<S>,
@@ -58,7 +58,7 @@ pub struct Frame<S> {
 }
 
 impl<S: Scalar> Frame<S> {
-    /// From the centre of rotation to a point given in the body's frame.
+    /// Arm from the centre of rotation to a point given in the body's frame, world axes.
     #[inline]
     pub fn arm(&self, local: Vec3<S>) -> Vec3<S> {
         rotate(&self.columns, local - self.local_center)
@@ -69,8 +69,8 @@ impl<S: Scalar> Frame<S> {
         self.center + self.arm(local)
     }
 
-    /// At least the angle of the rotation between two poses, in radians: `2 tan(θ/2)`, infinite at a half turn. The
-    /// difference of two rotations has the Frobenius norm `2√2 sin(θ/2)`.
+    /// Upper bound on the angle of the rotation between two poses, in radians: `2 tan(θ/2)`, infinite at a half turn.
+    /// The difference of two rotations has the Frobenius norm `2√2 sin(θ/2)`.
     pub fn angle_at_most(&self, other: &Self) -> S {
         let off = |k: usize| (self.columns[k] - other.columns[k]).length_sq();
         let square = (off(0) + off(1) + off(2)) * S::splat(0.125);
@@ -191,7 +191,7 @@ impl<S: Scalar> RigidMotion<S> {
         along + (rho - along) * cos + self.axis.cross(rho) * sin
     }
 
-    /// Where the body is at `t`.
+    /// Pose of the body at `t`, as a frame.
     pub fn frame(&self, t: S) -> Frame<S> {
         let turned = self.sin_cos(t);
         Frame {

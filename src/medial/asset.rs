@@ -172,7 +172,7 @@ struct Counts {
 }
 
 impl Counts {
-    /// Of bytes that start like an asset of this version.
+    /// Reads the counts of bytes that start like an asset of this version.
     fn of_header(bytes: &[u8]) -> Result<Self, AssetError> {
         if !bytes.starts_with(&MAGIC) {
             let start = bytes.iter().take(MAGIC.len()).copied().collect();

@@ -89,7 +89,7 @@ impl MedialMesh {
     }
 }
 
-/// What a file lists.
+/// Elements that a file lists.
 struct Elements {
     spheres: Vec<MedialSphere>,
     edges: Vec<[u32; 2]>,
@@ -168,7 +168,7 @@ impl Elements {
     }
 }
 
-/// What the three counts of the header count.
+/// Names of what the three counts of the header count.
 const NAMES: [&str; 3] = ["spheres", "edges", "faces"];
 
 fn indices<'t, const N: usize>(

@@ -46,7 +46,7 @@ struct MedialData {
     leaf_order: OnceLock<LeafOrder>,
 }
 
-/// What a mesh is made of and what was computed from it ahead of all queries.
+/// Data of a mesh, and what was computed from it ahead of all queries.
 #[derive(Clone, Debug)]
 pub(super) struct Parts {
     pub(super) spheres: Vec<MedialSphere>,

@@ -24,7 +24,7 @@ pub struct ProxyHull {
 }
 
 impl ProxyHull {
-    /// Of a mesh: its spheres and primitives, or nodes of its tree.
+    /// The hull of a mesh, by its spheres and primitives, or by nodes of its tree.
     pub fn of_mesh(spheres: &[MedialSphere], simplices: &[Simplex], tree: &SphereTree) -> Self {
         let count = tree.nodes().len();
         let mut proxy = Self {
@@ -65,7 +65,7 @@ impl ProxyHull {
         proxy
     }
 
-    /// Of a shape that the hull of these points holds, of which there are [`MOST`] at most.
+    /// The hull of a shape that lies within the hull of these points, [`MOST`] at most.
     pub fn of_points(points: &[Vector]) -> Self {
         let count = points.len().min(MOST);
         Self {

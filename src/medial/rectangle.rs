@@ -24,7 +24,7 @@ pub struct SweptRectangle {
 pub struct SweptRectangles(Vec<SweptRectangle>);
 
 impl SweptRectangles {
-    /// Those of a mesh's tree.
+    /// The rectangles of the nodes of a mesh's tree.
     pub fn new(spheres: &[MedialSphere], primitives: &[Simplex], tree: &SphereTree) -> Self {
         let inner = tree.nodes().len() / 2;
         let mut all = Self(vec![SweptRectangle::default(); inner]);

@@ -19,7 +19,7 @@ pub(crate) enum TextError {
     Syntax {
         /// Line number, from 1.
         line: usize,
-        /// What is wrong, with the offending text.
+        /// Description of the fault, with the offending text.
         message: String,
     },
 }
@@ -29,7 +29,7 @@ pub(crate) enum TextError {
 pub(crate) struct Line<'a> {
     /// Line number, from 1.
     pub number: usize,
-    /// What is left of it.
+    /// Rest of the text.
     pub text: &'a str,
 }
 

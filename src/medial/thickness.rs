@@ -63,7 +63,7 @@ pub struct Thicknesses {
 }
 
 impl Thicknesses {
-    /// Of a mesh with these parts.
+    /// The thicknesses of a mesh with these parts.
     pub(super) fn new(spheres: &[MedialSphere], simplices: &[Simplex], tree: &SphereTree) -> Self {
         let primitive = |s: &Simplex| {
             let spheres = s.vertices.map(|v| spheres[v as usize]);

@@ -19,7 +19,7 @@ pub struct Node {
     leaf: bool,
 }
 
-/// What is below a [`Node`].
+/// The children of a [`Node`], or its primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NodeKind {
     /// One primitive.
@@ -43,7 +43,7 @@ impl Node {
         }
     }
 
-    /// Its primitive or its children.
+    /// The primitive or the children of the node.
     pub fn kind(&self) -> NodeKind {
         if self.leaf {
             NodeKind::Primitive(self.index)

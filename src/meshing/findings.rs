@@ -1,9 +1,9 @@
-//! What was found wrong in a triangle mesh and what was done about it, as numbers and in words.
+//! Faults found in a triangle mesh and what was done about them, as numbers and in words.
 
 use std::fmt::Write as _;
 
-/// What a build found in its triangle mesh and did about it, as numbers. [`crate::meshing::BuildReport::notes`] says the
-/// same in words.
+/// Numbers of faults that a build found in its triangle mesh, and of repairs. [`crate::meshing::BuildReport::notes`]
+/// says the same in words.
 ///
 /// A *patch* is a set of triangles that are joined across edges of exactly two triangles. It is *solid* if it
 /// bounds a volume, alone or together with others, else it is a *sheet*.
@@ -67,18 +67,18 @@ pub struct Findings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MassSource {
-    /// From the closed surface of the triangle mesh, exactly.
+    /// The closed surface of the triangle mesh, exactly.
     #[default]
     Surface,
-    /// From the solid patches of the triangle mesh, with overlaps counted once, by integration along lines: exact to
-    /// about a thousandth.
+    /// The solid patches of the triangle mesh, with overlaps counted once, by integration along lines: exact to about a
+    /// thousandth.
     Lines,
-    /// From the medial mesh, because the triangle mesh encloses nothing.
+    /// The medial mesh, because the triangle mesh encloses nothing.
     MedialMesh,
 }
 
 impl Findings {
-    /// What a user should know, a sentence each.
+    /// Sentences that a user should know.
     pub(crate) fn notes(&self) -> Vec<String> {
         let counts = [
             (self.vertices_unused, "vertices are used by no triangle"),
@@ -145,7 +145,8 @@ impl Findings {
         notes
     }
 
-    /// What was left undone because the surface is tangled: the boundary of the solid is coarse, fits ended early.
+    /// Sentences on what was left undone because the surface is tangled: the boundary of the solid is coarse, fits
+    /// ended early.
     pub(crate) fn undone_in_words(&self) -> impl Iterator<Item = String> + use<> {
         let coarse = "the surface is so tangled that only large pieces of it were tested for lying inside solid matter: \
                     the error may be overstated";
@@ -158,7 +159,7 @@ impl Findings {
         said.into_iter().filter(|s| s.0).map(|s| s.1.into())
     }
 
-    /// What is hidden inside matter: `share` of the area.
+    /// Sentence on what is hidden inside matter, `share` of the area.
     pub(crate) fn hidden_in_words(&self, share: f64) -> String {
         let mut text = format!(
             "{:.1} % of the source's area lies inside solid matter, and counts for nothing in the error: {} triangles \

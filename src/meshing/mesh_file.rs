@@ -169,7 +169,7 @@ impl Source<'_> {
     }
 }
 
-/// What a reader collects.
+/// Vertices and triangles that a reader collects.
 #[derive(Default)]
 struct Polygons {
     vertices: Vec<Vector>,

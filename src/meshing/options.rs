@@ -51,7 +51,7 @@ impl Creases {
 
     /// The same between flat faces.
     pub(crate) fn angle_of_flat(self) -> Option<f64> {
-        /// Above the rounding of normals only: faces are told apart by their vertices.
+        /// Angle just above the rounding of normals: faces are told apart by their vertices.
         const SHARP: f64 = 1e-6;
         self.angle_or(SHARP)
     }
@@ -65,8 +65,8 @@ impl Creases {
     }
 }
 
-/// What [`crate::MedialMesh::from_trimesh`] should build. The defaults are 500 primitives, balanced quality, and
-/// a solid that covers the triangle mesh.
+/// Options of [`crate::MedialMesh::from_trimesh`]. The defaults are 500 primitives, balanced quality, and a solid that
+/// covers the triangle mesh.
 ///
 /// ```
 /// use rapier3d_medial::prelude::*;
@@ -92,8 +92,8 @@ pub struct BuildOptions {
     /// ([`Quality::Fast`] only enlarges them). Without this, the error is about seven tenths as large, and parts of the
     /// triangle mesh stick out of the solid.
     pub enclose: bool,
-    /// With `enclose`: how far the triangle mesh may stick out of the solid nevertheless, as a fraction of the
-    /// longest side of the bounding box. The solid becomes thinner by up to as much.
+    /// Distance by which the triangle mesh may stick out of the solid in spite of `enclose`, as a fraction of the longest
+    /// side of the bounding box. The solid becomes thinner by up to as much.
     pub allow_uncovered: Real,
     /// Which edges of the triangle mesh count as sharp.
     pub creases: Creases,
@@ -148,14 +148,14 @@ impl Hausdorff {
         self.surface_to_envelope.max(self.envelope_to_surface)
     }
 
-    /// What the surfaces are off by at most, between the points measured as well: [`Self::error`] and
+    /// Upper bound on how far the surfaces are off, between the points measured as well: [`Self::error`] and
     /// [`Self::sampling`] together.
     pub fn bound(&self) -> Real {
         self.error() + self.sampling
     }
 }
 
-/// What became of the sharp edges of a triangle mesh.
+/// Whether the sharp edges of a triangle mesh were kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Variant {
@@ -174,7 +174,7 @@ pub enum Variant {
     Exact,
 }
 
-/// What a build made, how far it is from the triangle mesh, and what was repaired.
+/// The report of a build: how far the result is from the triangle mesh, and what was repaired.
 ///
 /// Look first at [`Self::hausdorff`] (the error), [`Self::target_reached`] (whether you got what you
 /// asked for) and [`Self::notes`] (what you should know, in sentences).
@@ -189,7 +189,7 @@ pub struct BuildReport {
     pub longest_side: Real,
     /// Number of primitives of the result.
     pub primitives: usize,
-    /// What became of sharp edges.
+    /// Whether sharp edges were kept.
     pub variant: Variant,
     /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring. Of convex
     /// pieces that overlap (see [`Self::notes`]) it is their number.
@@ -197,12 +197,12 @@ pub struct BuildReport {
     /// Whether the result keeps to [`BuildOptions::max_error`]; true if none was asked for. The number of primitives
     /// is always kept to.
     pub target_reached: bool,
-    /// What was found wrong in the triangle mesh and what was done about it, as numbers.
+    /// Numbers of faults found in the triangle mesh, and of repairs.
     pub findings: Findings,
     /// Area of the triangle mesh that lies inside the solid, hidden by other parts, in the user's unit squared. It
     /// does not count in the error.
     pub hidden_area: Real,
-    /// What you should know about the triangle mesh and the result, a sentence each.
+    /// Remarks on the triangle mesh and the result, a sentence each.
     pub notes: Vec<String>,
     /// Bytes that the builder's large arrays held at most at any time. Small lists, overhead of the allocator and
     /// your own mesh are not included, so the true number is larger.

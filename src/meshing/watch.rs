@@ -47,7 +47,7 @@ pub struct Watch<'a> {
     stage: &'static str,
     start: f64,
     share: f64,
-    /// Where the stages of an attempt begin, and the share of all that they have.
+    /// Fraction at which the stages of an attempt begin, and the share of all that they have.
     from: f64,
     span: f64,
     /// Never falls, though a stage may be entered more than once.

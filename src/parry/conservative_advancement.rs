@@ -34,7 +34,7 @@ pub const TOLERANCE_PER_SLACK: f64 = 4.0;
 /// How one volume is followed.
 #[derive(Clone, Copy)]
 pub struct Limits {
-    /// Known to be free until here.
+    /// Time until which the two are known to be free.
     pub start: f64,
     /// Contacts from here on are of no interest.
     pub horizon: f64,
@@ -46,7 +46,7 @@ pub struct Limits {
     pub steps: u32,
 }
 
-/// What is known of one volume.
+/// Knowledge of one volume: how far it is proven free.
 pub struct Advance {
     /// No contact before.
     pub lower: f64,
@@ -60,14 +60,14 @@ pub struct Advance {
     pub slack: f64,
     /// Nearest sphere at `lower`, its radius with the body's border.
     pub near: NearBall,
-    /// Where the body is then.
+    /// Placement of the body at that time.
     pub place: Place,
 }
 
 #[derive(Clone, Copy)]
 struct Corner {
     path: PointPath<f64>,
-    /// Of the sphere, with the body's border.
+    /// Radius of the sphere, with the body's border.
     radius: f64,
     /// Bound of its speed against the body's centre.
     speed: f64,
@@ -87,7 +87,7 @@ struct Chase<'a> {
     speed: f64,
 }
 
-/// What a [`Chase`] has come to at a time.
+/// State of a [`Chase`] at a time.
 struct Moment {
     place: Place,
     balls: [Ball; 3],

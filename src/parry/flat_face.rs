@@ -107,8 +107,8 @@ pub fn write_manifolds<M, C>(
     }
 }
 
-/// What the other side of a contact with a face is called: a face that no cuboid has. parry itself calls
-/// features unknown where its search for the nearest points found the contact.
+/// Feature id of the other side of a contact with a face: a face that no cuboid has. parry itself calls features
+/// unknown where its search for the nearest points found the contact.
 const FLAT: PackedFeatureId = PackedFeatureId(u32::MAX);
 
 /// Whether a list, not empty, is of this file.

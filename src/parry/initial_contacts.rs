@@ -21,10 +21,10 @@ const CORE: Real = 0.5;
 /// contact may get; never to the medial axes.
 const FURTHER: Real = 0.1;
 
-/// What rounding makes of sliding, in units of the lengths in play. Poses, vertices and velocities are good
-/// to half an ulp each, so that a facet of a plane, seen from the body, is off by up to four of them, and so
-/// is the way along it. Smaller, and the next facet of a floor may stop what slides on it; larger, and what
-/// slides comes nearer by more in each cast.
+/// Approach that rounding makes of sliding, in units of the lengths in play. Poses, vertices and velocities are good to
+/// half an ulp each, so that a facet of a plane, seen from the body, is off by up to four of them, and so is the way
+/// along it. Smaller, and the next facet of a floor may stop what slides on it; larger, and what slides comes nearer by
+/// more in each cast.
 const SLIDE: Real = 4.0 * Real::EPSILON;
 
 /// The deepest contact at the start, world frame.
@@ -50,7 +50,7 @@ impl Touching {
         (self.slip.dot(self.normal) * seconds).clamp(0.0, Real::MAX)
     }
 
-    /// By how much sliding seems to come nearer in `seconds`.
+    /// Length by which sliding seems to come nearer in `seconds`.
     fn slide(&self, seconds: Real) -> Real {
         let lengths = self.size + self.slip.length() * seconds;
         (SLIDE * lengths).clamp(Real::MIN_POSITIVE, Real::MAX)

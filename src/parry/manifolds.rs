@@ -151,8 +151,8 @@ fn deepest_of_each_patch<'a>(
     kept
 }
 
-/// What takes the place of all contacts of a primitive pair, deepest first, where the deepest has none
-/// of the old normals but one of them still serves.
+/// Chooses the contact that takes the place of all contacts of a primitive pair, deepest first, where the deepest has
+/// none of the old normals but one of them still serves.
 fn kept_normal<M, C>(
     [mesh1, mesh2]: [&MedialMesh; 2],
     pos12: &Pose,

@@ -84,8 +84,9 @@ impl RayCast for MedialMesh {
 }
 
 impl PointQuery for MedialMesh {
-    /// If the point is inside and `solid` is false, this is the point of the surface that is reached straight out of
-    /// the primitive whose surface is nearest. Where primitives overlap, another point of the surface may be nearer.
+    /// Nearest point of the solid. If the point is inside and `solid` is false, this is the point of the surface that
+    /// is reached straight out of the primitive whose surface is nearest. Where primitives overlap, another point of
+    /// the surface may be nearer.
     fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
         if !solid && let Some((surface, part)) = rays::surface_point(self, point) {
             return PointProjection::new(true, surface).with_subshape(part);

@@ -1,5 +1,4 @@
-//! What a user of rapier calls (layer 6), and what is done before and after rapier's step to have medial colliders
-//! collide.
+//! Medial colliders in rapier (layer 6): what a user calls, and what is done before and after rapier's step.
 //!
 //! A step in order (`step.rs`): it takes a view of the world (`view/`), plans the step (`contacts/`: the contacts that
 //! rapier will ask for, and the pairs that are kept from its solver), has rapier step, and resolves the impacts within

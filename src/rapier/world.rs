@@ -12,7 +12,7 @@ use rapier3d::dynamics::{
 use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline};
 
-/// What [`PhysicsPipeline::step`] takes, but for the parameters and what the user hooks in.
+/// Sets of one world: the arguments of [`PhysicsPipeline::step`] but for the parameters and what the user hooks in.
 pub struct World<'a> {
     pub pipeline: &'a mut PhysicsPipeline,
     pub gravity: Vector,
@@ -28,7 +28,7 @@ pub struct World<'a> {
 }
 
 impl World<'_> {
-    /// What contacts are found in.
+    /// The sets that contacts are found in.
     pub fn sets<'s>(&'s self, parameters: &'s IntegrationParameters) -> Sets<'s> {
         Sets {
             gravity: self.gravity,
@@ -41,7 +41,7 @@ impl World<'_> {
         }
     }
 
-    /// What decides which colliders respond to each other.
+    /// The rules by which colliders respond to each other.
     pub fn rules<'s>(&'s self, verdicts: &'s FilterAnswers<'s>) -> Rules<'s> {
         Rules {
             bodies: self.bodies,
@@ -57,7 +57,7 @@ impl World<'_> {
         (self.impulse_joints, self.multibody_joints)
     }
 
-    /// What there is in it.
+    /// The census of the world.
     pub fn census(&self) -> Census {
         Census::take(self.bodies, self.colliders, self.joints(), self.soft_bodies)
     }

@@ -34,7 +34,7 @@ impl Clock {
         }
     }
 
-    /// What the shader's pass writes.
+    /// Time stamps that the shader's pass writes.
     pub(super) fn writes(&self) -> ComputePassTimestampWrites<'_> {
         ComputePassTimestampWrites {
             query_set: &self.marks,

@@ -60,7 +60,7 @@ impl Fault {
 pub struct Context {
     pub(super) device: Device,
     pub(super) queue: Queue,
-    /// Where shaders are timed.
+    /// Clock for shaders, where they are timed.
     pub(super) clock: Option<Clock>,
     pub(super) options: GpuOptions,
     fault: Fault,

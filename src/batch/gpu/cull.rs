@@ -1,5 +1,5 @@
-//! Has the GPU prove which pairs of meshes do not meet in a step, and list the primitive pairs of the others that may: its
-//! buffers, and the one submission of a batch.
+//! Has the GPU prove (`shaders/cull.wgsl`, `swept.wgsl`) which pairs of meshes do not meet in a step, and list the
+//! primitive pairs of the others that may: its buffers, and the one submission of a batch.
 
 use super::clock::Clock;
 use super::context::{Context, Growing};
@@ -32,7 +32,7 @@ pub(super) struct Cull {
     near: Growing,
     answers: Growing,
     bound: bool,
-    /// Of the last submission.
+    /// Sizes of the last submission.
     sent: Sent,
     /// Primitive pairs that the last list had, or would have had with more room.
     listed: usize,
@@ -40,7 +40,7 @@ pub(super) struct Cull {
     words: Vec<u32>,
 }
 
-/// What is to come back of a submission.
+/// Sizes of what is to come back of a submission.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sent {
     pairs: usize,
@@ -48,13 +48,13 @@ struct Sent {
     stamp: u32,
 }
 
-/// What has come back of a submission.
+/// Answers that have come back of a submission.
 pub(super) struct Received<'a> {
     /// An answer for each mesh pair.
     pub(super) answers: &'a [u32],
     /// The list as far as it has room, with entries of batches before.
     pub(super) list: &'a [[u8; size_of::<Near>()]],
-    /// On the entries of this batch.
+    /// Number that the entries of this batch bear.
     pub(super) stamp: u32,
 }
 
@@ -245,8 +245,8 @@ impl Cull {
     }
 }
 
-/// What has not been sent of a list of which so many bytes have been, and the row that it starts in: a row
-/// that was sent in part goes once more.
+/// Rest of a list of which so many bytes have been sent, and the row that it starts in: a row that was sent in part
+/// goes once more.
 fn unsent<T: bytemuck::NoUninit>(list: &[T], sent: usize) -> (&[u8], usize) {
     let bytes: &[u8] = bytemuck::cast_slice(list);
     let from = match sent < bytes.len() {

@@ -1,4 +1,4 @@
-//! Has the GPU prove which of many elementary tests on straight paths find no contact.
+//! Has the GPU prove (`shaders/elementary.wgsl`) which of many elementary tests on straight paths find no contact.
 
 use super::clock::Clock;
 use super::context::{Context, Growing};

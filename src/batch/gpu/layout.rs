@@ -41,10 +41,10 @@ twins! {
     Query {
         /// Corners at the start, and the radius sum with the distance that counts as contact.
         start: [[f32; 4]; 3] = "array<vec4<f32>, 3>",
-        /// Their displacement over the step.
+        /// Displacement of the corners over the step.
         rate: [[f32; 4]; 3] = "array<vec3<f32>, 3>",
     }
-    /// Of a batch of queries.
+    /// Numbers that hold for a batch of queries.
     ElementaryParams {
         /// How many there are.
         count: u32 = "u32",
@@ -58,21 +58,21 @@ twins! {
         /// Inner: index of the first of two neighbouring children. Leaf: index of its primitive, with
         /// the highest bit set.
         below: u32 = "u32",
-        /// Its ball's radius once more: whether it is split is asked without its place.
+        /// Radius of the node's ball once more: whether it is split is asked without its place.
         radius: f32 = "f32",
         /// Nothing.
         pad: [u32; 2] = "vec2<u32>",
     }
     /// A primitive, in the body's frame.
     Primitive {
-        /// Its spheres; unused entries repeat the last.
+        /// Spheres of the primitive; unused entries repeat the last.
         spheres: [[f32; 4]; 3] = "array<vec4<f32>, 3>",
     }
     /// One body of a pair.
     Side {
         /// Rows of its placement in the pair's frame at the start.
         start: [[f32; 4]; 3] = "array<vec4<f32>, 3>",
-        /// And at the end.
+        /// Rows of its placement in the pair's frame at the end.
         end: [[f32; 4]; 3] = "array<vec4<f32>, 3>",
         /// Centre of rotation in the body's frame, and the sagitta per length of lever arm: an eighth
         /// of the squared angle.
@@ -80,7 +80,7 @@ twins! {
     }
     /// Two bodies over the step, or a piece of it.
     Pair {
-        /// Both.
+        /// Both bodies.
         sides: [Side; 2] = "array<Side, 2>",
         /// Indices of the roots of the meshes' trees.
         roots: [u32; 2] = "vec2<u32>",
@@ -89,7 +89,7 @@ twins! {
         /// 1 where the primitive pairs within reach are to be listed, else 0.
         lists: u32 = "u32",
     }
-    /// Of a batch of mesh pairs.
+    /// Numbers that hold for a batch of mesh pairs.
     CullParams {
         /// How many there are.
         pairs: u32 = "u32",
@@ -102,11 +102,11 @@ twins! {
     }
     /// Two primitives that are not proven free.
     Near {
-        /// Their indices among all primitives.
+        /// Indices of the two among all primitives.
         primitives: [u32; 2] = "vec2<u32>",
         /// Index of the mesh pair.
         pair: u32 = "u32",
-        /// That of the batch.
+        /// The batch's [`CullParams::stamp`].
         stamp: u32 = "u32",
     }
 }
@@ -141,7 +141,7 @@ const WALK_LOOKS: u32 = 4096;
 /// The same of walks for first contacts, which the CPU finds without looking at all that meets. Their looks are a part of
 /// the CPU's cap (`MAX_PIECES` in `sweep.rs`).
 const FIRST_LOOKS: u32 = 1024;
-/// As [`WALK_FINDS`], of walks for first contacts.
+/// The same as [`WALK_FINDS`] for walks for first contacts.
 const FIRST_FINDS: u32 = 128;
 /// Node pairs that a walk takes up before it looks whether it is done: less, and the next mesh pair is
 /// fetched for one thread at a time; more, and threads that are done wait longer.
@@ -157,7 +157,7 @@ const _: () = {
 };
 /// Primitive pairs that a thread proves at most, for the same reason.
 pub const PROOFS: usize = 1024;
-/// Up to this ratio of their radii two nodes are split together, as on the CPU.
+/// Ratio of their radii up to which two nodes are split together, as on the CPU.
 const WALK_SIMILAR: f64 = 3.0;
 /// Directions tried in turn, each from where the last proof ends.
 const PROOF_ROUNDS: u32 = 6;

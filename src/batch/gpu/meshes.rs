@@ -18,7 +18,7 @@ struct Resident {
     used: u64,
 }
 
-/// What the device holds, and a copy of it.
+/// Meshes that the device holds, and a copy of them.
 #[derive(Default)]
 pub(super) struct Meshes {
     pub(super) nodes: Vec<Node>,
@@ -29,7 +29,7 @@ pub(super) struct Meshes {
     batch: u64,
 }
 
-/// What bodies share: the spheres' address.
+/// Key of the data that bodies share: the spheres' address.
 fn key(mesh: &MedialMesh) -> usize {
     mesh.spheres().as_ptr() as usize
 }
@@ -40,9 +40,8 @@ impl Meshes {
         self.residents.len()
     }
 
-    /// Before a batch: what is asked for until the next call counts as used. Meshes that no one else
-    /// holds go when they are half of all: earlier, each body that is removed would have all others
-    /// sent again.
+    /// Begins a batch: meshes asked for until the next call count as used. Meshes that no one else holds go when they
+    /// are half of all: earlier, each body that is removed would have all others sent again.
     pub(super) fn begin(&mut self) {
         self.batch += 1;
         let orphan = |r: &Resident| r.mesh.owners() == 1;

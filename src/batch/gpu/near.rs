@@ -4,7 +4,7 @@
 use super::Proposal;
 use super::layout::{FREE, GIVEN_UP, MOST_MEETINGS, Near};
 
-/// Of one body of a mesh pair: index of its first primitive among all on the device, and how many it has.
+/// Primitives of one body of a mesh pair: index of the first among all on the device, and how many.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Range {
     /// The index.
@@ -18,13 +18,13 @@ pub struct Range {
 pub struct Proposals {
     each: Vec<Proposal>,
     near: Vec<[u32; 2]>,
-    /// Where the entries of each mesh pair, or piece of its step, begin, and where the last end.
+    /// Places at which the entries of each mesh pair, or piece of its step, begin, and the place at which the last end.
     starts: Vec<u32>,
     /// How many entries of each were found.
     found: Vec<u32>,
 }
 
-/// What a batch found, beside its answers.
+/// Counts of a batch, beside its answers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Found {
     /// Mesh pairs that were given up, or never begun.

@@ -22,9 +22,9 @@ const PIECE_ANGLE: f64 = 0.5;
 const MAX_PIECES: f64 = 32.0;
 
 impl Sweep<'_> {
-    /// Its pieces as the device gets them; `None` where a number is not finite or too large, or a body turns
-    /// so far that the CPU, which takes more pieces then, might end on its work cap: the device must not
-    /// know more than the CPU.
+    /// Pieces of the sweep as the device gets them; `None` where a number is not finite or too large, or a body turns
+    /// so far that the CPU, which takes more pieces then, might end on its work cap: the device must not know more than
+    /// the CPU.
     pub(super) fn pairs(&self, roots: [u32; 2]) -> impl Iterator<Item = Option<Pair>> {
         let [m1, m2] = &self.motions;
         let paths = RigidMotion::pair(m1, m2, self.seconds.into());

@@ -46,7 +46,7 @@ impl Signal {
     }
 }
 
-/// Where an item of the upload buffer is copied to.
+/// Place that an item of the upload buffer is copied to.
 #[derive(Clone, Copy)]
 pub(super) enum Target<'a> {
     /// A buffer, from this byte on.
@@ -56,7 +56,7 @@ pub(super) enum Target<'a> {
 }
 
 impl Target<'_> {
-    /// What an item of so many bytes takes of the upload buffer: whole rows are copied to a texture.
+    /// Bytes that an item of so many bytes takes of the upload buffer: whole rows are copied to a texture.
     pub(super) fn room(&self, bytes: usize) -> usize {
         bytes.next_multiple_of(match self {
             Self::Buffer(..) => ALIGNMENT,
@@ -109,7 +109,7 @@ pub(super) struct Transfer {
 }
 
 impl Transfer {
-    /// From the host to the device.
+    /// A transfer from the host to the device.
     pub(super) fn upload(context: &mut Context) -> Result<Self, GpuError> {
         let usage = BufferUsages::MAP_WRITE | BufferUsages::COPY_SRC;
         let signal = Signal::default();
@@ -123,7 +123,7 @@ impl Transfer {
         })
     }
 
-    /// From the device to the host.
+    /// A transfer from the device to the host.
     pub(super) fn readback(context: &mut Context) -> Result<Self, GpuError> {
         let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
         Ok(Self {
@@ -172,7 +172,7 @@ impl Transfer {
         Ok(())
     }
 
-    /// As [`Self::send`], of many items as they are made: to where the device copies from and nowhere
+    /// Does the same as [`Self::send`] for many items as they are made: to where the device copies from and nowhere
     /// else in between.
     pub(super) fn send_each<const N: usize>(
         &mut self,
@@ -189,7 +189,7 @@ impl Transfer {
         Ok(())
     }
 
-    /// Has the start of a buffer of the device copied, `bytes` long.
+    /// Copies the start of a buffer of the device, `bytes` long.
     pub(super) fn receive(&mut self, encoder: &mut CommandEncoder, from: &Buffer, bytes: usize) {
         let at = self.used as u64;
         encoder.copy_buffer_to_buffer(from, 0, &self.room.buffer, at, bytes as u64);

@@ -109,7 +109,7 @@ pub fn creases(round_edges: bool) -> Creases {
     }
 }
 
-/// What a build did.
+/// Summary of a build.
 #[derive(Serialize)]
 struct BuildSummary {
     output: PathBuf,

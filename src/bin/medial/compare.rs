@@ -68,7 +68,7 @@ pub struct CompareArguments {
 struct Comparison {
     picture: PathBuf,
     triangles: usize,
-    /// In the unit of the file.
+    /// Longest side of the bounding box, in the unit of the file.
     longest_side: f32,
     /// Bodies in each heap, heaps, and steps of each.
     bodies: usize,
@@ -101,7 +101,7 @@ struct Made {
     medial: (MedialMesh, f64),
     parts: (SharedShape, f64),
     hull: (SharedShape, f64),
-    /// Of rapier's own triangle mesh, the seconds alone.
+    /// Seconds alone of rapier's own triangle mesh.
     triangles: f64,
 }
 
@@ -236,7 +236,7 @@ fn go_on(bar: &ProgressBar, stage: &'static str, fraction: f32) -> Result<(), Fa
     }
 }
 
-/// What the work made, and its seconds.
+/// Does some work; returns its result and its seconds.
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     let made = work();

@@ -17,7 +17,7 @@ use rapier3d_medial::{MedialMesh, MedialSphere};
 const LINE: Real = 0.006;
 /// Side of the triangles (m) that surfaces are drawn with.
 const SPACING: Real = SIZE / 100.0;
-/// Where the eye is, from the middle of a body, at any length.
+/// Direction from the middle of a body to the eye, of any length.
 const TOWARDS_EYE: Vector = Vector::new(0.75, 1.03, 2.35);
 /// Opening angle of the pictures (rad), and the share of it that a body fills.
 const FIELD_OF_VIEW: Real = 0.42;
@@ -110,7 +110,7 @@ fn picture(
     view.labelled(&seen, &lines)
 }
 
-/// From the middle of a mesh about the origin to an eye that sees all its vertices.
+/// Vector from the middle of a mesh about the origin to an eye that sees all its vertices.
 fn eye_from_middle(mesh: &Mesh) -> Vector {
     let back = TOWARDS_EYE.normalize();
     let right = Vector::Y.cross(back).normalize();

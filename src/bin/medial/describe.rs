@@ -1,4 +1,4 @@
-//! What the program says of a medial mesh and of its errors.
+//! Descriptions of a medial mesh and of its errors, as the program prints them.
 
 use rapier3d_medial::meshing::Hausdorff;
 use rapier3d_medial::{MedialMesh, MedialPrimitive};
@@ -13,7 +13,7 @@ pub struct Errors {
     sampling: f32,
 }
 
-/// What a medial mesh is made of. Lengths in the file's unit.
+/// Contents of a medial mesh. Lengths are in the file's unit.
 #[derive(Serialize)]
 pub struct Description {
     spheres: usize,
@@ -26,7 +26,7 @@ pub struct Description {
     thickness: f32,
     /// Spheres less edges plus faces: 1 for a ball, 0 for a ring, −1 for a pair of glasses.
     euler: i64,
-    /// At density 1, in the file's unit; of the source mesh where the file has it.
+    /// Mass at density 1, in the file's unit; of the source mesh where the file has it.
     mass: f32,
     center_of_mass: [f32; 3],
     principal_inertia: [f32; 3],

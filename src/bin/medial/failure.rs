@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What went wrong.
+/// Failure of the program.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     #[error(transparent)]

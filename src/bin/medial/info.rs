@@ -54,7 +54,7 @@ pub struct InfoArguments {
     pub json: bool,
 }
 
-/// What `info` found.
+/// Summary that `info` prints.
 #[derive(Serialize)]
 struct InfoSummary {
     #[serde(flatten)]

@@ -1,5 +1,5 @@
-//! What `medial build` is to do: which triangle meshes, and where each result goes. Everything that
-//! can be refused is refused before minutes of work.
+//! Work list of `medial build`: which triangle meshes, and where each result goes. Everything that can be refused is
+//! refused before minutes of work.
 
 use rapier3d_medial::meshing::mesh_file::MeshFormat;
 use std::collections::HashMap;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 pub struct Job {
     /// The triangle mesh.
     pub input: PathBuf,
-    /// Where the medial mesh goes.
+    /// File that the medial mesh goes to.
     pub output: PathBuf,
 }
 

@@ -21,7 +21,7 @@ const UNITS: [(&str, f64); 8] = [
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     name: &'static str,
-    /// Its length (m).
+    /// Length of the unit (m).
     meters: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What the program prints.
+//! Output of the program.
 
 use crate::failure::Failure;
 use serde::Serialize;
@@ -19,7 +19,7 @@ pub fn print(json: bool, value: &impl Serialize, text: impl Fn() -> String) -> R
     write(&printed)
 }
 
-/// To standard output. A reader that went away, as `head` does, is no failure.
+/// Writes to standard output. A reader that went away, as `head` does, is no failure.
 pub fn write(text: &str) -> Result<(), Failure> {
     match io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),

@@ -18,7 +18,7 @@ pub struct BluntSheets {
 }
 
 impl BluntSheets {
-    /// None left out yet, of so many faces.
+    /// A record of a body with so many faces, no sheet left out yet.
     pub fn new(faces: usize) -> Self {
         Self {
             groups: Groups::new(faces),
@@ -45,7 +45,7 @@ impl BluntSheets {
         blunt
     }
 
-    /// What is lost where sheets meet.
+    /// Length lost where sheets meet.
     pub fn loss(&mut self, planes: &[Plane]) -> f64 {
         let mut members: FastMap<u32, (Vec<Point>, f64)> = FastMap::default();
         for &(faces, widest) in &self.sheets {

@@ -137,9 +137,9 @@ impl Cells {
 
 /// One convex piece of a body.
 pub struct Piece {
-    /// Its planes, outward, one for each face.
+    /// Planes of the piece, outward, one for each face.
     pub planes: Vec<Plane>,
-    /// Its faces, which name their planes.
+    /// Faces of the piece, which name their planes.
     pub solid: Convex,
 }
 

@@ -62,7 +62,7 @@ impl Delaunay {
         own + points * (size_of::<Coord3D<f64>>() + CELLS * (size_of::<Cell>() + 5))
     }
 
-    /// As [`Self::new`]; `tick` is told how many points are in, and its error ends the work.
+    /// Does the same as [`Self::new`]; `tick` is told how many points are in, and its error ends the work.
     pub(crate) fn with_tick<E>(
         points: &[Point],
         mut tick: impl FnMut(usize) -> Result<(), E>,

@@ -40,7 +40,7 @@ const GUESS: f64 = 1e-7;
 
 /// A medial axis.
 pub struct Axis {
-    /// Its balls and slabs.
+    /// Balls and slabs of the axis.
     pub draft: Draft,
     /// Radii must grow by this to cover the source for certain.
     pub growth: f64,
@@ -54,7 +54,7 @@ pub struct Axis {
 pub struct Polygon {
     /// The sides that it lies on, in ascending order.
     pub sides: [u32; 2],
-    /// Its corners in order.
+    /// Corners of the polygon, in order.
     corners: Vec<u32>,
 }
 
@@ -65,7 +65,7 @@ pub struct Body<'a> {
     corners: Vec<RoofCorner>,
     /// Vertices of the source, and the faces that each is on.
     vertices: Vec<(u32, Vec<u32>)>,
-    /// For each corner of the roof on the ground the place of its vertex.
+    /// Place of the vertex of each corner of the roof that is on the ground.
     vertex_of: Vec<Option<u32>>,
     /// Corners on the ground.
     ground: Vec<Point>,

@@ -1,5 +1,5 @@
-//! From Delaunay tetrahedra of surface samples to the initial medial mesh: circumspheres whose
-//! centres lie inside the surface are its balls.
+//! Makes the initial medial mesh from Delaunay tetrahedra of surface samples: circumspheres whose centres lie inside
+//! the surface are its balls.
 //!
 //! Source: Amenta and Bern, "Surface reconstruction by Voronoi filtering" (1999) for inner Voronoi
 //! vertices as an approximate medial axis; Li et al., "Q-MAT" (2015), §3, for its mesh. The medial

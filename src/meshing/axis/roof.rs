@@ -37,7 +37,7 @@ pub const FIRST: u32 = 8;
 pub struct RoofCorner {
     /// The four sides that it lies on, in ascending order.
     pub sides: [u32; 4],
-    /// For each of them the corner at the other end of the edge that leaves it.
+    /// Corner at the other end of the edge that leaves each of these sides.
     pub next: [u32; 4],
     /// The ball.
     pub ball: Ball,

@@ -71,7 +71,7 @@ pub fn enclose(
     Ok(())
 }
 
-/// What each ball must grow by.
+/// Length by which each ball must grow.
 struct Growth(Vec<f64>);
 
 impl Growth {
@@ -263,8 +263,8 @@ mod tests {
     use super::*;
     use crate::meshing::draft::Ball;
 
-    /// What is left of a strip from `x = 0` to 1 at `z = top`, of the width of a peg's facets, beside a cone along it of
-    /// radius .1, which ends at `end`.
+    /// Rest of a strip from `x = 0` to 1 at `z = top`, of the width of a peg's facets, beside a cone along it of radius
+    /// .1, which ends at `end`.
     fn left_of_strip(top: f64, end: f64) -> Vec<Piece> {
         let ball = |x: f64| Ball {
             center: Point::new(x, 0.0, 0.0),

@@ -26,8 +26,8 @@ const FINEST: f64 = 1e-4;
 /// Levels of more pieces than this are searched in depth.
 const WIDE: usize = 8_192;
 
-/// After the search, the pieces that gave the largest distances are searched until the distance is
-/// certain to within this share there.
+/// Share to within which the largest distances are made certain after the search, by searching the pieces that gave
+/// them.
 const POLISH: f64 = 0.02;
 
 /// Pieces examined at most for that.
@@ -37,15 +37,15 @@ const POLISH_BUDGET: usize = 4_000;
 const LEADERS: usize = 32;
 const LEADING: f64 = 0.8;
 
-/// What the centre of a piece tells.
+/// Distance at the centre of a piece, as far as it tells something.
 pub enum Look {
     /// Nothing in the piece can matter.
     Settled,
-    /// Its distance to the other surface, reached by a sample there.
+    /// Distance of the centre to the other surface, reached by a sample there.
     Distance(f64),
     /// A sample near it has the first distance; its own is at most the second.
     Near(f64, f64),
-    /// It gives no sample of its own, but other points of the piece may; its own distance is at most this.
+    /// The centre gives no sample of its own, but other points of the piece may; its own distance is at most this.
     Hidden(f64),
 }
 
@@ -74,20 +74,20 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// For what a build returns.
+    /// Effort for what a build returns.
     pub const CLOSE: Self = Self {
         slack: 0.25,
         share: 1.0,
         enough: f64::INFINITY,
     };
 
-    /// For what a build returns that is to be quick: twice the slack takes half of the pieces.
+    /// Effort for what a quick build returns: twice the slack takes half of the pieces.
     pub const COARSE: Self = Self {
         slack: 0.5,
         ..Self::CLOSE
     };
 
-    /// For what it reports besides: four times the slack, and half of the budget.
+    /// Effort for what a build reports besides: four times the slack, and half of the budget.
     pub const ROUGH: Self = Self {
         slack: 1.0,
         share: 0.5,
@@ -133,7 +133,7 @@ impl<'a, S: Side> Search<'a, S> {
         }
     }
 
-    /// By how much a distance may exceed the best and the floor, unless it ended early.
+    /// Length by which a distance may exceed the best and the floor, unless the search ended early.
     pub fn slack(&self) -> f64 {
         self.widest.max(self.given_up - self.high())
     }
@@ -143,7 +143,7 @@ impl<'a, S: Side> Search<'a, S> {
         self.examined
     }
 
-    /// What a distance must exceed to matter.
+    /// Distance that must be exceeded to matter.
     fn high(&self) -> f64 {
         self.best.max(self.floor)
     }

@@ -72,7 +72,7 @@ fn exact(surface: &Surface) -> Option<MassProperties> {
     (sums.volume > FLAT * surface.area).then(|| sums.mass_properties(axes))?
 }
 
-/// Where a line crosses a triangle.
+/// Crossing of a line and a triangle.
 struct Crossing {
     row: i32,
     column: i32,

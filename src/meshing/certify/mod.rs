@@ -1,4 +1,4 @@
-//! What is promised of a result: that it covers the surface, how far it is off, its mass.
+//! Certificates of a result: that it covers the surface, how far it is off, its mass.
 
 pub(crate) mod enclose;
 pub mod hausdorff;

@@ -62,7 +62,7 @@ impl Edge {
     }
 }
 
-/// What a slab has besides its edges.
+/// Middle of a slab: what it has besides its edges.
 #[derive(Clone, Copy)]
 struct Middle {
     /// Rows that give the weights of the second and third ball.
@@ -110,7 +110,7 @@ impl HalfSpace {
 /// A ball, a cone or a slab.
 #[derive(Clone, Copy)]
 pub struct Prepared {
-    /// From the first ball to the second, the first to the third, the second to the third.
+    /// Edges from the first ball to the second, the first to the third, the second to the third.
     edges: [Edge; 3],
     /// How many of them count: 1 for a cone or ball.
     count: usize,

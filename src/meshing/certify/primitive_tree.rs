@@ -175,8 +175,8 @@ impl<'a> PrimitiveTree<'a> {
         best
     }
 
-    /// As [`Self::nearest`] where the smallest signed distance is between `least` and `most`; elsewhere
-    /// some primitive, of a signed distance that is not either.
+    /// The same as [`Self::nearest`] where the smallest signed distance is between `least` and `most`; elsewhere some
+    /// primitive, of a signed distance that is not either.
     pub fn nearest_between(&self, p: Point, least: f64, most: f64, hint: u32) -> Nearest {
         let mut best = Nearest {
             signed: self.distance_to(hint, p),

@@ -98,7 +98,7 @@ impl Bounds {
         }
     }
 
-    /// Its middle.
+    /// Middle of the box.
     pub fn center(&self) -> Point {
         self.lo * 0.5 + self.hi * 0.5
     }

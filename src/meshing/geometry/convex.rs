@@ -23,7 +23,7 @@ impl Plane {
 pub struct Face {
     /// Index of its plane.
     pub plane: u32,
-    /// Its corners, in order around it.
+    /// Corners of the face, in order around it.
     pub corners: Vec<Point>,
 }
 
@@ -69,7 +69,7 @@ impl Convex {
         sum * (1.0 / self.corners().count().max(1) as f64)
     }
 
-    /// Its volume (longest side 1).
+    /// Volume (longest side 1).
     pub fn volume(&self) -> f64 {
         let middle = self.middle();
         let fans = self.faces.iter().flat_map(|face| {

@@ -7,10 +7,10 @@ use crate::meshing::geometry::bounds::{Bounds, Point, coordinate};
 use std::ops::ControlFlow;
 use wide::f32x4;
 
-/// What one of a node's boxes is of.
+/// Contents of one of a node's boxes.
 #[derive(Clone, Copy)]
 pub enum Child {
-    /// There is none.
+    /// Nothing: the box is not used.
     Nothing,
     /// A single thing, by index.
     Leaf(u32),

@@ -98,7 +98,7 @@ impl NearestTriangle {
         self.search_counted(p, limit_sq, any, &mut 0)
     }
 
-    /// As [`Self::search`]; adds the number of nodes and triangles that were looked at to `work`.
+    /// Does the same as [`Self::search`]; adds the number of nodes and triangles that were looked at to `work`.
     pub fn search_counted(&self, p: Point, limit_sq: f64, any: bool, work: &mut u64) -> (f64, u32) {
         let mut found = (f64::INFINITY, 0);
         let mut best_sq = limit_sq;

@@ -32,13 +32,13 @@ struct Dipole {
     center: Point,
     moment: Point,
     area: f64,
-    /// At least the distance from `center` to the farthest corner of the group.
+    /// Upper bound on the distance from `center` to the farthest corner of the group.
     radius: f64,
 }
 
 /// Boxes over triangles; node 0 is the root.
 pub struct TriangleTree {
-    /// Of the winding number.
+    /// Nodes of the tree for winding numbers.
     nodes: Vec<Node>,
     nearest: NearestTriangle,
     /// Place of each triangle among those given.
@@ -140,7 +140,7 @@ impl TriangleTree {
         self.distance_counted(p, hint, &mut 0)
     }
 
-    /// As [`Self::distance_from`]; adds the number of nodes and triangles that were looked at to `work`.
+    /// Does the same as [`Self::distance_from`]; adds the number of nodes and triangles that were looked at to `work`.
     fn distance_counted(&self, p: Point, hint: u32, work: &mut u64) -> (f64, u32) {
         let at_hint = self.nearest.distance_sq_to(hint, p);
         let (distance_sq, triangle) = self.nearest.search_counted(p, at_hint, false, work);
@@ -150,12 +150,12 @@ impl TriangleTree {
         }
     }
 
-    /// As [`Self::distance_from`], but the point of the surface.
+    /// Point of the surface at the distance of [`Self::distance_from`].
     pub fn closest_from(&self, p: Point, hint: u32) -> (Point, u32) {
         self.closest_counted(p, hint, &mut 0)
     }
 
-    /// As [`Self::closest_from`]; adds the number of nodes and triangles that were looked at to `work`.
+    /// Does the same as [`Self::closest_from`]; adds the number of nodes and triangles that were looked at to `work`.
     pub fn closest_counted(&self, p: Point, hint: u32, work: &mut u64) -> (Point, u32) {
         let (_, triangle) = self.distance_counted(p, hint, work);
         let corners = &self.nearest.corners()[triangle as usize];
@@ -232,7 +232,8 @@ impl TriangleTree {
         self.winding_counted(p, &mut 0)
     }
 
-    /// As [`Self::winding`]; adds 1 to `work`, and the number of triangles that were near enough to be looked at.
+    /// Does the same as [`Self::winding`]; adds 1 to `work`, and the number of triangles that were near enough to be
+    /// looked at.
     pub fn winding_counted(&self, p: Point, work: &mut usize) -> f64 {
         *work += 1;
         let mut solid_angle = 0.0;
@@ -314,7 +315,7 @@ impl Node {
 }
 
 impl Dipole {
-    /// Of nothing.
+    /// The dipole of nothing.
     const NONE: Self = Self {
         center: Point {
             x: 0.0,
@@ -349,7 +350,7 @@ impl Dipole {
         sum
     }
 
-    /// Of two groups that lie in a box.
+    /// The dipole of two groups that lie in a box.
     fn of_both(left: &Self, right: &Self, bounds: &Bounds) -> Self {
         let area = left.area + right.area;
         if area <= 0.0 {

@@ -5,12 +5,12 @@
 pub struct Groups(Vec<u32>);
 
 impl Groups {
-    /// Each index a group of its own.
+    /// Groups in which each index is alone.
     pub fn new(count: usize) -> Self {
         Self((0..count as u32).collect())
     }
 
-    /// What stands for the group of an index.
+    /// Index that stands for the group of another.
     pub fn find(&mut self, mut index: u32) -> u32 {
         while self.0[index as usize] != index {
             let up = self.0[index as usize];

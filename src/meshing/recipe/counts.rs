@@ -33,9 +33,9 @@ const FAILURES: usize = 2;
 
 /// A medial mesh collapsed to the counts that are tried.
 pub struct Collapses {
-    /// To the count asked for.
+    /// The mesh collapsed to the count asked for.
     first: Collapsed,
-    /// To smaller ones.
+    /// The mesh collapsed to smaller counts.
     smaller: Vec<Collapsed>,
     kept_topology: bool,
     /// Convex creases that it keeps.
@@ -170,7 +170,7 @@ impl Source {
         self.limits.quality > Quality::Fast
     }
 
-    /// What `most` primitives are fitted to.
+    /// Target that `most` primitives are fitted to.
     pub fn target(&self, most: usize) -> Target<'_> {
         let (surface, tree) = self.bounds();
         let mut target = fit::target(surface, tree, most);

@@ -12,7 +12,7 @@ use crate::meshing::watch::Watch;
 
 /// A medial mesh, and it again at falling counts.
 pub struct Ladder<'a> {
-    /// With all primitives.
+    /// The mesh with all primitives.
     pub finest: Parts<'a>,
     /// Convex creases that it keeps.
     pub creases: Vec<[Point; 2]>,

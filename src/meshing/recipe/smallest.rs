@@ -24,13 +24,13 @@ use std::collections::BTreeSet;
 /// Most primitives that are tried where the count is free.
 const MOST: usize = 10_000;
 
-/// From a count that breaks the limit to the next above that is tried.
+/// Factor from a count that breaks the limit to the next above that is tried.
 const STEP: f64 = 1.5;
 
 /// The result's count is the least that keeps the limit within one part in this many; fits scatter more.
 const CLOSE: usize = 50;
 
-/// Up to this many primitives each count below the result is tried, until [`FAILURES`] in turn break the limit.
+/// Number of primitives up to which each count below the result is tried, until [`FAILURES`] in turn break the limit.
 const EACH: usize = 64;
 const FAILURES: usize = 3;
 
@@ -63,11 +63,11 @@ struct Found {
     creases: usize,
 }
 
-/// What came of a search.
+/// Outcome of a search.
 pub enum Smallest {
     /// A medial mesh that keeps the limit.
     Found(Box<Candidate>),
-    /// None does; more primitives than these gain nothing, or are not allowed.
+    /// No count keeps the limit; more primitives than these gain nothing, or are not allowed.
     OutOfReach(usize),
 }
 

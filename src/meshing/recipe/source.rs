@@ -1,4 +1,4 @@
-//! What a build is made from: the checked surface with its tree, and the limits.
+//! Source of a build: the checked surface with its tree, and the limits.
 
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::Limits;

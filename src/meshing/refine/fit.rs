@@ -18,7 +18,7 @@ use crate::meshing::surface::samples::{even_samples, vertex_samples};
 use crate::meshing::watch::Watch;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Up to this many primitives several starts are tried, and larger shares swapped.
+/// Number of primitives up to which several starts are tried, and larger shares swapped.
 pub const SMALL: usize = 200;
 
 /// Spacing of envelope samples (longest side 1), up to [`SMALL`], up to [`LARGE`] and above: it must
@@ -63,9 +63,9 @@ pub struct Collapsed {
     pub most: usize,
     /// About twice as many primitives as a start.
     pub fine: Option<Draft>,
-    /// As many as a start.
+    /// Draft of as many primitives as a start has.
     pub start: Draft,
-    /// As many as wanted: what [`crate::meshing::Quality::Fast`] gives.
+    /// Draft of as many as wanted: what [`crate::meshing::Quality::Fast`] gives.
     pub plain: Draft,
 }
 

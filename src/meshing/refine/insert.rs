@@ -80,7 +80,7 @@ pub fn insert(
     Ok(budget - inserter.left)
 }
 
-/// What a sample's place in its primitive calls for.
+/// Place of a sample in its primitive, and what it calls for.
 enum Place {
     /// A new ball beyond the medial mesh.
     Tip,

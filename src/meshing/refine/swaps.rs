@@ -14,7 +14,7 @@ use crate::meshing::simplify::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::watch::Watch;
 
-/// Above this many measured cost no longer beats the quadrics' and takes too long.
+/// Number of primitives above which measured cost no longer beats the quadrics' and takes too long.
 pub const LARGE: usize = 1000;
 
 /// Rounds end where two in turn leave scores above this many of the best: what they took out they cannot put back.

@@ -216,7 +216,7 @@ impl Complex {
         }
     }
 
-    /// What is alive, as a draft.
+    /// Draft of what is alive.
     pub fn draft(&self) -> Draft {
         let mut index = vec![u32::MAX; self.balls.len()];
         let mut draft = Draft::default();
@@ -251,7 +251,7 @@ fn with_room(lists: usize, met: impl Iterator<Item = u32>) -> Vec<Vec<u32>> {
     counts.into_iter().map(Vec::with_capacity).collect()
 }
 
-/// What is in both of two ascending lists.
+/// Members of both of two ascending lists.
 fn common<'a>(a: &'a [u32], b: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
     let mut rest = b.iter().copied().peekable();
     a.iter().copied().filter(move |&v| {

@@ -5,7 +5,7 @@ use crate::meshing::certify::prepared_primitives::Prepared;
 use crate::meshing::draft::Corners;
 use crate::meshing::simplify::collapse::Simplifier;
 
-/// What lies around an edge once it is merged; its first ball stands for the new one.
+/// Neighbourhood of an edge once it is merged; its first ball stands for the new one.
 pub struct Merged {
     /// The edge.
     pub edge: [u32; 2],
@@ -16,7 +16,7 @@ pub struct Merged {
 }
 
 impl Merged {
-    /// What merging the ends of an edge leaves.
+    /// The neighbourhood after the ends of an edge are merged.
     pub fn new(s: &Simplifier, [a, b]: [u32; 2]) -> Self {
         let complex = s.complex();
         let both = complex.neighbors(a).iter().chain(complex.neighbors(b));

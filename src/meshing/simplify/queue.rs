@@ -16,9 +16,9 @@ const FEW: usize = 512;
 /// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).
 #[derive(Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// What it costs.
+    /// Cost of the merge.
     pub cost: f64,
-    /// Its ends.
+    /// Ends of the edge.
     pub a: u32,
     /// See `a`.
     pub b: u32,

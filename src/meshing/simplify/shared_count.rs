@@ -18,7 +18,7 @@ pub struct Parts<'a> {
     sheets: Option<Simplifier<'a>>,
     /// Share of the primitives that sheets get: that of the area.
     share: f64,
-    /// But this many, up to half of all: one for each patch.
+    /// Least number of primitives that sheets get, up to half of all: one for each patch.
     least: usize,
     /// A single primitive cannot be both.
     gave_up_sheets: bool,

@@ -43,11 +43,11 @@ const ROUNDING: f64 = 1e-9;
 /// A piece of a triangle, and the triangle.
 type Piece = ([Point; 3], usize);
 
-/// What of a surface is not hidden inside matter.
+/// Part of a surface that is not hidden inside matter.
 pub struct Boundary {
     /// The pieces of triangles, and lids on what is open, as a surface.
     pub surface: Surface,
-    /// Their tree.
+    /// Tree of that surface.
     pub tree: TriangleTree,
     /// Area of what is hidden (longest side 1).
     pub hidden: f64,

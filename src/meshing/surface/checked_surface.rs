@@ -7,7 +7,7 @@ use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::watch::bytes_of;
 
-/// From the user's unit and origin to the builder's, and back.
+/// Map from the user's unit and origin to the builder's, and back.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     /// Middle of the source's box, in the user's unit.
@@ -17,7 +17,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// To the builder's frame.
+    /// Converts to the builder's frame.
     pub fn enter(&self, v: Vector) -> Point {
         (Point::from_vector(v) - self.center) * (1.0 / self.scale)
     }
@@ -46,14 +46,14 @@ pub struct Surface {
     pub sheet: Vec<bool>,
     /// The patch of each triangle; see [`crate::meshing::surface::orient`].
     pub patch_of: Vec<u32>,
-    /// Of each patch, whether it bounds matter by itself, but for small openings, and faces outward.
+    /// Whether each patch bounds matter by itself, but for small openings, and faces outward.
     pub whole: Vec<bool>,
     /// Triangles that close the small openings of patches that bound matter, and their normals: the boundary of the
     /// solid, where the source has none.
     pub lids: Vec<([Point; 3], Point)>,
     /// Whether the triangles that are no sheet's close a volume without overlaps.
     pub simple: bool,
-    /// What was found and what was done about it.
+    /// Faults found and what was done about them.
     pub findings: Findings,
 }
 

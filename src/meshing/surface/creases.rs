@@ -27,7 +27,7 @@ const MOST_STEPS: usize = 300;
 /// A sharp edge.
 #[derive(Clone, Copy)]
 pub struct SharpEdge {
-    /// Its ends, as vertices of the surface.
+    /// Ends of the crease, as vertices of the surface.
     pub vertices: [u32; 2],
     /// The triangles that meet there.
     pub triangles: [u32; 2],

@@ -30,7 +30,7 @@ impl Use {
 
 /// All edges, by their lower vertex: sorting them in one go would be slower, and silent meanwhile.
 pub struct Edges {
-    /// Where the uses of each lower vertex begin; one more for the end.
+    /// Place where the uses of each lower vertex begin; one more for the end.
     start: Vec<u32>,
     uses: Vec<Use>,
 }
@@ -76,7 +76,7 @@ impl Edges {
         Ok(Self { start, uses })
     }
 
-    /// Each edge: its lower and higher vertex, and its uses, by triangle.
+    /// All edges: lower and higher vertex, and uses, by triangle.
     pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], &[Use])> {
         self.start.windows(2).zip(0u32..).flat_map(|(range, lo)| {
             let group = &self.uses[range[0] as usize..range[1] as usize];
@@ -95,7 +95,7 @@ pub struct Shells {
 }
 
 impl Shells {
-    /// Each triangle a shell of its own.
+    /// Shells of one triangle each.
     pub fn new(triangles: usize) -> Self {
         Self {
             parent: (0..triangles as u32).collect(),

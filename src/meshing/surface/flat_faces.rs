@@ -12,7 +12,7 @@ pub const FLAT: f64 = 5e-7;
 
 /// The faces of a body.
 pub struct FlatFaces {
-    /// Their planes.
+    /// Planes of the faces.
     pub planes: Vec<Plane>,
     /// The face of each of the body's triangles.
     pub face_of: Vec<(usize, u32)>,
@@ -20,7 +20,7 @@ pub struct FlatFaces {
 
 /// A face under collection.
 struct Face {
-    /// Its plane by the largest triangle, and how much it may turn: a height at distance 1.
+    /// Plane of the face by its largest triangle, and how much it may turn: a height at distance 1.
     first: Plane,
     middle: Point,
     slack: f64,

@@ -18,7 +18,7 @@ pub struct Folds<'a> {
 }
 
 impl<'a> Folds<'a> {
-    /// For points next to a surface, whose tree is `tree`.
+    /// The folds for points next to a surface, whose tree is `tree`.
     pub fn new(
         surface: &Surface,
         tree: &'a TriangleTree,

@@ -1,4 +1,4 @@
-//! From triangles to the surface of a solid: repair, orientation, creases, the boundary of what overlaps.
+//! Makes the surface of a solid from triangles: repair, orientation, creases, the boundary of what overlaps.
 
 pub(crate) mod boundary;
 pub(crate) mod checked_surface;

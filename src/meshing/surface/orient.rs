@@ -21,9 +21,9 @@ use crate::meshing::watch::Watch;
 /// Triangles joined across edges of two.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Patch {
-    /// It uses each of its edges an even number of times: it ends nowhere.
+    /// Whether the patch uses each of its edges an even number of times: it ends nowhere.
     pub closed: bool,
-    /// Its triangles cannot all face the same way.
+    /// Whether its triangles cannot all face the same way.
     pub twisted: bool,
     /// Signed volume about the origin; means something where the patch is closed.
     pub volume: f64,
@@ -42,17 +42,17 @@ pub struct Patch {
 pub struct Patches {
     /// The patch of each triangle.
     pub of: Vec<u32>,
-    /// In order of their first triangles.
+    /// All patches, in order of their first triangles.
     pub list: Vec<Patch>,
     /// Edges of one triangle: their vertices, and their patches.
     pub open_edges: Vec<([u32; 2], u32)>,
-    /// Those of them that are at no loose seam: their vertices, of which those at a seam count as one, and the first of the
-    /// patches that are sewn together.
+    /// Open edges at no loose seam: their vertices, of which those at a seam count as one, and the first of the patches
+    /// that are sewn together.
     pub rims: Vec<([u32; 2], u32)>,
 }
 
 impl Patches {
-    /// Of each patch that is the first of those sewn to it, the area of all of them; of the others 0.
+    /// Area of each patch and all those sewn to it, at the first of them; 0 at the others.
     pub fn sewn_areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.list.len()];
         for patch in &self.list {

@@ -20,7 +20,7 @@ const SPACING: f64 = 0.76;
 /// A point of the surface and the outward unit normal there.
 #[derive(Clone, Copy)]
 pub struct Sample {
-    /// Where it is.
+    /// Point of the sample.
     pub point: Point,
     /// Unit normal; at vertices the mean of the triangles', weighted by their angles.
     pub normal: Point,
@@ -131,7 +131,7 @@ pub fn vertex_samples_where(surface: &Surface, wanted: impl Fn(usize) -> bool) -
 pub struct Grid {
     cell: f64,
     last: FastMap<[i32; 3], u32>,
-    /// Each point, and the one before it in its cell.
+    /// Points, each with the index of the one before it in its cell.
     points: Vec<(Point, u32)>,
 }
 

@@ -10,8 +10,8 @@ use crate::meshing::watch::Watch;
 const GAP: f64 = 0.1;
 const MOST_GAP: f64 = 5e-3;
 
-/// What else runs along an edge is farther from it than its partner by this factor; otherwise more than two meet there,
-/// and who belongs together is not known.
+/// Factor by which whatever else runs along an edge is farther from it than its partner; otherwise more than two meet
+/// there, and who belongs together is not known.
 const CLEARLY: f64 = 3.0;
 
 /// Edges looked at for each at most: more lie close together in a tangle only.
@@ -22,10 +22,10 @@ const SHARPEST: f64 = 0.8;
 
 /// An open edge of a triangle.
 pub struct OpenEdge {
-    /// From and to, as the triangle uses it, and where they are.
+    /// First and last vertex, as the triangle uses the edge, and where they are.
     pub vertices: [u32; 2],
     pub ends: [Point; 2],
-    /// From the edge into the triangle: a unit vector.
+    /// Unit vector from the edge into the triangle.
     pub inward: Point,
     /// The triangle.
     pub triangle: usize,
@@ -33,7 +33,7 @@ pub struct OpenEdge {
 
 /// Two open edges along a loose seam.
 pub struct Seam {
-    /// Their places among the open edges.
+    /// Places of the two among the open edges.
     pub edges: [usize; 2],
     /// Whether both run the same way: then one of the triangles must be turned for both to face one way.
     pub against: bool,

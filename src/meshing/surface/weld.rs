@@ -15,7 +15,7 @@ const WELD: f64 = 1e-6;
 /// cell holds less than a hundred vertices however dense they are.
 const CELL: f64 = 4.0;
 
-/// What is left after welding.
+/// Mesh after welding.
 pub struct Welded {
     /// The distinct vertices that triangles use, in order of first use.
     pub vertices: Vec<Point>,
@@ -102,7 +102,7 @@ fn leave_out_covered(
 #[derive(Default)]
 struct Places {
     points: Vec<Point>,
-    /// Of each point, the one before it in its cell.
+    /// Index, for each point, of the one before it in its cell.
     before: Vec<u32>,
     last: FastMap<[i32; 3], u32>,
 }

@@ -12,7 +12,7 @@ struct State {
     pose: Pose,
     center: Vector,
     velocity: [Vector; 2],
-    /// From where its angles go on.
+    /// Angles from which its own go on.
     turned: LinkAngles,
 }
 

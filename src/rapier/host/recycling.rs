@@ -24,9 +24,9 @@ pub const RECYCLE_DISTANCE: Real = 0.004;
 /// Cosine of the rotation of either body since its pair's last update above which rapier recycles.
 const ROTATION_COSINE: Real = 0.98;
 
-/// Where two colliders are.
+/// Placement of two colliders.
 pub struct Place {
-    /// Their instance ids.
+    /// Instance ids of their meshes.
     pub ids: [u64; 2],
     /// Pose of the second in the first's frame.
     pub pos12: Pose,

@@ -12,8 +12,8 @@ use rapier3d::dynamics::{
     RigidBodySet,
 };
 
-/// What a joint may open by in a sub-step, in units of rapier's length unit. Chains of bars of 0.4 m, four sub-steps a
-/// step, reach it at 12 rad/s.
+/// Length by which a joint may open in a sub-step, in units of rapier's length unit. Chains of bars of 0.4 m, four
+/// sub-steps a step, reach it at 12 rad/s.
 const MOST_OPENING: Real = 5.0e-4;
 
 /// Sub-steps that are added at most.

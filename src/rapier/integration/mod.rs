@@ -1,4 +1,4 @@
-//! What users of rapier meet elsewhere than in the step: builders, debug lines, saved worlds.
+//! Integration with rapier elsewhere than in the step: builders, debug lines, saved worlds.
 
 pub(crate) mod collider;
 #[cfg(feature = "debug-render")]

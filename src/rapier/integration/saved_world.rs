@@ -104,7 +104,7 @@ impl MedialPipeline {
 /// Which colliders the next step has to look at anew.
 #[derive(Serialize, Deserialize)]
 enum Changes {
-    /// These have moved, as a first contact within a step leaves them; none was changed otherwise.
+    /// These colliders have moved, as a first contact within a step leaves them; none was changed otherwise.
     Moved(Vec<ColliderHandle>),
     /// Some were changed by hand. Their own marks say how; those of medial colliders say besides that
     /// the shape is new, for which rapier begins their contacts afresh.

@@ -27,18 +27,18 @@ pub struct Limit {
     is_sum: bool,
 }
 
-/// Where a joint is along a limited axis.
+/// Position of a joint along a limited axis.
 pub struct Place {
     /// A length or an angle.
     pub at: Real,
-    /// Its change by the velocity of the second body along it, or by its turning velocity, world frame.
+    /// Axis by which it changes with the velocity of the second body along it, or by its turning velocity, world frame.
     pub axis: Vector,
     /// Whether it is an angle.
     pub is_angle: bool,
 }
 
 impl Limit {
-    /// Those of a joint of two bodies. rapier's coupled angles, of which it limits the sum, are left out.
+    /// The limits of a joint of two bodies. rapier's coupled angles, of which it limits the sum, are left out.
     pub fn of_joint(joint: &GenericJoint) -> Vec<Self> {
         let (limited, coupled) = (free_limits(joint), joint.coupled_axes.bits());
         let single = (0..6u8).filter(|i| limited & !coupled & (1 << i) != 0);
@@ -74,7 +74,7 @@ impl Limit {
         (half < PI).then(|| limit([-half, half], zero))
     }
 
-    /// Those of a link of a multibody, whose turns so far are given.
+    /// The limits of a link of a multibody, whose turns so far are given.
     pub fn of_link(link: &MultibodyLink, turned: &LinkAngles) -> Vec<Self> {
         let joint = &link.joint.data;
         let limited = (0..6u8).filter(|i| free_limits(joint) & (1 << i) != 0);
@@ -91,7 +91,7 @@ impl Limit {
         limited.map(limit).collect()
     }
 
-    /// Where a joint is whose two frames these are.
+    /// Position of a joint whose two frames these are.
     pub fn place(&self, frames: [Pose; 2]) -> Place {
         let axis = |i: usize| frames[0].rotation * Vector::AXES[i];
         let i = self.axes.trailing_zeros() as usize;
@@ -130,8 +130,8 @@ impl Limit {
         at_max || (at <= min + AT_LIMIT && rate <= AT_LIMIT && push < 0.0)
     }
 
-    /// Where a joint that is `at`, and would be `next`, has to stop, if it has to: at its limit, or where it is if that is
-    /// beyond already.
+    /// Position at which a joint that is `at`, and would be `next`, has to stop, if it has to: at its limit, or where
+    /// it is if that is beyond already.
     pub fn stop(&self, at: Real, next: Real) -> Option<Real> {
         let [min, max] = self.range;
         if next > at && next > max {

@@ -1,9 +1,10 @@
-//! When the pieces end in which bodies held by joints move ([`crate::rapier::joints::jointed_bodies`]), and which bodies each piece moves.
+//! Ends of the pieces in which bodies held by joints move ([`crate::rapier::joints::jointed_bodies`]), and which bodies
+//! each piece moves.
 
 use crate::math::Real;
 use crate::rapier::joints::jointed_bodies::Piece;
 
-/// Those of a step that have not ended.
+/// Pieces of a step that have not ended.
 #[derive(Default)]
 pub struct Pieces(Vec<(Real, Vec<usize>)>);
 

@@ -11,7 +11,7 @@ pub type Twist = [Vector; 2];
 pub struct Joint {
     /// Indices in the view.
     pub bodies: [usize; 2],
-    /// In the frame of each body.
+    /// Frames of the joint, in the frame of each body.
     pub frames: [Pose; 2],
     /// Which of the six axes of the first frame are locked, linear ones first.
     pub locked: u8,
@@ -23,7 +23,7 @@ pub struct Joint {
 pub struct Row {
     /// Places of the bodies in what is tied together.
     pub bodies: [usize; 2],
-    /// Of each body.
+    /// Rows for each body.
     pub jacobian: [Twist; 2],
     /// A length or an angle.
     pub opening: Real,
@@ -37,7 +37,7 @@ impl Row {
     }
 }
 
-/// Both ends of a joint, world frame.
+/// Ends of a joint, world frame.
 pub struct Ends {
     /// Places of the bodies in what is tied together.
     pub bodies: [usize; 2],
@@ -97,7 +97,7 @@ pub fn dot(a: Twist, b: Twist) -> f64 {
     f64::from(a[0].dot(b[0]) + a[1].dot(b[1]))
 }
 
-/// By how much the second frame is turned against the first round the locked axes, world frame, for small turns.
+/// Angles by which the second frame is turned against the first round the locked axes, world frame, for small turns.
 fn turned(rotations: [Rotation; 2], locked: u8) -> Vector {
     let [first, second] = rotations;
     if (locked & 7).count_ones() == 2 {

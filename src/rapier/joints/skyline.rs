@@ -6,7 +6,7 @@
 pub struct Skyline {
     /// First column of each row.
     first: Vec<usize>,
-    /// From the first column to the diagonal.
+    /// Rows, each from its first column to the diagonal.
     rows: Vec<Vec<f64>>,
 }
 

@@ -11,14 +11,14 @@ const NO_TURN: Real = 1.0e-4;
 /// turns, beside the rotation that they made.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LinkAngles {
-    /// Of the link against its parent.
+    /// Rotation of the link against its parent.
     pub rotation: Rotation,
     /// Sums about the axes of the joint, in radians.
     pub angles: Vector,
 }
 
 impl LinkAngles {
-    /// What rapier has now.
+    /// Angles of a link as rapier has them now.
     pub fn of(link: &MultibodyLink) -> Self {
         let coordinates = link.joint.coords();
         Self {
