@@ -58,7 +58,7 @@ fn fast_bodies_whose_contacts_are_modified_pass_through_each_other() {
 /// push takes it into the plate before it is computed anew, in the next step. What it takes further than a
 /// quarter of its thickness in a step is for the event loop.
 #[test]
-fn what_is_struck_by_something_new_gets_into_what_was_near() {
+fn ball_struck_by_a_new_neighbour_sinks_into_the_plate_it_was_near() {
     let ball = MedialMesh::ball(0.1).expect("a ball");
     let plate = MedialMesh::round_plate(1.0, 1.0, 0.1).expect("a plate");
     let mut world = PhysicsWorld::new();
@@ -202,7 +202,7 @@ fn eulers_disc_goes_on_for_ever_at_30_hz() {
 /// have joints may press on them: two blocks without weight between two fingers with motors rattle on, where they rest in
 /// the solver.
 #[test]
-fn what_is_pressed_through_others_without_weight_rattles() {
+fn weightless_blocks_pressed_through_others_rattle() {
     let speed = |effects: Effects| {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;

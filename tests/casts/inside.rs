@@ -7,7 +7,7 @@ use parry3d::shape::{Shape, SharedShape};
 use rapier3d_medial::{MedialDispatcher, MedialMesh};
 
 #[test]
-fn what_starts_inside_is_hit_at_once_unless_it_may_leave() {
+fn casts_from_inside_hit_at_once_unless_they_may_leave() {
     let mesh = MedialMesh::torus(0.3, 0.1, 8).expect("a torus");
     let corner = |i: u32| {
         let side = |bit: u32| if i >> bit & 1 == 1 { 3.0 } else { -3.0 };
@@ -55,7 +55,7 @@ fn what_starts_inside_is_hit_at_once_unless_it_may_leave() {
 /// What touches at the start and may go on touching: sliding and leaving are free, sinking in ends
 /// before the medial axis reaches the surface.
 #[test]
-fn what_touches_at_the_start_may_slide_but_not_sink_in() {
+fn shapes_that_touch_at_the_start_may_slide_but_not_sink_in() {
     const TUBE: f32 = 0.1;
     let mesh = MedialMesh::torus(0.3, TUBE, 8).expect("a torus");
     // Each with its flat side or its top at height 1.

@@ -9,7 +9,7 @@ use rapier3d_medial::{MedialDispatcher, MedialMesh, MedialSphere};
 /// What starts inside is told the shortest way out: a normal, and a point on each body that far apart.
 /// Planted: a ball and a rod in bodies whose nearest face is known.
 #[test]
-fn what_starts_inside_is_told_the_way_out() {
+fn casts_from_inside_tell_the_shortest_way_out() {
     const R: f32 = 0.1;
     let v = Vector::new;
     let box_corners: Vec<Vector> = (0..8)
@@ -227,7 +227,7 @@ fn what_starts_inside_is_told_the_way_out() {
 /// Medial surfaces that cross at the start, or lie in each other, have no nearest spheres to take the
 /// normal from: it is that of the smallest depth. Planted.
 #[test]
-fn what_crosses_at_the_start_has_a_normal() {
+fn shapes_that_cross_at_the_start_have_a_normal() {
     const R: f32 = 0.1;
     let v = Vector::new;
     let corners = [v(-3.0, -2.0, 0.0), v(3.0, -2.0, 0.0), v(0.0, 4.0, 0.0)];

@@ -36,7 +36,7 @@ fn path(query: &Query, test: &ElementaryTest) -> LinearPath<f32> {
 /// Every family of hard queries, cones and slabs: none missed. Of those that stay ten
 /// tolerances apart most are settled, or the device would be of no use.
 #[test]
-fn what_the_device_calls_free_is_free() {
+fn tests_proven_free_by_the_device_are_free() {
     let Some(mut gpu) = scene::gpu(scene::options()) else {
         return;
     };

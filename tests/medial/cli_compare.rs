@@ -97,7 +97,7 @@ fn the_table_names_each_collider() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_named() {
+fn compare_names_what_it_cannot_compare() {
     let directory = scratch("compare-refused");
     fs::write(directory.join("corner.obj"), CORNER).unwrap();
     fs::write(directory.join("notes.txt"), "no mesh").unwrap();

@@ -315,7 +315,7 @@ fn too_few_primitives_are_no_error() {
 
 /// A triangle without area that sticks out of a block by a few millionths of its size is covered too.
 #[test]
-fn what_sticks_out_of_a_block_is_covered() {
+fn triangles_that_stick_out_of_a_block_are_covered() {
     let mut mesh = star(4, 0.4);
     let tip = Vector::new(1.0, 0.0, 0.2);
     let first = mesh.vertices.len() as u32;

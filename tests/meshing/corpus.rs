@@ -407,7 +407,7 @@ fn defects_combine_in_many_ways() {
 }
 
 #[test]
-fn what_is_refused_is_named() {
+fn refused_meshes_are_named() {
     let refused: Vec<(Mesh, &str)> = vec![
         (turned_to_nan(block(), 5), "vertex 5 is not finite"),
         (out_of_range(block(), 3), "triangle 3 names vertex 4000"),

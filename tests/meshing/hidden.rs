@@ -36,7 +36,7 @@ fn cube() -> Mesh {
 
 /// Of two cubes, one moved by (a, b, c), three faces of each lie in the other: a rectangle of each.
 #[test]
-fn what_two_boxes_hide_of_each_other_is_told() {
+fn report_tells_the_area_hidden_by_overlapping_boxes() {
     let (a, b, c) = (0.5, 0.25, 0.375f32);
     let both = cube().and(cube().map(|v| v + Vector::new(a, b, c)));
     let (_, report) = built(&both, 60, Quality::Fast);
@@ -59,7 +59,7 @@ fn what_two_boxes_hide_of_each_other_is_told() {
 
 /// A part inside another changes nothing but what is told, and a copy of a body nothing at all.
 #[test]
-fn what_is_inside_counts_for_nothing() {
+fn parts_inside_a_body_count_for_nothing() {
     let outer = capsule(0.6, 0.3, 24, 8);
     let inner = cuboid(Vector::new(0.2, 0.15, 0.1)).map(|v| v + Vector::new(0.02, 0.03, 0.1));
     let (_, alone) = built(&outer, 8, Quality::Fast);

@@ -377,7 +377,7 @@ fn two_polyhedra_are_exact_together() {
 
 /// A body that lacks a face is no polyhedron, and one with more slabs than asked for is built as others are.
 #[test]
-fn what_is_no_polyhedron_is_rounded() {
+fn bodies_that_are_no_polyhedra_are_rounded() {
     let mut body = hull(&points_in_ball(&mut Random(1), 10));
     let fewer = BuildOptions {
         primitives: Some(20),

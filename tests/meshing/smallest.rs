@@ -86,7 +86,7 @@ fn a_closer_limit_takes_no_fewer() {
 }
 
 #[test]
-fn what_is_out_of_reach_is_told_with_the_best_there_is() {
+fn error_out_of_reach_returns_the_best_mesh() {
     let ring = torus(0.5, 0.12, 16, 8);
     let mut options = within(1e-6, Quality::Fast);
     let (count, error, report) = built(&ring, &options);

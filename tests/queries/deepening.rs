@@ -70,7 +70,7 @@ fn asked(rods: &Crossing, radii: [[Real; 2]; 2], options: &ToiOptions) -> (ToiSt
 /// Whatever the rods may deepen by, many times their thickness or little, and whether they touch by a hair or
 /// are deep in each other.
 #[test]
-fn what_touches_never_crosses_unseen() {
+fn touching_bodies_never_cross_unseen() {
     let mut rng = Rng::new(7);
     let mut crossed = 0;
     for case in 0..queries() {

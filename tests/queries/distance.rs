@@ -52,7 +52,7 @@ fn errors_stay_below_the_slack() {
 
 /// Cones called further apart than a margin are, by the oracle; and most of those that are, are called so.
 #[test]
-fn what_is_called_beyond_is() {
+fn cones_called_beyond_a_margin_are() {
     for family in Family::ALL {
         let mut rng = Rng::new(900 + family as u64);
         let (mut called, mut clear) = (0, 0);

@@ -139,7 +139,7 @@ families! {
 /// The families in which the paper's iteration is known to miss hits, or to report a later
 /// contact: the comparison is real. Here the certified query does neither.
 #[test]
-fn what_the_paper_misses() {
+fn certified_query_finds_contacts_that_the_paper_misses() {
     let mut paper = Tally::default();
     for family in [
         Family::LargeRotation,

@@ -68,7 +68,7 @@ fn any_move(rng: &mut Rng, bound: &RelativeMotionBound, [k, c]: &[SpherePair; 2]
 }
 
 #[test]
-fn what_is_held_back_does_not_close() {
+fn contacts_held_back_do_not_close() {
     let mut rng = Rng::new(77);
     let (mut dropped, mut late) = (0, 0);
     for _ in 0..20_000 {

@@ -117,7 +117,7 @@ fn lists_have_the_contacts_of_the_search() {
 
 /// The list decides: without the primitive pair of a contact, that contact is missing.
 #[test]
-fn what_is_not_listed_is_not_found() {
+fn primitives_not_listed_are_not_found() {
     let ring = MedialMesh::torus(0.5, 0.1, 24).expect("a ring");
     let pos12 = Pose::from_translation(Vector::new(0.95, 0.1, 0.0));
     let (expected, _) = contacts(&ring, &ring, &pos12, 0.02);

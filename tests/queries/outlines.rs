@@ -125,7 +125,7 @@ fn judge(
 }
 
 #[test]
-fn what_outlines_call_free_is_free() {
+fn pairs_called_free_by_outlines_are_free() {
     let mut rng = Rng::new(4411);
     let (mut verdicts, mut fewer) = ([0; 3], 0);
     for k in 0..150 {

@@ -85,7 +85,7 @@ impl PhysicsHooks for Emptied {
 }
 
 #[test]
-fn what_hooks_filter_does_not_bounce() {
+fn pairs_filtered_by_hooks_do_not_bounce() {
     let hooks: [(ActiveHooks, &dyn PhysicsHooks); 2] = [
         (ActiveHooks::FILTER_CONTACT_PAIRS, &NoContacts),
         (ActiveHooks::MODIFY_SOLVER_CONTACTS, &Emptied),

@@ -103,7 +103,7 @@ fn a_default_pipeline_has_the_default_budget() {
 /// Nothing stops a kinematic bar: what it pushes is searched and carried along, without any budget. Beside it rings lie
 /// against each other.
 #[test]
-fn what_a_kinematic_body_pushes_is_carried_without_a_budget() {
+fn kinematic_body_carries_what_it_pushes_when_the_budget_is_spent() {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;
     let at = |x: Real, z: Real| Pose::new(Vector::new(x, 0.0, z), Vector::X * 1.5);

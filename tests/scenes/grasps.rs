@@ -178,7 +178,7 @@ fn fingers_rise_as_their_base_does() {
 
 /// Fingers of 50 and 100 g that press with 10 N: what is lifted of rapier's own shapes is lifted of medial ones.
 #[test]
-fn what_rapiers_fingers_lift_ours_do() {
+fn medial_fingers_lift_what_rapiers_fingers_do() {
     let mut lifted = [0; 2];
     for what in [Thing::Ring, Thing::Box, Thing::Rod] {
         for finger in [0.05, 0.1] {

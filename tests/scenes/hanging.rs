@@ -112,7 +112,7 @@ fn swing(seconds: usize, hooked: bool) -> Real {
 
 /// Nothing feeds a ring that rolls in another without slip, and nothing but the solver damps it.
 #[test]
-fn what_swings_does_not_swing_wider() {
+fn hanging_bodies_do_not_swing_wider() {
     let (hooked, alone) = (swing(20, true), swing(20, false));
     println!("after 20 s {hooked} of the first swing, at rapier's own step {alone}");
     assert!((0.6..1.0).contains(&hooked), "{hooked}");
@@ -282,7 +282,7 @@ fn contacts_of_a_fall_do_not_outlive_it() {
 /// A ball near a plate is struck from behind within the step: it comes down on the plate, not into it, or no
 /// deeper than a ball of rapier's own that is squeezed by a heavy one.
 #[test]
-fn what_a_third_body_pushes_meets_what_is_near() {
+fn body_pushed_by_a_third_meets_its_neighbour() {
     let ball = MedialMesh::ball(0.1).expect("a ball");
     let plate = MedialMesh::round_plate(1.0, 1.0, 0.1).expect("a plate");
     let deepest = |shapes: [ColliderBuilder; 2], gap: Real, speed: Real, heavy: Real| {
@@ -331,7 +331,7 @@ fn what_a_third_body_pushes_meets_what_is_near() {
 /// What falls, or sinks and falls, towards a plate while rapier keeps that they do not touch has contacts in
 /// time: it gets no deeper than a ball of rapier's own.
 #[test]
-fn what_falls_unasked_lands_on_what_is_near() {
+fn body_falling_between_contact_updates_lands_on_its_neighbour() {
     let ball = MedialMesh::ball(0.1).expect("a ball");
     let plate = MedialMesh::round_plate(1.0, 1.0, 0.1).expect("a plate");
     let deepest =

@@ -53,7 +53,7 @@ fn depth(world: &PhysicsWorld, ball: RigidBodyHandle) -> Real {
 }
 
 #[test]
-fn what_slides_fast_meets_the_ramp() {
+fn fast_sliding_body_hits_the_ramp() {
     let mut deepest = Real::MIN;
     for k in 0..24 {
         let (mut world, mut pipeline, ball) = slide(-1.5 - 0.1 * k as Real / 24.0, 6.0);
@@ -67,7 +67,7 @@ fn what_slides_fast_meets_the_ramp() {
 }
 
 #[test]
-fn what_a_rope_pulls_meets_the_ramp() {
+fn body_pulled_by_a_rope_hits_the_ramp() {
     for k in 0..12 {
         let gap = 0.008 + 0.001 * k as Real;
         let (sin, cos) = SLOPE.to_radians().sin_cos();

@@ -75,7 +75,7 @@ impl PhysicsHooks for Never {
 }
 
 #[test]
-fn what_rapier_lets_through_flies_through() {
+fn filtered_pairs_fly_through_each_other() {
     let none = InteractionGroups::none();
     let fly = |collider: &dyn Fn(usize, ColliderBuilder) -> ColliderBuilder,
                hooks: &dyn PhysicsHooks| {
@@ -107,7 +107,7 @@ fn what_rapier_lets_through_flies_through() {
 /// A head-on impact of two equal bars without restitution ends with both at their mean velocity, which
 /// is that of the one that does not give way.
 #[test]
-fn who_gives_way() {
+fn bodies_that_do_not_give_way_keep_their_velocity() {
     let fly = |body: &dyn Fn(usize, RigidBodyBuilder) -> RigidBodyBuilder| {
         let (mut world, handles, _) = crossed(60.0, body, |_, c| c.friction(0.0));
         let mut pipeline = attached(&mut world);

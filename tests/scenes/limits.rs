@@ -171,7 +171,7 @@ fn struck_joints_with_limits_gain_no_energy() {
 /// What strikes them flies on as from rapier's capsules in sixteenths of a step: no farther off than from rapier's capsules
 /// in whole ones, give or take a fiftieth of its speed.
 #[test]
-fn what_strikes_joints_with_limits_bounces_as_in_fine_steps() {
+fn impacts_on_limited_joints_bounce_as_in_fine_steps() {
     for kind in KINDS {
         let (mut ours, mut own, mut count) = (0.0, 0.0, 0.0);
         let chains = chains(&[5.0, 20.0]);

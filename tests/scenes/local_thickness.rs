@@ -223,7 +223,7 @@ fn a_fin_of_radius_0_does_not_let_its_plate_through() {
 /// What a step costs where nothing is thin: printed, to compare versions.
 #[test]
 #[ignore = "prints counts to compare by eye, and judges nothing"]
-fn what_rings_cost() {
+fn print_the_work_of_steps_with_rings() {
     for (name, height) in [("resting", 0.101), ("falling", 1.5)] {
         let mut world = world_with_ground();
         for k in 0..6 {

@@ -124,7 +124,7 @@ fn off(round: bool, written: Written) -> Real {
 /// Normals are turned by as much as leaves the body on the platform: beyond it slides into the platform down a slope
 /// that is not there, and out of its other side.
 #[test]
-fn what_hooks_write_is_what_bodies_do() {
+fn bodies_obey_contacts_modified_by_hooks() {
     for round in [true, false] {
         for written in [
             Written::Normal(0.2),

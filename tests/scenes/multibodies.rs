@@ -260,7 +260,7 @@ fn steps() -> [Vec<Real>; 3] {
 const MORE_SUBSTEPS: usize = 16;
 
 #[test]
-fn what_joints_hold_is_struck_as_a_whole() {
+fn jointed_bodies_take_an_impact_together() {
     let [coarse, fine, both] = steps();
     for struck in [Struck::Hinge, Struck::Chain, Struck::Ragdoll] {
         for by in [By::Multibody, By::ImpulseJoints] {

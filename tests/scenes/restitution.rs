@@ -291,7 +291,7 @@ fn a_bouncing_ball_rises_as_theory_says() {
 /// Two motors close fingers on a block without weight, which then holds still and sleeps beside rapier's own cuboids, whatever
 /// its restitution.
 #[test]
-fn what_motors_hold_without_weight_rests() {
+fn weightless_bodies_held_by_motors_rest() {
     let block = |half: Vector, is_medial: bool| match is_medial {
         true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a cuboid")),
         false => ColliderBuilder::cuboid(half.x, half.y, half.z),

@@ -304,7 +304,7 @@ fn mutated_worlds_are_refused() {
 /// A world saved right after an impact within a step: rapier has not found the contact yet, and the start that was
 /// told is neither lost nor told twice, whether the bodies bounce or stay.
 #[test]
-fn what_was_told_before_saving_is_not_told_again() {
+fn loaded_world_does_not_repeat_collision_events() {
     for restitution in [0.0, 1.0] {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;

@@ -85,7 +85,7 @@ fn rings_spawned_in_one_place_come_apart_and_fall() {
 /// What was spawned in each other and came apart is kept apart from then on: rings that are no longer linked are
 /// thrown at each other, and stay unlinked.
 #[test]
-fn what_came_apart_stays_apart() {
+fn spawned_overlaps_that_came_apart_stay_apart() {
     for seed in 0..6 {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
@@ -199,7 +199,7 @@ fn stays_linked(name: &str, mut touch: impl FnMut(usize, &mut PhysicsWorld, &mut
 }
 
 #[test]
-fn what_is_pressed_into_each_other_was_not_put_there() {
+fn overlaps_by_pressing_do_not_count_as_spawned() {
     stays_linked("left alone", |_, _, _| ());
     stays_linked("a new pipeline", |step, world, pipeline| {
         if step == 180 {

@@ -247,7 +247,7 @@ impl Wires {
 /// Symptom: bodies that rapier itself woke within its step were where the last step had left them. Cause: what a still
 /// world was prepared with was kept although joints, contact skins or places of colliders on their bodies had changed.
 #[test]
-fn what_rapier_wakes_within_its_step_is_met_as_it_is_then() {
+fn bodies_woken_within_a_step_are_met_in_their_motion() {
     type Change = fn(&mut Collider);
     let higher: Change = |c| c.set_translation_wrt_parent(Vector::Y * 0.05);
     let thicker: Change = |c| c.set_contact_skin(0.05);

@@ -54,7 +54,7 @@ fn poses_that_are_no_numbers_leave_nothing_near() {
 /// Spheres whose centre and radius are finite, but not their boxes, bounding spheres or lengths: meshes of
 /// them could be saved and not loaded. By one rule all are refused, however they come, or served.
 #[test]
-fn what_is_taken_is_saved_and_loaded() {
+fn accepted_files_are_saved_and_loaded() {
     let sphere = |x, r| MedialSphere::new(Vector::new(x, -0.2, 0.2), r);
     let far = [
         (f32::MAX, 1.0e38),
