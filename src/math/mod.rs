@@ -1,13 +1,15 @@
 //! Numbers and geometry that know nothing of medial meshes (layer 0).
 
 pub(crate) mod approach;
+pub(crate) mod counters;
 pub(crate) mod fast_hash;
 pub mod lane;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lane_avx;
 pub mod motion;
 pub mod nearest;
-pub mod portable;
+pub(crate) mod portable;
+pub(crate) mod sphere;
 pub mod tolerance;
 
 /// Position (translation and rotation), as in rapier's API.

@@ -1,5 +1,5 @@
-//! Where a line enters and leaves a medial primitive, in closed form. Source: own derivation from
-//! the interpolated spheres of the paper's §3.
+//! Points at which a line enters and leaves a medial primitive, in closed form. Source: own derivation from the
+//! interpolated spheres of the paper's §3.
 //!
 //! # Derivation
 //! The line is parallel to z and passes through `q` in the xy-plane. A sphere with centre
@@ -22,8 +22,9 @@
 //! at `c_k + r_k n`; the line meets the triangle of these points where its barycentric
 //! coordinates are not negative.
 
-use super::exact::{Ball, tangent_normals};
+use super::exact::tangent_normals;
 use crate::math::lane::Vec3;
+use crate::math::sphere::Ball;
 
 /// A primitive prepared for lines parallel to z.
 #[derive(Clone, Debug)]
@@ -67,7 +68,7 @@ impl ChordSolver {
         }
     }
 
-    /// Its spheres.
+    /// Spheres of the primitive.
     pub fn balls(&self) -> &[Ball; 3] {
         &self.balls
     }

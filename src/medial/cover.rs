@@ -7,11 +7,12 @@
 //! iff `n` is a normal of the primitive there, that is, iff the rise is 0. So three inner products
 //! decide for the sheet's own primitives and for most others; the depth is needed for the rest.
 
-use super::exact::{Ball, balls, nearest_to_point};
+use super::exact::{balls, nearest_to_point};
 use super::mesh::MedialMesh;
 use super::sheet::{Sheet, Spot};
 use crate::math::Real;
 use crate::math::lane::Vec3;
+use crate::math::sphere::Ball;
 
 /// A primitive that may hide points, with its box.
 pub(super) struct Cover {
@@ -25,7 +26,7 @@ pub(super) struct Cover {
 }
 
 impl Cover {
-    /// For a sheet that rests on some spheres; the box widened by `margin`.
+    /// A primitive beside a sheet that rests on some spheres; its box is widened by `margin`.
     pub fn new(mesh: &MedialMesh, index: u32, rests_on: [u32; 3], margin: Vec3<f64>) -> Self {
         let spheres = mesh.simplices()[index as usize].vertices;
         let balls = balls(mesh.primitive(index as usize).as_slab());
@@ -70,7 +71,7 @@ impl Cover {
         })
     }
 
-    /// What is positive where the primitive hides a point, 0 on its boundary, negative elsewhere.
+    /// Function that is positive where the primitive hides a point, 0 on its boundary, negative elsewhere.
     pub fn excess(&self, at: Spot) -> f64 {
         if self.owner {
             return self.rise(at);

@@ -9,20 +9,12 @@
 use super::sphere::MedialSphere;
 use crate::math::lane::Vec3;
 use crate::math::nearest::{Family, Nearest, edge_minimum, nearest_in_triangle};
+use crate::math::sphere::Ball;
 
 /// sin² of the angle between two edges (a pure number) below which the direction of their cross
 /// product is rounding: the squared `f64` rounding 2⁻⁵², and 3 digits to spare. A slab as narrow
 /// as that is its longest cone, to rounding.
 const COLLINEAR_SIN_SQ: f64 = 1e-26;
-
-/// A sphere in double precision, in any frame.
-#[derive(Clone, Copy, Debug)]
-pub struct Ball {
-    /// Centre.
-    pub center: Vec3<f64>,
-    /// Radius, ≥ 0.
-    pub radius: f64,
-}
 
 /// The three spheres of a primitive as [`as_slab`](super::MedialPrimitive::as_slab) gives them; exact.
 pub fn balls(slab: [MedialSphere; 3]) -> [Ball; 3] {
@@ -54,11 +46,19 @@ pub fn nearest_to_point(balls: &[Ball; 3], point: Vec3<f64>) -> Nearest<f64> {
 /// Outward unit normals of the two planes tangent to three spheres, if they exist: not when the
 /// centres lie on a line, and not when the hull of the spheres has no flat part.
 pub fn tangent_normals(balls: &[Ball; 3]) -> Option<[Vec3<f64>; 2]> {
+    let [a, b, c] = balls.map(|ball| ball.center);
+    let [u_sq, v_sq] = [b - a, c - a].map(|side| side.length_sq());
+    tangent_normals_beyond(balls, COLLINEAR_SIN_SQ * u_sq * v_sq)
+}
+
+/// The same as [`tangent_normals`], where centres lie on a line whose two edges from the first have a cross product of at
+/// most this square.
+pub fn tangent_normals_beyond(balls: &[Ball; 3], collinear_sq: f64) -> Option<[Vec3<f64>; 2]> {
     let [a, b, c] = *balls;
     let (u, v) = (b.center - a.center, c.center - a.center);
     let n = u.cross(v);
     let nn = n.length_sq();
-    if nn <= COLLINEAR_SIN_SQ * u.length_sq() * v.length_sq() {
+    if nn <= collinear_sq {
         return None;
     }
     let (da, db) = (b.radius - a.radius, c.radius - a.radius);

@@ -13,8 +13,8 @@
 //! needs as many cells as the square of the lines, and more code.
 
 use super::chord::ChordSolver;
-use super::exact::Ball;
 use crate::math::lane::Vec3;
+use crate::math::sphere::Ball;
 use crate::math::{Real, Rotation, Vector};
 use nalgebra::{Matrix3, SymmetricEigen};
 use parry3d::mass_properties::MassProperties;
@@ -201,7 +201,7 @@ impl Outline {
         ]
     }
 
-    /// Its stretches on the lines of the row at `y`: line index and `[start, end]`.
+    /// Finds the stretches inside on the lines of the row at `y`: line index and `[start, end]`.
     fn stretches(&self, y: f64, spacing: f64, into: &mut Vec<(f64, [f64; 2])>) {
         // Only centres within reach of the row count: the part of each edge inside that band.
         let [lo, hi] = [y - self.reach, y + self.reach];

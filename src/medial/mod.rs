@@ -2,32 +2,33 @@
 //! files.
 
 pub mod asset;
-pub mod boxes;
+pub(crate) mod boxes;
 mod check;
-pub mod chord;
+pub(crate) mod chord;
 mod cover;
-pub mod envelope;
-pub mod exact;
+pub(crate) mod envelope;
+pub(crate) mod exact;
 mod files;
 pub(crate) mod leaf_order;
-pub mod ma_file;
-pub mod mass;
-pub mod mesh;
-pub mod polygon;
-pub mod primitive;
+pub(crate) mod ma_file;
+pub(crate) mod mass;
+pub(crate) mod mesh;
+pub(crate) mod polygon;
+pub(crate) mod primitive;
 pub mod proxy_hull;
-pub mod rectangle;
+pub(crate) mod rectangle;
 #[cfg(feature = "serde")]
 mod saved;
 pub(crate) mod scaled;
 mod sheet;
-pub mod simplex;
-pub mod solids;
-pub mod sphere;
+pub(crate) mod simplex;
+pub(crate) mod solids;
+pub(crate) mod sphere;
 pub(crate) mod text;
-pub mod thickness;
+pub(crate) mod thickness;
 pub mod tree;
 
 pub use mesh::MedialMesh;
-pub use primitive::MedialPrimitive;
+pub use primitive::{MedialPrimitive, PointDistance};
+pub use simplex::Simplex;
 pub use sphere::MedialSphere;

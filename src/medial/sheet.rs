@@ -1,9 +1,10 @@
 //! The surfaces that bound medial primitives, each as a grid of triangles: balls (spheres), flanks of cones, planes of
 //! slabs. Each is made whole here; the parts of it that lie inside the solid are removed by `envelope`.
 
-use super::exact::{Ball, tangent_normals};
+use super::exact::tangent_normals;
 use super::mesh::MedialMesh;
 use crate::math::lane::Vec3;
+use crate::math::sphere::Ball;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
@@ -88,7 +89,7 @@ pub(super) fn sheets(mesh: &MedialMesh) -> Vec<(Sheet, [u32; 3])> {
     sheets
 }
 
-/// None where one sphere contains the other, and where both are points.
+/// The flank of a cone; `None` where one sphere contains the other, and where both are points.
 fn flank(from: Ball, to: Ball) -> Option<Sheet> {
     let along = to.center - from.center;
     let length = along.length();
@@ -195,7 +196,7 @@ impl Sheet {
         }
     }
 
-    /// Its grid, neighbouring points about `spacing` apart.
+    /// The grid of the sheet, neighbouring points about `spacing` apart.
     pub fn grid(&self, spacing: f64) -> Grid {
         let [n, m] = self.steps(spacing);
         let mut grid = Grid {

@@ -3,32 +3,12 @@
 
 use crate::error::MeshError;
 use crate::math::fast_hash::FastSet;
+use crate::math::lane::Vec3;
+pub use crate::math::sphere::Ball;
 use crate::math::{Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
-use crate::meshing::geometry::bounds::Point;
 use crate::meshing::surface::checked_surface::Frame;
 use crate::meshing::watch::bytes_of;
-
-/// A medial sphere in the builder's frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
-    /// Its centre.
-    pub center: Point,
-    /// Its radius, ≥ 0.
-    pub radius: f64,
-}
-
-impl Ball {
-    /// The ball interpolated between balls with weights of sum 1.
-    pub fn interpolate(balls: [Ball; 3], weights: [f64; 3]) -> Ball {
-        let [a, b, c] = balls;
-        let [x, y, z] = weights;
-        Ball {
-            center: a.center * x + b.center * y + c.center * z,
-            radius: a.radius * x + b.radius * y + c.radius * z,
-        }
-    }
-}
 
 /// Balls joined by edges and faces.
 #[derive(Clone, Debug, Default)]
@@ -82,7 +62,7 @@ impl Draft {
         bytes_of(&self.balls) + bytes_of(&self.edges) + bytes_of(&self.faces)
     }
 
-    /// Both drafts in one.
+    /// Joins two drafts in one.
     pub fn and(mut self, other: Self) -> Self {
         let first = self.balls.len() as u32;
         self.balls.extend(other.balls);
@@ -111,7 +91,7 @@ impl Draft {
             .map(|ball| {
                 let exact = ball.center * frame.scale + frame.center;
                 let center: Vector = exact.to_vector();
-                let moved = (Point::from_vector(center) - exact).length();
+                let moved = (Vec3::from_vector(center) - exact).length();
                 let radius = ball.radius * frame.scale + moved;
                 MedialSphere::new(center, round_up(radius))
             })

@@ -1,14 +1,15 @@
-//! Where a ray enters a medial primitive, and where a ray or a point inside a medial mesh leaves it. What counts is leaving
-//! the whole solid, not one of the primitives, which overlap.
+//! Ray casts: the point where a ray enters a medial primitive, and where a ray or a point inside a medial mesh leaves
+//! it. What counts is leaving the whole solid, not one of the primitives, which overlap.
 //!
 //! Every primitive is convex, so a ray is inside it on one stretch ([`crate::medial::chord`], in closed form). The ray
 //! leaves the solid at the end of the stretches that follow from the start without a gap. parry's iteration for convex
 //! shapes, which would serve as well, is off by a few thousandths of the size on flat faces.
 
 use crate::math::lane::Vec3;
+use crate::math::sphere::Ball;
 use crate::math::{Real, Vector};
 use crate::medial::chord::ChordSolver;
-use crate::medial::exact::{self, Ball};
+use crate::medial::exact;
 use crate::medial::{MedialMesh, MedialPrimitive};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{Ray, RayIntersection};
@@ -18,8 +19,8 @@ use parry3d::shape::FeatureId;
 /// origin, below which it has no direction: what rounding leaves of it.
 const FLAT: f64 = 1.0e-12;
 
-/// Where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back inside, as in
-/// parry, and the time is in units of the length of the ray's direction.
+/// The point where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back
+/// inside, as in parry, and the time is in units of the length of the ray's direction.
 pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
     if !holds(mesh, ray.origin) {
         return None;
@@ -78,7 +79,7 @@ fn holding(mesh: &MedialMesh, point: Vector) -> impl Iterator<Item = u32> + '_ {
         .into_iter()
 }
 
-/// Where the ray is inside a primitive: lengths from its origin.
+/// Stretch of the ray inside a primitive: lengths from its origin.
 struct Stretch {
     from: f64,
     to: f64,
@@ -144,9 +145,9 @@ impl RayFrame {
     }
 }
 
-/// Where a ray enters one primitive: the time in units of the length of the ray's direction, up to `most`, and the outward
-/// normal. A ray that starts inside enters at once, with no normal, if the primitive is `solid`; else it is where it leaves,
-/// with the normal that points back inside, as in parry.
+/// The point where a ray enters one primitive: the time in units of the length of the ray's direction, up to `most`,
+/// and the outward normal. A ray that starts inside enters at once, with no normal, if the primitive is `solid`; else
+/// it is where it leaves, with the normal that points back inside, as in parry.
 pub fn enter(
     primitive: &MedialPrimitive,
     ray: &Ray,

@@ -12,10 +12,10 @@ use crate::meshing::axis::crease_samples::CreaseSamples;
 use crate::meshing::axis::delaunay::{Delaunay, NONE};
 use crate::meshing::axis::inner_balls::{INSIDE, JITTER, buried, circumsphere, vote};
 use crate::meshing::axis::shrinking_ball::shrink;
+use crate::meshing::axis::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::random::Random;
-use crate::meshing::simplify::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
 
@@ -102,7 +102,7 @@ fn with_far_points(samples: &[Sample]) -> Vec<Point> {
     points
 }
 
-/// What polygons are clipped with.
+/// Clips polygons against the inside.
 pub struct Clipper<'a> {
     pub(crate) faces: &'a Faces<'a>,
     pub(crate) samples: &'a [Sample],

@@ -1,9 +1,9 @@
-//! Where Voronoi polygons that run out of the solid end: balls of radius 0, on a convex crease or at a corner.
+//! Ends of Voronoi polygons that run out of the solid: balls of radius 0, on a convex crease or at a corner.
 
 use crate::meshing::axis::clip::Clipper;
+use crate::meshing::axis::tangent::{Tangent, TangentPlane};
 use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::simplify::tangent::{Tangent, TangentPlane};
 use crate::meshing::surface::samples::Sample;
 
 /// A polygon ends on a crease within this many distances between samples.

@@ -7,9 +7,9 @@
 use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
 use crate::meshing::axis::clip::CreasedMesh;
+use crate::meshing::axis::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::direction;
-use crate::meshing::simplify::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::watch::Watch;
 
 /// Edges that are off by more (longest side 1) are split, in so many passes; what is still off by more than the
@@ -56,7 +56,7 @@ struct Refiner<'a> {
     mesh: &'a mut CreasedMesh,
     faces: &'a Faces<'a>,
     spacing: f64,
-    /// By how much the edges looked at are off.
+    /// Distance by which each edge looked at is off.
     off: FastMap<[u32; 2], f64>,
 }
 

@@ -6,7 +6,7 @@
 //! decided, and coarse elsewhere.
 //!
 //! A piece of the source is settled whole where the solid is smooth, however large: distances to
-//! primitives are convex (`Solid::way_out_of_any`). Cells have no such bound: where all of the boundary is
+//! primitives are convex (`Solid::exit_of_any`). Cells have no such bound: where all of the boundary is
 //! about equally far, as round a polygonal ring, they must be as small as the slack, which takes
 //! millions, and the budget widens the slack instead.
 //!
@@ -160,11 +160,11 @@ pub(crate) fn measure(
     })
 }
 
-/// In place of a triangle's index: a piece without area, which has no normal.
+/// Triangle index that stands for a piece without area, which has no normal.
 const NEEDLE: u32 = u32::MAX;
 
-/// From the source surface to the solid's boundary. Pieces: triangles, each with the index of the
-/// source triangle that it is part of, or [`NEEDLE`].
+/// Distance from the source surface to the solid's boundary. Pieces: triangles, each with the index of the source
+/// triangle that it is part of, or [`NEEDLE`].
 struct FromSource<'a> {
     surface: &'a Surface,
     winding: &'a TriangleTree,
@@ -208,8 +208,8 @@ impl FromSource<'_> {
         if allowed >= -signed && (leaves(allowed, normal) || leaves(allowed, outward)) {
             return Look::Settled;
         }
-        let way_out = |towards: Point| self.solid.way_out(p, towards, self.hint);
-        let way = way_out(normal).min(way_out(outward));
+        let exit = |towards: Point| self.solid.exit_distance(p, towards, self.hint);
+        let way = exit(normal).min(exit(outward));
         // Where all ways are equally long, rounding alone must not start a search.
         if way <= best * (1.0 + 1e-6) {
             return Look::Distance(way);
@@ -257,7 +257,7 @@ impl FromSource<'_> {
             (0..WAYS).any(|_| {
                 let moved = |p: Point| p + way * far;
                 let (corners, center) = (corners.map(moved), moved(center));
-                let inside = self.solid.way_out_of_any(&corners, center, self.hint);
+                let inside = self.solid.exit_of_any(&corners, center, self.hint);
                 way = direction(way + inside.unwrap_or(way) * tilt);
                 inside.is_none()
             })
@@ -296,7 +296,7 @@ impl Side for FromSource<'_> {
     }
 }
 
-/// From the solid's boundary to the source surface. Pieces: cells of space that it may cross.
+/// Distance from the solid's boundary to the source surface. Pieces: cells of space that it may cross.
 struct FromBoundary<'a> {
     tree: &'a TriangleTree,
     solid: &'a Solid<'a>,

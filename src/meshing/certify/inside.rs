@@ -28,7 +28,7 @@ const LARGER: f64 = 4.0;
 /// A cube of space.
 #[derive(Clone, Copy)]
 pub struct Cell {
-    /// Its middle.
+    /// Middle of the cell.
     pub center: Point,
     half_side: f64,
 }
@@ -110,7 +110,7 @@ impl<'a> Solid<'a> {
         self.tree.nearest(p, hint)
     }
 
-    /// Its primitives, in the order of the indices that [`Self::nearest`] gives.
+    /// Primitives of the solid, in the order of the indices that [`Self::nearest`] gives.
     pub fn primitives(&self) -> &[Corners] {
         self.tree.primitives()
     }
@@ -120,7 +120,7 @@ impl<'a> Solid<'a> {
         self.tree.ball(near)
     }
 
-    /// As [`Self::nearest`], if its signed distance is at most `limit` on either side.
+    /// The same as [`Self::nearest`], if its signed distance is at most `limit` on either side.
     pub fn nearest_if_near(&self, p: Point, limit: f64, hint: u32) -> Option<Nearest> {
         let near = self.tree.nearest_between(p, -limit, limit, hint);
         (near.signed.distance.abs() <= limit).then_some(near)
@@ -142,7 +142,7 @@ impl<'a> Solid<'a> {
     /// The signed distance to a primitive is convex, so at each point it is at least its tangent plane at
     /// the middle, which is least at a corner. That is second order in the triangle's size, where the
     /// distance at the middle alone is first order.
-    pub fn way_out_of_any(&self, corners: &[Point; 3], middle: Point, hint: u32) -> Option<Point> {
+    pub fn exit_of_any(&self, corners: &[Point; 3], middle: Point, hint: u32) -> Option<Point> {
         let from_middle = corners.map(|c| c - middle);
         let far = from_middle.iter().map(|c| c.length_sq());
         let radius = far.fold(0.0, f64::max).sqrt();
@@ -178,7 +178,7 @@ impl<'a> Solid<'a> {
 
     /// Length of the way from `p`, inside, along a unit vector to the boundary; infinite where it
     /// only grazes it.
-    pub fn way_out(&self, p: Point, towards: Point, hint: u32) -> f64 {
+    pub fn exit_distance(&self, p: Point, towards: Point, hint: u32) -> f64 {
         let mut way = 0.0;
         // 64 steps end all but grazing ways, and 2 is beyond any solid.
         for _ in 0..64 {

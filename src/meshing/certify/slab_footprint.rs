@@ -4,7 +4,7 @@
 
 use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::{Point, direction};
-use crate::meshing::simplify::quadric::slab_normals;
+use crate::meshing::geometry::quadric::slab_normals;
 
 /// A slab touches a face when its points of contact are within this of the face's plane (longest side 1).
 const TOUCHES: f64 = 1e-6;

@@ -2,7 +2,6 @@
 
 use crate::error::BuildError;
 use crate::math::Real;
-use crate::meshing::axis::creased::{Creased, creased};
 use crate::meshing::axis::start::{Start, start};
 use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::recipe::counts::{Collapses, LARGEST_GAIN};
@@ -10,6 +9,7 @@ use crate::meshing::recipe::ladder::Ladder;
 use crate::meshing::recipe::polyhedron::polyhedra;
 use crate::meshing::recipe::smallest::Smallest;
 use crate::meshing::recipe::source::Source;
+use crate::meshing::simplify::creased::{Creased, creased};
 use crate::meshing::simplify::shared_count::Parts;
 use crate::meshing::surface::boundary::solid_boundary;
 use crate::meshing::watch::Watch;
@@ -22,7 +22,8 @@ const HOPELESS: f64 = 2.0;
 const FEW_SAMPLES: usize = 2_000;
 
 impl Source {
-    /// What the limits allow: balls inside where the surface bounds matter, slabs where it is a sheet.
+    /// Makes the best candidate that the limits allow: balls inside where the surface bounds matter, slabs where it is
+    /// a sheet.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
         let exact = match self.polyhedra(watch)? {
             None => self.pieces(watch)?,

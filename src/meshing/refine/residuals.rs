@@ -33,15 +33,15 @@ pub const GUESS: f64 = 0.004;
 pub struct Row {
     /// Balls of its primitive.
     pub corners: Corners,
-    /// Their weights; sum 1.
+    /// Weights of the corners; sum 1.
     pub weights: [f64; 3],
     /// Outward unit normal of the solid.
     pub normal: Point,
-    /// By how much the solid should grow there.
+    /// Length by which the solid should grow there.
     pub residual: f64,
     /// Weight of its square.
     pub weight: f64,
-    /// Where it is.
+    /// Point of the sample.
     pub point: Point,
     /// Index of its primitive.
     pub primitive: u32,
@@ -61,7 +61,7 @@ pub struct EnvelopeSample {
 pub const UNKNOWN: u32 = u32::MAX;
 
 impl EnvelopeSample {
-    /// Where it is now, and the corners of its primitive.
+    /// Point where it is now, and the corners of its primitive.
     pub fn at(&self, draft: &Draft, solid: &Solid) -> (Point, Corners) {
         let corners = solid.primitives()[self.primitive as usize];
         let ball = Ball::interpolate(draft.balls_of(corners), self.weights);
@@ -77,7 +77,7 @@ pub struct Residuals {
     pub surface_rows: usize,
     /// Largest residual of either kind.
     pub largest: f64,
-    /// What fits are compared by: the largest residual plus twice the root mean square.
+    /// Number by which fits are compared: the largest residual plus twice the root mean square.
     pub score: f64,
 }
 
@@ -260,9 +260,9 @@ fn envelope_rows(
     })
 }
 
-/// Where the way out of the solid from a sample within it is likely shortest, if it is longer than `beyond` and leads
-/// past the primitive that is deepest there. `boundary` are points of the solid's boundary; those looked at are added to
-/// `points`.
+/// Point where the way out of the solid from a sample within it is likely shortest, if it is longer than `beyond` and
+/// leads past the primitive that is deepest there. `boundary` are points of the solid's boundary; those looked at are
+/// added to `points`.
 fn far_exit(
     solid: &Solid,
     sample: &Sample,
@@ -275,7 +275,7 @@ fn far_exit(
     if solid.is_out(p + sample.normal * beyond, hint) || solid.onto_boundary(p, near).is_some() {
         return None;
     }
-    let way = solid.way_out(p, sample.normal, hint);
+    let way = solid.exit_distance(p, sample.normal, hint);
     let straight = way.is_finite().then(|| p + sample.normal * way);
     boundary.nearer(p, way, points).or(straight)
 }

@@ -4,11 +4,11 @@
 //! simplification using quadric error metrics" (1997), §6.
 
 use crate::error::BuildError;
+use crate::meshing::axis::tangent::TangentPlane;
 use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::{Point, direction};
+use crate::meshing::geometry::quadric::{Quadric, cone_normals, slab_normals};
 use crate::meshing::simplify::complex::Complex;
-use crate::meshing::simplify::quadric::{Quadric, cone_normals, slab_normals};
-use crate::meshing::simplify::tangent::TangentPlane;
 use crate::meshing::watch::Watch;
 
 /// Cosine of the angle between two faces at an edge below which one lies on the other.
@@ -20,7 +20,7 @@ pub const BOUNDARY_WEIGHT_SOLID: f64 = 0.1;
 /// See [`BOUNDARY_WEIGHT_SOLID`].
 pub const BOUNDARY_WEIGHT_SHEET: f64 = 1.0;
 
-/// Where both balls of an edge are smaller than this (longest side 1), and no crease's, it is a sheet's.
+/// Radius (longest side 1) below which both balls of an edge, if no crease's, make it a sheet's.
 const THIN: f64 = 1.5e-3;
 
 /// Weight of the plane across the wedge or tip of a crease, at a ball of radius 0: it holds the ball against

@@ -11,10 +11,10 @@
 use crate::error::BuildError;
 use crate::meshing::axis::clip::CreasedMesh;
 use crate::meshing::draft::{Ball, Draft};
+use crate::meshing::geometry::quadric::Quadric;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::simplify::ball_quadrics::{creased_quadrics, quadrics};
 use crate::meshing::simplify::complex::Complex;
-use crate::meshing::simplify::quadric::Quadric;
 use crate::meshing::simplify::queue::{Candidate, Queue};
 use crate::meshing::simplify::voids::open_voids;
 use crate::meshing::watch::{Watch, bytes_of};
@@ -37,8 +37,7 @@ pub struct Simplifier<'a> {
     pub(crate) quadrics: Vec<Quadric>,
     versions: Vec<u32>,
     queue: Queue,
-    /// Each ball's centre lies inside the solid, and no triangle is nearer to it than this; 0 where
-    /// nothing is known.
+    /// Distance of each ball's centre, inside the solid, to the nearest triangle at least; 0 where nothing is known.
     clear: Vec<f64>,
     /// Edges that the topology rule held back.
     blocked: Vec<Candidate>,
@@ -65,8 +64,8 @@ impl<'a> Simplifier<'a> {
         Self::with_quadrics(complex, quadrics, tree, watch)
     }
 
-    /// As [`Self::new`] of a medial mesh with creases, which knows the planes that its balls touch; `flat` says
-    /// that all faces are.
+    /// Does the same as [`Self::new`] for a medial mesh with creases, which knows the planes that its balls touch;
+    /// `flat` says that all faces are.
     pub fn creased(
         mesh: CreasedMesh,
         flat: bool,

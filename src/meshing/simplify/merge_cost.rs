@@ -1,10 +1,10 @@
-//! What merging two balls costs, and the ball that they become. Source: Li et al., "Q-MAT" (2015), §4.
+//! Cost of merging two balls, and the ball that they become. Source: Li et al., "Q-MAT" (2015), §4.
 
 use crate::meshing::draft::Ball;
+use crate::meshing::geometry::quadric::Quadric;
 use crate::meshing::simplify::ball_quadrics::stability;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::simplify::crease_cost::{fold_cost, stick_out};
-use crate::meshing::simplify::quadric::Quadric;
 
 /// Added to the error before the stability ratio scales it (Q-MAT's `k`, in units of the longest
 /// side): orders the collapses that cost nothing by their stability.

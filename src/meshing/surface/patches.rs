@@ -1,4 +1,4 @@
-//! What each patch of a surface is: the boundary of solid matter, or a sheet.
+//! Tells what each patch of a surface is: the boundary of solid matter, or a sheet.
 //!
 //! The winding number jumps by 1 across a surface (Jacobson et al., "Robust Inside-Outside
 //! Segmentation using Generalized Winding Numbers", 2013). Behind a patch that bounds matter it is
@@ -52,17 +52,17 @@ const FLAT: f64 = 1e-9;
 /// Rounds of turning and of taking sheets away; two or three settle all but contrived meshes.
 const ROUNDS: usize = 12;
 
-/// What became of a patch.
+/// Verdict on a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// It bounds matter.
+    /// The patch bounds matter.
     Solid,
-    /// It encloses nothing.
+    /// The patch encloses nothing.
     Sheet,
 }
 
-/// A point of the surface to judge its patch by.
-struct Witness {
+/// A point of the surface by which its patch is classified.
+struct ProbePoint {
     point: Point,
     normal: Point,
     patch: u32,
@@ -70,7 +70,7 @@ struct Witness {
 
 /// Decides what each patch is, turns those that are inside out, and lets the tree count only those
 /// that bound matter.
-pub fn judge(
+pub fn classify(
     surface: &mut Surface,
     patches: &mut Patches,
     tree: &mut TriangleTree,
@@ -84,42 +84,49 @@ pub fn judge(
         .iter()
         .for_each(|p| areas[p.sewn as usize] += p.area);
     let crumb = |p: usize| areas[patches.list[p].sewn as usize] < CRUMB * total;
-    let witnesses = witnesses(surface, patches, &crumb, watch)?;
+    let probes = probes(surface, patches, &crumb, watch)?;
     let openings = openings(&surface.vertices, patches, watch)?;
-    let mut court = Court {
+    let mut classifier = PatchClassifier {
         group: groups(&patches.list, &crumb),
         counts: patches.list.iter().map(|p| i8::from(!is_flat(p))).collect(),
         patches,
-        witnesses,
+        probes,
         openings,
     };
-    let mut turned = vec![false; court.counts.len()];
+    let mut turned = vec![false; classifier.counts.len()];
     for _ in 0..ROUNDS {
-        let counts = &court.counts;
-        tree.recount(|t| counts[court.patches.of[t as usize] as usize], watch)?;
-        let behind = court.behind(tree, watch)?;
-        let inside_out = |p: usize| behind.mean(court.group[p]).is_some_and(|m| m < INSIDE_OUT);
+        let counts = &classifier.counts;
+        tree.recount(
+            |t| counts[classifier.patches.of[t as usize] as usize],
+            watch,
+        )?;
+        let behind = classifier.behind(tree, watch)?;
+        let inside_out = |p: usize| {
+            behind
+                .mean(classifier.group[p])
+                .is_some_and(|m| m < INSIDE_OUT)
+        };
         let turn: Vec<usize> = (0..turned.len())
-            .filter(|&p| court.counts[p] != 0 && !turned[p] && inside_out(p))
+            .filter(|&p| classifier.counts[p] != 0 && !turned[p] && inside_out(p))
             .collect();
         if !turn.is_empty() {
             for p in turn {
                 turned[p] = true;
-                court.counts[p] = -1;
+                classifier.counts[p] = -1;
             }
             continue;
         }
-        let mut sheets = court.sheets(&behind, ENCLOSING, tree, watch)?;
+        let mut sheets = classifier.sheets(&behind, ENCLOSING, tree, watch)?;
         if sheets.is_empty() {
-            sheets = court.sheets(&behind, ENCLOSING_LAST, tree, watch)?;
+            sheets = classifier.sheets(&behind, ENCLOSING_LAST, tree, watch)?;
         }
         if sheets.is_empty() {
             findings.overlapping = behind.overlapping;
             break;
         }
-        sheets.into_iter().for_each(|p| court.counts[p] = 0);
+        sheets.into_iter().for_each(|p| classifier.counts[p] = 0);
     }
-    let counts = court.counts;
+    let counts = classifier.counts;
     tree.recount(|t| counts[patches.of[t as usize] as usize], watch)?;
     tree.turn();
     for (i, triangle) in surface.triangles.iter_mut().enumerate() {
@@ -143,20 +150,20 @@ pub fn judge(
     Ok(counts.iter().map(kind).collect())
 }
 
-/// The patches, and what they are judged by.
-struct Court<'a> {
+/// The patches, and the points by which they are classified.
+struct PatchClassifier<'a> {
     patches: &'a Patches,
     /// Patches judged together; a patch with none is what it seems.
     group: Vec<Option<u32>>,
     /// How each patch counts in the winding number: 1, −1 when turned, 0 as a sheet.
     counts: Vec<i8>,
-    witnesses: Vec<Witness>,
+    probes: Vec<ProbePoint>,
     openings: Vec<Opening>,
 }
 
-/// Winding numbers behind the witnesses of each group.
+/// Winding numbers behind the probes of each group.
 struct Behind {
-    /// Sum and count over all witnesses, and over those that are not buried.
+    /// Sum and count over all probes, and over those that are not buried.
     sums: Vec<[(f64, usize); 2]>,
     overlapping: bool,
 }
@@ -167,20 +174,20 @@ impl Behind {
         (count > 0).then(|| sum / count as f64)
     }
 
-    /// Over witnesses that are not inside something else.
+    /// Over probes that are not inside something else.
     fn exposed_mean(&self, group: Option<u32>) -> Option<f64> {
         let (sum, count) = self.sums[group? as usize][1];
         (count > 0).then(|| sum / count as f64)
     }
 }
 
-impl Court<'_> {
+impl PatchClassifier<'_> {
     fn behind(&self, tree: &TriangleTree, watch: &mut Watch) -> Result<Behind, BuildError> {
         let mut behind = Behind {
             sums: vec![[(0.0, 0); 2]; self.group.len()],
             overlapping: false,
         };
-        for (i, w) in self.witnesses.iter().enumerate() {
+        for (i, w) in self.probes.iter().enumerate() {
             if i % 64 == 0 {
                 watch.at(0.0)?;
             }
@@ -249,18 +256,18 @@ fn groups(list: &[Patch], crumb: &impl Fn(usize) -> bool) -> Vec<Option<u32>> {
 
 /// Points spread by area, and some more of patches, with what is sewn to them, that have few and are judged for
 /// themselves.
-fn witnesses(
+fn probes(
     surface: &Surface,
     patches: &Patches,
     crumb: &impl Fn(usize) -> bool,
     watch: &mut Watch,
-) -> Result<Vec<Witness>, BuildError> {
+) -> Result<Vec<ProbePoint>, BuildError> {
     let mut have = vec![0u32; patches.list.len()];
-    let mut witnesses = Vec::new();
+    let mut probes = Vec::new();
     for sample in even_samples(surface, POINTS, &mut Random::new(5)) {
         let patch = patches.of[sample.triangle as usize];
         have[patches.list[patch as usize].sewn as usize] += 1;
-        witnesses.push(Witness {
+        probes.push(ProbePoint {
             point: sample.point,
             normal: sample.normal,
             patch,
@@ -275,12 +282,12 @@ fn witnesses(
         if alone && *have < POINTS_PER_PATCH {
             *have += 1;
             let [a, b, c] = surface.corners(t);
-            witnesses.push(Witness {
+            probes.push(ProbePoint {
                 point: (a + b + c) * (1.0 / 3.0),
                 normal: surface.normals[t],
                 patch: patch as u32,
             });
         }
     }
-    Ok(witnesses)
+    Ok(probes)
 }

@@ -1,4 +1,4 @@
-//! From the user's triangles to a [`Surface`]: checked, welded, oriented, sorted into what bounds matter and what is a
+//! Makes a [`Surface`] of the user's triangles: checked, welded, oriented, sorted into what bounds matter and what is a
 //! sheet, and brought to the builder's frame.
 
 use crate::error::BuildError;
@@ -9,7 +9,7 @@ use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::{Frame, Surface, corners, cross};
 use crate::meshing::surface::openings::{lids, openings};
 use crate::meshing::surface::orient::{Patches, orient};
-use crate::meshing::surface::patches::{Kind, judge};
+use crate::meshing::surface::patches::{Kind, classify};
 use crate::meshing::surface::seams::seam_slivers;
 use crate::meshing::surface::weld::{Welded, weld};
 use crate::meshing::watch::Watch;
@@ -90,7 +90,7 @@ impl Surface {
         Ok((surface, tree))
     }
 
-    /// Has the patches judged, and takes down what came out.
+    /// Judges the patches, and takes down what came out.
     fn sort(
         &mut self,
         mut patches: Patches,
@@ -98,7 +98,7 @@ impl Surface {
         watch: &mut Watch,
     ) -> Result<(), BuildError> {
         let mut findings = std::mem::take(&mut self.findings);
-        let kinds = judge(self, &mut patches, tree, &mut findings, watch)?;
+        let kinds = classify(self, &mut patches, tree, &mut findings, watch)?;
         let mut ends = vec![false; kinds.len()];
         for &(_, patch) in &patches.open_edges {
             ends[patch as usize] = true;
