@@ -199,8 +199,8 @@ fn measure(scene: &Scene, batch: &mut Batch) -> Value {
     }
     let after = batch.report();
     let share = |count: u64| count as f64 / (ROUNDS * pairs) as f64;
-    let listed = share(after.listed - before.listed);
-    let free = share(after.settled_by_gpu - before.settled_by_gpu);
+    let listed = share(after.counts.listed - before.counts.listed);
+    let free = share(after.counts.settled_by_gpu - before.counts.settled_by_gpu);
     let [contacts, send, finish, step_cpu, step_device] = times.each_mut().map(|t| median(t));
     let each = |count: usize| count as f64 / scene.steps as f64;
     println!(

@@ -109,14 +109,16 @@ fn run(options: Options) -> Result<(), String> {
         for twins in &mut twins {
             let [report, _] = twins.step();
             jobs += report.jobs;
-            early += report.sent_early;
-            free += report.settled_by_gpu;
+            early += report.batch.sent_early;
+            free += report.batch.settled_by_gpu;
             wrong += usize::from(!twins.are_equal());
         }
     }
-    let listed = twins.iter().map(|t| t.pipelines[0].batch().report().listed);
+    let listed = twins
+        .iter()
+        .map(|t| t.pipelines[0].batch().report().counts.listed);
     let listed: u64 = listed.sum();
-    let report = batch.report();
+    let report = batch.report().counts;
     println!(
         "{} steps of each: {jobs} pairs, {early} of them sent in {} submissions; {free} free, {listed} listed, {} given up",
         options.steps, report.submissions, report.given_up,

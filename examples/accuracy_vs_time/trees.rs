@@ -100,8 +100,8 @@ pub fn queries(
         let query = |case: &Case| {
             let [a, b] = case.motions.each_ref().map(parry_motion);
             let (found, counts) = bodies.counted([&a, &b])?;
-            looked.volumes += u64::from(counts.nodes);
-            looked.triangles += u64::from(counts.tests);
+            looked.volumes += counts.nodes;
+            looked.triangles += counts.tests;
             found
         };
         let allowed = bodies.shape_error;

@@ -4,6 +4,7 @@
 
 #[cfg(feature = "gpu")]
 use super::calibration::Least;
+use super::counts::BatchCounts;
 use super::cpu;
 #[cfg(feature = "gpu")]
 use super::early::Early;
@@ -20,43 +21,26 @@ use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
 
-/// Where contacts and first contacts of many pairs are computed. Answers are the same on each, bit by bit.
+/// The place where contacts and first contacts of many pairs are computed: the CPU or a GPU. Both give the same answers,
+/// bit by bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// On a GPU for batches that are large enough, if there is one; else on the CPU. Needs the feature `gpu`.
+    /// A GPU for batches that are large enough, if there is one; else the CPU. Needs the feature `gpu`.
     Auto,
-    /// On the CPU.
+    /// The CPU.
     #[default]
     Cpu,
-    /// On a GPU for every batch, however small, even if it is a GPU simulated on the CPU. For tests. Needs the feature
+    /// A GPU for every batch, however small, even if it is a GPU simulated on the CPU. For tests. Needs the feature
     /// `gpu`.
     Gpu,
 }
 
-/// What a [`Batch`] has done since it was made. A *job* is one pair of meshes or one elementary test.
+/// The work that a [`Batch`] has done since it was made.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BatchReport {
-    /// Jobs that the GPU proved not to meet.
-    pub settled_by_gpu: u64,
-    /// Jobs that the CPU answered, whether the GPU was asked before or not.
-    pub settled_by_cpu: u64,
-    /// Those of them for which the GPU listed the primitives that may meet, so that the CPU did not search.
-    pub listed: u64,
-    /// Jobs that the GPU could not take, since a pose or size was not finite or too large.
-    pub unfit: u64,
-    /// Submissions to the GPU: one for each batch.
-    pub submissions: u64,
-    /// Times that the CPU waited for answers of the GPU: one for each submission.
-    pub maps: u64,
-    /// Jobs that had been sent to the GPU before their answers were asked for ([`Batch::submit`]).
-    pub sent_early: u64,
-    /// Jobs, or pieces of their step, of which too many primitives meet to be looked at on the GPU.
-    pub given_up: u64,
-    /// Jobs, or pieces of their step, whose list of primitives found no room on the GPU.
-    pub unlisted: u64,
-    /// Batches for the GPU that it could not take.
-    pub fallbacks: u64,
-    /// Why the last of these batches, or the GPU as a whole, was not used.
+    /// Counts of jobs, submissions and failures.
+    pub counts: BatchCounts,
+    /// Why the last of [`BatchCounts::fallbacks`], or the GPU as a whole, was not used.
     pub error: Option<GpuError>,
 }
 
@@ -70,7 +54,7 @@ pub struct Batch {
     pub(super) gpu: Option<Gpu>,
     #[cfg(feature = "gpu")]
     pub(super) proposals: Proposals,
-    /// What the device said of each job of a batch.
+    /// Answers of the device, one for each job of a batch.
     #[cfg(feature = "gpu")]
     pub(super) said: Vec<Proposal>,
     #[cfg(feature = "gpu")]
@@ -104,7 +88,7 @@ impl Batch {
         }
     }
 
-    /// What has been done so far.
+    /// The work done so far.
     pub fn report(&self) -> &BatchReport {
         &self.report
     }
@@ -145,7 +129,7 @@ impl Batch {
     }
 
     pub(super) fn run_on_cpu<J: Job>(&mut self, jobs: &[J]) -> Vec<J::Answer> {
-        self.report.settled_by_cpu += jobs.len() as u64;
+        self.report.counts.settled_by_cpu += jobs.len() as u64;
         cpu::run(jobs)
     }
 
@@ -169,7 +153,7 @@ impl Batch {
         domain: Domain,
         limits: &Limits<f32>,
     ) -> Vec<Bracket<f32>> {
-        self.report.settled_by_cpu += paths.len() as u64;
+        self.report.counts.settled_by_cpu += paths.len() as u64;
         brackets(paths, domain, limits, Lanes::Fastest)
     }
 }

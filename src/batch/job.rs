@@ -11,7 +11,7 @@ use parry3d::query::NonlinearRigidMotion;
 
 /// One query of a batch. Its answer depends on the job alone, never on the others in the batch.
 pub trait Job: Sync {
-    /// Its answer.
+    /// Answer to the job.
     type Answer: Send;
     /// The smallest number of jobs for which it pays to wake another thread, which takes some microseconds.
     const PER_THREAD: usize;
@@ -52,7 +52,7 @@ impl<J: Job> Job for &J {
 pub struct Sweep<'a> {
     /// The two meshes.
     pub meshes: [&'a MedialMesh; 2],
-    /// Their motions, in world space, with velocities per second.
+    /// Motions of the two meshes, in world space, with velocities per second.
     pub motions: [NonlinearRigidMotion; 2],
     /// Length of the step in seconds; 0 for bodies at rest.
     pub seconds: Real,
@@ -82,6 +82,19 @@ pub struct PairResult {
     pub contacts: Vec<SpherePair>,
     /// The work it took.
     pub counts: Counts,
+}
+
+impl PairJob {
+    /// The contacts of two meshes, the second at `pos12` in the first's frame, within a prediction distance.
+    pub fn of(meshes: [&MedialMesh; 2], pos12: &Pose, prediction: Real) -> Self {
+        let [mesh1, mesh2] = meshes.map(MedialMesh::clone);
+        Self {
+            mesh1,
+            mesh2,
+            pos12: *pos12,
+            prediction,
+        }
+    }
 }
 
 impl Job for PairJob {
@@ -122,15 +135,15 @@ impl Job for PairJob {
 pub struct ToiJob {
     /// First mesh.
     pub mesh1: MedialMesh,
-    /// Its motion, world space, velocities per second.
+    /// Motion of the first mesh, in world space, with velocities per second.
     pub motion1: NonlinearRigidMotion,
     /// Second mesh.
     pub mesh2: MedialMesh,
-    /// Its motion, world space, velocities per second.
+    /// Motion of the second mesh, in world space, with velocities per second.
     pub motion2: NonlinearRigidMotion,
     /// Length of the step in seconds.
     pub seconds: Real,
-    /// What counts as a contact, and how exact the answer has to be.
+    /// The distance that counts as a contact, and the tolerance of the answer.
     pub options: ToiOptions,
 }
 

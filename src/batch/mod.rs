@@ -4,16 +4,18 @@
 mod backend;
 #[cfg(feature = "gpu")]
 mod calibration;
+mod counts;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 mod early;
 #[cfg(feature = "gpu")]
 pub mod gpu;
-pub mod job;
+pub(crate) mod job;
 #[cfg(feature = "gpu")]
 mod on_device;
 
 pub use backend::{Backend, Batch, BatchReport};
 #[cfg(feature = "gpu")]
 pub use calibration::Calibration;
+pub use counts::BatchCounts;
 pub use job::{Job, PairJob, PairResult, Sweep, ToiJob, ToiResult};

@@ -1,10 +1,11 @@
-//! What of a batch a GPU is asked: whether it pays, what it said, and what is left for the CPU.
+//! The GPU's part of a batch: whether asking it pays, what it said, and what is left for the CPU.
 
 use super::backend::{Backend, Batch};
 use super::calibration::{Calibration, Least};
+use super::counts::BatchCounts;
 use super::cpu;
 use super::early::Key;
-use super::gpu::{Gpu, GpuCounts, GpuOptions, Proposal, Proposals};
+use super::gpu::{Gpu, GpuOptions, GpuStock, Proposal, Proposals};
 use super::job::{Job, Sweep};
 use crate::elementary::bracket::{Bracket, Limits};
 use crate::elementary::path::LinearPath;
@@ -45,13 +46,18 @@ impl Batch {
         self.gpu.as_mut()
     }
 
-    /// What the GPU has done.
-    pub fn gpu_counts(&self) -> GpuCounts {
+    /// The work that the GPU has done.
+    pub fn gpu_counts(&self) -> BatchCounts {
         self.gpu.as_ref().map(Gpu::counts).unwrap_or_default()
     }
 
-    /// Has [`Backend::Auto`] use the GPU from the sizes of batches of this calibration on. Returns false, and changes
-    /// nothing, if it was measured on another GPU than this, or if there is none.
+    /// Resources that the GPU keeps.
+    pub fn gpu_stock(&self) -> GpuStock {
+        self.gpu.as_ref().map(Gpu::stock).unwrap_or_default()
+    }
+
+    /// Sets the sizes of batches from which on [`Backend::Auto`] uses the GPU, by this calibration. Returns false, and
+    /// changes nothing, if it was measured on another GPU than this, or if there is none.
     pub fn calibrate(&mut self, calibration: &Calibration) -> bool {
         let Calibration {
             adapter,
@@ -73,17 +79,13 @@ impl Batch {
     }
 
     /// Adds what the device did since it had counted so much.
-    fn count(&mut self, before: GpuCounts) {
-        let now = self.gpu_counts();
-        self.report.submissions += now.submissions - before.submissions;
-        self.report.maps += now.maps - before.maps;
-        self.report.given_up += now.given_up - before.given_up;
-        self.report.unlisted += now.unlisted - before.unlisted;
+    fn count(&mut self, before: BatchCounts) {
+        self.report.counts += self.gpu_counts() - before;
     }
 
     /// The batch goes to the CPU; a device that may still serve is kept.
     fn fall_back(&mut self, error: GpuError) {
-        self.report.fallbacks += 1;
+        self.report.counts.fallbacks += 1;
         if !matches!(error, GpuError::TooLarge { .. }) {
             self.gpu = None;
         }
@@ -164,7 +166,7 @@ impl Batch {
         let known = |s: Sweep<'_>| sent.contains_key(&Key::of(&s));
         let known = jobs.iter().filter(|job| job.sweep().is_some_and(known));
         let known = known.count();
-        self.report.sent_early += known as u64;
+        self.report.counts.sent_early += known as u64;
         if known == 0 {
             self.early.forget();
         }
@@ -222,16 +224,16 @@ impl Batch {
         for job in jobs {
             let said = job.sweep().map(|sweep| proposal(&sweep));
             let unfit = matches!(said, None | Some(Some(Proposal::Unfit)));
-            self.report.unfit += u64::from(unfit);
+            self.report.counts.unfit += u64::from(unfit);
             // Also of jobs that were not sent nothing is known.
             let said = said.flatten().unwrap_or(Proposal::Open);
             free += u64::from(said == Proposal::Free);
             listed += u64::from(matches!(said, Proposal::Near { .. }));
             self.said.push(said);
         }
-        self.report.settled_by_gpu += free;
-        self.report.settled_by_cpu += jobs.len() as u64 - free;
-        self.report.listed += listed;
+        self.report.counts.settled_by_gpu += free;
+        self.report.counts.settled_by_cpu += jobs.len() as u64 - free;
+        self.report.counts.listed += listed;
         cpu::run_told(jobs, &self.said, proposals)
     }
 
@@ -261,7 +263,7 @@ impl Batch {
         open.clear();
         let left = paths.iter().zip(&free).filter(|(_, free)| !**free);
         open.extend(left.map(|(path, _)| *path));
-        self.report.settled_by_gpu += (paths.len() - open.len()) as u64;
+        self.report.counts.settled_by_gpu += (paths.len() - open.len()) as u64;
         let mut rest = self.brackets_on_cpu(&open, domain, limits).into_iter();
         self.open = open;
         let answers = free

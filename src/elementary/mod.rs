@@ -24,18 +24,18 @@
 
 pub mod alternating;
 pub mod bracket;
-pub mod certificate;
-pub mod cone_cone;
+pub(crate) mod certificate;
+pub(crate) mod cone_cone;
 pub mod distance;
-pub mod earliest;
+pub(crate) mod earliest;
 pub mod f64;
 pub mod first_contact;
 pub mod many;
 pub mod path;
 pub mod penetration;
-pub mod resumed;
+pub(crate) mod resumed;
 pub mod slab_crossing;
-pub mod sphere_slab;
+pub(crate) mod sphere_slab;
 pub mod test_list;
 
 pub use alternating::alternating;
@@ -56,8 +56,8 @@ pub struct MovingSphere {
     pub displacement: Vector,
 }
 
-/// What counts as a contact in a query for the first contact, and how exact the answer has to be. The defaults suit
-/// metres.
+/// Options of a query for the first contact: the distance that counts as a contact, and the tolerance of the answer. The
+/// defaults suit metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToiOptions {
     /// How much farther than [`Self::target_distance`] apart bodies may be to count as in contact, in the user's
@@ -75,12 +75,12 @@ pub struct ToiOptions {
     pub target_distance: Real,
     /// How primitives that touch at the start already are treated. Only in queries of meshes.
     pub initial_contact: InitialContact,
-    /// Where the paper's iteration begins. Only for [`alternating()`].
+    /// Start of the paper's iteration. Only for [`alternating()`].
     pub alternating_start: AlternatingStart,
-    /// On which paths the points of a turning body move. Only in queries of meshes.
+    /// The paths on which the points of a turning body move. Only in queries of meshes.
     pub paths: Paths,
-    /// If set, the first contact of the bodies' cores is asked for instead of that of the bodies themselves. Only in
-    /// queries of meshes.
+    /// Cores of the bodies: if set, their first contact is asked for instead of that of the bodies. Read by queries of
+    /// meshes only.
     pub cores: Option<Cores>,
 }
 
@@ -110,8 +110,8 @@ pub struct Cores {
 }
 
 impl Cores {
-    /// What the spheres of two primitives of these thicknesses lose: a share of their radius, which is
-    /// taken as `most` where it is larger. Infinite thickness stands for a surface.
+    /// Losses of the spheres of two primitives of these thicknesses: a share of their radius, which is taken as `most`
+    /// where it is larger. Infinite thickness stands for a surface.
     pub(crate) fn losses(&self, thickness: [Real; 2]) -> [Loss; 2] {
         let (shares, most) = self.of_each(self.share, thickness);
         shares.map(|share| Loss { share, most })
@@ -132,7 +132,7 @@ impl Cores {
         })
     }
 
-    /// What of a share each of two primitives of these thicknesses has, and the local thickness.
+    /// Parts of a share that each of two primitives of these thicknesses has, and the local thickness, a length.
     fn of_each(&self, share: Real, thickness: [Real; 2]) -> ([f64; 2], f64) {
         let most = thickness[0].min(thickness[1]).min(self.at_most);
         let solid = thickness.map(Real::is_finite);
@@ -146,7 +146,7 @@ impl Cores {
     }
 }
 
-/// What spheres lose of their radius.
+/// Loss of a sphere's radius.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Loss {
     share: f64,
@@ -154,16 +154,16 @@ pub(crate) struct Loss {
 }
 
 impl Loss {
-    /// Of a sphere of this radius, a length.
+    /// Loss of a sphere of this radius, a length.
     pub(crate) fn of(&self, radius: f64) -> f64 {
         self.share * radius.min(self.most)
     }
 }
 
-/// On which paths the points of a body that turns in the step are taken to move.
+/// The paths on which the points of a turning body move in the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Paths {
-    /// On those of its rigid motion.
+    /// The exact paths of the rigid motion.
     #[default]
     Exact,
     /// Straight from where each point is at the start to where it is at the end (paper, Eq. 1). The guarantee then
@@ -175,9 +175,9 @@ pub enum Paths {
 /// Figure 3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AlternatingStart {
-    /// At the start of the step, `t0`. The iteration ends at once if that pair only moves apart, as in Figure 3.
+    /// Start of the step, `t0`. The iteration ends at once if that pair only moves apart, as in Figure 3.
     Start,
-    /// At the end of the step, `t1`: the paper's choice.
+    /// End of the step, `t1`: the paper's choice.
     #[default]
     End,
 }
@@ -185,19 +185,19 @@ pub enum AlternatingStart {
 /// How a query of meshes treats primitives that are within the tolerance of each other at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InitialContact {
-    /// They are the answer: a contact at time 0.
+    /// Pairs in contact at the start are the answer: a contact at time 0.
     Stop,
-    /// They may stay in touch, and sink in by a length: such a pair counts as in contact only when its signed distance
-    /// has fallen by `by` below what it is at the start. Other pairs are searched as usual.
+    /// Pairs in contact at the start may stay in touch, and sink in by a length: such a pair counts as in contact only
+    /// when its signed distance has fallen by `by` below what it is at the start. Other pairs are searched as usual.
     Deepen {
         /// How much deeper they may get at most, a length above 0. Where parts are so thin that their axes would cross
         /// before, it is a share of the distance of the axes instead.
         by: Real,
     },
-    /// They are the answer, a contact at time 0, if they come nearer to each other in the step, before another pair
-    /// meets. Pairs that part or slide go on. This is meant for straight motion, in which the distance of two
-    /// primitives never shrinks again once it has grown. If bodies turn, a pair that parts first and comes nearer
-    /// later is an answer at time 0 too.
+    /// Pairs in contact at the start are the answer, a contact at time 0, if they come nearer to each other in the
+    /// step, before another pair meets. Pairs that part or slide go on. This is meant for straight motion, in which the
+    /// distance of two primitives never shrinks again once it has grown. If bodies turn, a pair that parts first and
+    /// comes nearer later is an answer at time 0 too.
     Approach {
         /// How much nearer they must come, a length above 0: more than rounding of poses and velocities makes of
         /// sliding.
@@ -220,8 +220,7 @@ impl Default for ToiOptions {
     }
 }
 
-/// What a query found out about the first contact. The documentation of [this module](self) has the exact promise of
-/// each.
+/// Outcome of a query for the first contact. The documentation of [this module](self) has the exact promise of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ToiStatus {
     /// No contact in the whole step.
@@ -238,9 +237,9 @@ pub enum ToiStatus {
 /// First contact of two primitives or meshes; times are fractions of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Toi {
-    /// What the numbers mean.
+    /// The outcome, which says what the other fields mean.
     pub status: ToiStatus,
-    /// There is no contact before this time. 1 if separated.
+    /// Time before which there is no contact, a fraction of the step; 1 if separated.
     pub lower: Real,
     /// The bodies are in contact, within the tolerance, at this time. 1 if separated or unknown.
     pub upper: Real,

@@ -10,18 +10,21 @@ use super::search::Search;
 use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
 use crate::elementary::{Paths, Toi, ToiOptions};
 use crate::math::Real;
+use crate::math::counters::counters;
 use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
 
-/// How much work a query did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Pairs of tree nodes that were looked at.
-    pub nodes: u32,
-    /// Elementary tests that were computed, each counted once.
-    pub tests: u32,
+counters! {
+    /// How much work a query did.
+    #[derive(Eq)]
+    pub struct Counts {
+        /// Pairs of tree nodes that were looked at.
+        pub nodes: u64,
+        /// Elementary tests that were computed, each counted once.
+        pub tests: u64,
+    }
 }
 
 /// First contact of two medial meshes whose bodies move rigidly for `seconds`.
@@ -231,8 +234,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
     /// The work done so far.
     pub fn counts(&self) -> Counts {
         let of = |s: &Search<A, B>| Counts {
-            nodes: s.nodes,
-            tests: s.earliest.tests,
+            nodes: s.nodes.into(),
+            tests: s.earliest.tests.into(),
         };
         self.search.as_ref().map(of).unwrap_or_default()
     }

@@ -48,7 +48,7 @@ pub struct Axisymmetric {
     pub border: Real,
 }
 
-/// Where a [`Axisymmetric`] body is: centre and axis.
+/// Placement of an [`Axisymmetric`] body: centre and axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     /// Centre; points are given relative to it.
@@ -67,7 +67,7 @@ pub struct NearBall {
     pub ball: Ball,
     /// Distance of its centre to the body, 0 inside.
     pub apart: f64,
-    /// From the body to the centre, of length 1 at most: the `m` of the bound.
+    /// Direction from the body to the centre, of length 1 at most: the `m` of the bound.
     pub direction: Vec3<f64>,
 }
 
@@ -148,7 +148,7 @@ impl Axisymmetric {
     }
 
     /// The shortest way from a point inside to the surface: unit direction and length.
-    pub fn way_out(&self, place: &Place, point: Vec3<f64>) -> (Vec3<f64>, f64) {
+    pub fn min_translation(&self, place: &Place, point: Vec3<f64>) -> (Vec3<f64>, f64) {
         let (h, r) = (self.half_height, self.radius);
         let y = point.dot(place.axis);
         let across = point - place.axis * y;

@@ -103,7 +103,7 @@ struct Search<'a> {
     lower: f64,
     upper: f64,
     found: Option<Found>,
-    /// As [`crate::pair::first_contact::Query::deepest`].
+    /// Depth of the deepest contact at the start, as [`crate::pair::first_contact::Query::deepest`].
     deepest: f64,
 }
 
@@ -219,7 +219,7 @@ impl Search<'_> {
     }
 
     fn leaf(&mut self, body: &Axisymmetric, primitives: [u32; 2], entry: &Entry) {
-        self.counts.tests += u32::from(entry.spent == 0);
+        self.counts.tests += u64::from(entry.spent == 0);
         let (mut all, len) = self.balls(primitives[0]);
         let thickness = self.mesh.thicknesses().primitives[primitives[0] as usize];
         let mut thinner = thickness;
@@ -341,7 +341,7 @@ impl Search<'_> {
         let (out, apart) = match body {
             // A centre inside has no nearest point but the way out.
             Some(b) if apart <= 0.0 => {
-                let (out, way) = b.way_out(&found.place, ball.0);
+                let (out, way) = b.min_translation(&found.place, ball.0);
                 (out, -way)
             }
             _ => (unit(found.near.direction), apart),

@@ -110,8 +110,7 @@ impl Cast<'_> {
             };
             let further = self.query(&motion1, &motion2, seconds, &further, None)?;
             toi = further.toi;
-            counts.nodes += further.counts.nodes;
-            counts.tests += further.counts.tests;
+            counts += further.counts;
         }
         if toi.status == ToiStatus::Separated {
             return Ok((None, counts));
@@ -204,10 +203,12 @@ impl Cast<'_> {
             return Err(Unsweepable);
         }
         let Parts {
-            soup, axisymmetric, ..
+            primitives,
+            axisymmetric,
+            ..
         } = &parts;
-        let mut found = self.search(soup, motion1, motion2, seconds, options, left);
-        found.toi.primitives[1] = parts.soup_subshape(found.toi.primitives[1]);
+        let mut found = self.search(primitives, motion1, motion2, seconds, options, left);
+        found.toi.primitives[1] = parts.primitive_subshape(found.toi.primitives[1]);
         if !axisymmetric.is_empty() {
             let mut other = axisymmetric_toi::first_contact(
                 self.mesh,
@@ -218,8 +219,7 @@ impl Cast<'_> {
                 options,
             );
             other.toi.primitives[1] = parts.axisymmetric_subshape(other.toi.primitives[1]);
-            found.counts.nodes += other.counts.nodes;
-            found.counts.tests += other.counts.tests;
+            found.counts += other.counts;
             found.toi = earlier(found.toi, other.toi);
             // Of what met a cylinder or a cone the spheres alone do not tell the contact.
             if found.toi.lower == other.toi.lower {
@@ -278,7 +278,7 @@ impl Cast<'_> {
             ..Toi::separated(options)
         };
         let placed: Vec<_> = spheres.iter().map(placed).collect();
-        if let Some(way) = inside::way_out(self.other, &placed) {
+        if let Some(way) = inside::min_translation(self.other, &placed) {
             let of_sphere = |s: &Simplex| s.vertices.contains(&(way.sphere as u32));
             let primitive = self.mesh.simplices().iter().position(of_sphere);
             let MedialSphere { center, radius } = placed[way.sphere];
@@ -318,7 +318,7 @@ impl Cast<'_> {
     }
 }
 
-/// What is known of two bodies together, of which each is known.
+/// First contact with two bodies together, by the first contact with each.
 fn earlier(a: Toi, b: Toi) -> Toi {
     let overlap = |t: &Toi| t.status == ToiStatus::Overlapping;
     let (first, second) = if overlap(&b) || (!overlap(&a) && b.lower < a.lower) {

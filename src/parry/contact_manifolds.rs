@@ -5,6 +5,7 @@ use super::contact_reduction;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::flat_face;
 use super::manifolds::{self, ensure_workspace, write_one_point};
+use crate::batch::PairJob;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use parry3d::query::{
@@ -14,6 +15,11 @@ use parry3d::query::{
 use parry3d::shape::Shape;
 
 impl MedialDispatcher {
+    fn count_manifolds(&self, manifolds: usize) {
+        self.exchange
+            .note(|tally| tally.counts.manifolds += manifolds as u64);
+    }
+
     /// The manifolds of two shapes, of which one at least is medial.
     fn write_manifolds<M, C>(
         &self,
@@ -29,7 +35,8 @@ impl MedialDispatcher {
         M: Default + Clone,
         C: Default + Copy,
     {
-        if self.answers.is_muted(g1, g2, pos12) {
+        let plan = self.exchange.plan();
+        if plan.is_muted(g1, g2, pos12) {
             // parry's workspace holds indices into the list that is emptied here.
             *workspace = None;
             ensure_workspace::<M, C>(g1, g2, workspace);
@@ -37,13 +44,13 @@ impl MedialDispatcher {
             return Ok(());
         }
         let meshes = (medial(g1), medial(g2));
-        if self.answers.has_one_point(g1, g2) {
+        if plan.has_single_point(g1, g2) {
             let deepest = self.deepest(pos12, g1, g2, prediction)?;
             // As above.
             *workspace = None;
             ensure_workspace::<M, C>(g1, g2, workspace);
             write_one_point(deepest, pos12, manifolds);
-            self.answers.count_manifolds(manifolds.len());
+            self.count_manifolds(manifolds.len());
             return Ok(());
         }
         // Every place where a soft surface touches has a load of its own.
@@ -80,18 +87,14 @@ impl MedialDispatcher {
             return written;
         };
         ensure_workspace::<M, C>(mesh1, mesh2, workspace);
-        self.answers
-            .contacts(mesh1, mesh2, pos12, prediction, |found| {
-                manifolds::write_manifolds(
-                    [mesh1, mesh2],
-                    &found.contacts,
-                    pos12,
-                    prediction,
-                    manifolds,
-                );
-            });
+        let meshes = [mesh1, mesh2];
+        let job = PairJob::of(meshes, pos12, prediction);
+        self.exchange.contacts(job, |found| {
+            let contacts = &found.contacts;
+            manifolds::write_manifolds(meshes, contacts, pos12, prediction, manifolds);
+        });
         contact_reduction::choose(manifolds, center, prediction, &previous, side);
-        self.answers.count_manifolds(manifolds.len());
+        self.count_manifolds(manifolds.len());
         Ok(())
     }
 }
@@ -180,8 +183,9 @@ where
         let points = manifolds.iter().flat_map(|m| &m.points);
         let depth = points.map(|p| -p.dist).fold(0.0, Real::max);
         // What somebody else will write is unknown.
-        self.answers
-            .note_depth(written.map_or(Real::MAX, |()| depth));
+        let depth = written.map_or(Real::MAX, |()| depth);
+        self.exchange
+            .note(|tally| tally.depth = tally.depth.max(depth));
         written
     }
 

@@ -1,10 +1,10 @@
 //! [`MedialDispatcher`]: the entry through which parry and rapier ask this crate about medial meshes. What it does not
 //! answer falls through to parry's default dispatcher, which treats a medial mesh as a compound of convex parts.
 
-use super::answers::Answers;
 use super::cast::Cast;
 use super::distance;
-use crate::batch::PairResult;
+use super::narrow_phase_plan::PlanExchange;
+use crate::batch::{PairJob, PairResult};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
@@ -37,13 +37,13 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Default)]
 pub struct MedialDispatcher {
-    pub(super) answers: Arc<Answers>,
+    pub(super) exchange: Arc<PlanExchange>,
 }
 
 impl MedialDispatcher {
-    /// A dispatcher that looks for an answer among those that a batch has computed before it computes one.
-    pub fn new(answers: Arc<Answers>) -> Self {
-        Self { answers }
+    /// A dispatcher that goes by the plan that a pipeline leaves there.
+    pub(crate) fn new(exchange: Arc<PlanExchange>) -> Self {
+        Self { exchange }
     }
 
     fn cast(
@@ -58,7 +58,7 @@ impl MedialDispatcher {
         let [first, second] = if flipped { [1, 0] } else { [0, 1] };
         let mesh = medial(shapes[first]).ok_or(Unsupported)?;
         let pos12 = motions[0].start.inv_mul(&motions[1].start);
-        if self.answers.passes(shapes[0], shapes[1], &pos12) {
+        if self.exchange.passes(shapes[0], shapes[1], &pos12) {
             return Ok(None);
         }
         let cast = Cast {
@@ -72,7 +72,10 @@ impl MedialDispatcher {
             stop_approach,
         };
         let (hit, counts) = cast.run().map_err(|_| Unsupported)?;
-        self.answers.count_cast(counts.nodes, counts.tests);
+        self.exchange.note(|tally| {
+            tally.counts.casts += 1;
+            tally.counts.work += counts;
+        });
         Ok(hit.map(|h| if flipped { h.swapped() } else { h }))
     }
 
@@ -90,7 +93,7 @@ impl MedialDispatcher {
             (None, None) => return Err(Unsupported),
         }
         .map_err(|_| Unsupported)?;
-        self.answers.count(counts.nodes, counts.tests);
+        self.exchange.note(|tally| tally.counts.work += counts);
         Ok(found)
     }
 
@@ -110,9 +113,8 @@ impl MedialDispatcher {
             near.min_by(|a, b| a.distance.total_cmp(&b.distance))
                 .copied()
         };
-        Ok(self
-            .answers
-            .contacts(mesh1, mesh2, pos12, prediction, deepest))
+        let job = PairJob::of([mesh1, mesh2], pos12, prediction);
+        Ok(self.exchange.contacts(job, deepest))
     }
 }
 
@@ -166,7 +168,7 @@ impl QueryDispatcher for MedialDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        self.answers.count_intersection();
+        self.exchange.note(|tally| tally.counts.intersections += 1);
         let nearest = self.nearest(pos12, g1, g2, 0.0)?;
         Ok(match nearest {
             Some(c) => {
@@ -274,7 +276,7 @@ impl QueryDispatcher for MedialDispatcher {
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let one_is_medial = medial(g1).is_some() || medial(g2).is_some();
         // rapier asks so of solid pairs; of what only tells of events it wants the first contact.
-        if one_is_medial && !stop_at_penetration && self.answers.is_swept_elsewhere() {
+        if one_is_medial && !stop_at_penetration && self.exchange.plan().skips_sweeps {
             return Ok(None);
         }
         self.cast(

@@ -75,12 +75,12 @@ fn near(
     if !swept_sphere_parts::add_surface(&mut parts, other, &Pose::IDENTITY, &region) {
         return Err(Unsweepable);
     }
-    let (mut best, mut counts) = near_spheres(mesh, &parts.soup, pos12, max_distance, wanted);
+    let (mut best, mut counts) = near_spheres(mesh, &parts.primitives, pos12, max_distance, wanted);
     if best.is_some() && wanted == Wanted::Any {
         return Ok((best, counts));
     }
     for pair in best.iter_mut() {
-        pair.primitives[1] = parts.soup_subshape(pair.primitives[1]);
+        pair.primitives[1] = parts.primitive_subshape(pair.primitives[1]);
     }
     for (index, body) in parts.axisymmetric.iter().enumerate() {
         let limit = best.map_or(max_distance, |b| b.distance);
@@ -90,7 +90,7 @@ fn near(
             best = Some(found);
         }
     }
-    if let Some(inside) = way_out(mesh, other, pos12)
+    if let Some(inside) = overlap_with_center_inside(mesh, other, pos12)
         && best.is_none_or(|b| inside.distance < b.distance)
     {
         best = Some(inside);
@@ -113,11 +113,15 @@ fn reach(mesh: &MedialMesh, other: &dyn Shape, pos21: &Pose, max_distance: Real)
 }
 
 /// The overlap with a closed shape that holds a centre.
-fn way_out(mesh: &MedialMesh, other: &dyn Shape, pos12: &Pose) -> Option<SpherePair> {
+fn overlap_with_center_inside(
+    mesh: &MedialMesh,
+    other: &dyn Shape,
+    pos12: &Pose,
+) -> Option<SpherePair> {
     let pos21 = pos12.inverse();
     let placed = |s: &MedialSphere| MedialSphere::new(pos21 * s.center, s.radius);
     let placed: Vec<_> = mesh.spheres().iter().map(placed).collect();
-    let way = inside::way_out(other, &placed)?;
+    let way = inside::min_translation(other, &placed)?;
     let of_sphere = |p: &crate::medial::simplex::Simplex| p.vertices.contains(&(way.sphere as u32));
     let primitive = mesh.simplices().iter().position(of_sphere).unwrap_or(0);
     let MedialSphere { center, radius } = placed[way.sphere];
@@ -200,7 +204,7 @@ fn nearest_axisymmetric(
 /// Unit direction from the body to a sphere, and the signed distance; of a centre inside, the way out.
 fn out_of(body: &Axisymmetric, place: &Place, near: &NearBall) -> (Vec3<f64>, f64) {
     if near.apart <= 0.0 {
-        let (out, way) = body.way_out(place, near.ball.0);
+        let (out, way) = body.min_translation(place, near.ball.0);
         return (out, -way - near.ball.1);
     }
     (unit(near.direction), near.distance())

@@ -34,31 +34,31 @@ pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
     }
 }
 
-/// A way out of a closed body.
+/// Shortest translation out of a closed body.
 #[derive(Clone, Copy, Debug)]
-pub struct WayOut {
+pub struct MinTranslation {
     /// Index of the sphere that has the longest way.
     pub sphere: usize,
     /// Unit direction, in the closed body's frame.
     pub direction: Vector,
-    /// From that sphere's centre to the surface, a length.
+    /// Distance from that sphere's centre to the surface, a length.
     pub to_surface: Real,
-    /// By how much to move, a length.
+    /// Distance to move, a length.
     pub depth: Real,
 }
 
 /// The way out for spheres given in the shape's frame, if one of their centres is inside. Of a
 /// compound's children it is that of the one they are deepest in; of shapes without faces (voxels) that
 /// of the centre furthest from the surface.
-pub fn way_out(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<WayOut> {
+pub fn min_translation(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<MinTranslation> {
     if let TypedShape::Compound(c) = shape.as_typed_shape() {
         let of_child = |(pose, child): &(crate::math::Pose, parry3d::shape::SharedShape)| {
             let local = |s: &MedialSphere| {
                 MedialSphere::new(pose.inverse_transform_point(s.center), s.radius)
             };
             let local: Vec<_> = spheres.iter().map(local).collect();
-            let way = way_out(child.as_ref(), &local)?;
-            Some(WayOut {
+            let way = min_translation(child.as_ref(), &local)?;
+            Some(MinTranslation {
                 direction: pose.rotation * way.direction,
                 ..way
             })
@@ -69,7 +69,7 @@ pub fn way_out(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<WayOut> {
     if !spheres.iter().any(|s| holds_point(shape, s.center)) {
         return None;
     }
-    let mut best: Option<WayOut> = None;
+    let mut best: Option<MinTranslation> = None;
     let through = |n: Vector, offset: Real| {
         let to_surface = |s: &MedialSphere| offset - n.dot(s.center);
         let depth = |s: &MedialSphere| to_surface(s) + s.radius;
@@ -80,7 +80,7 @@ pub fn way_out(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<WayOut> {
         if let Some((sphere, s)) = deepest
             && best.is_none_or(|old| depth(s) < old.depth)
         {
-            best = Some(WayOut {
+            best = Some(MinTranslation {
                 sphere,
                 direction: n,
                 to_surface: to_surface(s),
@@ -120,13 +120,13 @@ fn hull_faces(hull: &ConvexPolyhedron, border: Real, mut face: impl FnMut(Vector
     }
 }
 
-fn by_projection(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<WayOut> {
+fn by_projection(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<MinTranslation> {
     let way = |(sphere, s): (usize, &MedialSphere)| {
         if !holds_point(shape, s.center) {
             return None;
         }
         let out = shape.project_local_point(s.center, false).point - s.center;
-        Some(WayOut {
+        Some(MinTranslation {
             sphere,
             direction: out.try_normalize()?,
             to_surface: out.length(),

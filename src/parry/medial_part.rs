@@ -54,11 +54,6 @@ impl MedialPart {
             primitive,
         }
     }
-
-    /// The primitive it is made of.
-    pub fn primitive(&self) -> &MedialPrimitive {
-        &self.primitive
-    }
 }
 
 impl Core {
@@ -229,8 +224,8 @@ impl Shape for MedialPart {
         };
         Some(Box::new(Self::new(primitive)))
     }
-    /// Of the ball around the core's first sphere: parts are never colliders of their own; the
-    /// mesh's mass is [`crate::MedialMesh::mass_properties`].
+    /// Mass properties of the ball around the core's first sphere: parts are never colliders of their own; the mesh's
+    /// mass is [`crate::MedialMesh::mass_properties`].
     fn mass_properties(&self, density: Real) -> MassProperties {
         MassProperties::from_ball(density, self.border)
     }

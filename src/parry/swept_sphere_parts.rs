@@ -15,7 +15,7 @@ use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
 /// half-space's plane, larger than anything the body can reach.
 const PLANE_REACH: Real = 2.0;
 
-/// What rounding takes from the coordinates of a box put in another frame, in units of the coordinates.
+/// Rounding error of the coordinates of a box put in another frame, in units of the coordinates.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 
 /// Error: the other shape is neither medial nor one of parry's own, so it cannot be swept.
@@ -26,18 +26,18 @@ pub struct Unsweepable;
 #[derive(Clone, Debug, Default)]
 pub struct Parts {
     /// Swept spheres.
-    pub soup: PrimitiveList,
+    pub primitives: PrimitiveList,
     /// Cylinders and cones.
     pub axisymmetric: Vec<Axisymmetric>,
-    /// parry's subshape of each primitive of the soup: child, triangle, segment, cell or voxel.
-    soup_subshapes: Vec<u32>,
+    /// parry's subshape of each primitive: child, triangle, segment, cell or voxel.
+    primitive_subshapes: Vec<u32>,
     axisymmetric_subshapes: Vec<u32>,
 }
 
 impl Parts {
-    /// parry's subshape of a primitive of the soup.
-    pub fn soup_subshape(&self, primitive: u32) -> u32 {
-        let of = self.soup_subshapes.get(primitive as usize);
+    /// parry's subshape of a primitive.
+    pub fn primitive_subshape(&self, primitive: u32) -> u32 {
+        let of = self.primitive_subshapes.get(primitive as usize);
         of.copied().unwrap_or(0)
     }
 
@@ -49,8 +49,9 @@ impl Parts {
 
     /// Names the subshape of what was added since the last call: one convex part.
     fn name(&mut self, subshape: u32) {
-        self.soup.end_part();
-        self.soup_subshapes.resize(self.soup.len(), subshape);
+        self.primitives.end_part();
+        self.primitive_subshapes
+            .resize(self.primitives.len(), subshape);
         self.axisymmetric_subshapes
             .resize(self.axisymmetric.len(), subshape);
     }
@@ -75,40 +76,40 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
         parts.name(0);
         return true;
     }
-    let soup = &mut parts.soup;
+    let primitives = &mut parts.primitives;
     let local = || seen_from(pose, region);
     let point = |p: Vector| pose * p;
     let ball = |p: Vector, radius: Real| MedialSphere::new(point(p), radius);
     match shape.as_typed_shape() {
-        TypedShape::Ball(s) => soup.push(&[ball(Vector::ZERO, s.radius)]),
+        TypedShape::Ball(s) => primitives.push(&[ball(Vector::ZERO, s.radius)]),
         TypedShape::Capsule(s) => {
-            soup.push(&[ball(s.segment.a, s.radius), ball(s.segment.b, s.radius)]);
+            primitives.push(&[ball(s.segment.a, s.radius), ball(s.segment.b, s.radius)]);
         }
-        TypedShape::Segment(s) => soup.push(&[ball(s.a, 0.0), ball(s.b, 0.0)]),
-        TypedShape::Triangle(t) => soup.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0))),
+        TypedShape::Segment(s) => primitives.push(&[ball(s.a, 0.0), ball(s.b, 0.0)]),
+        TypedShape::Triangle(t) => primitives.push(&[t.a, t.b, t.c].map(|p| ball(p, 0.0))),
         TypedShape::RoundTriangle(t) => {
             let i = &t.inner_shape;
-            soup.push(&[i.a, i.b, i.c].map(|p| ball(p, t.border_radius)));
+            primitives.push(&[i.a, i.b, i.c].map(|p| ball(p, t.border_radius)));
         }
-        TypedShape::Cuboid(c) => add_cuboid(soup, c, pose, 0.0, &local()),
+        TypedShape::Cuboid(c) => add_cuboid(primitives, c, pose, 0.0, &local()),
         TypedShape::RoundCuboid(c) => {
-            add_cuboid(soup, &c.inner_shape, pose, c.border_radius, &local());
+            add_cuboid(primitives, &c.inner_shape, pose, c.border_radius, &local());
         }
-        TypedShape::ConvexPolyhedron(c) => add_polyhedron(soup, c, pose, 0.0, region),
+        TypedShape::ConvexPolyhedron(c) => add_polyhedron(primitives, c, pose, 0.0, region),
         TypedShape::RoundConvexPolyhedron(c) => {
-            add_polyhedron(soup, &c.inner_shape, pose, c.border_radius, region);
+            add_polyhedron(primitives, &c.inner_shape, pose, c.border_radius, region);
         }
         TypedShape::HalfSpace(plane) => {
             let local = local();
-            add_plane(soup, plane, pose, &local);
+            add_plane(primitives, plane, pose, &local);
         }
         TypedShape::Compound(c) => {
             for (i, (child, s)) in c.shapes().iter().enumerate() {
-                let (soup, axisymmetric) = (parts.soup.len(), parts.axisymmetric.len());
+                let (primitives, axisymmetric) = (parts.primitives.len(), parts.axisymmetric.len());
                 if !add_surface(parts, s.as_ref(), &(pose * child), region) {
                     return false;
                 }
-                parts.soup_subshapes.truncate(soup);
+                parts.primitive_subshapes.truncate(primitives);
                 parts.axisymmetric_subshapes.truncate(axisymmetric);
                 parts.name(i as u32);
             }
@@ -127,20 +128,20 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
         TypedShape::TriMesh(m) => {
             for i in m.bvh().intersect_aabb(&local) {
                 let t = m.triangle(i);
-                parts.soup.push(&[t.a, t.b, t.c].map(flat));
+                parts.primitives.push(&[t.a, t.b, t.c].map(flat));
                 parts.name(i);
             }
         }
         TypedShape::Polyline(l) => {
             for i in l.bvh().intersect_aabb(&local) {
                 let s = l.segment(i);
-                parts.soup.push(&[s.a, s.b].map(flat));
+                parts.primitives.push(&[s.a, s.b].map(flat));
                 parts.name(i);
             }
         }
         TypedShape::HeightField(h) => {
             h.map_elements_in_local_aabb(&local, &mut |i, t| {
-                parts.soup.push(&[t.a, t.b, t.c].map(flat));
+                parts.primitives.push(&[t.a, t.b, t.c].map(flat));
                 parts.name(i);
             });
         }
@@ -149,7 +150,13 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
             for voxel in v.voxels_intersecting_local_aabb(&local) {
                 if !voxel.state.is_empty() {
                     let at = pose * Pose::from_translation(voxel.center);
-                    add_cuboid(&mut parts.soup, &cube, &at, 0.0, &seen_from(&at, region));
+                    add_cuboid(
+                        &mut parts.primitives,
+                        &cube,
+                        &at,
+                        0.0,
+                        &seen_from(&at, region),
+                    );
                     parts.name(voxel.linear_id.flat_id() as u32);
                 }
             }
@@ -169,7 +176,13 @@ fn seen_from(pose: &Pose, region: &Aabb) -> Aabb {
 }
 
 /// The faces of a cuboid, as far as `region` (in its frame) meets them.
-fn add_cuboid(soup: &mut PrimitiveList, cuboid: &Cuboid, pose: &Pose, border: Real, region: &Aabb) {
+fn add_cuboid(
+    primitives: &mut PrimitiveList,
+    cuboid: &Cuboid,
+    pose: &Pose,
+    border: Real,
+    region: &Aabb,
+) {
     let h = cuboid.half_extents;
     for axis in 0..3 {
         for side in [-h[axis], h[axis]] {
@@ -183,17 +196,17 @@ fn add_cuboid(soup: &mut PrimitiveList, cuboid: &Cuboid, pose: &Pose, border: Re
                 MedialSphere::new(pose * local, border)
             };
             let spans = other.map(|k| [region.mins[k] - border, region.maxs[k] + border]);
-            add_rectangle(soup, other.map(|k| h[k]), spans, at);
+            add_rectangle(primitives, other.map(|k| h[k]), spans, at);
         }
     }
 }
 
 /// One side of a rectangle about the origin of a plane.
 struct Side {
-    /// What of it is nearest to anything within a span, and somewhat more.
+    /// Stretch of the side that is nearest to anything within a span, and somewhat more.
     ends: [Real; 2],
-    /// From the right angle to the end of a leg: of two such, a triangle that covers both spans. The spans' far
-    /// corner is at 9/10 of the way to the long side. `None` where there is no room.
+    /// Lengths from the right angle to the ends of the legs: of two such, a triangle that covers both spans. The spans'
+    /// far corner is at 9/10 of the way to the long side. `None` where there is no room.
     leg: Option<[Real; 2]>,
 }
 
@@ -218,10 +231,10 @@ impl Side {
     }
 }
 
-/// What of a rectangle is nearest to anything within `spans` along its two sides: one triangle where it has the
-/// room, two else. `at` puts a point of its plane in place.
+/// Adds the part of a rectangle that is nearest to anything within `spans` along its two sides: one triangle where it
+/// has the room, two else. `at` puts a point of its plane in place.
 fn add_rectangle(
-    soup: &mut PrimitiveList,
+    primitives: &mut PrimitiveList,
     half: [Real; 2],
     spans: [[Real; 2]; 2],
     at: impl Fn([Real; 2]) -> MedialSphere,
@@ -230,18 +243,18 @@ fn add_rectangle(
         return;
     };
     if let (Some([x, across]), Some([y, up])) = (x.leg, y.leg) {
-        soup.push(&[[x, y], [across, y], [x, up]].map(at));
+        primitives.push(&[[x, y], [across, y], [x, up]].map(at));
         return;
     }
     let ([left, right], [bottom, top]) = (x.ends, y.ends);
     let [a, b, c, d] = [[left, bottom], [right, bottom], [right, top], [left, top]].map(at);
-    soup.push(&[a, b, c]);
-    soup.push(&[a, c, d]);
+    primitives.push(&[a, b, c]);
+    primitives.push(&[a, c, d]);
 }
 
 /// The faces of a hull as triangles, as far as `region` (in the parts' frame) meets their boxes.
 fn add_polyhedron(
-    soup: &mut PrimitiveList,
+    primitives: &mut PrimitiveList,
     hull: &ConvexPolyhedron,
     pose: &Pose,
     border: Real,
@@ -260,19 +273,19 @@ fn add_polyhedron(
             // A region that is not a number holds everything.
             let apart = face.mins.cmpgt(region.maxs) | region.mins.cmpgt(face.maxs);
             if !apart.any() {
-                soup.push(&corners.map(|p| MedialSphere::new(p, border)));
+                primitives.push(&corners.map(|p| MedialSphere::new(p, border)));
             }
         }
     }
 }
 
 /// A triangle of the half-space's plane that `region` (in its frame) cannot look past.
-fn add_plane(soup: &mut PrimitiveList, plane: &HalfSpace, pose: &Pose, region: &Aabb) {
+fn add_plane(primitives: &mut PrimitiveList, plane: &HalfSpace, pose: &Pose, region: &Aabb) {
     let n = plane.normal;
     let foot = region.center() - n * n.dot(region.center());
     let reach = PLANE_REACH * (region.half_extents().length() + n.dot(region.center()).abs());
     let u = n.any_orthonormal_vector() * reach;
     let v = n.cross(u);
     let at = |[x, y]: [Real; 2]| MedialSphere::new(pose * (foot + u * x + v * y), 0.0);
-    soup.push(&[[0.0, 2.0], [-1.75, -1.0], [1.75, -1.0]].map(at));
+    primitives.push(&[[0.0, 2.0], [-1.75, -1.0], [1.75, -1.0]].map(at));
 }

@@ -3,7 +3,7 @@
 
 use crate::batch::Backend;
 use crate::medial::MedialMesh;
-use crate::parry::answers::OnePoint;
+use crate::parry::narrow_phase_plan::SinglePointPairs;
 use rapier3d::geometry::{ColliderHandle, ColliderSet};
 use std::collections::HashMap;
 
@@ -44,9 +44,9 @@ pub struct Effects {
     /// that move relative to each other by more than a quarter of their thickness in the step. Off: fast
     /// bodies may pass through each other, as rapier's own do.
     pub continuous: Effect,
-    /// Does the same for slow pairs before they are so deep in each other that one could pass through the other.
-    /// `Auto`: for pairs of which rapier knows a contact deeper than a quarter of their thickness. Off: a heavy load
-    /// may press a slow body through another.
+    /// Resolves first contacts of slow pairs before they are so deep in each other that one could pass through the
+    /// other. `Auto`: for pairs of which rapier knows a contact deeper than a quarter of their thickness. Off: a heavy
+    /// load may press a slow body through another.
     pub guard: Effect,
     /// Follows turning bodies on their exact paths to find a first contact. `Auto`: always. Off: each point is
     /// taken to move straight from where it is at the start of the step to where it is at the end, as in the paper
@@ -82,7 +82,7 @@ pub struct Effects {
 pub struct MedialOptions {
     /// The effects of all colliders that have no settings of their own.
     pub effects: Effects,
-    /// Where contacts and first contacts of many pairs are computed. The results are the same on each, bit by bit.
+    /// The CPU or a GPU, for contacts and first contacts of many pairs. The results are the same, bit by bit.
     pub backend: Backend,
     /// Node pairs and elementary tests that the search for first contacts may take in a step, each half a
     /// microsecond to one. Once it is spent, bodies of which more would have to be asked wait until the next step where they
@@ -90,8 +90,8 @@ pub struct MedialOptions {
     pub budget: u64,
 }
 
-/// What [`MedialOptions::budget`] is by default: seconds of work. Heaps of 48 bodies thrown together take a thirtieth of
-/// it, thirty rings of 200 cones dropped into a pen an eighth.
+/// Default of [`MedialOptions::budget`]: seconds of work. Heaps of 48 bodies thrown together take a thirtieth of it,
+/// thirty rings of 200 cones dropped into a pen an eighth.
 const BUDGET: u64 = 1 << 22;
 
 /// The same for games: a frame's work.
@@ -176,8 +176,8 @@ impl MedialOptions {
         self
     }
 
-    /// For games: all effects, and a budget that keeps the search for first contacts to about a frame. What is lost
-    /// where it does not suffice is time: bodies wait, and nothing passes through anything.
+    /// Options for games: all effects, and a budget that keeps the search for first contacts to about a frame. What is
+    /// lost where it does not suffice is time: bodies wait, and nothing passes through anything.
     pub fn games() -> Self {
         Self::default().budget(BUDGET_OF_GAMES)
     }
@@ -198,7 +198,7 @@ impl MedialOptions {
 /// The effects of a scene and of single colliders.
 #[derive(Clone, Debug, Default)]
 pub struct EffectSettings {
-    /// Of the scene.
+    /// Effects of the scene.
     pub scene: Effects,
     own: HashMap<ColliderHandle, Effects>,
 }
@@ -230,10 +230,10 @@ impl EffectSettings {
     }
 
     /// Which pairs get their deepest contact only. A collider's own setting is known by the mesh.
-    pub fn one_point(&self, colliders: &ColliderSet) -> OnePoint {
-        let mut pairs = OnePoint {
+    pub fn single_point_pairs(&self, colliders: &ColliderSet) -> SinglePointPairs {
+        let mut pairs = SinglePointPairs {
             others: self.scene.full_manifolds == Effect::Off,
-            ..OnePoint::default()
+            ..SinglePointPairs::default()
         };
         for (handle, effects) in &self.own {
             let collider = colliders.get(*handle);
@@ -248,7 +248,7 @@ impl EffectSettings {
         pairs
     }
 
-    /// Those of a pair: `On` wins, then `Off`, of what the two colliders set; else the scene's.
+    /// Effects of a pair: for each, `On` of either collider wins, then `Off` of either, then the scene's.
     pub fn of(&self, pair: [ColliderHandle; 2]) -> Effects {
         if self.own.is_empty() {
             return self.scene;

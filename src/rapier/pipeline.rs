@@ -76,7 +76,7 @@ impl MedialPipeline {
         effects.scene = options.effects;
         let state = State {
             batch,
-            answers: Arc::default(),
+            exchange: Arc::default(),
             recycled: RecyclingRecord::default(),
             effects,
             tuning: Tuning::default(),
@@ -102,9 +102,9 @@ impl MedialPipeline {
         std::mem::replace(&mut self.state.batch, batch)
     }
 
-    /// Has a GPU in a browser work on the contacts of the next step, and waits for its answers without blocking
-    /// the page. Await it between two steps, after your changes to the world: pairs that change later are
-    /// computed on the CPU. Outside browsers each step does this by itself.
+    /// Sends the contacts of the next step to a GPU in a browser, and waits for its answers without blocking the page.
+    /// Await it between two steps, after your changes to the world: pairs that change later are computed on the CPU.
+    /// Outside browsers each step does this by itself.
     #[cfg(feature = "gpu")]
     pub async fn prepare(&mut self, world: &PhysicsWorld) {
         let next = self.expected(world);
@@ -162,10 +162,10 @@ impl MedialPipeline {
         self.attach_sets(&mut world.narrow_phase);
     }
 
-    /// Does the same as [`Self::attach`] for games that keep rapier's sets themselves.
+    /// Prepares like [`Self::attach`], for games that keep rapier's sets themselves.
     pub fn attach_sets(&mut self, narrow_phase: &mut NarrowPhase) {
         self.is_attached = true;
-        let dispatcher = MedialDispatcher::new(Arc::clone(&self.state.answers));
+        let dispatcher = MedialDispatcher::new(Arc::clone(&self.state.exchange));
         narrow_phase.set_query_dispatcher(dispatcher.chain(DefaultQueryDispatcher));
     }
 
@@ -180,7 +180,7 @@ impl MedialPipeline {
         self.step_with_events(world, &(), &())
     }
 
-    /// Does the same as [`Self::step`] with your physics hooks and your handler of collision and contact force events.
+    /// Steps like [`Self::step`], with your physics hooks and your handler of collision and contact force events.
     /// Impacts within the step are reported to the handler too.
     pub fn step_with_events(
         &mut self,
@@ -206,8 +206,8 @@ impl MedialPipeline {
         )
     }
 
-    /// Does the same as [`Self::step_with_events`] for games that keep rapier's sets themselves. It takes the
-    /// arguments of [`PhysicsPipeline::step`], the pipeline first.
+    /// Steps like [`Self::step_with_events`], for games that keep rapier's sets themselves. It takes the arguments of
+    /// [`PhysicsPipeline::step`], the pipeline first.
     #[expect(
         clippy::too_many_arguments,
         reason = "the arguments of rapier's own step"

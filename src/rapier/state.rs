@@ -1,7 +1,7 @@
-//! What a pipeline keeps from step to step.
+//! State that a pipeline keeps from step to step.
 
 use crate::batch::Batch;
-use crate::parry::Answers;
+use crate::parry::narrow_phase_plan::PlanExchange;
 use crate::rapier::effects::EffectSettings;
 use crate::rapier::host::events_of_impacts::ReportedStarts;
 use crate::rapier::host::recycling::RecyclingRecord;
@@ -10,12 +10,12 @@ use crate::rapier::step_plan::StepPlan;
 use crate::rapier::tuning::Tuning;
 use std::sync::Arc;
 
-/// What a [`MedialPipeline`](crate::MedialPipeline) keeps from step to step.
+/// State that a [`MedialPipeline`](crate::MedialPipeline) keeps from step to step.
 pub struct State {
     /// The backend that computes contacts and first contacts of many pairs at once.
     pub batch: Batch,
-    /// What the dispatcher in rapier's narrow phase answers from.
-    pub answers: Arc<Answers>,
+    /// Place where the dispatcher in rapier's narrow phase finds the plan of a step.
+    pub exchange: Arc<PlanExchange>,
     /// Which contacts rapier keeps.
     pub recycled: RecyclingRecord,
     pub effects: EffectSettings,

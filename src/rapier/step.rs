@@ -2,8 +2,10 @@
 //! impacts within it, and the report. The work itself is in the rooms of this folder.
 
 use crate::math::Real;
+use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Tally};
 use crate::rapier::contacts::candidates;
 use crate::rapier::contacts::muting::{self, Muted};
+use crate::rapier::contacts::predicted_contacts::predicted;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
 use crate::rapier::host::multibody_energy::WildMultibodies;
@@ -24,11 +26,10 @@ use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
 use rapier3d::dynamics::IntegrationParameters;
 use rapier3d::pipeline::{EventHandler, PhysicsHooks};
-use std::collections::HashSet;
 use std::sync::Arc;
 use web_time::Instant;
 
-/// What a part of a step is told.
+/// Arguments of a part of a step.
 #[derive(Clone, Copy)]
 struct Part<'a> {
     /// The user's parameters, with the time that is left of the step.
@@ -60,7 +61,7 @@ impl Part<'_> {
     }
 }
 
-/// What bodies are given for the length of rapier's step.
+/// Properties that bodies are given for the length of rapier's step.
 struct Loans {
     speculators: Speculators,
     substeps: Substeps,
@@ -84,8 +85,8 @@ impl State {
     ) -> StepReport {
         let mut rest = *parameters;
         let mut report = StepReport::default();
-        let answers = Arc::clone(&self.answers);
-        let filters = FilterAnswers::new(hooks, &answers);
+        let exchange = Arc::clone(&self.exchange);
+        let filters = FilterAnswers::new(hooks, &exchange);
         let can_stop = !world.has_links_or_particles();
         loop {
             let part = Part {
@@ -95,7 +96,9 @@ impl State {
                 may_stop: can_stop && report.stops < self.tuning.max_stops,
             };
             let (done, stopped) = self.part(world, part);
-            report.add(&done);
+            // No sum: how many there are in the end.
+            report.medial_colliders = 0;
+            report += done;
             let Some(time) = stopped else {
                 self.send_early(world.sets(parameters), &mut report);
                 return report;
@@ -107,7 +110,7 @@ impl State {
 
     /// A step, or what of it comes before the world stops; the second result is when, in seconds.
     fn part(&mut self, world: &mut World, part: Part) -> (StepReport, Option<Real>) {
-        let before = self.batch.report().clone();
+        let before = self.batch.report().counts;
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         world
             .bodies
@@ -129,10 +132,10 @@ impl State {
             kept.unwrap_or_else(|| self.plan(world, part, census, (&mut report, &mut work)));
 
         let events = DedupEventHandler::new(part.events, &mut self.reported);
-        self.rapiers_step(world, part, (&mut plan, is_kept), &events, &mut report);
+        let tally = self.rapiers_step(world, part, (&mut plan, is_kept), &events, &mut report);
 
         let clock = Instant::now();
-        let outcome = self.impacts(world, part, &mut plan, &mut work);
+        let outcome = self.impacts(world, part, (&mut plan, tally.depth), &mut work);
         write_back(&plan.view, &outcome, world);
         if !is_kept || plan.view.followed {
             self.placed.end(&plan.view, world.colliders);
@@ -149,12 +152,12 @@ impl State {
         }
         report.add_impacts(&outcome);
         report.event_seconds = clock.elapsed().as_secs_f64();
-        for ids in self.answers.take_missed() {
+        for ids in tally.missed {
             self.recycled.forget(ids);
         }
-        report.add_answered(&self.answers.take_counts());
-        report.add_searched(&work);
-        report.add_sent(&before, self.batch.report());
+        report.add_answered(tally.counts);
+        report.add_searched(work);
+        report.batch += self.batch.report().counts - before;
         self.kept = (!plan.view.followed).then_some(plan);
         (report, outcome.stopped)
     }
@@ -211,17 +214,23 @@ impl State {
             report.add_contacts(result);
         }
         let keys = jobs.map(|(job, ahead)| ahead.key(job));
-        let answers = keys.zip(results);
-        let starts = found.starts;
-        let compute = Box::new(move |job| starts.contacts(job));
-        self.answers.replace(answers, compute);
-        self.answers.mute(muted);
-        self.answers
-            .give_one_point(self.effects.one_point(world.colliders));
+        let known = keys.zip(results);
+        let colliders = found.colliders;
+        let off = |e: &Effects| e.continuous == Effect::Off;
+        let takes_all = !self.effects.any(off) && !census.any_modified;
+        let narrow_phase = Arc::new(NarrowPhasePlan {
+            known: known.map(|((k, p), result)| (k, (p, result))).collect(),
+            compute: Some(Box::new(move |job| predicted(&colliders, job))),
+            muted,
+            single_point_pairs: self.effects.single_point_pairs(world.colliders),
+            // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
+            skips_sweeps: takes_all && !world.has_links_or_particles(),
+        });
         report.batch_seconds = clock.elapsed().as_secs_f64();
         StepPlan {
             census,
             view,
+            narrow_phase,
             depth: found.depth,
             wild,
             bouncing,
@@ -236,11 +245,9 @@ impl State {
         (plan, is_kept): (&mut StepPlan, bool),
         events: &DedupEventHandler,
         report: &mut StepReport,
-    ) {
+    ) -> Tally {
         let clock = Instant::now();
         let parameters = part.parameters;
-        self.answers.take_counts();
-        self.answers.take_depth();
         let loans = (!is_kept).then(|| {
             let unit = parameters.length_unit;
             let speculators = Speculators::set(&plan.view, &self.effects, unit, world.bodies);
@@ -255,20 +262,15 @@ impl State {
         plan.wild.bring_to_rest(world.multibody_joints);
         report.batch_seconds += clock.elapsed().as_secs_f64();
 
-        let off = |e: &Effects| e.continuous == Effect::Off;
-        let takes_all = !self.effects.any(off) && !plan.census.any_modified;
-        // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
-        let sweeps = takes_all && !world.has_links_or_particles();
-        self.answers.sweep_elsewhere(sweeps);
+        self.exchange.begin_step(Arc::clone(&plan.narrow_phase));
         let clock = Instant::now();
         world.step(parameters, part.filters, events);
         report.step_seconds = clock.elapsed().as_secs_f64();
-        self.answers.sweep_elsewhere(false);
-        self.answers.let_none_pass();
-        self.answers.mute(HashSet::new());
+        let tally = self.exchange.end_step();
         if let Some(loans) = loans {
             loans.give_back(world);
         }
+        tally
     }
 
     /// Finds and resolves the impacts within the step that rapier has just taken.
@@ -276,7 +278,7 @@ impl State {
         &mut self,
         world: &World,
         part: Part,
-        plan: &mut StepPlan,
+        (plan, depth): (&mut StepPlan, Real),
         work: &mut Work,
     ) -> Outcome {
         let moved = plan.census.medial > 0 && world.islands.num_active_bodies() > 0;
@@ -289,7 +291,7 @@ impl State {
         let rules = world.rules(part.filters);
         let wild = std::mem::take(&mut plan.wild);
         wild.take_back(view, &rules, world.narrow_phase, parameters.dt);
-        let depth = plan.depth.max(self.answers.take_depth());
+        let depth = plan.depth.max(depth);
         let bouncing = plan.bouncing;
         let policy = part.policy(&self.effects, (self.tuning, self.budget), bouncing);
         event_loop::resolve(
@@ -303,12 +305,12 @@ impl State {
         )
     }
 
-    /// Has a device begin with the contacts of the next step, since the poses are final.
+    /// Sends the contacts of the next step to a device, since the poses are final.
     fn send_early(&mut self, sets: Sets, report: &mut StepReport) {
         if !self.batch.has_device() || self.kept.is_some() {
             return;
         }
-        let before = self.batch.report().clone();
+        let before = self.batch.report().counts;
         let parameters = lowered(sets.parameters);
         let sets = Sets {
             parameters: &parameters,
@@ -316,7 +318,7 @@ impl State {
         };
         let next = candidates::expect(sets, &self.recycled);
         self.batch.submit(&next);
-        report.add_sent(&before, self.batch.report());
+        report.batch += self.batch.report().counts - before;
     }
 }
 

@@ -1,19 +1,23 @@
-//! What is known before rapier's step: what the world was, who may meet whom, which multibodies gain energy. In a world
-//! in which nothing moves a plan holds for the next step too.
+//! Plan of a step, made before rapier's: what the world was, who may meet whom, which multibodies gain energy. In a
+//! world in which nothing moves a plan holds for the next step too.
 
 use crate::math::Real;
+use crate::parry::narrow_phase_plan::NarrowPhasePlan;
 use crate::rapier::host::multibody_energy::WildMultibodies;
 use crate::rapier::host::recycling::RECYCLE_DISTANCE;
 use crate::rapier::view::census::Census;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::IntegrationParameters;
+use std::sync::Arc;
 
-/// What is known before rapier's step.
+/// Plan of a step, made before rapier's.
 pub struct StepPlan {
-    /// What the world had when the plan was made.
+    /// Census of the world when the plan was made.
     pub census: Census,
     /// Bodies and colliders.
     pub view: StepView,
+    /// Plan that the dispatcher goes by while rapier steps.
+    pub narrow_phase: Arc<NarrowPhasePlan>,
     /// How deep the deepest contact of all is, a length.
     pub depth: Real,
     /// Multibodies that gain energy in rapier's step.

@@ -75,7 +75,7 @@ fn packing_allocates_nothing() {
     let mut batch = block_on(Batch::open_async(Backend::Gpu, options));
     let packed = allocations(|| batch.submit(&jobs));
     assert_eq!(packed, waker);
-    assert_eq!(batch.report().fallbacks, 45);
+    assert_eq!(batch.report().counts.fallbacks, 45);
 }
 
 #[test]
@@ -133,5 +133,5 @@ fn mesh_pairs_allocate_nothing_of_ours_but_answers() {
     });
     println!("{} jobs: {all:?} allocations", jobs.len());
     assert!(all[1] <= library + SPREAD, "{all:?} {library}");
-    assert_eq!(batch.report().settled_by_cpu, 0);
+    assert_eq!(batch.report().counts.settled_by_cpu, 0);
 }

@@ -16,14 +16,14 @@ fn some() -> Calibration {
 }
 
 #[test]
-fn it_is_kept_as_text() {
+fn calibration_is_kept_as_text() {
     let text = some().to_string();
     assert!(text.contains("jobs = 48\ntests = never\n"), "{text}");
     assert_eq!(text.parse(), Ok(some()));
 }
 
 #[test]
-fn what_is_not_one_is_refused_by_line() {
+fn text_that_is_no_calibration_is_refused_by_line() {
     let text = some().to_string();
     for (from, to, number) in [
         ("48", "-1", 2),
@@ -63,22 +63,25 @@ fn auto_goes_by_it() {
             tests
         }));
         for (count, asked) in [(49, small), (50, large)] {
-            let before = batch.report().submissions;
+            let before = batch.report().counts.submissions;
             batch.run(&toi_jobs(count));
             assert_eq!(
-                batch.report().submissions - before,
+                batch.report().counts.submissions - before,
                 asked,
                 "{count} {jobs:?}"
             );
         }
     }
-    assert_eq!(batch.report().maps, batch.report().submissions);
+    assert_eq!(
+        batch.report().counts.maps,
+        batch.report().counts.submissions
+    );
 }
 
 /// Slow: it is a measurement.
 #[test]
 #[ignore = "times a device, alone: `medial calibrate` is the command for it"]
-fn it_is_measured() {
+fn calibration_is_measured() {
     let Some(mut gpu) = scene::gpu(scene::options()) else {
         return;
     };

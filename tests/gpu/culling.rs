@@ -214,7 +214,7 @@ fn entangled_meshes_are_given_up() {
 /// More primitive pairs than a batch has room for, of mesh pairs that all meet: those that find none are
 /// given up, or left without a list, and none is called free for want of them.
 #[test]
-fn what_finds_no_room_is_given_up() {
+fn pairs_that_find_no_room_are_given_up() {
     let Some(mut gpu) = scene::gpu(scene::options()) else {
         return;
     };
@@ -263,7 +263,7 @@ fn meshes_stay_and_go() {
     };
     let drawn = draw(6);
     let expected = propose(&mut gpu, &drawn);
-    assert_eq!(gpu.counts().meshes, 12);
+    assert_eq!(gpu.stock().meshes, 12);
     for instance in [drawn[0].meshes[0].clone(), drawn[0].meshes[0].instance()] {
         let sweep = Sweep {
             meshes: [&instance, &drawn[1].meshes[0]],
@@ -271,12 +271,12 @@ fn meshes_stay_and_go() {
         };
         block_on(gpu.propose(&[sweep], &mut Proposals::default())).expect("proposals");
     }
-    assert_eq!(gpu.counts().meshes, 12);
+    assert_eq!(gpu.stock().meshes, 12);
     assert!(gpu.remove(&drawn[0].meshes[0]) && !gpu.remove(&drawn[0].meshes[0]));
     assert!(gpu.remove(&drawn[3].meshes[1]));
-    assert_eq!(gpu.counts().meshes, 10);
+    assert_eq!(gpu.stock().meshes, 10);
     assert_eq!(*propose(&mut gpu, &drawn), *expected);
-    assert_eq!(gpu.counts().meshes, 12);
+    assert_eq!(gpu.stock().meshes, 12);
 }
 
 /// Far from the origin the answer is that near it: positions are subtracted before they are rounded.
@@ -301,7 +301,7 @@ fn large_coordinates_cost_nothing() {
 /// A batch that is too large, whose meshes made the nodes' texture grow, and then one that fits: it is told of
 /// its own meshes.
 #[test]
-fn what_grew_for_a_batch_that_failed_is_used_by_the_next() {
+fn buffers_grown_for_a_failed_batch_serve_the_next() {
     let options = GpuOptions {
         binding_bytes: 1 << 17,
         ..scene::options()

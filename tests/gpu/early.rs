@@ -23,7 +23,7 @@ fn assert_answers(batch: &mut Batch, jobs: &[PairJob]) {
 
 /// In another order, some of them moved, one gone and one new: one submission, one map.
 #[test]
-fn what_was_sent_is_not_asked_again() {
+fn jobs_sent_early_are_not_sent_again() {
     for waits in [false, true] {
         let Some(mut batch) = open() else { return };
         let mut jobs = pair_jobs(200);
@@ -39,7 +39,7 @@ fn what_was_sent_is_not_asked_again() {
         jobs.remove(5);
         jobs.push(pair_jobs(201).remove(200));
         assert_answers(&mut batch, &jobs);
-        let report = batch.report();
+        let report = batch.report().counts;
         assert_eq!(
             (report.submissions, report.maps, report.sent_early),
             (1, 1, 179)
@@ -48,7 +48,10 @@ fn what_was_sent_is_not_asked_again() {
         // It is used up.
         assert_answers(&mut batch, &jobs);
         assert_eq!(
-            (batch.report().submissions, batch.report().sent_early),
+            (
+                batch.report().counts.submissions,
+                batch.report().counts.sent_early
+            ),
             (2, 179)
         );
     }
@@ -56,7 +59,7 @@ fn what_was_sent_is_not_asked_again() {
 
 /// Other jobs come instead, or other batches in between: those are asked as if nothing had been sent.
 #[test]
-fn what_was_sent_in_vain_is_dropped() {
+fn jobs_sent_early_in_vain_are_dropped() {
     let Some(mut batch) = open() else { return };
     batch.submit(&pair_jobs(50));
     batch.submit(&pair_jobs(60));
@@ -66,7 +69,7 @@ fn what_was_sent_in_vain_is_dropped() {
         assert_eq!(essence(&answer.toi), essence(&expected.toi));
     }
     assert_answers(&mut batch, &pair_jobs(60));
-    let report = batch.report();
+    let report = batch.report().counts;
     assert_eq!(
         (report.submissions, report.maps, report.sent_early),
         (4, 4, 0)
@@ -89,11 +92,11 @@ fn a_device_that_fails_meanwhile_costs_no_answer() {
             gpu.fail(GpuError::OutOfMemory { message });
         }
         assert_answers(&mut batch, &jobs);
-        assert_eq!(batch.report().fallbacks, 1);
+        assert_eq!(batch.report().counts.fallbacks, 1);
         assert!(batch.gpu().is_none() && batch.report().error.is_some());
         batch.submit(&jobs);
         assert_answers(&mut batch, &jobs);
-        assert_eq!(batch.report().fallbacks, 1);
+        assert_eq!(batch.report().counts.fallbacks, 1);
     }
 }
 
@@ -107,6 +110,12 @@ fn poses_that_are_not_finite_are_not_settled() {
     }
     batch.submit(&jobs);
     assert_answers(&mut batch, &jobs);
-    assert_eq!((batch.report().unfit, batch.report().sent_early), (10, 30));
-    assert!(batch.report().settled_by_gpu > 0);
+    assert_eq!(
+        (
+            batch.report().counts.unfit,
+            batch.report().counts.sent_early
+        ),
+        (10, 30)
+    );
+    assert!(batch.report().counts.settled_by_gpu > 0);
 }

@@ -41,7 +41,7 @@ fn the_cpu_serves_without_a_gpu() {
     let mut batch = Batch::new(Backend::Cpu);
     assert_complete(&mut batch);
     assert_eq!(batch.report().error, None);
-    assert_eq!(batch.report().settled_by_gpu, 0);
+    assert_eq!(batch.report().counts.settled_by_gpu, 0);
     let mut batch = Batch::new(Backend::Auto);
     assert_complete(&mut batch);
     match batch.gpu() {
@@ -59,22 +59,22 @@ fn a_lost_device_costs_no_answer() {
         return;
     };
     assert_complete(&mut batch);
-    assert!(batch.report().settled_by_gpu > 0);
+    assert!(batch.report().counts.settled_by_gpu > 0);
     batch.gpu().expect("a device").lose();
-    let settled = batch.report().settled_by_gpu;
+    let settled = batch.report().counts.settled_by_gpu;
     assert_complete(&mut batch);
     assert!(matches!(batch.report().error, Some(GpuError::Lost { .. })));
-    assert_eq!(batch.report().fallbacks, 1);
+    assert_eq!(batch.report().counts.fallbacks, 1);
     // From now on the CPU has it, without another attempt.
     assert_complete(&mut batch);
-    assert_eq!(batch.report().fallbacks, 1);
-    assert_eq!(batch.report().settled_by_gpu, settled);
+    assert_eq!(batch.report().counts.fallbacks, 1);
+    assert_eq!(batch.report().counts.settled_by_gpu, settled);
 }
 
 /// A binding too small for the meshes: an error with both sizes; the device is kept for batches
 /// that fit.
 #[test]
-fn what_does_not_fit_goes_to_the_cpu() {
+fn batches_too_large_for_the_device_go_to_the_cpu() {
     let options = GpuOptions {
         binding_bytes: 1 << 16,
         ..scene::options()
@@ -91,14 +91,14 @@ fn what_does_not_fit_goes_to_the_cpu() {
         panic!("{:?}", batch.report());
     };
     assert!(limit == 1 << 16 && bytes > limit, "{bytes} {limit}");
-    assert_eq!(batch.report().settled_by_gpu, 0);
+    assert_eq!(batch.report().counts.settled_by_gpu, 0);
     let small = pair_jobs(9);
     let expected = cpu::run(&small);
     for (answer, expected) in batch.run(&small).iter().zip(&expected) {
         assert_eq!(answer.contacts, expected.contacts);
     }
-    assert_eq!(batch.report().fallbacks, 1);
-    assert!(batch.report().settled_by_gpu > 0);
+    assert_eq!(batch.report().counts.fallbacks, 1);
+    assert!(batch.report().counts.settled_by_gpu > 0);
 }
 
 /// Poses that are not finite go to the CPU, which has its own answer to them.
@@ -122,9 +122,9 @@ fn poses_that_are_not_finite_go_to_the_cpu() {
         assert_eq!((a.status, a.lower, a.upper), (b.status, b.lower, b.upper));
         assert!(k >= 10 || a.status == ToiStatus::Unresolved, "{k}: {a:?}");
     }
-    assert!(batch.report().settled_by_gpu > 0);
-    assert_eq!(batch.report().fallbacks, 0);
-    assert_eq!(batch.report().unfit, 10);
+    assert!(batch.report().counts.settled_by_gpu > 0);
+    assert_eq!(batch.report().counts.fallbacks, 0);
+    assert_eq!(batch.report().counts.unfit, 10);
 }
 
 /// Set for the copy of this program that [`without_a_driver_the_cpu_serves`] starts: what the machine
@@ -144,7 +144,7 @@ fn lacking() {
         "without {lacking}: {error:?}"
     );
     assert_complete(&mut batch);
-    assert_eq!(batch.report().settled_by_gpu, 0);
+    assert_eq!(batch.report().counts.settled_by_gpu, 0);
     println!("served without {lacking}");
 }
 
@@ -191,7 +191,7 @@ fn a_device_without_memory_is_given_up() {
     batch.gpu().expect("a device").fail(error.clone());
     assert_complete(&mut batch);
     assert_eq!(batch.report().error, Some(error));
-    assert_eq!(batch.report().fallbacks, 1);
+    assert_eq!(batch.report().counts.fallbacks, 1);
     assert!(batch.gpu().is_none());
 }
 
@@ -208,7 +208,7 @@ fn meshes_of_bodies_that_are_gone_go_too() {
             assert_eq!(answer.contacts, expected.contacts);
         }
         // New meshes each time, those of the round before gone.
-        assert_eq!(batch.gpu_counts().meshes, 3, "round {round}");
+        assert_eq!(batch.gpu_stock().meshes, 3, "round {round}");
     }
-    assert_eq!(batch.report().fallbacks, 0);
+    assert_eq!(batch.report().counts.fallbacks, 0);
 }

@@ -67,20 +67,28 @@ fn worlds_are_the_same_on_either_backend() {
     let mut unsent = 0;
     for step in 0..STEPS {
         let report = cpu.step(&mut on_cpu);
-        assert_eq!((report.settled_by_gpu, report.fallbacks), (0, 0));
+        assert_eq!(
+            (report.batch.settled_by_gpu, report.batch.fallbacks),
+            (0, 0)
+        );
         let report = device.step(&mut on_gpu);
-        assert_eq!(report.fallbacks, 0, "{:?}", device.batch().report().error);
+        assert_eq!(
+            report.batch.fallbacks,
+            0,
+            "{:?}",
+            device.batch().report().error
+        );
         // One submission and one map a batch, two batches a step: the first contacts of this step and
         // the contacts of the next; the first step has its own to ask as well.
-        assert_eq!(report.submissions, report.maps);
-        let none_sent = u64::from(report.jobs > 0 && report.sent_early == 0);
+        assert_eq!(report.batch.submissions, report.batch.maps);
+        let none_sent = u64::from(report.jobs > 0 && report.batch.sent_early == 0);
         unsent += none_sent;
-        assert!(report.submissions <= 2 + none_sent, "{report:?}");
+        assert!(report.batch.submissions <= 2 + none_sent, "{report:?}");
         contacts += report.jobs as u64;
-        early += report.sent_early;
+        early += report.batch.sent_early;
         if step == STEPS / 2 {
-            let counts = device.batch().gpu_counts();
-            made = (counts.buffers_made, counts.bindings_made);
+            let stock = device.batch().gpu_stock();
+            made = (stock.buffers_made, stock.bindings_made);
         }
         // What the user changes between two steps was not sent.
         if step % 100 == 99 {
@@ -92,19 +100,20 @@ fn worlds_are_the_same_on_either_backend() {
         }
         jobs += report.jobs + report.continuous_jobs;
         first_contacts += report.continuous_jobs;
-        settled += report.settled_by_gpu;
+        settled += report.batch.settled_by_gpu;
         events += report.events;
         assert!(bits(&on_cpu) == bits(&on_gpu), "step {step}");
     }
     // The first, and those after a change.
     assert!(unsent <= 6, "{unsent}");
     let gpu = device.batch().gpu_counts();
-    assert_eq!((gpu.meshes, gpu.submissions), (2, gpu.maps));
-    let all = (gpu.buffers_made, gpu.bindings_made);
+    let stock = device.batch().gpu_stock();
+    assert_eq!((stock.meshes, gpu.submissions), (2, gpu.maps));
+    let all = (stock.buffers_made, stock.bindings_made);
     assert_eq!(all, made, "after warm-up");
     assert!(early * 20 > contacts * 19, "{early} of {contacts}");
     println!("{early} of {contacts} jobs sent early");
-    let listed = device.batch().report().listed;
+    let listed = device.batch().report().counts.listed;
     println!("{listed} jobs with lists");
     assert!(listed > 1000, "{listed}");
     println!("{jobs} jobs, {settled} settled by the GPU, {events} events, {gpu:?}");
@@ -130,14 +139,14 @@ fn worlds_prepared_between_steps_are_the_same() {
     for step in 0..90 {
         cpu.step(&mut on_cpu);
         pollster::block_on(device.prepare(&on_gpu));
-        let maps = device.batch().report().maps;
+        let maps = device.batch().report().counts.maps;
         let report = device.step(&mut on_gpu);
         let own = u64::from(report.continuous_jobs > 0);
-        let next = device.batch().report().maps - maps - own;
+        let next = device.batch().report().counts.maps - maps - own;
         // Nothing is waited for in the step but first contacts, and the next step's jobs are sent.
         assert!(next <= 1 || step == 0, "{report:?}");
         contacts += report.jobs as u64;
-        early += report.sent_early;
+        early += report.batch.sent_early;
         assert!(bits(&on_cpu) == bits(&on_gpu), "step {step}");
     }
     assert!(
@@ -174,38 +183,38 @@ fn worlds_that_share_a_device_are_the_same() {
     let mut batch = Batch::new(Backend::Gpu);
     let (mut jobs, mut early) = (0, 0);
     for step in 0..120 {
-        let submissions = batch.report().submissions;
+        let submissions = batch.report().counts.submissions;
         let all = pipelines.iter_mut().zip(&worlds);
         let all = all.map(|([shared, _], [world, _])| (shared, world));
         pollster::block_on(MedialPipeline::prepare_many(&mut batch, all));
         assert_eq!(
-            batch.report().submissions - submissions,
+            batch.report().counts.submissions - submissions,
             u64::from(step < 90)
         );
         for (k, (pipelines, worlds)) in pipelines.iter_mut().zip(&mut worlds).enumerate() {
             let [shared, alone] = pipelines;
             let report = shared.step(&mut worlds[0]);
-            assert_eq!((report.submissions, report.maps), (0, 0));
-            assert_eq!(alone.step(&mut worlds[1]).sent_early, 0);
+            assert_eq!((report.batch.submissions, report.batch.maps), (0, 0));
+            assert_eq!(alone.step(&mut worlds[1]).batch.sent_early, 0);
             let [a, b] = &*worlds;
             assert!(bits(a) == bits(b), "world {k}, step {step}");
             if step < 90 {
                 jobs += report.jobs as u64;
-                early += report.sent_early;
+                early += report.batch.sent_early;
             }
         }
         if step == 89 {
             batch.gpu().expect("a device").lose();
         }
     }
-    let of = |[shared, _]: &[MedialPipeline; 2]| shared.batch().report().listed;
+    let of = |[shared, _]: &[MedialPipeline; 2]| shared.batch().report().counts.listed;
     let listed: u64 = pipelines.iter().map(of).sum();
     println!("{early} of {jobs} jobs sent early, {listed} with lists");
     assert!(
         jobs > 2000 && early == jobs && listed > 500,
         "{jobs} {early} {listed}"
     );
-    assert_eq!(batch.report().fallbacks, 1);
+    assert_eq!(batch.report().counts.fallbacks, 1);
 }
 
 /// Bodies of slabs and cones in a heap, some of radius 0: bears, spiders, rings and sheets.
@@ -239,7 +248,7 @@ fn heaps_of_detailed_bodies_are_the_same_on_either_backend() {
     let report = device.batch().report();
     println!("{report:?}");
     assert!(
-        report.listed > 300 && report.settled_by_gpu > 300,
+        report.counts.listed > 300 && report.counts.settled_by_gpu > 300,
         "{report:?}"
     );
 }
@@ -263,7 +272,7 @@ fn a_world_goes_on_when_the_device_is_lost() {
             gpu.lose();
         }
         cpu.step(&mut on_cpu);
-        fallbacks += device.step(&mut on_gpu).fallbacks;
+        fallbacks += device.step(&mut on_gpu).batch.fallbacks;
         assert_eq!(bits(&on_cpu), bits(&on_gpu), "step {step}");
     }
     assert!(fallbacks > 0 && device.batch().report().error.is_some());

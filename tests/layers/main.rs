@@ -36,6 +36,17 @@ const LAYERS: [(&str, &[&str]); 8] = [
     ),
 ];
 
+/// Rooms of a layer, in order: each may import from itself and from those before it.
+const ROOMS: [(&str, &[&str]); 2] = [
+    (
+        "meshing",
+        &[
+            "geometry", "surface", "axis", "certify", "simplify", "refine", "recipe",
+        ],
+    ),
+    ("rapier", &["view", "host", "joints", "impacts", "contacts"]),
+];
+
 /// Libraries that only one folder may name, as `name::`.
 const CONFINED: [(&str, &str); 4] = [
     ("rapier3d", "src/rapier"),
@@ -117,6 +128,36 @@ fn imports_go_down_only() {
         }
     }
     assert!(checked > 50, "the check found only {checked} imports");
+}
+
+#[test]
+fn rooms_import_from_rooms_before_them_only() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut checked = 0;
+    for (layer, rooms) in ROOMS {
+        let prefix = format!("crate::{layer}::");
+        for (place, room) in rooms.iter().enumerate() {
+            for path in sources(&src.join(layer).join(room)) {
+                for line in code_lines(&path) {
+                    let named = line.split(&prefix).skip(1).filter_map(|rest| {
+                        let name = rest.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+                        let name = name.into_iter().next()?;
+                        rooms.iter().position(|r| *r == name)
+                    });
+                    for other in named {
+                        checked += 1;
+                        assert!(
+                            other <= place,
+                            "{}: `{room}` imports `{}`",
+                            path.display(),
+                            rooms[other]
+                        );
+                    }
+                }
+            }
+        }
+    }
+    assert!(checked > 300, "the check found only {checked} imports");
 }
 
 #[test]

@@ -79,8 +79,8 @@ fn work(form: Form, primitives: usize) -> Work {
         }
     }
     Work {
-        nodes: sums.map(|c| f64::from(c.nodes) / PAIRS as f64),
-        tests: sums.map(|c| f64::from(c.tests) / PAIRS as f64),
+        nodes: sums.map(|c| c.nodes as f64 / PAIRS as f64),
+        tests: sums.map(|c| c.tests as f64 / PAIRS as f64),
     }
 }
 
@@ -126,7 +126,7 @@ const MOST: [(Form, [[f64; 3]; 4]); 4] = [
 ];
 
 #[test]
-fn what_queries_take_in_50_200_and_500_primitives() {
+fn queries_of_50_200_and_500_primitives_take_bounded_work() {
     for (form, most) in MOST {
         for (k, primitives) in [50, 200, 500].into_iter().enumerate() {
             let work = work(form, primitives);

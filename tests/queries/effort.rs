@@ -11,7 +11,7 @@ use rapier3d_medial::pair::first_contact::first_contact_counted;
 use rapier3d_medial::{MedialMesh, MedialSphere};
 
 /// Most elementary tests of a query, in every scene.
-const MOST: u32 = 200;
+const MOST: u64 = 200;
 
 #[test]
 fn whole_meshes_take_few_elementary_tests() {
@@ -25,7 +25,7 @@ fn whole_meshes_take_few_elementary_tests() {
             let name = scene.name;
             assert_ne!(toi.status, ToiStatus::Unresolved, "{name}, {k}: {toi:?}");
             assert!(counts.tests <= MOST, "{name}, {k}: {counts:?}");
-            hits += u32::from(toi.status != ToiStatus::Separated);
+            hits += u64::from(toi.status != ToiStatus::Separated);
             ran += counts.tests;
         }
         // The scenes are what their names say, and a contact is never found without a test.
@@ -52,7 +52,7 @@ fn interleaved_combs_are_told_apart_by_directions() {
 /// A ring that touches a cuboid's faces: of 12 cones and 12 triangles those are tested that touch too, not
 /// the far side of the ring.
 #[test]
-fn what_is_apart_when_a_contact_is_found_is_not_tested() {
+fn pairs_still_apart_at_the_first_contact_are_not_tested() {
     let around = |k: u32| {
         let angle = k as Real / 12.0 * std::f32::consts::TAU;
         MedialSphere::new(Vector::new(0.4 * angle.cos(), 0.4 * angle.sin(), 0.0), 0.08)

@@ -156,7 +156,7 @@ impl Demo {
     /// Steps the world by a sixtieth of a second.
     pub fn step(&mut self) {
         self.report = self.stage.step();
-        self.settled_by_gpu += self.report.settled_by_gpu;
+        self.settled_by_gpu += self.report.batch.settled_by_gpu;
     }
 
     /// Lets other bodies fall: a mesh as built by `Dropped`.

@@ -23,6 +23,7 @@ mod transfer;
 pub use context::GpuOptions;
 pub use near::Proposals;
 
+use crate::batch::counts::BatchCounts;
 use crate::batch::job::Sweep;
 use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
@@ -37,21 +38,12 @@ use meshes::Meshes;
 use near::Range;
 use transfer::Transfer;
 
-/// What a GPU has done since it was opened.
+/// Resources that a GPU keeps. None of them grows in steps that are like those before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GpuCounts {
-    /// Submissions to the GPU.
-    pub submissions: u64,
-    /// Times that the CPU waited for answers.
-    pub maps: u64,
-    /// Pairs of meshes, or pieces of their step, of which too many primitives meet to be looked at there, or which were
-    /// never begun.
-    pub given_up: u64,
-    /// Pairs of meshes, or pieces of their step, whose list of primitive pairs found no room, or is not whole.
-    pub unlisted: u64,
-    /// Buffers and textures that were made. It does not grow in steps that are like those before.
+pub struct GpuStock {
+    /// Buffers and textures that were made.
     pub buffers_made: u64,
-    /// Bind groups that were made. It does not grow in steps that are like those before.
+    /// Bind groups that were made.
     pub bindings_made: u64,
     /// Meshes that are kept on the GPU.
     pub meshes: usize,
@@ -69,7 +61,7 @@ pub enum Proposal {
         /// How many there are.
         count: u32,
     },
-    /// Not proven, and without a list: the CPU has to search the pair.
+    /// The pair is not proven, and has no list: the CPU has to search it.
     Open,
     /// The GPU could not take the sweep, since a number was not finite or too large.
     Unfit,
@@ -93,14 +85,14 @@ pub struct Gpu {
     pairs: Vec<Pair>,
     /// The sweep that each pair is a piece of.
     asked: Vec<u32>,
-    /// Where the primitives of each pair are.
+    /// Places of the primitives of each pair.
     ranges: Vec<[Range; 2]>,
     /// Mesh pairs asked about and not yet answered, whether or not any of them was fit.
     sweeps: usize,
     /// Whether the device has a batch of which the answers were not read.
     pending: bool,
     seconds: f64,
-    counts: GpuCounts,
+    counts: BatchCounts,
 }
 
 impl Gpu {
@@ -119,7 +111,7 @@ impl Gpu {
             sweeps: 0,
             pending: false,
             seconds: 0.0,
-            counts: GpuCounts::default(),
+            counts: BatchCounts::default(),
             context,
         };
         gpu.context.check()?;
@@ -152,7 +144,7 @@ impl Gpu {
         };
         self.propose(&[sweep], &mut Proposals::default()).await?;
         self.meshes.remove(&mesh);
-        self.counts = GpuCounts::default();
+        self.counts = BatchCounts::default();
         self.down.maps = 0;
         Ok(())
     }
@@ -173,13 +165,19 @@ impl Gpu {
     }
 
     /// Work done so far.
-    pub fn counts(&self) -> GpuCounts {
-        GpuCounts {
+    pub fn counts(&self) -> BatchCounts {
+        BatchCounts {
             maps: self.down.maps,
+            ..self.counts
+        }
+    }
+
+    /// Resources that it keeps.
+    pub fn stock(&self) -> GpuStock {
+        GpuStock {
             buffers_made: self.context.buffers_made,
             bindings_made: self.context.bindings_made,
             meshes: self.meshes.len(),
-            ..self.counts
         }
     }
 

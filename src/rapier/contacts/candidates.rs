@@ -3,14 +3,13 @@
 
 use crate::batch::PairJob;
 use crate::math::Real;
-use crate::parry::answers::Key;
-use crate::rapier::contacts::neighbor_speeds;
-use crate::rapier::contacts::predicted_contacts::{PredictedMotion, Start, Starts};
-use crate::rapier::host::forced_updates;
+use crate::parry::narrow_phase_plan::PairKey;
+use crate::rapier::contacts::predicted_contacts::PredictedMotion;
+use crate::rapier::contacts::{hanging, neighbor_speeds};
 use crate::rapier::host::forced_updates::is_hooked;
 use crate::rapier::host::recycling::{Place, RecyclingRecord};
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
-use crate::rapier::view::overlapping_boxes::meeting;
+use crate::rapier::view::overlapping_boxes::overlapping_pairs;
 use parry3d::bounding_volume::Aabb;
 use rapier3d::geometry::ColliderHandle;
 use std::collections::HashSet;
@@ -21,10 +20,10 @@ pub struct Candidates {
     pub pairs: usize,
     /// The pairs of these that rapier will ask for: they have moved too much for it to keep their contacts.
     pub jobs: Vec<PairJob>,
-    /// For each job, how its contacts are moved back from where they were computed to the start of the step.
+    /// Motion of each job from the start of the step to where its contacts are computed, which brings them back.
     pub ahead: Vec<PredictedMotion>,
-    /// What is needed to compute pairs that rapier asks for and that are not among the jobs.
-    pub starts: Starts,
+    /// All medial colliders, for pairs that rapier asks for and that are not among the jobs.
+    pub colliders: MedialColliders,
     /// Colliders whose contacts rapier must be made to ask for.
     pub fresh: HashSet<ColliderHandle>,
     /// Depth of the deepest of all contacts, a length.
@@ -34,7 +33,7 @@ pub struct Candidates {
 /// Finds all pairs of medial colliders that are near each other, of which at least one is dynamic and awake, which are
 /// on different bodies, and whose groups are compatible. The order of the two is that of rapier's narrow phase (the
 /// lower collider index first).
-pub fn find(sets: Sets, recycled: &mut RecyclingRecord, muted: &HashSet<Key>) -> Candidates {
+pub fn find(sets: Sets, recycled: &mut RecyclingRecord, muted: &HashSet<PairKey>) -> Candidates {
     let scene = Scene::new(sets);
     recycled.begin(sets.parameters);
     let asked = |pair: &&[usize; 2]| {
@@ -44,16 +43,14 @@ pub fn find(sets: Sets, recycled: &mut RecyclingRecord, muted: &HashSet<Key>) ->
     let asked = scene.pairs.iter().filter(asked);
     let (ahead, jobs) = asked.map(|pair| scene.at_the_end(pair)).unzip();
     let fresh = scene.items.all.iter().zip(&scene.fresh);
+    let fresh = fresh.filter(|(_, fresh)| **fresh);
     Candidates {
         pairs: scene.pairs.len(),
         jobs,
         ahead,
-        fresh: fresh
-            .filter(|(_, fresh)| **fresh)
-            .map(|(item, _)| item.handle)
-            .collect(),
-        starts: scene.starts,
+        fresh: fresh.map(|(item, _)| item.handle).collect(),
         depth: scene.depth,
+        colliders: scene.items,
     }
 }
 
@@ -66,61 +63,51 @@ pub fn expect(sets: Sets, recycled: &RecyclingRecord) -> Vec<PairJob> {
 }
 
 /// The medial colliders at the start of a step, and which of them are near each other.
-struct Scene<'a> {
-    items: MedialColliders<'a>,
-    starts: Starts,
-    /// In the narrow phase's order.
+struct Scene {
+    items: MedialColliders,
+    /// Near pairs, each in the narrow phase's order.
     pairs: Vec<[usize; 2]>,
     /// Whether rapier has to be made to ask for the contacts of each of them.
     fresh: Vec<bool>,
     /// Whether it asks for them in any case: the user has hooks on it, or it is `fresh`.
     asked: Vec<bool>,
-    /// As in [`Candidates`].
+    /// Depth of the deepest of all contacts, a length.
     depth: Real,
 }
 
-impl<'a> Scene<'a> {
-    fn new(sets: Sets<'a>) -> Self {
-        let items = MedialColliders::new(&sets);
-        let start = |item: &MedialCollider| item.start(&sets);
-        let mut all: Vec<Start> = items.all.iter().map(start).collect();
+impl Scene {
+    fn new(sets: Sets) -> Self {
+        let mut items = MedialColliders::new(&sets);
         let mut boxes: Vec<Aabb> = items.all.iter().map(|item| item.aabb).collect();
-        let speed = |(item, start): (&MedialCollider, &Start)| match item.parent {
-            Some((body, _)) if neighbor_speeds::is_tied(&sets, body) => Real::MAX,
-            _ => start.speed(),
+        let speed = |item: &MedialCollider| match item.body {
+            Some(body) if neighbor_speeds::is_tied(&sets, body) => Real::MAX,
+            _ => item.speed(),
         };
-        let mut speeds: Vec<Real> = items.all.iter().zip(&all).map(speed).collect();
+        let mut speeds: Vec<Real> = items.all.iter().map(speed).collect();
         for (aabb, speed) in neighbor_speeds::others(&sets) {
             boxes.push(aabb);
             speeds.push(speed);
         }
-        let met = meeting(&boxes);
-        let pushed = neighbor_speeds::pushed(&speeds, &met);
-        for (start, pushed) in all.iter_mut().zip(pushed) {
-            start.pushed = pushed;
-        }
-        for (start, hangs) in all.iter_mut().zip(forced_updates::hang(&sets, &items)) {
-            start.hangs = hangs;
+        let met = overlapping_pairs(&boxes);
+        let pushed = neighbor_speeds::neighbor_speed_bounds(&speeds, &met);
+        let hangs = hanging::hang(&sets, &items);
+        for (item, (pushed, hangs)) in items.all.iter_mut().zip(pushed.into_iter().zip(hangs)) {
+            item.pushed = pushed;
+            item.hangs = hangs;
         }
         let medial = met
             .into_iter()
             .filter(|pair| pair.iter().all(|k| *k < items.all.len()));
         let wanted = medial.filter(|pair| items.meet(*pair));
         let pairs = wanted.map(|pair| items.in_order(pair)).collect();
-        let starts = Starts {
-            ids: items.all.iter().map(|item| item.id).collect(),
-            all,
-            parameters: *sets.parameters,
-        };
-        let (fresh, depth) = forced_updates::find(&sets, &items, &starts);
-        let hooked = items.all.iter().map(|item| is_hooked(item.collider));
+        let (fresh, depth) = hanging::find(&sets, &items);
+        let hooked = items.all.iter().map(|item| is_hooked(item.hooks));
         let asked = hooked
             .zip(&fresh)
             .map(|(hooked, fresh)| hooked || *fresh)
             .collect();
         Self {
             items,
-            starts,
             pairs,
             fresh,
             asked,
@@ -128,23 +115,23 @@ impl<'a> Scene<'a> {
         }
     }
 
-    fn of(&self, pair: &[usize; 2]) -> [&MedialCollider<'a>; 2] {
+    fn of(&self, pair: &[usize; 2]) -> [&MedialCollider; 2] {
         pair.map(|k| &self.items.all[k])
     }
 
     fn place(&self, pair: &[usize; 2]) -> Place {
         let [a, b] = self.of(pair);
         Place {
-            ids: [a.id, b.id],
-            pos12: a.pose.inv_mul(&b.pose),
-            rotations: [a.pose.rotation, b.pose.rotation],
+            ids: [a, b].map(|c| c.mesh.instance_id()),
+            pos12: a.pose().inv_mul(b.pose()),
+            rotations: [a, b].map(|c| c.pose().rotation),
             reach: a.reach.max(b.reach),
         }
     }
 
-    fn is_muted(&self, pair: &[usize; 2], place: &Place, muted: &HashSet<Key>) -> bool {
+    fn is_muted(&self, pair: &[usize; 2], place: &Place, muted: &HashSet<PairKey>) -> bool {
         let [a, b] = self.of(pair);
-        !muted.is_empty() && muted.contains(&Key::new(a.mesh, b.mesh, &place.pos12))
+        !muted.is_empty() && muted.contains(&PairKey::new(&a.mesh, &b.mesh, &place.pos12))
     }
 
     fn asked(&self, pair: &[usize; 2]) -> bool {
@@ -154,15 +141,12 @@ impl<'a> Scene<'a> {
     /// The job at the poses that the velocities lead to.
     fn at_the_end(&self, pair: &[usize; 2]) -> (PredictedMotion, PairJob) {
         let [a, b] = self.of(pair);
-        let parameters = &self.starts.parameters;
+        let parameters = &self.items.parameters;
         let skins = a.skin + b.skin;
-        let job = PairJob {
-            mesh1: a.mesh.clone(),
-            mesh2: b.mesh.clone(),
-            pos12: a.pose.inv_mul(&b.pose),
-            // Added up as rapier does.
-            prediction: parameters.prediction_distance() + skins,
-        };
-        PredictedMotion::new(pair.map(|k| &self.starts.all[k]), parameters, job)
+        let pos12 = a.pose().inv_mul(b.pose());
+        // Same summation order as rapier, to match its bits.
+        let prediction = parameters.prediction_distance() + skins;
+        let job = PairJob::of([&a.mesh, &b.mesh], &pos12, prediction);
+        PredictedMotion::new([a, b], parameters, job)
     }
 }

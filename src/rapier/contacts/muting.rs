@@ -5,7 +5,7 @@
 //! into this; without it a pair is left to both.
 
 use crate::math::Real;
-use crate::parry::answers::Key;
+use crate::parry::narrow_phase_plan::PairKey;
 use crate::rapier::host::multibody_energy::is_wild;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::view::eligible_pairs::{Rules, sweep};
@@ -18,7 +18,7 @@ use std::collections::HashSet;
 #[derive(Default)]
 pub struct Muted {
     /// All of them, under the key by which the narrow phase will ask.
-    pub keys: HashSet<Key>,
+    pub keys: HashSet<PairKey>,
     /// Whether some may bounce ([`Effects::restitution`](crate::Effects::restitution)).
     pub bouncing: bool,
     /// Medial colliders of which rapier knows the wrong contacts with a partner with which they have restitution, and would
@@ -62,7 +62,7 @@ pub fn muted(
         match reason(view, policy, rules, pair, work) {
             Some(reason) => {
                 let [m1, m2] = pair.map(|k| view.motion(k, 0.0).start);
-                let key = Key::new(&*p.shape, &*q.shape, &m1.inv_mul(&m2));
+                let key = PairKey::new(&*p.shape, &*q.shape, &m1.inv_mul(&m2));
                 muted.keys.insert(key);
                 if reason == Reason::Bounces {
                     muted.bouncing = true;

@@ -4,7 +4,7 @@
 
 use crate::math::Real;
 use crate::medial::MedialMesh;
-use crate::rapier::host::enabled::enabled;
+use crate::rapier::view::enabled::enabled;
 use crate::rapier::view::medial_colliders::Sets;
 use crate::rapier::view::motion::velocities;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -43,9 +43,9 @@ pub fn is_tied(sets: &Sets, body: RigidBodyHandle) -> bool {
         || sets.multibody_joints.rigid_body_link(body).is_some()
 }
 
-/// For each of some colliders of these speeds the largest speed that gets to it over at most
-/// [`MAX_HOPS`] pairs that are near each other.
-pub fn pushed(speeds: &[Real], near: &[[usize; 2]]) -> Vec<Real> {
+/// Largest speed that gets to each of some colliders, of these speeds, over at most [`MAX_HOPS`] pairs that are near
+/// each other.
+pub fn neighbor_speed_bounds(speeds: &[Real], near: &[[usize; 2]]) -> Vec<Real> {
     let mut reached = speeds.to_vec();
     for _ in 0..MAX_HOPS {
         let before = reached.clone();

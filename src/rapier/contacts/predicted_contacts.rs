@@ -21,11 +21,11 @@ use crate::batch::{Job, PairJob, PairResult};
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::{RelativeMotionBound, SpherePair};
-use crate::parry::answers::Key;
-use crate::rapier::view::motion::velocities;
+use crate::parry::narrow_phase_plan::PairKey;
+use crate::rapier::contacts::reach::{closing, reach, way};
+use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders};
 use parry3d::math::AngularInertia;
-use parry3d::query::NonlinearRigidMotion;
-use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle};
+use rapier3d::dynamics::IntegrationParameters;
 
 /// How far ahead contacts of a body that hangs are computed, in steps. Chains of 5 to 40 links slept in 8, 12 and 14 of
 /// 14 cases with 0.5, 0.75 and 1.
@@ -49,168 +49,18 @@ const REACH: Real = 0.25;
 /// a rope of 22 links whose neighbours touch end to end left all numbers within three steps of being struck.
 const HELD_LEVER: Real = 0.03;
 
-/// A collider at the start of a step.
-pub struct Start {
-    /// The motion its velocities announce.
-    motion: NonlinearRigidMotion,
-    /// What gravity and the user's forces do to its body, unless something holds it.
-    acceleration: Vector,
-    /// What resists its turning, in the world; zero for what nothing turns.
-    inverse_inertia: AngularInertia,
-    /// Bound on the distance of its points from its origin.
-    extent: Real,
-    /// Its contact skin.
-    skin: Real,
-    /// Whether the user has a hook on its solver contacts.
-    pub modified: bool,
-    /// Whether it hangs in a contact ([`crate::rapier::host::forced_updates`]).
-    pub hangs: bool,
-    /// Speed of what may push it ([`crate::rapier::contacts::neighbor_speeds`]).
-    pub pushed: Real,
-    /// Its body.
-    pub body: Option<RigidBodyHandle>,
-    /// Where a joint of a multibody holds that one to another, in the collider's frame.
-    pub joint: Option<(RigidBodyHandle, Vector)>,
+/// The contacts of a pair that rapier asks for unexpectedly, as the batch would have computed them;
+/// `None` if it is not at its start, or rapier looks further than usual.
+pub fn predicted(colliders: &MedialColliders, job: PairJob) -> Option<PairResult> {
+    let [a, b] = [&job.mesh1, &job.mesh2].map(|mesh| colliders.of(mesh));
+    let pair = [a?, b?];
+    let at_start = pair[0].pose().inv_mul(pair[1].pose()) == job.pos12;
+    let skins = pair[0].skin + pair[1].skin;
+    let usual = job.prediction == colliders.parameters.prediction_distance() + skins;
+    (at_start && usual).then(|| PredictedMotion::contacts(pair, &colliders.parameters, job))
 }
 
-impl Start {
-    /// Of a collider at `pose`, and at `offset` in its body's frame.
-    pub fn new(
-        body: Option<&RigidBody>,
-        [pose, offset]: [Pose; 2],
-        [extent, skin]: [Real; 2],
-        gravity: Vector,
-        dt: Real,
-    ) -> Self {
-        let [linvel, angvel] = body.map_or([Vector::ZERO; 2], |b| velocities(b, dt));
-        let center = |b: &RigidBody| offset.inverse() * b.mass_properties().local_mprops.local_com;
-        let acceleration = |b: &RigidBody| {
-            let inverse_mass = b.mass_properties().local_mprops.inv_mass;
-            gravity * b.gravity_scale() + b.user_force() * inverse_mass
-        };
-        let moved = body.filter(|b| b.is_dynamic());
-        Self {
-            motion: NonlinearRigidMotion {
-                start: pose,
-                local_center: body.map_or(Vector::ZERO, center),
-                linvel,
-                angvel,
-            },
-            acceleration: moved.map_or(Vector::ZERO, acceleration),
-            inverse_inertia: moved.map_or_else(AngularInertia::zero, |b| {
-                b.mass_properties().effective_world_inv_inertia
-            }),
-            extent,
-            skin,
-            modified: false,
-            hangs: false,
-            pushed: 0.0,
-            body: None,
-            joint: None,
-        }
-    }
-
-    /// Bound on the speed at which its points turn about the centre of mass.
-    fn swing(&self) -> Real {
-        self.motion.angvel.length() * (self.motion.local_center.length() + self.extent)
-    }
-
-    /// Bound on the speed of its points.
-    pub fn speed(&self) -> Real {
-        self.motion.linvel.length() + self.swing()
-    }
-}
-
-/// All medial colliders at the start of a step.
-pub struct Starts {
-    /// Their instance ids, sorted.
-    pub ids: Vec<u64>,
-    /// Each of them.
-    pub all: Vec<Start>,
-    /// Of the step.
-    pub parameters: IntegrationParameters,
-}
-
-impl Starts {
-    fn of(&self, id: u64) -> Option<&Start> {
-        Some(&self.all[self.ids.binary_search(&id).ok()?])
-    }
-
-    /// The contacts of a pair that rapier asks for unexpectedly, as the batch would have computed them;
-    /// `None` if it is not at its start, or rapier looks further than usual.
-    pub fn contacts(&self, job: PairJob) -> Option<PairResult> {
-        let [a, b] = [&job.mesh1, &job.mesh2].map(|m| self.of(m.instance_id()));
-        let starts = [a?, b?];
-        let at_start = starts[0].motion.start.inv_mul(&starts[1].motion.start) == job.pos12;
-        let skins = starts[0].skin + starts[1].skin;
-        let usual = job.prediction == self.parameters.prediction_distance() + skins;
-        (at_start && usual).then(|| PredictedMotion::contacts(starts, &self.parameters, job))
-    }
-}
-
-/// Bound on the speed at which two colliders close.
-fn closing([a, b]: [&Start; 2]) -> Real {
-    (a.motion.linvel - b.motion.linvel).length() + a.swing() + b.swing()
-}
-
-/// Gap, without contact skins, that two colliders may close before their contacts are computed again: their
-/// [`way`], at most rapier's prediction distance. Where the user writes into the contacts, all of that distance: a
-/// hook may bring nearer what could not be closed, or take from the solver what holds another back.
-pub fn reach(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
-    parameters
-        .prediction_distance()
-        .min(way(starts, parameters))
-}
-
-/// How far two colliders may move against each other before their contacts are computed again, by their
-/// velocities, gravity, forces and what is near them. Beside joints, and where the user writes into their contacts, it
-/// has no bound.
-///
-/// Either in this step, in which something may push them (rapier lets nothing bounce before the poses are
-/// final, so no push is faster than what pushes), or in those in which rapier keeps their contacts. A pair
-/// that is kept, and pushed then, gets further.
-fn way(starts: [&Start; 2], parameters: &IntegrationParameters) -> Real {
-    if starts.iter().any(|s| s.modified) {
-        return Real::MAX;
-    }
-    let dt = parameters.dt;
-    let [a, b] = starts.map(|s| s.acceleration);
-    // Either may be held by something.
-    let pull = a.length().max(b.length()).max(a.distance(b));
-    let gains = pull * dt * dt;
-    let substeps = parameters.num_solver_iterations.max(1) as Real;
-    let falls = gains * (substeps + 1.0) / (2.0 * substeps);
-    let closes = closing(starts) * dt;
-    let pushed = starts[0].pushed.max(starts[1].pushed) * dt;
-    let kept = parameters.contact_recycle_distance();
-    let unasked = unasked(closes, [gains, falls], kept);
-    (closes + falls + pushed).max(unasked)
-}
-
-/// How far a pair gets while rapier keeps its contacts: until the end of the last step at whose start it has
-/// moved by no more than `kept`. Without forces it closes by at most `closes` in a step; with them by `falls`
-/// more in the first one, and by `gains` more in each than in the one before.
-///
-/// After `n` steps that begin at `c <= closes` it has come `n c + (n (n - 1) / 2) gains + n falls`, and the
-/// next one adds `c + n gains + falls`: the most over all `c` and `n`. Beyond `STEPS` of them `n gains` is at most
-/// `√(2 kept gains)`, since `falls` is half of `gains` or more, and `c` at most `kept / n`.
-fn unasked(closes: Real, [gains, falls]: [Real; 2], kept: Real) -> Real {
-    const STEPS: u8 = 4;
-    let mut furthest = kept;
-    let mut fallen = falls;
-    for n in (1..=STEPS).map(Real::from) {
-        if fallen > kept {
-            return furthest;
-        }
-        let steady = closes.min((kept - fallen) / n);
-        fallen += n * gains + falls;
-        furthest = furthest.max((n + 1.0) * steady + fallen);
-    }
-    let steady = closes.min(kept / Real::from(STEPS));
-    furthest.max(kept + steady + (2.0 * kept * gains).sqrt() + falls)
-}
-
-/// From where contacts computed ahead have to be brought back to.
+/// Motion of a pair from the start of the step to where its contacts are computed: what brings them back.
 pub struct PredictedMotion {
     /// Relative pose at the start (second in first).
     pos12: Pose,
@@ -225,19 +75,19 @@ pub struct PredictedMotion {
     inverse_inertias: [AngularInertia; 2],
     /// How far they may move.
     bound: RelativeMotionBound,
-    /// Where a joint of a multibody holds them to each other, in the first's frame at the start, and the lever below
-    /// which it holds a contact too.
+    /// Anchor of the joint of a multibody that holds them to each other, in the first's frame at the start, and the
+    /// lever below which it holds a contact too.
     joint: Option<(Vector, Real)>,
 }
 
 impl PredictedMotion {
-    /// Of the two colliders of `job`, which is at their poses at the start of a step; with the job that
+    /// The motion of the two colliders of `job`, which is at their poses at the start of a step; with the job that
     /// computes their contacts.
     ///
-    /// Of these only those within [`reach`] count, and of them those that no nearer one holds back: the others
+    /// Of these only those within [`reach()`] count, and of them those that no nearer one holds back: the others
     /// of the prediction distance cost the solver as much as those that bear.
     pub fn new(
-        starts: [&Start; 2],
+        starts: [&MedialCollider; 2],
         parameters: &IntegrationParameters,
         job: PairJob,
     ) -> (Self, PairJob) {
@@ -301,7 +151,7 @@ impl PredictedMotion {
 
     /// The contacts of `job`, as they are handed on from a batch.
     pub fn contacts(
-        starts: [&Start; 2],
+        starts: [&MedialCollider; 2],
         parameters: &IntegrationParameters,
         job: PairJob,
     ) -> PairResult {
@@ -313,8 +163,11 @@ impl PredictedMotion {
 
     /// The key under which rapier will ask for the contacts of `job`, and the prediction distance for which
     /// they serve.
-    pub fn key(&self, job: &PairJob) -> (Key, Real) {
-        (Key::new(&job.mesh1, &job.mesh2, &self.pos12), self.asked)
+    pub fn key(&self, job: &PairJob) -> (PairKey, Real) {
+        (
+            PairKey::new(&job.mesh1, &job.mesh2, &self.pos12),
+            self.asked,
+        )
     }
 
     /// Puts both points on one line along the normal.

@@ -4,8 +4,7 @@
 
 use crate::math::Real;
 use crate::medial::MedialMesh;
-use crate::rapier::impacts::outcome::Impulse;
-use crate::rapier::impacts::reported_impulse::ReportedImpulse;
+use crate::rapier::host::reported_impulse::{Impulse, ReportedImpulse};
 use crate::rapier::view::filter_answers::sorted;
 use parry3d::query::TrackedContact;
 use parry3d::shape::PackedFeatureId;
@@ -22,7 +21,7 @@ type Pair = [ColliderHandle; 2];
 /// Pairs whose start was told here, and not yet by rapier.
 #[derive(Default)]
 pub struct ReportedStarts {
-    /// In the order of their handles.
+    /// Pairs whose start was told, in the order of their handles.
     pub started: Vec<Pair>,
 }
 
@@ -36,7 +35,7 @@ pub struct DedupEventHandler<'a> {
 #[derive(Default)]
 struct State {
     started: Vec<Pair>,
-    /// As rapier had the pairs when it told of their forces.
+    /// Pairs as rapier had them when it told of their forces.
     forces: Vec<ContactPair>,
 }
 
@@ -49,7 +48,7 @@ pub struct Scene<'a> {
     pub bodies: &'a RigidBodySet,
     /// Colliders.
     pub colliders: &'a ColliderSet,
-    /// What rapier knows of their contacts.
+    /// Contacts of the pairs, as rapier knows them.
     pub narrow_phase: &'a NarrowPhase,
 }
 
@@ -169,7 +168,7 @@ impl<'a> DedupEventHandler<'a> {
     }
 }
 
-/// What rapier knows of a pair: nothing, if their boxes are not near.
+/// Contacts of a pair as rapier knows them: none, if their boxes are not near.
 fn known_pair([a, b]: Pair, narrow_phase: &NarrowPhase) -> ContactPair {
     let known = narrow_phase.contact_pair(a, b).cloned();
     known.unwrap_or_else(|| {
@@ -179,7 +178,7 @@ fn known_pair([a, b]: Pair, narrow_phase: &NarrowPhase) -> ContactPair {
     })
 }
 
-/// What rapier knows of a pair, and its impacts.
+/// Contacts of a pair as rapier knows them, and its impacts.
 fn contact_pair(impulse: &Impulse, scene: Scene) -> ContactPair {
     let mut contact = known_pair(impulse.colliders, scene.narrow_phase);
     add_blows(&mut contact, impulse, scene.colliders);

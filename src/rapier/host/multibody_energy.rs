@@ -10,8 +10,8 @@
 //! others are left to rapier.
 
 use crate::math::{Real, Rotation, Vector};
-use crate::rapier::impacts::impulse::Inertia;
 use crate::rapier::view::eligible_pairs::Rules;
+use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::motion::{Body, Kind};
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{
@@ -48,7 +48,7 @@ pub fn is_wild(body: &Body, dt: Real) -> bool {
 }
 
 impl WildMultibodies {
-    /// Those of a world before rapier's step.
+    /// The wild multibodies of a world before rapier's step.
     pub fn find(view: &StepView, rules: &Rules, narrow_phase: &NarrowPhase, dt: Real) -> Self {
         let multibodies = rules.multibody_joints;
         let mut found: Vec<WildMultibody> = Vec::new();
@@ -84,7 +84,7 @@ impl WildMultibodies {
         Self(found)
     }
 
-    /// Has rapier's step find wild ones at rest.
+    /// Sets wild multibodies at rest, so that rapier's step finds them so.
     pub fn bring_to_rest(&self, multibodies: &mut MultibodyJointSet) {
         for whirl in self.0.iter().filter(|w| w.wild) {
             if let Some(multibody) = multibodies.get_multibody_mut(whirl.handle) {

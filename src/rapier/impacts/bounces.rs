@@ -68,7 +68,7 @@ impl CcdPolicy<'_> {
         let (mesh, other, pos12, reach) = self.at_start(view, pair);
         let found = mesh.and_then(|mesh| is_within(mesh, other, &pos12, reach).ok());
         found.is_some_and(|(within, counts)| {
-            work.add(counts);
+            work.counts += counts;
             within
         })
     }
@@ -78,7 +78,7 @@ impl CcdPolicy<'_> {
     pub fn approach(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> Option<Real> {
         let (mesh, other, pos12, reach) = self.at_start(view, pair);
         let (found, counts) = nearest(mesh?, other, &pos12, reach).ok()?;
-        work.add(counts);
+        work.counts += counts;
         let contact = found?;
         let flipped = view.parts[pair[0]].medial().is_none();
         let [k, l] = if flipped { [pair[1], pair[0]] } else { pair };

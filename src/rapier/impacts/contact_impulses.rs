@@ -4,10 +4,10 @@
 //! bodies takes part.
 
 use crate::math::{Real, Vector};
+use crate::rapier::host::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::contact_point::ContactPoint;
-use crate::rapier::impacts::impulse::{Inertia, Material};
+use crate::rapier::impacts::impulse::Material;
 use crate::rapier::impacts::lost_gains::lose_gains;
-use crate::rapier::impacts::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::response::{Response, bodies};
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
 use crate::rapier::impacts::way_out::way_out;
@@ -15,6 +15,7 @@ use crate::rapier::joints::jointed_bodies::{Joints, settle};
 use crate::rapier::joints::rows::Twist;
 use crate::rapier::joints::tied_system::System;
 use crate::rapier::view::eligible_pairs::Rules;
+use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 
@@ -48,7 +49,9 @@ impl Response {
         let (mut moved, mut impact) = (system, own);
         if own.resistance() >= HELD * resistance_alone(view, both, &point, hit.normal) {
             if let Some(j) = own.impulse(approach, 0.0) {
-                let blow = ReportedImpulse::new(view, pair, hit, j.dot(hit.normal));
+                let poses = pair.map(|k| view.motion(k, hit.time).start);
+                let contact = (hit.point, hit.normal, -hit.depth);
+                let blow = ReportedImpulse::new(poses, contact, j.dot(hit.normal));
                 blow.add_to(self.impulses.entry(pair).or_default());
                 self.change_velocities(view, &moved, &point, j);
             }

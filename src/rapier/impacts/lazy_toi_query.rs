@@ -100,7 +100,7 @@ impl<'m> LazyToiQuery<'m> {
             let before = query.counts();
             let share = f64::from(until - from) / f64::from(seconds);
             let free = query.search_within(share, policy.left(work));
-            work.add_since(query.counts(), before);
+            work.counts += query.counts() - before;
             match free {
                 Some(share) => QueryProgress::FreeUntil(from + share * seconds),
                 None => Hit::of(&query.toi(), query.met(), from, seconds).into(),

@@ -15,7 +15,6 @@ mod lost_gains;
 mod near_lists;
 pub(crate) mod outcome;
 pub(crate) mod pair_culling;
-pub(crate) mod reported_impulse;
 pub(crate) mod response;
 pub(crate) mod spent_budget;
 pub(crate) mod swept_boxes;

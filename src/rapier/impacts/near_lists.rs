@@ -73,7 +73,7 @@ impl NearLists {
                 near?
             }
         };
-        work.nodes += u64::from(near.nodes());
+        work.counts.nodes += u64::from(near.nodes());
         let near = Arc::new(near);
         asked.near = Some(Arc::clone(&near));
         Some(near)

@@ -1,28 +1,18 @@
-//! What the event loop did in a step.
+//! [`Outcome`]: the result of the event loop in a step.
 
 use crate::math::Real;
-use crate::rapier::impacts::reported_impulse::ReportedImpulse;
-use rapier3d::geometry::ColliderHandle;
+use crate::rapier::host::reported_impulse::Impulse;
 
-/// What two colliders gave each other in the impacts of a step.
-#[derive(Clone, Debug)]
-pub struct Impulse {
-    /// Both colliders, in the narrow phase's order.
-    pub colliders: [ColliderHandle; 2],
-    /// Where and how much.
-    pub blows: Vec<ReportedImpulse>,
-}
-
-/// What the event loop did.
+/// Result of the event loop in a step.
 #[derive(Default)]
 pub struct Outcome {
     /// Pairs of medial meshes asked about at the start.
     pub jobs: usize,
     /// Impacts.
     pub events: usize,
-    /// Bodies that stayed where they were before the step's end, after too many impacts, and because the budget was spent.
+    /// Bodies that stopped before the step's end after too many impacts.
     pub frozen: usize,
-    /// As above.
+    /// Bodies that stopped before the step's end because the budget was spent.
     pub waiting: usize,
     /// Pairs that exchanged an impulse.
     pub impulses: Vec<Impulse>,

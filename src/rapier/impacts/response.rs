@@ -10,9 +10,9 @@
 //! afterwards: all pairs of the bodies that changed are searched again.
 
 use crate::math::{Real, Vector};
+use crate::rapier::host::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::body_state::BodyImpactState;
 use crate::rapier::impacts::impact_history::ImpactHistory;
-use crate::rapier::impacts::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
 use crate::rapier::joints::jointed_bodies::Joints;
 use crate::rapier::joints::pieces::Pieces;

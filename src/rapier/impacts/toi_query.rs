@@ -11,6 +11,7 @@
 
 use crate::batch::ToiJob;
 use crate::elementary::{Cores, InitialContact, Paths, Toi, ToiOptions, ToiStatus};
+use crate::math::counters::counters;
 use crate::math::{Real, Vector};
 use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::met::Met;
@@ -22,36 +23,22 @@ use crate::rapier::tuning::Tuning;
 use crate::rapier::view::step_view::StepView;
 use parry3d::query::NonlinearRigidMotion;
 
-/// What a query found, and its price.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Continuous queries.
-    pub queries: u64,
-    /// Those of them in exact rotation.
-    pub rotating: u64,
-    /// Node pairs.
-    pub nodes: u64,
-    /// Elementary tests.
-    pub tests: u64,
+counters! {
+    /// What the searches of a step for first contacts took.
+    pub struct Work {
+        /// Continuous queries.
+        pub queries: u64,
+        /// Continuous queries in exact rotation.
+        pub rotating: u64,
+        /// Node pairs and elementary tests.
+        pub counts: Counts,
+    }
 }
 
 impl Work {
-    /// Node pairs and elementary tests.
+    /// Node pairs and elementary tests, of [`CcdPolicy::budget`].
     pub fn spent(&self) -> u64 {
-        self.nodes + self.tests
-    }
-
-    pub(super) fn add(&mut self, counts: Counts) {
-        self.nodes += u64::from(counts.nodes);
-        self.tests += u64::from(counts.tests);
-    }
-
-    /// Adds what a query did since it had counted so much.
-    pub fn add_since(&mut self, now: Counts, before: Counts) {
-        self.add(Counts {
-            nodes: now.nodes - before.nodes,
-            tests: now.tests - before.tests,
-        });
+        self.counts.nodes + self.counts.tests
     }
 
     /// Counts a query.
@@ -302,7 +289,7 @@ impl CcdPolicy<'_> {
             let asked = || ask(view, pair, &motions, seconds, options, left);
             let found = known.or_else(asked)?;
             work.begin(&motions, options);
-            work.add(found.counts);
+            work.counts += found.counts;
             let hit = Hit::of(&found.toi, found.met, time, seconds);
             Some((hit, found.deepest))
         };

@@ -8,10 +8,10 @@
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
-use crate::rapier::impacts::impulse::Inertia;
 use crate::rapier::joints::limits::Limit;
 use crate::rapier::joints::rows::{Joint, Twist};
 use crate::rapier::joints::tied_system::System;
+use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::{MOST_JOINTS, StepView};
 use rapier3d::dynamics::{
@@ -28,7 +28,7 @@ const MOST_PIECES: Real = 64.0;
 /// nothing of where bodies go, which then go straight, and rapier's next step closes the joints.
 const UNCLOSED: f64 = 1.0e-2;
 
-/// What closing joints gave bodies.
+/// Result of closing joints: the bodies moved, and until when.
 #[derive(Default)]
 pub struct Piece {
     /// Bodies whose motion it changed.
@@ -45,7 +45,7 @@ pub struct Joints {
 }
 
 impl Joints {
-    /// Those between bodies of a view.
+    /// The joints between bodies of a view.
     pub fn new(
         view: &StepView,
         impulse_joints: &ImpulseJointSet,
@@ -117,7 +117,7 @@ impl Joints {
         (bodies, joints.into_iter().map(|j| &self.all[j]).collect())
     }
 
-    /// What moves when some bodies are struck at `time`, with the inertia of each.
+    /// The system that moves when some bodies are struck at `time`, with the inertia of each.
     pub fn system(
         &self,
         view: &StepView,

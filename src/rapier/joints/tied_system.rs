@@ -9,10 +9,10 @@
 //! scheme (Andersen 1983), which keeps energy while joints turn velocities.
 
 use crate::math::{Pose, Real, Rotation, Vector};
-use crate::rapier::impacts::impulse::Inertia;
 use crate::rapier::joints::limits::Limit;
 use crate::rapier::joints::rows::{Ends, Joint, Row, Twist, dot};
 use crate::rapier::joints::skyline::Skyline;
+use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::link_angles::shortest;
 use crate::rapier::view::step_view::StepView;
 
@@ -38,7 +38,7 @@ pub struct System<'a> {
     inertias: Vec<Inertia>,
     /// Centres of mass in the frames of the bodies.
     centers: Vec<Vector>,
-    /// What is taken from all positions, which are the more exact for it.
+    /// Point that is taken from all positions, which are the more exact for it.
     origin: Vector,
     start: Vec<Pose>,
     poses: Vec<Pose>,
@@ -48,7 +48,7 @@ pub struct System<'a> {
     /// Limits at which joints stop in a piece of the motion, and whose.
     stops: Vec<(&'a Joint, Limit)>,
     rows: Vec<Row>,
-    /// Of `G W Gᵀ`.
+    /// Factor of `G W Gᵀ`.
     factor: Option<Skyline>,
 }
 
@@ -183,7 +183,7 @@ impl<'a> System<'a> {
         rows.filter(|r| self.is_movable(r)).collect()
     }
 
-    /// Both ends of a joint at some poses.
+    /// Ends of a joint at some poses.
     fn ends(&self, joint: &Joint, poses: &[Pose]) -> Option<Ends> {
         let place = |body: usize| self.bodies.iter().position(|o| *o == body);
         let bodies = [place(joint.bodies[0])?, place(joint.bodies[1])?];
@@ -194,7 +194,7 @@ impl<'a> System<'a> {
         })
     }
 
-    /// Has joints that stand at a limit hold it where a push by some changes of velocity would have them pass it.
+    /// Makes joints that stand at a limit hold it where a push by some changes of velocity would take them past it.
     pub fn stand_at_limits(&mut self, twists: &[Twist], push: impl Fn(&Self) -> Vec<Twist>) {
         for _ in 0..STOPPING_ROUNDS {
             let pushed = push(self);
@@ -236,7 +236,7 @@ impl<'a> System<'a> {
         found
     }
 
-    /// Has joints stop at the limits that they would pass in some seconds at some velocities, and returns where.
+    /// Makes joints stop at the limits that they would pass in some seconds at some velocities, and returns where.
     pub fn stop_at_limits(&mut self, twists: &[Twist], seconds: Real) -> Vec<f64> {
         let mut targets = Vec::new();
         for _ in 0..STOPPING_ROUNDS {

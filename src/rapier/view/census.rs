@@ -1,9 +1,9 @@
-//! What one look at all bodies and colliders tells before a step: whether there is anything to prepare.
+//! Census of a world before a step: whether one look at all bodies and colliders finds anything to prepare.
 
 use crate::math::fast_hash::FastHasher;
 use crate::math::{Pose, Vector};
 use crate::medial::MedialMesh;
-use crate::rapier::host::enabled::takes_part;
+use crate::rapier::view::enabled::takes_part;
 use rapier3d::dynamics::{
     GenericJoint, ImpulseJointSet, MultibodyJointSet, RigidBody, RigidBodyHandle, RigidBodySet,
     SoftBodySet,
@@ -17,7 +17,7 @@ use std::hash::Hasher;
 pub struct Census {
     /// Medial colliders, also disabled ones.
     pub all: usize,
-    /// Those that take part.
+    /// Medial colliders that take part.
     pub medial: usize,
     /// Whether the user modifies any contacts.
     pub any_modified: bool,
@@ -27,7 +27,7 @@ pub struct Census {
 }
 
 impl Census {
-    /// Of a world whose colliders are where the user put their bodies.
+    /// Takes the census of a world whose colliders are where the user put their bodies.
     pub fn take(
         bodies: &RigidBodySet,
         colliders: &ColliderSet,

@@ -4,15 +4,14 @@
 use crate::math::Real;
 use crate::rapier::view::filter_answers::FilterAnswers;
 use crate::rapier::view::motion::{Body, Kind};
-use crate::rapier::view::overlapping_boxes::meeting;
+use crate::rapier::view::overlapping_boxes::overlapping_pairs;
 use crate::rapier::view::step_view::StepView;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::{ImpulseJointSet, MultibodyJointSet, RigidBodySet, RigidBodyType};
 use rapier3d::geometry::{ColliderSet, SolverFlags};
 use rapier3d::pipeline::ActiveHooks;
 
-/// What decides whether two colliders respond to each other (`narrow_phase/pair_update.rs` of rapier
-/// 0.36, in its order).
+/// Rules by which two colliders respond to each other (`narrow_phase/pair_update.rs` of rapier 0.36, in its order).
 #[derive(Clone, Copy)]
 pub struct Rules<'a> {
     /// Bodies.
@@ -104,7 +103,7 @@ pub fn sweep(view: &StepView, dt: Real, margin: Real) -> Vec<[usize; 2]> {
             boxes.push(aabb);
         }
     }
-    let met = meeting(&boxes)
+    let met = overlapping_pairs(&boxes)
         .into_iter()
         .map(|pair| pair.map(|n| parts[n]));
     let is_ccd_candidate = met.filter(|pair| is_ccd_candidate(view, *pair));
@@ -113,7 +112,7 @@ pub fn sweep(view: &StepView, dt: Real, margin: Real) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// In the narrow phase's order.
+/// The two in the narrow phase's order.
 pub fn in_order(view: &StepView, [i, j]: [usize; 2]) -> [usize; 2] {
     let index = |k: usize| view.parts[k].handle.into_raw_parts().0;
     if index(i) <= index(j) { [i, j] } else { [j, i] }

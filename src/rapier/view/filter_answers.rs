@@ -11,8 +11,7 @@
 //! such pairs are noted here, and the dispatcher lets them pass.
 
 use crate::math::fast_hash::{FastMap, FastSet};
-use crate::parry::Answers;
-use crate::parry::answers::Key;
+use crate::parry::narrow_phase_plan::{PairKey, PlanExchange};
 use crate::rapier::view::step_view::StepView;
 use parry3d::shape::Shape;
 use rapier3d::dynamics::RigidBodySet;
@@ -23,12 +22,12 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 /// The user's hooks in one step, seen by rapier and by the event loop.
 pub struct FilterAnswers<'a> {
     hooks: &'a dyn PhysicsHooks,
-    answers: &'a Answers,
+    exchange: &'a PlanExchange,
     /// Verdict of the filter, by both colliders in the order of their handles.
     filtered: Mutex<FastMap<[ColliderHandle; 2], Option<SolverFlags>>>,
     /// The world at the start of the step, for pairs that nobody asked about then.
     start: OnceLock<Box<(RigidBodySet, ColliderSet)>>,
-    /// Where those shapes are that several colliders have.
+    /// Addresses of shapes that several colliders have.
     shared: OnceLock<FastSet<usize>>,
 }
 
@@ -36,17 +35,17 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Where a shape is in memory: clones of a `SharedShape` are in one place.
+/// Address of a shape: clones of a `SharedShape` have one.
 fn place(shape: &dyn Shape) -> usize {
     std::ptr::from_ref(shape).addr()
 }
 
 impl<'a> FilterAnswers<'a> {
-    /// No verdict is known yet; what may pass in rapier's sweeps is told to `answers`.
-    pub fn new(hooks: &'a dyn PhysicsHooks, answers: &'a Answers) -> Self {
+    /// No verdict is known yet; what may pass in rapier's sweeps is told to `exchange`.
+    pub fn new(hooks: &'a dyn PhysicsHooks, exchange: &'a PlanExchange) -> Self {
         Self {
             hooks,
-            answers,
+            exchange,
             filtered: Mutex::default(),
             start: OnceLock::new(),
             shared: OnceLock::new(),
@@ -85,7 +84,7 @@ impl<'a> FilterAnswers<'a> {
     /// The keys under which a pair may be swept: either collider may be the fast one. What moves is met where the
     /// step takes it, so the pair goes by its shapes wherever they are, if no other collider has them, else by where
     /// they are at the start of the step, where all stay that do not move.
-    fn keys(&self, colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<[Key; 2]> {
+    fn keys(&self, colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<[PairKey; 2]> {
         let [a, b] = pair.map(|h| colliders.get(h));
         let (a, b) = (a?, b?);
         let shared = self.shared.get_or_init(|| {
@@ -96,9 +95,9 @@ impl<'a> FilterAnswers<'a> {
         let alone = [a, b].iter().all(|c| !shared.contains(&place(c.shape())));
         let key = |a: &Collider, b: &Collider| {
             if alone {
-                Key::anywhere(a.shape(), b.shape())
+                PairKey::anywhere(a.shape(), b.shape())
             } else {
-                Key::new(a.shape(), b.shape(), &a.position().inv_mul(b.position()))
+                PairKey::new(a.shape(), b.shape(), &a.position().inv_mul(b.position()))
             }
         };
         Some([key(a, b), key(b, a)])
@@ -109,7 +108,7 @@ impl<'a> FilterAnswers<'a> {
     }
 }
 
-/// In the order of their handles.
+/// The two in the order of their handles.
 pub fn sorted(a: ColliderHandle, b: ColliderHandle) -> [ColliderHandle; 2] {
     if a.into_raw_parts() <= b.into_raw_parts() {
         [a, b]
@@ -129,7 +128,7 @@ impl PhysicsHooks for FilterAnswers<'_> {
         if flags.is_some_and(|f| !solved(f))
             && let Some(keys) = self.keys(context.colliders, pair)
         {
-            self.answers.let_pass(&keys, true);
+            self.exchange.let_pass(&keys, true);
         }
         let [a, b] = pair;
         locked(&self.filtered).insert(sorted(a, b), flags);
@@ -150,7 +149,7 @@ impl PhysicsHooks for FilterAnswers<'_> {
         if before > 0
             && let Some(keys) = self.keys(context.colliders, [context.collider1, context.collider2])
         {
-            self.answers.let_pass(&keys, contacts(context) == 0);
+            self.exchange.let_pass(&keys, contacts(context) == 0);
         }
     }
 }

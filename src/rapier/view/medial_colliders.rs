@@ -1,16 +1,21 @@
-//! The medial colliders of a world at the start of a step, with what the batch needs of them: mesh, pose, box, skin,
-//! mass.
+//! The medial colliders of a world at the start of a step, with all that their contacts are predicted from: mesh, motion,
+//! forces, box, skin, mass.
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::rapier::contacts::predicted_contacts::Start;
-use crate::rapier::host::enabled::enabled;
+use crate::rapier::view::enabled::enabled;
+use crate::rapier::view::motion::{forces_per_mass, velocities};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::AngularInertia;
+use parry3d::query::NonlinearRigidMotion;
+use parry3d::shape::Shape;
 use rapier3d::dynamics::{
     ImpulseJointSet, IntegrationParameters, JointAxesMask, MultibodyJointSet, RigidBody,
     RigidBodyHandle, RigidBodySet,
 };
-use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase, SharedShape};
+use rapier3d::geometry::{
+    Collider, ColliderHandle, ColliderSet, InteractionGroups, NarrowPhase, SharedShape,
+};
 use rapier3d::pipeline::ActiveHooks;
 
 /// The world at the start of a step.
@@ -18,7 +23,7 @@ use rapier3d::pipeline::ActiveHooks;
 pub struct Sets<'a> {
     /// Gravity.
     pub gravity: Vector,
-    /// Of the step.
+    /// Parameters of the step.
     pub parameters: &'a IntegrationParameters,
     /// Bodies.
     pub bodies: &'a RigidBodySet,
@@ -34,7 +39,7 @@ pub struct Sets<'a> {
 
 #[cfg(feature = "gpu")]
 impl<'a> Sets<'a> {
-    /// Those of a world.
+    /// The sets of a world.
     pub fn of(world: &'a rapier3d::pipeline::PhysicsWorld) -> Self {
         Self {
             gravity: world.gravity,
@@ -74,91 +79,160 @@ pub fn make_unique(bodies: &RigidBodySet, colliders: &mut ColliderSet) {
     }
 }
 
-/// A medial collider.
-pub struct MedialCollider<'a> {
-    /// Its handle.
+/// A medial collider at the start of a step.
+pub struct MedialCollider {
+    /// Handle of the collider.
     pub handle: ColliderHandle,
-    /// The collider.
-    pub collider: &'a Collider,
-    /// Its body, if it has one.
-    pub parent: Option<(RigidBodyHandle, &'a RigidBody)>,
-    /// Its shape.
-    pub mesh: &'a MedialMesh,
-    /// What tells it apart in caches.
-    pub id: u64,
-    /// Its body, if the solver moves it and it is awake: mass and centre of mass.
+    /// Body of the collider; `None` if it has none.
+    pub body: Option<RigidBodyHandle>,
+    /// Shape, whose instance id tells the collider apart from all others.
+    pub mesh: MedialMesh,
+    /// Mass and centre of mass of the body, if the solver moves it and it is awake.
     pub moving: Option<(Real, Vector)>,
-    /// Its contact skin.
+    /// Motion that the velocities announce. It starts where the narrow phase will see the collider, to the bit.
+    pub motion: NonlinearRigidMotion,
+    /// Acceleration of the body by gravity and the user's forces, unless something holds it.
+    pub acceleration: Vector,
+    /// Inverse inertia of the body, world frame; zero for what nothing turns.
+    pub inverse_inertia: AngularInertia,
+    /// Contact skin, a length.
     pub skin: Real,
-    /// Largest distance of a corner of its box from its origin.
+    /// Largest distance of a corner of the box from the origin, a length: of the lowest and the highest corner.
     pub reach: Real,
-    /// Where the narrow phase will see it, to the bit.
-    pub pose: Pose,
-    /// Its box, as far as contacts are looked for.
+    /// Bound on the distance of points from the origin, a length.
+    pub extent: Real,
+    /// Box in the world, grown by as far as contacts are looked for.
     pub aabb: Aabb,
+    /// Parent of the body in a multibody, and where the joint to it is in the collider's frame, if it lets the body turn
+    /// only.
+    pub joint: Option<(RigidBodyHandle, Vector)>,
+    /// Hooks of the user on the collider.
+    pub hooks: ActiveHooks,
+    /// Whether it hangs in a contact ([`crate::rapier::contacts::hanging`]).
+    pub hangs: bool,
+    /// Speed of what may push it ([`crate::rapier::contacts::neighbor_speeds`]).
+    pub pushed: Real,
+    groups: InteractionGroups,
+    is_sensor: bool,
 }
 
-impl<'a> MedialCollider<'a> {
-    /// Its motion, in a step of this gravity and length.
-    pub fn start(&self, sets: &Sets) -> Start {
-        let aabb = self.mesh.aabb();
-        let offset = self.collider.position_wrt_parent();
-        let extent = aabb.mins.abs().max(aabb.maxs.abs()).length();
-        let mut start = Start::new(
-            self.parent.map(|(_, body)| body),
-            [self.pose, offset.copied().unwrap_or(Pose::IDENTITY)],
-            [extent, self.skin],
-            sets.gravity,
-            sets.parameters.dt,
-        );
-        start.body = self.parent.map(|(handle, _)| handle);
-        start.joint = self.joint(sets.multibody_joints, offset.copied());
-        let hooks = self.collider.active_hooks();
-        start.modified = hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS);
-        start
+impl MedialCollider {
+    /// The collider of a handle; `None` if it is not medial, or its pose not finite.
+    fn new(sets: &Sets, handle: ColliderHandle, collider: &Collider) -> Option<Self> {
+        let mesh = collider.shape().as_shape::<MedialMesh>()?;
+        let parent = collider.parent();
+        let body = parent.and_then(|h| sets.bodies.get(h));
+        let offset = collider.position_wrt_parent();
+        let pose = match (body, offset) {
+            (Some(body), Some(offset)) => *body.position() * *offset,
+            _ => *collider.position(),
+        };
+        if !pose.is_finite() {
+            return None;
+        }
+        let offset = offset.copied().unwrap_or(Pose::IDENTITY);
+        let skin = collider.contact_skin();
+        let margin = sets.parameters.prediction_distance() + skin;
+        let local = mesh.aabb();
+        let [linvel, angvel] =
+            body.map_or([Vector::ZERO; 2], |b| velocities(b, sets.parameters.dt));
+        let center = |b: &RigidBody| offset.inverse() * b.mass_properties().local_mprops.local_com;
+        let moves = |body: &&RigidBody| body.is_enabled() && !body.is_sleeping();
+        let dynamic = body.filter(|b| b.is_dynamic());
+        let moving = dynamic.filter(moves);
+        Some(Self {
+            handle,
+            body: parent.filter(|_| body.is_some()),
+            mesh: mesh.clone(),
+            moving: moving.map(|body| (body.mass(), body.center_of_mass())),
+            motion: NonlinearRigidMotion {
+                start: pose,
+                local_center: body.map_or(Vector::ZERO, center),
+                linvel,
+                angvel,
+            },
+            acceleration: dynamic.map_or(Vector::ZERO, |b| forces_per_mass(b, sets.gravity)),
+            inverse_inertia: dynamic.map_or_else(AngularInertia::zero, |b| {
+                b.mass_properties().effective_world_inv_inertia
+            }),
+            skin,
+            reach: local.mins.length().max(local.maxs.length()),
+            extent: local.mins.abs().max(local.maxs.abs()).length(),
+            aabb: mesh.compute_aabb(&pose).loosened(margin),
+            joint: parent.and_then(|h| joint(sets.multibody_joints, h, offset)),
+            hooks: collider.active_hooks(),
+            hangs: false,
+            pushed: 0.0,
+            groups: collider.collision_groups(),
+            is_sensor: collider.is_sensor(),
+        })
     }
 
-    /// The parent of its body in a multibody, and where the joint to it is in the collider's frame, if that lets it
-    /// turn only.
-    fn joint(
-        &self,
-        multibodies: &MultibodyJointSet,
-        offset: Option<Pose>,
-    ) -> Option<(RigidBodyHandle, Vector)> {
-        let id = multibodies.rigid_body_link(self.parent?.0)?;
-        let multibody = multibodies.get_multibody(id.multibody)?;
-        let link = multibody.link(id.id)?;
-        let parent = multibody.link(link.parent_id()?)?;
-        let joint = &link.joint.data;
-        let turns_only = joint.locked_axes.contains(JointAxesMask::LIN_AXES);
-        let anchor = offset.unwrap_or(Pose::IDENTITY).inverse() * joint.local_frame2.translation;
-        turns_only.then(|| (parent.rigid_body_handle(), anchor))
+    /// Pose at the start of the step.
+    pub fn pose(&self) -> &Pose {
+        &self.motion.start
+    }
+
+    /// Whether the user has a hook on its solver contacts.
+    pub fn is_modified(&self) -> bool {
+        self.hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS)
+    }
+
+    /// Bound on the speed at which its points turn about the centre of mass.
+    pub fn swing(&self) -> Real {
+        self.motion.angvel.length() * (self.motion.local_center.length() + self.extent)
+    }
+
+    /// Bound on the speed of its points.
+    pub fn speed(&self) -> Real {
+        self.motion.linvel.length() + self.swing()
     }
 }
 
-/// All of them, by instance id.
-pub struct MedialColliders<'a> {
-    /// In this order.
-    pub all: Vec<MedialCollider<'a>>,
-    /// By the index in their handle, the place among all of them.
+/// The parent of a body in a multibody, and the anchor of the joint to it in the frame of a collider at `offset` in the
+/// body's frame; `None` if the body has no parent, or can do more than turn about the anchor.
+fn joint(
+    multibodies: &MultibodyJointSet,
+    body: RigidBodyHandle,
+    offset: Pose,
+) -> Option<(RigidBodyHandle, Vector)> {
+    let id = multibodies.rigid_body_link(body)?;
+    let multibody = multibodies.get_multibody(id.multibody)?;
+    let link = multibody.link(id.id)?;
+    let parent = multibody.link(link.parent_id()?)?;
+    let joint = &link.joint.data;
+    let turns_only = joint.locked_axes.contains(JointAxesMask::LIN_AXES);
+    let anchor = offset.inverse() * joint.local_frame2.translation;
+    turns_only.then(|| (parent.rigid_body_handle(), anchor))
+}
+
+/// The medial colliders of a world at the start of a step, whose poses are finite.
+pub struct MedialColliders {
+    /// All of them, in the order of their instance ids.
+    pub all: Vec<MedialCollider>,
+    /// Parameters of the step.
+    pub parameters: IntegrationParameters,
+    /// Place of each among all, by the index in its handle.
     places: Vec<u32>,
 }
 
-impl<'a> MedialColliders<'a> {
-    /// Those of a world, as far as their poses are finite.
-    pub fn new(sets: &Sets<'a>) -> Self {
-        let prediction = sets.parameters.prediction_distance();
+impl MedialColliders {
+    /// The medial colliders of a world.
+    pub fn new(sets: &Sets) -> Self {
         let medial = enabled(sets.bodies, sets.colliders);
-        let medial =
-            medial.filter_map(|(handle, collider)| item(sets, prediction, handle, collider));
+        let medial = medial.filter_map(|(handle, c)| MedialCollider::new(sets, handle, c));
         let mut all: Vec<MedialCollider> = medial.collect();
-        all.sort_by_key(|item| item.id);
-        let index = |item: &MedialCollider| item.handle.into_raw_parts().0 as usize;
+        all.sort_by_key(|c| c.mesh.instance_id());
+        let index = |c: &MedialCollider| c.handle.into_raw_parts().0 as usize;
         let mut places = vec![u32::MAX; all.iter().map(index).max().map_or(0, |last| last + 1)];
-        for (place, item) in all.iter().enumerate() {
-            places[index(item)] = place as u32;
+        for (place, collider) in all.iter().enumerate() {
+            places[index(collider)] = place as u32;
         }
-        Self { all, places }
+        Self {
+            all,
+            parameters: *sets.parameters,
+            places,
+        }
     }
 
     /// The place of a collider, if it is one of them.
@@ -167,59 +241,28 @@ impl<'a> MedialColliders<'a> {
         (self.all.get(place)?.handle == collider).then_some(place)
     }
 
+    /// The collider that has this instance of a mesh.
+    pub fn of(&self, mesh: &MedialMesh) -> Option<&MedialCollider> {
+        let id = mesh.instance_id();
+        let place = self.all.binary_search_by_key(&id, |c| c.mesh.instance_id());
+        Some(&self.all[place.ok()?])
+    }
+
     /// Whether contacts of two of them are wanted: one at least is dynamic and awake, they are not on the
     /// same body, their groups are compatible, and neither is a sensor.
     pub fn meet(&self, pair: [usize; 2]) -> bool {
         let [a, b] = pair.map(|k| &self.all[k]);
-        let same_body = match (a.parent, b.parent) {
-            (Some((x, _)), Some((y, _))) => x == y,
-            _ => false,
-        };
+        let same_body = a.body.is_some() && a.body == b.body;
         (a.moving.is_some() || b.moving.is_some())
             && !same_body
-            && a.collider
-                .collision_groups()
-                .test(b.collider.collision_groups())
-            && !a.collider.is_sensor()
-            && !b.collider.is_sensor()
+            && a.groups.test(b.groups)
+            && !a.is_sensor
+            && !b.is_sensor
     }
 
-    /// In the narrow phase's order: lower collider index first.
+    /// Two of them in the narrow phase's order: lower collider index first.
     pub fn in_order(&self, [i, j]: [usize; 2]) -> [usize; 2] {
         let index = |k: usize| self.all[k].handle.into_raw_parts().0;
         if index(i) < index(j) { [i, j] } else { [j, i] }
     }
-}
-
-fn item<'a>(
-    sets: &Sets<'a>,
-    prediction: Real,
-    handle: ColliderHandle,
-    collider: &'a Collider,
-) -> Option<MedialCollider<'a>> {
-    let mesh = collider.shape().as_shape::<MedialMesh>()?;
-    let parent = collider
-        .parent()
-        .and_then(|h| sets.bodies.get(h).map(|body| (h, body)));
-    let pose = match (parent, collider.position_wrt_parent()) {
-        (Some((_, body)), Some(offset)) => *body.position() * *offset,
-        _ => *collider.position(),
-    };
-    let skin = collider.contact_skin();
-    let aabb = parry3d::shape::Shape::compute_aabb(mesh, &pose).loosened(prediction + skin);
-    let local = mesh.aabb();
-    let moving = |body: &RigidBody| body.is_dynamic() && body.is_enabled() && !body.is_sleeping();
-    let body = parent.map(|(_, body)| body).filter(|body| moving(body));
-    pose.is_finite().then_some(MedialCollider {
-        handle,
-        collider,
-        parent,
-        mesh,
-        id: mesh.instance_id(),
-        moving: body.map(|body| (body.mass(), body.center_of_mass())),
-        skin,
-        reach: local.mins.length().max(local.maxs.length()),
-        pose,
-        aabb,
-    })
 }

@@ -30,11 +30,11 @@ pub enum Kind {
 /// How joints bend the path of a body, of which its motion is a chord.
 #[derive(Clone, Copy, Debug)]
 struct Bend {
-    /// What they add to its velocities in a second.
+    /// Change of its velocities by joints, per second.
     rate: [Vector; 2],
     /// Seconds into the step until which they do.
     until: Real,
-    /// By how much its velocities exceed the tangent of the path; `None` of a body that they leave on its path.
+    /// Excess of its velocities over the tangent of the path; `None` of a body that they leave on its path.
     excess: Option<[Vector; 2]>,
 }
 
@@ -66,7 +66,7 @@ pub struct Body {
     pub velocity_before: [Vector; 2],
     /// Linear velocity that gravity and forces of the user give it in the whole step.
     pull: Vector,
-    /// What of it was taken back for times in which the body gets nowhere.
+    /// Part of [`Self::pull`] taken back for times in which the body gets nowhere.
     taken_back: Vector,
     /// Largest distance of a point of its colliders from the centre of mass, a length.
     pub reach: Real,
@@ -82,7 +82,7 @@ pub struct Body {
     pub whirl: Real,
     /// Whether a joint holds it.
     pub jointed: bool,
-    /// Of a link of a multibody, before rapier's step.
+    /// Angles of a link of a multibody before rapier's step.
     pub turned_before: Option<LinkAngles>,
     /// Whether rapier's step is taken back from it.
     pub is_taken_back: bool,
@@ -170,8 +170,7 @@ impl Body {
         }
         [self.motion.linvel, self.motion.angvel] = velocities(body, dt);
         if body.is_dynamic() {
-            let forces = gravity * body.gravity_scale() + body.user_force() * self.inverse_mass;
-            self.pull = forces * dt;
+            self.pull = forces_per_mass(body, gravity) * dt;
             self.motion.linvel += self.pull;
         }
     }
@@ -308,7 +307,7 @@ impl Body {
         });
     }
 
-    /// Has joints add nothing to the velocities of a body that they leave on its path.
+    /// Ends what joints add to the velocities of a body that they leave on its path.
     pub fn gain_no_more(&mut self) {
         self.bend = self.bend.filter(|bend| bend.excess.is_some());
     }
@@ -359,6 +358,12 @@ impl Body {
             body.set_angvel(self.velocity[1], true);
         }
     }
+}
+
+/// Acceleration of a dynamic body by gravity and the user's forces.
+pub fn forces_per_mass(body: &RigidBody, gravity: Vector) -> Vector {
+    let inverse_mass = body.mass_properties().effective_inv_mass;
+    gravity * body.gravity_scale() + body.user_force() * inverse_mass
 }
 
 /// Linear and angular velocity with which a body starts into a step of `dt` seconds. Of a body that is

@@ -6,7 +6,7 @@ use wide::f32x8;
 
 /// All pairs of boxes that meet, the lower index first, eight at a time. The sweep goes along the axis on
 /// which their centres spread most: heaps may be towers.
-pub fn meeting(boxes: &[Aabb]) -> Vec<[usize; 2]> {
+pub fn overlapping_pairs(boxes: &[Aabb]) -> Vec<[usize; 2]> {
     let axis = widest(boxes);
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     let least = |k: usize| boxes[k].mins[axis];

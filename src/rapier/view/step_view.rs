@@ -5,7 +5,7 @@ use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::parry::swept_sphere_parts;
-use crate::rapier::host::enabled::enabled;
+use crate::rapier::view::enabled::enabled;
 use crate::rapier::view::link_angles::LinkAngles;
 use crate::rapier::view::motion::{Body, Kind};
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
@@ -26,15 +26,15 @@ const SMALL_TURN: Real = 0.5;
 /// A collider in a step.
 #[derive(Clone)]
 pub struct Part {
-    /// Its handle.
+    /// Handle of the collider.
     pub handle: ColliderHandle,
     /// Index of its body.
     pub body: usize,
-    /// Its shape.
+    /// Shape of the collider.
     pub shape: SharedShape,
     /// Pose in the body's frame; in the world's without a body.
     pub offset: Pose,
-    /// Its box at the start, world frame.
+    /// Box at the start, world frame.
     pub aabb: Aabb,
     /// Sphere round it, in its own frame.
     pub bound: BoundingSphere,
@@ -276,8 +276,8 @@ impl StepView {
         CoefficientCombineRule::combine(a, b, rule1, rule2)
     }
 
-    /// What gravity and forces of the user add in the whole step to the velocity of the second body of a pair against
-    /// the first.
+    /// Relative velocity, of the second body of a pair against the first, that gravity and forces of the user add in
+    /// the whole step.
     pub fn relative_pull(&self, pair: [usize; 2]) -> Vector {
         let [a, b] = pair.map(|k| self.bodies[self.parts[k].body].pull());
         b - a

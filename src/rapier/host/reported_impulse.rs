@@ -1,12 +1,20 @@
 //! An impulse that two colliders gave each other in an impact within the step, in the form in which contact force
 //! events report it.
 
-use crate::math::{Real, Vector};
-use crate::rapier::impacts::toi_query::Hit;
-use crate::rapier::view::step_view::StepView;
+use crate::math::{Pose, Real, Vector};
+use rapier3d::geometry::ColliderHandle;
 
 /// Cosine from which the blows of a pair count as one (10°), as points of one manifold.
 const SAME_NORMAL: Real = 0.985;
+
+/// Impulses that two colliders gave each other in the impacts of a step.
+#[derive(Clone, Debug)]
+pub struct Impulse {
+    /// Both colliders, in the narrow phase's order.
+    pub colliders: [ColliderHandle; 2],
+    /// Impulses, one a normal.
+    pub blows: Vec<ReportedImpulse>,
+}
 
 /// An impulse between two colliders, as an event tells it.
 #[derive(Clone, Copy, Debug)]
@@ -22,14 +30,18 @@ pub struct ReportedImpulse {
 }
 
 impl ReportedImpulse {
-    /// Of a hit, with an impulse along its normal.
-    pub fn new(view: &StepView, pair: [usize; 2], hit: &Hit, impulse: Real) -> Self {
-        let poses = pair.map(|k| view.motion(k, hit.time).start);
-        let [n1, n2] = poses.map(|pose| pose.rotation.inverse() * hit.normal);
+    /// The impulse of two colliders at these poses, with a contact at a point, of a unit normal from the first to the second
+    /// and a distance, all in the world.
+    pub fn new(
+        poses: [Pose; 2],
+        (point, normal, distance): (Vector, Vector, Real),
+        impulse: Real,
+    ) -> Self {
+        let [n1, n2] = poses.map(|pose| pose.rotation.inverse() * normal);
         Self {
-            points: poses.map(|pose| pose.inverse_transform_point(hit.point)),
-            normals: [hit.normal, n1, -n2],
-            distance: -hit.depth,
+            points: poses.map(|pose| pose.inverse_transform_point(point)),
+            normals: [normal, n1, -n2],
+            distance,
             impulse,
         }
     }
