@@ -109,7 +109,7 @@ fn brute_force_lanes(mesh: &MedialMesh, offset: Vector, displacement: Vector) ->
 }
 
 fn row(name: &str, times: &mut [f64], counts: &mut [Counts], hits: usize, hash: &Hash) {
-    let mut part = |of: fn(&Counts) -> u32| {
+    let mut part = |of: fn(&Counts) -> u64| {
         counts.sort_by_key(of);
         let of = |k: usize| counts.get(k).map_or(0, of);
         (of(counts.len() / 2), of(counts.len() - 1))

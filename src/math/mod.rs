@@ -6,6 +6,7 @@ pub(crate) mod fast_hash;
 pub mod lane;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lane_avx;
+pub(crate) mod least_first;
 pub mod motion;
 pub mod nearest;
 pub(crate) mod portable;

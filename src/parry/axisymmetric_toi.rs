@@ -12,6 +12,7 @@ use super::conservative_advancement::{Advance, Limits, TOLERANCE_PER_SLACK, foll
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
+use crate::math::least_first::least_first;
 use crate::math::motion::RigidMotion;
 use crate::math::{Real, Vector};
 use crate::medial::tree::NodeKind;
@@ -20,7 +21,6 @@ use crate::pair::PrimitiveTree;
 use crate::pair::deepening::Threshold;
 use crate::pair::first_contact::{Counts, ToiResult};
 use parry3d::query::NonlinearRigidMotion;
-use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Iterations of one primitive, in units of the cap asked for (64 by default). Measured on 26,801
@@ -95,7 +95,7 @@ struct Search<'a> {
     motions: [RigidMotion<f64>; 2],
     options: &'a ToiOptions,
     counts: Counts,
-    heap: BinaryHeap<Reverse<Entry>>,
+    heap: BinaryHeap<Entry>,
     /// Iterations so far.
     work: u32,
     tolerance: f64,
@@ -115,7 +115,6 @@ struct Found {
 }
 
 /// A node of the tree, or a primitive on its way, by the time until which it is free of a body.
-#[derive(PartialEq)]
 struct Entry {
     time: f64,
     body: u32,
@@ -123,18 +122,7 @@ struct Entry {
     /// Iterations of the primitive so far.
     spent: u32,
 }
-impl Eq for Entry {}
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        let rest = |e: &Self| (e.body, e.node, e.spent);
-        (self.time.total_cmp(&other.time)).then_with(|| rest(self).cmp(&rest(other)))
-    }
-}
+least_first!(Entry, time, body, node, spent);
 
 impl Search<'_> {
     /// Best-first over the tree and the bodies, by the time until which each node is proven free.
@@ -144,7 +132,7 @@ impl Search<'_> {
                 self.push(body, index as u32, root, 0.0);
             }
         }
-        while let Some(Reverse(entry)) = self.heap.pop() {
+        while let Some(entry) = self.heap.pop() {
             let Some(body) = bodies.get(entry.body as usize) else {
                 return;
             };
@@ -209,12 +197,12 @@ impl Search<'_> {
         let ball = (Vec3::from_vector(center), f64::from(radius));
         let advance = self.advance(body, &[ball], &limits);
         if !advance.separated {
-            self.heap.push(Reverse(Entry {
+            self.heap.push(Entry {
                 time: advance.lower,
                 body: index,
                 node,
                 spent: 0,
-            }));
+            });
         }
     }
 
@@ -280,11 +268,11 @@ impl Search<'_> {
         }
         let spent = entry.spent + advance.steps;
         if !advance.met && advance.steps == SLICE && spent < cap {
-            self.heap.push(Reverse(Entry {
+            self.heap.push(Entry {
                 time: advance.lower,
                 spent,
                 ..*entry
-            }));
+            });
             return;
         }
         self.keep(&advance, primitives, limits.target);

@@ -11,6 +11,7 @@ use super::axisymmetric::{Axisymmetric, NearBall, Place, unit};
 use super::inside;
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::math::lane::Vec3;
+use crate::math::least_first::least_first;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::tree::NodeKind;
 use crate::medial::{MedialMesh, MedialSphere};
@@ -19,7 +20,6 @@ use crate::pair::first_contact::Counts;
 use crate::pair::{PrimitiveTree, SpherePair};
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
-use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Slack on the first bound of the distance (a ratio): parry's projections are off by less.
@@ -159,19 +159,21 @@ fn nearest_axisymmetric(
     let mut limit = f64::from(limit);
     let mut heap = BinaryHeap::new();
     for root in 0..mesh.roots() {
-        heap.push(Reverse(Entry(f64::NEG_INFINITY, root)));
+        let bound = f64::NEG_INFINITY;
+        heap.push(Entry { bound, node: root });
     }
-    while let Some(Reverse(Entry(bound, node))) = heap.pop() {
+    while let Some(Entry { bound, node }) = heap.pop() {
         if bound > limit {
             break;
         }
         counts.nodes += 1;
         match mesh.kind(node) {
-            NodeKind::Nodes(i, j) => heap.extend([i, j].map(|n| {
-                let (center, radius) = mesh.bound(n);
+            NodeKind::Nodes(i, j) => heap.extend([i, j].map(|node| {
+                let (center, radius) = mesh.bound(node);
                 let near = body.nearest(&place, &[ball((center, radius))]);
                 let rounding = 8.0 * f64::from(Real::EPSILON) * f64::from(center.length() + radius);
-                Reverse(Entry(out_of(body, &place, &near).1 - rounding, n))
+                let bound = out_of(body, &place, &near).1 - rounding;
+                Entry { bound, node }
             })),
             NodeKind::Primitive(i) => {
                 counts.tests += 1;
@@ -211,16 +213,8 @@ fn out_of(body: &Axisymmetric, place: &Place, near: &NearBall) -> (Vec3<f64>, f6
 }
 
 /// A node by a lower bound of its distance.
-#[derive(PartialEq)]
-struct Entry(f64, u32);
-impl Eq for Entry {}
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
+struct Entry {
+    bound: f64,
+    node: u32,
 }
-impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0).then(self.1.cmp(&other.1))
-    }
-}
+least_first!(Entry, bound, node);

@@ -5,10 +5,10 @@
 //! ball is exact. Inside it is minus the depth in the deepest ball: a lower bound of the depth in
 //! the solid, which is what marching steps need.
 
+use crate::math::least_first::least_first;
 use crate::meshing::certify::primitive_tree::{Nearest, PrimitiveTree};
 use crate::meshing::draft::{Ball, Corners, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Depth (longest side 1) up to which a point counts as on the boundary: far above rounding, far
@@ -255,23 +255,4 @@ struct Waiting {
     cell: Cell,
 }
 
-impl PartialEq for Waiting {
-    fn eq(&self, o: &Self) -> bool {
-        self.cmp(o).is_eq()
-    }
-}
-
-impl Eq for Waiting {}
-
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
-        Some(self.cmp(o))
-    }
-}
-
-impl Ord for Waiting {
-    /// The nearest is the greatest, for it leaves the heap first.
-    fn cmp(&self, o: &Self) -> Ordering {
-        o.bound.total_cmp(&self.bound)
-    }
-}
+least_first!(Waiting, bound);

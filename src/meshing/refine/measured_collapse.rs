@@ -8,6 +8,7 @@
 //! ends a collapse that the quadrics began.
 
 use crate::error::BuildError;
+use crate::math::least_first::least_first;
 use crate::meshing::certify::inside::Solid;
 use crate::meshing::certify::prepared_primitives::Prepared;
 use crate::meshing::draft::{Ball, Corners, Signed};
@@ -17,7 +18,6 @@ use crate::meshing::refine::residuals::GUESS;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::simplify::merged_neighborhood::Merged;
 use crate::meshing::watch::Watch;
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Weight of the root mean square beside the largest distance.
@@ -43,26 +43,7 @@ struct Candidate {
     versions: [u32; 2],
 }
 
-impl PartialEq for Candidate {
-    fn eq(&self, o: &Self) -> bool {
-        self.cmp(o).is_eq()
-    }
-}
-
-impl Eq for Candidate {}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
-        Some(self.cmp(o))
-    }
-}
-
-impl Ord for Candidate {
-    /// The cheapest is the greatest, for it leaves the heap first; ties by index.
-    fn cmp(&self, o: &Self) -> Ordering {
-        o.cost.total_cmp(&self.cost).then(o.edge.cmp(&self.edge))
-    }
-}
+least_first!(Candidate, cost, edge);
 
 /// Collapses edges until there are at most `target` primitives, or none may collapse.
 pub fn reduce_measured(

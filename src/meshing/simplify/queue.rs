@@ -5,8 +5,8 @@
 //! others in a list, from which the stale ones are struck when the heap is empty and its cheapest part
 //! moves up. The order is that of one heap.
 
+use crate::math::least_first::least_first;
 use crate::meshing::watch::bytes_of;
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// The heap takes this share of what waits, and all of it when there is no more than [`FEW`].
@@ -14,7 +14,7 @@ const SHARE: usize = 8;
 const FEW: usize = 512;
 
 /// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct Candidate {
     /// Cost of the merge.
     pub cost: f64,
@@ -26,21 +26,7 @@ pub struct Candidate {
     pub versions: [u32; 2],
 }
 
-impl Eq for Candidate {}
-
-impl Ord for Candidate {
-    /// The cheapest is the greatest, for it leaves the heap first; ties by index.
-    fn cmp(&self, o: &Self) -> Ordering {
-        let tie = (o.a, o.b).cmp(&(self.a, self.b));
-        o.cost.total_cmp(&self.cost).then(tie)
-    }
-}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
-        Some(self.cmp(o))
-    }
-}
+least_first!(Candidate, cost, a, b);
 
 /// Candidates, the cheapest first.
 #[derive(Clone)]
