@@ -107,7 +107,7 @@ pub fn signed_distance_along<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Opt
     }
 }
 
-/// The same, where there are few elementary tests.
+/// Signed distance of two primitives with few elementary tests.
 fn in_order<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
     let mut least: Option<S> = None;
     let mut normal = None;
@@ -142,7 +142,7 @@ fn in_order<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
     (least.unwrap_or_else(S::zero), normal)
 }
 
-/// The same for two slabs, which have many elementary tests: first that one which may have the nearest spheres.
+/// Signed distance of two slabs, which have many elementary tests: first that one which may have the nearest spheres.
 fn nearest_first<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
     let mut waiting = [Waiting::new(ElementaryTest::cone_cone([0, 0], [0, 0]), a, b); MOST_TESTS];
     let mut count = 0;

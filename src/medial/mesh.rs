@@ -279,7 +279,7 @@ impl MedialMesh {
         scaled
     }
 
-    /// The same at unit density, as they were measured.
+    /// Mass properties at unit density, as they were measured.
     pub(crate) fn unit_mass_properties(&self) -> &MassProperties {
         let source = self.data.parts.source_mass.as_ref();
         source.unwrap_or_else(|| self.solid_mass_properties())

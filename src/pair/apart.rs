@@ -32,7 +32,7 @@ impl Balls {
         Self { spheres, len, size }
     }
 
-    /// The same with radii less these.
+    /// Balls with radii less these.
     pub(super) fn less(mut self, losses: [f64; 3]) -> Self {
         for (sphere, loss) in self.spheres[..self.len].iter_mut().zip(losses) {
             sphere.2 -= loss;
@@ -40,7 +40,7 @@ impl Balls {
         self
     }
 
-    /// Those of the given spheres, each once.
+    /// The balls of the given spheres, each once.
     pub(super) fn only(&self, corners: [u8; 4]) -> Self {
         let mut some = *self;
         some.len = 0;
@@ -128,9 +128,8 @@ impl Balls {
         }
     }
 
-    /// Where each ball ends along `n` at the start of the piece, and how fast that changes, in units of
-    /// the length of `n`: on its far side where `length` is that, on its near side where it is the
-    /// negative of that.
+    /// Position at which each ball ends along `n` at the start of the piece, and how fast that changes, in units of the
+    /// length of `n`: on its far side where `length` is that, on its near side where it is the negative of that.
     fn along(&self, n: Vec3<f64>, length: f64) -> [(f64, f64); 4] {
         let mut ends = [(0.0, 0.0); 4];
         for (end, (center, chord, radius)) in ends.iter_mut().zip(self.all()) {
@@ -155,7 +154,7 @@ impl Balls {
 const ENOUGH: f64 = 0.02;
 
 /// Fraction of the piece, from `from` on, up to which directions prove two primitives free; `None`: up to
-/// `until`, or at that moment where there is no other.
+/// `until`. If `from` and `until` are one moment: whether they are apart then.
 /// Along chords a direction's bound is concave and piecewise linear in time
 /// ([`crate::elementary::certificate`]): its first root follows from those of all sphere pairs.
 /// The middles now and later give directions first, then edges and normals. Nodes have one direction.
@@ -297,13 +296,13 @@ impl Plane {
 /// Times that each side of [`between`] approaches the other.
 const ROUNDS: usize = 2;
 
-/// From one of two hulls to the other at a time, about as between the nearest points of the polygons of their centres,
-/// found by solving for one parameter after the other. `y`: from middle to middle.
+/// Direction from one of two hulls to the other at a time, about as between the nearest points of the polygons of their
+/// centres, found by solving for one parameter after the other. `y`: from middle to middle.
 fn between([a, b]: [&Balls; 2], t: f64, y: Vec3<f64>) -> Vec3<f64> {
     approached(a.plane(t), b.plane(t), y)
 }
 
-/// The same, of their planes.
+/// Direction between the two, of their planes.
 pub(super) fn approached(mut first: Plane, mut second: Plane, mut y: Vec3<f64>) -> Vec3<f64> {
     for _ in 0..ROUNDS {
         y = first.approach(y);
@@ -312,10 +311,10 @@ pub(super) fn approached(mut first: Plane, mut second: Plane, mut y: Vec3<f64>) 
     y
 }
 
-/// Until when all of the second primitive stays beyond all of the first along `n`, of any length:
-/// `None`, for good, where it is further than `least` until the end of the span, else as long as it is
-/// further than `contact`; `from` if it is not. In a span without length, where a contact is known already,
-/// what is within `contact` may be the nearer one.
+/// Time until which all of the second primitive stays beyond all of the first along `n`, of any length: `None`, for
+/// good, where it is further than `least` until the end of the span, else as long as it is further than `contact`;
+/// `from` if it is not. In a span without length, where a contact is known already, what is within `contact` may be the
+/// nearer one.
 fn holds(
     [a, b]: [&Balls; 2],
     n: Vec3<f64>,

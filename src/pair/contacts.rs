@@ -137,7 +137,7 @@ pub fn contacts(
 /// The next step of a walk down two trees, given what is below two nodes and their radii. It depends on nothing else, so
 /// all walks of two trees come to primitive pairs in one order.
 pub(super) enum Step {
-    /// Both nodes are leaves, of these primitives.
+    /// Two leaves, of these primitives.
     Leaves([u32; 2]),
     /// The first node is replaced by its children, in this order.
     First([u32; 2]),
@@ -369,8 +369,8 @@ fn is_lost(s: &Nearest<f64>) -> bool {
     !(s.length > penetration::LOST * radius.abs() && s.length > 0.0)
 }
 
-/// For nearly parallel cones: the sphere pair at the other end of the line along which they run
-/// side by side, if that is further away than the cones are thick.
+/// Second contact of nearly parallel cones: the sphere pair at the other end of the line along which they run side by
+/// side, if that is further away than the cones are thick.
 fn second_on_line(
     f: &Family<f64>,
     s: &Nearest<f64>,

@@ -30,7 +30,7 @@ const PRESSED: f64 = 1.0e-4;
 /// Share of the way that a query may take which is its tolerance.
 const TAKEN: f64 = 0.25;
 
-/// From when on two primitives count as in contact.
+/// Condition from which on two primitives count as in contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Threshold {
     /// Factor by which all radii are multiplied, from 0 to 1.

@@ -65,7 +65,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         })
     }
 
-    /// What the spheres of two primitives lose where cores are asked for.
+    /// Losses of the spheres of two primitives where cores are asked for.
     pub(super) fn losses(&self, [i, j]: [u32; 2]) -> [Loss; 2] {
         let Some(cores) = &self.cores else {
             return [Loss::default(); 2];

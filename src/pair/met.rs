@@ -1,4 +1,4 @@
-//! What of two bodies met: the primitives of their first contact. With them the contact is computed again where the bodies
+//! Primitives that met in the first contact of two bodies. With them the contact is computed again where the bodies
 //! have moved and turned a little since.
 
 use super::placement::Placement;
@@ -15,7 +15,7 @@ use crate::medial::MedialSphere;
 pub struct Met {
     /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]).
     pub(super) spheres: [[MedialSphere; 3]; 2],
-    /// Their numbers.
+    /// Numbers of spheres.
     pub(super) counts: [usize; 2],
 }
 
@@ -31,7 +31,7 @@ pub struct Touch {
 }
 
 impl Met {
-    /// The same with the second body as the first.
+    /// The primitives with the second body as the first.
     pub fn flipped(&self) -> Self {
         let ([a, b], [m, n]) = (self.spheres, self.counts);
         Self {
@@ -40,7 +40,7 @@ impl Met {
         }
     }
 
-    /// Their contact at two poses; `None` where the nearest two have one centre, which leaves no normal.
+    /// Contact of the two at two poses; `None` where the nearest two have one centre, which leaves no normal.
     pub fn touch(&self, poses: [&Pose; 2]) -> Option<Touch> {
         let place = Placement::new(&poses[0].inv_mul(poses[1]));
         let [a, b] = &self.spheres;

@@ -42,7 +42,7 @@ const MOST: u32 = 2 * Bits::BITS;
 /// Primitive pairs that may come near each other, by the nodes of both trees above them. It may hold others.
 pub struct NearPairs {
     pub(super) below: Arc<Listed>,
-    /// What they are listed for: motions, and the step's seconds from their start to its end.
+    /// Motions that they are listed for, and the step's seconds from their start to its end.
     motions: [NonlinearRigidMotion; 2],
     seconds: f64,
     /// Lengths.

@@ -24,7 +24,7 @@ const TRIES: usize = 12;
 /// The balls and primitives of a body's coarse hull, at rest or on straight paths that enclose its motion. Outlines
 /// of two bodies must be in one frame.
 pub struct Outline {
-    /// When the motion starts, and how long it goes on, in seconds.
+    /// Time at which the motion starts, and how long it goes on, in seconds.
     times: [f64; 2],
     /// Position at the start, displacement, and radius grown by the sagitta.
     balls: Vec<(Vec3<f64>, Vec3<f64>, f64)>,
@@ -77,7 +77,7 @@ impl Outline {
     }
 }
 
-/// What was not culled of a body yet, seen between two times.
+/// Parts of a body not culled yet, seen between two times.
 struct CullState<'a> {
     outline: &'a Outline,
     /// Fractions of its motion at both times.
@@ -170,7 +170,7 @@ impl<'a> CullState<'a> {
 pub struct ActivePrimitives {
     /// The body.
     proxy: Arc<ProxyHull>,
-    /// Its primitives that are not done with.
+    /// Primitives of the node that are not done with.
     primitives: u64,
 }
 
@@ -217,16 +217,16 @@ pub fn near(
     Some(NearPrimitives(Some(apart.left)))
 }
 
-/// Until when two bodies certainly stay apart.
+/// Time until which two bodies certainly stay apart.
 pub struct Apart {
-    /// They stay apart until this time, in seconds into the step.
+    /// Time until which they stay apart, in seconds into the step.
     pub until: Real,
     /// The primitives that may meet after that. All others stay apart until the motions end.
     pub left: [ActivePrimitives; 2],
 }
 
-/// Until when two bodies certainly stay farther apart than `target`, from `from` on (seconds into the step), as far
-/// as a few directions can prove it. `None` if they do so until the motions end, which must be at the same time for
+/// Time until which two bodies certainly stay farther apart than `target`, from `from` on (seconds into the step), as
+/// far as a few directions can prove it. `None` if they do so until the motions end, which must be at the same time for
 /// both.
 ///
 /// The motions may have been computed anew from a later time on in single precision; a few ulps are allowed for that.

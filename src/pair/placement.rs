@@ -1,4 +1,4 @@
-//! Where the second body of a pair is in the frame of the first, in double precision.
+//! Placement of the second body of a pair in the frame of the first, in double precision.
 
 use crate::math::lane::Vec3;
 use crate::math::motion::rotation_columns;

@@ -1,6 +1,6 @@
-//! What a query searches: a hierarchy of bounding spheres with primitives of 1 to 3 spheres at its leaves. A medial
-//! mesh is one; a few loose primitives (the faces of a cuboid, a capsule, the triangles of a terrain near the body)
-//! are another.
+//! Tree that a query searches: a hierarchy of bounding spheres with primitives of 1 to 3 spheres at its leaves. A
+//! medial mesh is one; a few loose primitives (the faces of a cuboid, a capsule, the triangles of a terrain near the
+//! body) are another.
 
 use crate::elementary::test_list::OwnedFeatures;
 use crate::math::{Real, Vector};
@@ -25,7 +25,7 @@ pub trait PrimitiveTree {
     fn roots(&self) -> u32;
     /// Bounding sphere of a node.
     fn bound(&self, node: u32) -> (Vector, Real);
-    /// What is below a node.
+    /// Contents of a node.
     fn kind(&self, node: u32) -> NodeKind;
     /// One to four spheres whose hull holds what is below a node, a tighter bound than its sphere: those of its
     /// primitive, or the corners of a swept rectangle. By default the node's sphere.
@@ -93,7 +93,8 @@ impl PrimitiveTree for MedialMesh {
 pub struct PrimitiveList {
     primitives: Vec<([MedialSphere; 3], usize)>,
     bounds: Vec<(Vector, Real)>,
-    /// Of each primitive of a part that has ended, the part's first and the one behind its last.
+    /// Range of primitives of the part, for each primitive of a part that has ended: its first and the one behind its
+    /// last.
     parts: Vec<[u32; 2]>,
 }
 

@@ -6,26 +6,26 @@ use super::tips::Part;
 use crate::elementary::test_list::ElementaryTest;
 use std::cmp::Ordering;
 
-/// Something that may meet.
+/// Work item of the queue: a node pair or an elementary test that may meet.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Candidate {
     /// Two swept nodes: their balls meet then, or directions keep their primitives apart until then.
     Nodes([u32; 2]),
-    /// What of two primitives is tested: its place in the list of these.
+    /// Parts of two primitives that are tested: their place in the list of these.
     Parts(u32),
     /// An elementary test: its place in the list of those not settled.
     Test(u32),
 }
 
-/// What of two primitives is tested, and from when on it is in contact.
+/// Parts of two primitives that are tested, and from when on they are in contact.
 #[derive(Clone, Copy)]
 pub(super) struct Tested {
     /// The swept nodes that they are.
     pub(super) nodes: [u32; 2],
     pub(super) primitives: [u32; 2],
-    /// Of each, what is tested.
+    /// Part of each that is tested.
     pub(super) parts: [Part; 2],
-    /// What counts as contact.
+    /// Condition that counts as contact.
     pub(super) threshold: Threshold,
 }
 

@@ -49,33 +49,33 @@ pub(super) struct Search<'a, A, B> {
     /// Start and end of the piece searched.
     pub(super) times: [f64; 2],
     pub(super) target: f64,
-    /// What culling goes by: no primitive pair has a larger target, raised or not.
+    /// Distance that culling goes by: no primitive pair has a larger target, raised or not.
     pub(super) reach: f64,
     pub(super) initial_contact: InitialContact,
-    /// What of them may not meet; `None`: all.
+    /// Cores that may not meet; `None`: the whole bodies.
     pub(super) cores: Option<Cores>,
     pub(super) heap: BinaryHeap<Entry>,
     /// One candidate that is not in the heap.
     pub(super) first: Option<Entry>,
     /// Elementary tests that are not settled.
     pub(super) open: Vec<Open>,
-    /// What they are of.
+    /// Parts that the open tests are of.
     pub(super) tested: Vec<Tested>,
     /// Pieces begun, and how many there are.
     pub(super) pieces: u64,
     all_pieces: f64,
     /// Times that directions were tried on two primitives.
     pub(super) proofs: u64,
-    /// What [`Self::worked`] may reach.
+    /// Limit of [`Self::worked`].
     pub(super) budget: u64,
-    /// What it may reach before the search pauses, as far as it can.
+    /// Work after which the search pauses, as far as it can.
     pub(super) pause: u64,
     /// Node pairs looked at.
     pub(super) nodes: u32,
     pub(super) earliest: Earliest<f64>,
-    /// What of the primitives found was tested.
+    /// Parts of the primitives found that were tested.
     pub(super) found: Option<Tested>,
-    /// As [`super::first_contact::Query::deepest`].
+    /// Depth of what touches, as [`super::first_contact::Query::deepest`].
     pub(super) deepest: f64,
 }
 

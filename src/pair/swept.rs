@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// A set of listed primitive pairs, one bit each, in turn where there are more.
 pub(super) type Bits = u128;
 
-/// Of each node of both bodies, by its number, the listed primitive pairs below it.
+/// Listed primitive pairs below each node of both bodies, by its number.
 pub(super) type Listed = [Vec<Bits>; 2];
 
 /// Chord of a node's centre over a piece, and the radius around it that covers the node, rounding
@@ -26,31 +26,31 @@ pub(super) struct Swept {
     pub(super) chord: Vec3<f64>,
     pub(super) radius: f64,
     pub(super) below: NodeKind,
-    /// What of the list of near primitives is below it; all bits where there is no list, none where nothing of it may
-    /// meet the other side.
+    /// Part of the list of near primitives that is below the node; all bits where there is no list, none where nothing
+    /// of it may meet the other side.
     pub(super) near: Bits,
     /// The body's node.
     pub(super) node: u32,
-    /// Where the first of its swept children is; [`NOT_YET`] before they are wanted.
+    /// Place of the first of its swept children; [`NOT_YET`] before they are wanted.
     next: u32,
-    /// Where the balls of its hull are; [`NOT_YET`] before they are wanted.
+    /// Place of the balls of its hull; [`NOT_YET`] before they are wanted.
     hull: u32,
 }
 
 const NOT_YET: u32 = u32::MAX;
 
-/// When two swept nodes come within a distance.
+/// Time at which two swept nodes come within a distance.
 pub(super) enum Touch {
-    /// At the start, so deep as a share of the distance, from 0 to -1.
+    /// Contact at the start, so deep as a share of the distance, from 0 to -1.
     AtStart(f64),
-    /// At this share of the piece.
+    /// Contact at this share of the piece.
     At(f64),
-    /// Not in the piece.
+    /// No contact in the piece.
     Never,
 }
 
 impl Swept {
-    /// When the balls of two nodes are first within `reach` of each other.
+    /// Time at which the balls of two nodes are first within `reach` of each other.
     pub(super) fn touch(&self, other: &Self, reach: f64) -> Touch {
         let y = other.start - self.start;
         let rate = other.chord - self.chord;
@@ -78,13 +78,13 @@ pub(super) struct Side<'a, V> {
     pub(super) body: &'a V,
     motion: RigidMotion<f64>,
     times: [f64; 2],
-    /// At the start and the end of the piece.
+    /// Frames at the start and the end of the piece.
     frames: [Frame<f64>; 2],
     nodes: Vec<Swept>,
     balls: Vec<Balls>,
-    /// What may meet the other side; `None`: all.
+    /// Primitives that may meet the other side; `None`: all.
     left: Option<ActivePrimitives>,
-    /// What may come near it, and which of the bodies this is.
+    /// List of what may come near it, and which of the bodies this is.
     near: Option<(Arc<Listed>, usize)>,
 }
 
@@ -106,7 +106,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         }
     }
 
-    /// Has only nodes looked at that are above listed primitives of this side.
+    /// Keeps the search to nodes above listed primitives of this side.
     pub(super) fn keep_near(&mut self, near: Arc<Listed>, side: usize) {
         self.near = Some((near, side));
     }
@@ -142,7 +142,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         &self.nodes[at as usize]
     }
 
-    /// Where the two children of a swept node are; itself if it is a leaf, or not to be split.
+    /// Places of the two children of a swept node; itself if it is a leaf, or not to be split.
     pub(super) fn parts(&mut self, at: u32, split: bool) -> Range<u32> {
         let Swept { below, next, .. } = *self.node(at);
         let NodeKind::Nodes(first, second) = below else {
@@ -231,11 +231,11 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
     }
 }
 
-/// Up to this ratio of their radii two nodes are split together. With 1 (one at a time) approaches take a
-/// fifth longer, fast queries a tenth; 1.5 is nearly as good.
+/// Ratio of their radii up to which two nodes are split together. With 1 (one at a time) approaches take a fifth
+/// longer, fast queries a tenth; 1.5 is nearly as good.
 const SIMILAR: f64 = 3.0;
 
-/// What two swept nodes, not both of them leaves, are replaced by.
+/// Children that replace two swept nodes, not both of them leaves.
 pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
     sides: &mut (Side<A>, Side<B>),
     [i, j]: [u32; 2],

@@ -65,7 +65,7 @@ impl Part {
     }
 }
 
-/// What one or two parts make up.
+/// Rest of a primitive without its tips: one or two parts.
 #[derive(Clone, Copy)]
 pub(super) struct Parts {
     parts: [Part; 2],
@@ -81,7 +81,7 @@ impl Parts {
         }
     }
 
-    /// Where the radius of a primitive is `kept` or more; all of it, if it is less everywhere.
+    /// The parts where the radius of a primitive is `kept` or more; all of it, if it is less everywhere.
     pub(super) fn without_tips(spheres: &[Ball<f64>], kept: f64) -> Self {
         let mut whole = Self::whole(spheres.len());
         let at = |k: usize| Part::whole(3).shares[k];

@@ -18,7 +18,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         free < time + WORTH_WAITING * (self.times[1] - self.times[0])
     }
 
-    /// Has two nodes wait until `free`.
+    /// Puts two nodes back into the queue, until `free`.
     pub(super) fn wait(&mut self, nodes: [u32; 2], free: f64) -> bool {
         let of = [
             self.sides.0.node(nodes[0]).node,
@@ -28,8 +28,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         true
     }
 
-    /// Until when directions prove two primitives free from `time` on; `None` if as long as the
-    /// search asks.
+    /// Time until which directions prove two primitives free from `time` on; `None` if as long as the search asks.
     pub(super) fn free_until(&self, balls: [&Balls; 2], time: f64) -> Option<f64> {
         let touching = Threshold::new(self.reach, self.earliest.limits.tolerance);
         self.above_until(balls, &touching, time)
@@ -47,7 +46,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         })
     }
 
-    /// The same by one direction alone, and until they come within the tolerance.
+    /// Time until which one direction alone proves them free, and until they come within the tolerance.
     pub(super) fn held_until(
         &self,
         balls: [&Balls; 2],
@@ -59,7 +58,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         self.in_piece(time, |span| held_until(balls, n, span, contact))
     }
 
-    /// What two fractions of the piece that is searched, from `time` to the end, have for an answer, as a time.
+    /// Answer to two fractions of the piece that is searched, from `time` to the end, as a time.
     fn in_piece(&self, time: f64, free: impl Fn([f64; 2]) -> Option<f64>) -> Option<f64> {
         let [start, length] = [self.times[0], self.times[1] - self.times[0]];
         let [from, until] = self.span(time);
@@ -71,7 +70,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         Some((start + free * length).next_down().next_down().max(time))
     }
 
-    /// From `time` to the end of what is searched, in fractions of the piece.
+    /// Span from `time` to the end of what is searched, in fractions of the piece.
     pub(super) fn span(&self, time: f64) -> [f64; 2] {
         let [start, end] = self.times;
         [time, self.earliest.upper.min(end)].map(|t| (t - start) / (end - start))

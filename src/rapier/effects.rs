@@ -94,7 +94,7 @@ pub struct MedialOptions {
 /// thirty rings of 200 cones dropped into a pen an eighth.
 const BUDGET: u64 = 1 << 22;
 
-/// The same for games: a frame's work.
+/// Budget for games: a frame's work.
 const BUDGET_OF_GAMES: u64 = 1 << 14;
 
 impl Default for MedialOptions {

@@ -37,7 +37,7 @@ pub struct CreaseSamples {
     pub samples: Vec<Sample>,
     /// The distance to the next around each.
     pub distances: Vec<f64>,
-    /// The same where matter is thick.
+    /// Distance of samples where matter is thick.
     pub spacing: f64,
 }
 

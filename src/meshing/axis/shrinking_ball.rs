@@ -17,7 +17,7 @@ pub fn shrink(tree: &TriangleTree, p: Point, n: Point) -> Ball {
     shrink_from(tree, p, n, LARGEST_BALL)
 }
 
-/// The same, of radius `largest` at most.
+/// The ball, of radius `largest` at most.
 pub fn shrink_from(tree: &TriangleTree, p: Point, n: Point, largest: f64) -> Ball {
     let mut radius = largest;
     // Thirty steps end all but those that creep, which are near enough by then.

@@ -183,7 +183,7 @@ impl Source {
         target
     }
 
-    /// The same, of few samples, to tell drafts that may serve from those that cannot.
+    /// Target of few samples, to tell drafts that may serve from those that cannot.
     pub fn rough_target(&self) -> Target<'_> {
         self.target(1)
     }

@@ -46,7 +46,7 @@ impl Source {
         FLAT.max(0.5 * f64::from(f32::EPSILON) * far)
     }
 
-    /// The same, where corners of flat faces are off their planes by at most `flat`.
+    /// The pieces, where corners of flat faces are off their planes by at most `flat`.
     fn pieces_of(&self, flat: f64, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
         let (on, close) = (ON * flat, CLOSE * flat);
         let surface = &self.surface;

@@ -31,12 +31,12 @@ use rapier3d::dynamics::IntegrationParameters;
 /// 14 cases with 0.5, 0.75 and 1.
 const HANGING: Real = 1.0;
 
-/// The same where it hangs in one that stands still: nothing lags behind that one. A ring that rolls in a fixed one has
-/// 0.66 of its first swing left after 20 s, and 0.33 with 1.
+/// Time ahead, in steps, for a body that hangs in one that stands still: nothing lags behind that one. A ring that
+/// rolls in a fixed one has 0.66 of its first swing left after 20 s, and 0.33 with 1.
 const HANGING_IN_STILL: Real = 0.6;
 
-/// The same where neither hangs. A ring of 48 cones that rolls on a plate at 0.5 m/s has 0.45 m/s left after 5 s, and
-/// 0.46 if the plate is free; 0.58 and 0.55 with 0.25 and 0.2, 0.74 with 0.6 and 0.5.
+/// Time ahead, in steps, where neither body hangs. A ring of 48 cones that rolls on a plate at 0.5 m/s has 0.45 m/s
+/// left after 5 s, and 0.46 if the plate is free; 0.58 and 0.55 with 0.25 and 0.2, 0.74 with 0.6 and 0.5.
 const STANDING: Real = 0.0;
 
 /// Relative travel in that time, in units of the thinner body's thickness and at most rapier's

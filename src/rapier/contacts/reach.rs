@@ -23,9 +23,9 @@ pub fn reach(starts: [&MedialCollider; 2], parameters: &IntegrationParameters) -
 /// velocities, gravity, forces and what is near them. Beside joints, and where the user writes into their contacts, it
 /// has no bound.
 ///
-/// Either in this step, in which something may push them (rapier lets nothing bounce before the poses are
-/// final, so no push is faster than what pushes), or in those in which rapier keeps their contacts. A pair
-/// that is kept, and pushed then, gets further.
+/// The bound is for this step, in which something may push them (rapier lets nothing bounce before the poses are
+/// final, so no push is faster than what pushes), or for the steps in which rapier keeps their contacts. A recycled
+/// pair that is pushed later may exceed this bound.
 pub fn way(starts: [&MedialCollider; 2], parameters: &IntegrationParameters) -> Real {
     if starts.iter().any(|s| s.is_modified()) {
         return Real::MAX;

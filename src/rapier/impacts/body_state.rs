@@ -1,4 +1,4 @@
-//! What the impacts of a step did to one body so far: how many it had, and whether it is frozen, moved or struck.
+//! State of one body in the impacts of a step: how many it had, and whether it is frozen, moved or struck.
 
 /// State of one body in the loop.
 #[derive(Clone, Copy, Default)]
@@ -9,10 +9,10 @@ pub struct BodyImpactState {
     pub frozen: bool,
     /// Leaves the motion that rapier gave it.
     pub moved: bool,
-    /// Has another velocity.
+    /// Whether it has another velocity.
     pub struck: bool,
     /// Stands still since the step's budget was spent.
     pub waits: bool,
-    /// Is carried along by a driven body, or by what one carries.
+    /// Whether it is carried along by a driven body, or by what one carries.
     pub driven: bool,
 }

@@ -80,8 +80,8 @@ impl Response {
         self.courses[body].frozen || view.bodies[body].kind != Kind::Free
     }
 
-    /// What resists the impulse on the velocities and, where that differs, the one on the motions; and the point of the
-    /// contact. Bodies that joints hold have the velocities and motions there that these let them have.
+    /// System that resists the impulse on the velocities and, where that differs, the one on the motions; and the point
+    /// of the contact. Bodies that joints hold have the velocities and motions there that these let them have.
     fn at_contact<'j>(
         &self,
         view: &mut StepView,
@@ -144,7 +144,7 @@ fn change_motions(view: &mut StepView, system: &System, point: &ContactPoint, im
     }
 }
 
-/// What resists an impulse on a body, where the two bodies of a contact are `both`.
+/// Inertia that resists an impulse on a body, where the two bodies of a contact are `both`.
 fn inertia(view: &StepView, both: [usize; 2], body: usize) -> Inertia {
     let dominance = both.map(|b| view.bodies[b].dominance);
     let [first, second] = both.map(|b| b == body);

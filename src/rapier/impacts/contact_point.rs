@@ -1,4 +1,4 @@
-//! Where two bodies meet: what their motions are there, and what an impulse there does.
+//! Point where two bodies meet: their motions there, and the effect of an impulse there.
 
 use crate::math::{Real, Vector};
 use crate::rapier::impacts::impulse::{Impact, Material};
@@ -10,9 +10,9 @@ use crate::rapier::view::step_view::StepView;
 /// A contact of two bodies at its time, in the world frame.
 pub struct ContactPoint {
     bodies: [usize; 2],
-    /// From the first body to the second.
+    /// Unit normal from the first body to the second.
     normal: Vector,
-    /// From the bodies' centres of mass to the point.
+    /// Arms from the bodies' centres of mass to the point.
     arms: [Vector; 2],
     /// Velocities of the bodies' motions there, a length per second.
     motions: [Vector; 2],

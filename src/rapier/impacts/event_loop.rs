@@ -31,15 +31,15 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::SharedShape;
 use rapier3d::geometry::NarrowPhase;
 
-/// What boxes are grown by, in units of rapier's length unit: more than half of any target distance,
-/// which grows a little with each meeting of a pair.
+/// Margin that boxes are grown by, in units of rapier's length unit: more than half of any target distance, which grows
+/// a little with each meeting of a pair.
 const MARGIN: Real = 5.0e-3;
 
 /// Shares of a step before and after which the world does not stop: what is left would be no step, and
 /// a stop at the start would change nothing.
 const STOPS_WITHIN: [Real; 2] = [1.0e-3, 1.0 - 1.0e-3];
 
-/// What comes next.
+/// Next event.
 enum Next {
     /// Two colliders meet.
     Impact([usize; 2], Hit),
@@ -49,7 +49,7 @@ enum Next {
     Spent,
 }
 
-/// What a pair waits for.
+/// Query or hit that a pair waits for.
 pub(crate) enum Awaited<'a> {
     Answer(LazyToiQuery<'a>),
     Hit(Hit),
@@ -191,7 +191,7 @@ impl Loop<'_> {
         }
     }
 
-    /// Has a hit wait for its time, where the user's rules allow it.
+    /// Puts a hit in the queue, where the user's rules allow it.
     fn expect(&mut self, pair: [usize; 2], hit: Hit) {
         self.waiting.remove(pair);
         let (view, rules) = (&*self.view, self.rules);
@@ -320,8 +320,8 @@ impl Loop<'_> {
         }
     }
 
-    /// Ends here for all bodies. What forces did in the rest of the step they will do again; a velocity
-    /// that contacts of the solver made is taken for theirs from the start of the step on.
+    /// Ends the step here for all bodies. Undoes the forces' velocity after the stop, since the next part of the step
+    /// applies it again; a velocity that contacts of the solver made is taken for theirs from the start of the step on.
     fn stop(mut self, time: Real, narrow_phase: &NarrowPhase) -> Outcome {
         let left = 1.0 - time / self.policy.dt;
         let courses = &mut self.response.courses;

@@ -7,14 +7,14 @@ use std::collections::BTreeSet;
 
 type Pair = [usize; 2];
 
-/// What waits for each pair, once a pair.
+/// Queue of pairs, each once, with what waits for it.
 pub struct EventQueue<T> {
     /// Bits of the time, pair, and place in `all`.
     order: BTreeSet<(u32, Pair, u32)>,
     entries: FastMap<Pair, (u32, u32)>,
     all: Vec<Option<T>>,
     unused: Vec<u32>,
-    /// Of each collider those with which it has waited since [`EventQueue::partners`] looked last.
+    /// Partners of each collider with which it has waited since [`EventQueue::partners`] looked last.
     partners: FastMap<usize, Vec<usize>>,
 }
 
@@ -36,7 +36,7 @@ fn bits(time: Real) -> u32 {
 }
 
 impl<T> EventQueue<T> {
-    /// Has a pair that does not wait yet wait until `time`, in seconds.
+    /// Adds a pair that does not wait yet, until `time`, in seconds.
     pub fn insert(&mut self, pair: Pair, time: Real, what: T) {
         let place = self.unused.pop().unwrap_or_else(|| {
             self.all.push(None);
@@ -90,7 +90,7 @@ impl<T> EventQueue<T> {
         Some((*pair, what, next))
     }
 
-    /// Has the first pair wait longer.
+    /// Reschedules the first pair to a later time.
     pub fn reschedule_first(&mut self, time: Real) {
         if let Some((_, pair, place)) = self.order.pop_first() {
             self.entries.insert(pair, (bits(time), place));

@@ -1,5 +1,5 @@
-//! Where pairs of colliders met in the impacts of this step. Most of them still touch there when one of the two is
-//! struck again. The spheres that met tell where and how far that contact has opened since.
+//! Places at which pairs of colliders met in the impacts of this step. Most of them still touch there when one of the
+//! two is struck again. The spheres that met tell where and how far that contact has opened since.
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
@@ -19,7 +19,7 @@ const PLACES: usize = 8;
 struct Meetings {
     /// How often they met.
     count: u32,
-    /// Where, each primitive pair once, the last at the end.
+    /// Places, each primitive pair once, the last at the end.
     places: Vec<Place>,
 }
 
@@ -45,7 +45,7 @@ impl ImpactHistory {
         self.of_pair.get(&pair).map_or(0, |m| m.count)
     }
 
-    /// When a pair met last, in seconds into the step.
+    /// Time at which a pair met last, in seconds into the step.
     fn last_time(&self, pair: Pair) -> Option<Real> {
         let last = self.of_pair.get(&pair)?.places.last();
         last.map(|place| place.hit.time)

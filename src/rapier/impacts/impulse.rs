@@ -21,7 +21,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// That of two colliders together.
+    /// The material of two colliders together.
     pub fn of(a: &Collider, b: &Collider) -> Self {
         let (a, b) = (a.material(), b.material());
         let combine = CoefficientCombineRule::combine;
@@ -47,8 +47,8 @@ impl Material {
 pub struct Impact {
     /// Unit normal from the first to the second.
     pub normal: Vector,
-    /// What unit impulses along the world's axes on the second body, and their negatives on the first, add to the
-    /// relative velocity at the contact.
+    /// Change of the relative velocity at the contact by unit impulses along the world's axes on the second body, and
+    /// their negatives on the first.
     pub response: [Vector; 3],
     /// Restitution and friction.
     pub material: Material,
@@ -85,7 +85,7 @@ impl Impact {
         impulse.is_finite().then_some(impulse)
     }
 
-    /// What an impulse adds to the relative velocity at the contact.
+    /// Change of the relative velocity at the contact by an impulse.
     fn effect(&self, impulse: Vector) -> Vector {
         let [x, y, z] = self.response;
         x * impulse.x + y * impulse.y + z * impulse.z

@@ -19,10 +19,10 @@ use rapier3d::geometry::{ColliderHandle, ColliderSet, NarrowPhase};
 
 type Pair = [ColliderHandle; 2];
 
-/// What is known from step to step.
+/// Record from step to step of bodies put into each other.
 #[derive(Default)]
 pub struct InitialOverlaps {
-    /// Where the last step left the colliders, in the order of their indices.
+    /// Poses at which the last step left the colliders, in the order of their indices.
     ends: Vec<(ColliderHandle, Pose)>,
     /// Pairs of new colliders of which rapier has contacts from before this step: of a world that was loaded.
     met: FastSet<Pair>,
@@ -34,7 +34,7 @@ fn index(handle: ColliderHandle) -> u32 {
     handle.into_raw_parts().0
 }
 
-/// In the order of their indices.
+/// The two in the order of their indices.
 fn sorted([a, b]: Pair) -> Pair {
     if index(a) <= index(b) { [a, b] } else { [b, a] }
 }
@@ -56,7 +56,7 @@ impl InitialOverlaps {
             .collect();
     }
 
-    /// Of the pairs with deep contacts in this step, those that are left to the solver.
+    /// Pairs with deep contacts in this step that are left to the solver.
     pub fn leave(&mut self, view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize; 2]> {
         let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
         let was_put = |pair: [usize; 2], deep: &Deep| match self.moved(view, pair) {

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// The medial meshes of both, where they are.
 pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
 
-/// What is known of the pairs of a step.
+/// Records of the pairs of a step: what culling and lists of near primitives know.
 pub type Known<'k> = (&'k mut PairCulling, &'k mut NearLists);
 
 /// A question about a pair from some time on, while neither of the two has another motion.
@@ -29,20 +29,20 @@ pub struct LazyToiQuery<'m> {
 type MeshQuery<'m> = Query<'m, MedialMesh, MedialMesh>;
 
 struct Begun<'m> {
-    /// What may come near, where that is listed.
+    /// Primitives that may come near, where they are listed.
     near: Option<Arc<NearPairs>>,
     first: Box<MeshQuery<'m>>,
     /// The query for the floor; `None` outside before it is known whether there is one.
     floor: Option<Option<Box<MeshQuery<'m>>>>,
 }
 
-/// What is known of it.
+/// Progress of a query.
 pub enum QueryProgress {
     /// Nothing meets before, in seconds into the step.
     FreeUntil(Real),
     /// The first contact.
     Hit(Hit),
-    /// They do not meet in this step.
+    /// The two do not meet in this step.
     Never,
 }
 

@@ -1,4 +1,5 @@
-//! What forces give a body in the rest of a step in which it gets nowhere, because it presses on one that was stopped.
+//! Takes back what forces give a body in the rest of a step in which it gets nowhere, because it presses on one that
+//! was stopped.
 //!
 //! A stopped body is in the way of the other's path as if its mass were infinite, but takes of its velocity only what its
 //! own mass can. A heavy body on light ones that are stopped would so gain speed by its weight in each step without

@@ -19,7 +19,7 @@ const UNLISTED: u32 = 1;
 /// listed; smaller, and a list holds for fewer impacts.
 const MARGIN: f64 = 0.5;
 
-/// Of each pair that was searched in this step.
+/// Lists of near primitives of each pair that was searched in this step.
 #[derive(Default)]
 pub struct NearLists(FastMap<[usize; 2], Asked>);
 

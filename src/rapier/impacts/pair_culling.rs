@@ -26,7 +26,7 @@ pub struct PairCulling {
 type Made = Option<Outline>;
 
 impl PairCulling {
-    /// None is made yet.
+    /// A record in which no outline is made yet.
     pub fn new(parts: usize, end: Real) -> Self {
         Self {
             made: (0..parts).map(|_| None).collect(),
@@ -86,7 +86,7 @@ impl PairCulling {
     }
 }
 
-/// By spheres round the centres about which they turn, whose paths are straight.
+/// Time until which spheres round the centres about which two colliders turn, whose paths are straight, stay apart.
 fn spheres_apart_until(
     view: &StepView,
     pair: [usize; 2],

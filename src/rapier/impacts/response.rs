@@ -1,5 +1,5 @@
-//! What an impact does to bodies: when a body stops after too many impacts, and how an impact is passed on to bodies that
-//! touch already. The impulses of one contact are in [`crate::rapier::impacts::contact_impulses`].
+//! Response of bodies to an impact: when a body stops after too many impacts, and how an impact is passed on to bodies
+//! that touch already. The impulses of one contact are in [`crate::rapier::impacts::contact_impulses`].
 //!
 //! In a crowd an impact presses on contacts that earlier impacts of the step left. Found one by one, each a hair
 //! later than the last, these would be three impacts of four, and freeze the bodies in the middle. So all that
@@ -28,9 +28,9 @@ type Pair = [usize; 2];
 /// creatures are the same with 16, 32 and 64.
 const ROUNDS: usize = 64;
 
-/// What the impacts of a step did so far.
+/// Record of what the impacts of a step did so far.
 pub struct Response {
-    /// Of each body.
+    /// State of each body.
     pub courses: Vec<BodyImpactState>,
     /// Between two colliders, those of one normal summed.
     pub impulses: BTreeMap<Pair, Vec<ReportedImpulse>>,
@@ -112,7 +112,7 @@ impl Response {
         changed
     }
 
-    /// Has joints take bodies through the step from its start.
+    /// Lets joints take bodies through the step from its start.
     pub fn lead(
         &mut self,
         view: &mut StepView,

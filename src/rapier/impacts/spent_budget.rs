@@ -1,5 +1,5 @@
-//! What happens when the step's budget is spent ([`crate::MedialOptions::budget`]): bodies of which more would have to be
-//! asked wait for the next step.
+//! End of a step whose budget is spent ([`crate::MedialOptions::budget`]): bodies of which more would have to be asked
+//! wait for the next step.
 //!
 //! Until the first time that a pair waits for, no pair meets, so there they stop. A body that stands is in the way of
 //! others that were to pass behind it: these stop too, and so on. What goes on then was searched to the end, or is a

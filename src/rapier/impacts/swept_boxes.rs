@@ -12,7 +12,7 @@ pub struct SweptBoxes {
 }
 
 impl SweptBoxes {
-    /// Of all colliders.
+    /// The boxes of all colliders.
     pub fn new(all: Vec<Aabb>) -> Self {
         let sound: Vec<Aabb> = all.iter().map(in_tree).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &sound);
@@ -40,7 +40,7 @@ impl SweptBoxes {
     }
 }
 
-/// What of a box the tree holds: nothing where it has no numbers, so that boxes round it stay sound.
+/// Box as the tree holds it: nothing where it has no numbers, so that boxes round it stay sound.
 fn in_tree(aabb: &Aabb) -> Aabb {
     match aabb.mins.is_nan() || aabb.maxs.is_nan() {
         true => Aabb::new_invalid(),

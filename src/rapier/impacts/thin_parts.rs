@@ -13,10 +13,10 @@ use parry3d::bounding_volume::Aabb;
 /// and more of them are searched for nothing.
 const MOST: usize = 256;
 
-/// What is looked for: parts thinner than `thickness` that are within `reach` of each other, both lengths.
+/// Condition that is looked for: parts thinner than `thickness` that are within `reach` of each other, both lengths.
 #[derive(Clone, Copy)]
 pub struct Thin {
-    /// Of the thinner of two parts.
+    /// Thickness of the thinner of two parts.
     pub thickness: Real,
     /// Between the surfaces of both.
     pub reach: Real,

@@ -24,7 +24,7 @@ use crate::rapier::view::step_view::StepView;
 use parry3d::query::NonlinearRigidMotion;
 
 counters! {
-    /// What the searches of a step for first contacts took.
+    /// Work that the searches of a step for first contacts took.
     pub struct Work {
         /// Continuous queries.
         pub queries: u64,
@@ -80,7 +80,7 @@ impl Hit {
     }
 }
 
-/// What a pair is asked for.
+/// Options of the query for a pair.
 pub struct QueryOptions {
     /// The first contact.
     pub first: ToiOptions,
@@ -93,7 +93,7 @@ pub struct QueryOptions {
 /// Asks for first contacts in a step of `dt` seconds.
 #[derive(Clone, Copy)]
 pub struct CcdPolicy<'a> {
-    /// What the pairs call for.
+    /// Effects that the pairs call for.
     pub effects: &'a EffectSettings,
     /// Length of the step in seconds.
     pub dt: Real,
@@ -112,7 +112,7 @@ pub struct CcdPolicy<'a> {
 }
 
 impl CcdPolicy<'_> {
-    /// What is left of the budget.
+    /// Rest of the budget.
     pub fn left(&self, work: &Work) -> u64 {
         self.budget.saturating_sub(work.spent())
     }
@@ -181,8 +181,8 @@ impl CcdPolicy<'_> {
         self.may_stop && self.effects_of(view, pair).stop == Effect::On
     }
 
-    /// What a pair that has met so often in this step is asked from `time` on; `None`: nothing. `deep`:
-    /// rapier's contacts are, so that even a slow pair is kept above the floor.
+    /// Query options from `time` on for a pair that has met so often in this step; `None` if no query is needed.
+    /// `deep`: rapier's contacts are, so that even a slow pair is kept above the floor.
     pub fn query_options(
         &self,
         view: &StepView,

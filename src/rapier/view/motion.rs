@@ -41,7 +41,7 @@ struct Bend {
 /// A body in a step.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// `None` for what colliders without a body stand on.
+    /// Body of rapier; `None` for the implicit static body.
     pub handle: Option<RigidBodyHandle>,
     /// Whether an impact may move it.
     pub kind: Kind,
@@ -135,7 +135,7 @@ impl Body {
         }
     }
 
-    /// The fixed body that colliders without a body stand on.
+    /// The implicit static body, which carries the colliders without a body.
     pub fn ground() -> Self {
         Self {
             handle: None,
