@@ -31,7 +31,7 @@ use web_time::Instant;
 
 /// Arguments of a part of a step.
 #[derive(Clone, Copy)]
-struct Part<'a> {
+struct StepArgs<'a> {
     /// The user's parameters, with the time that is left of the step.
     parameters: &'a IntegrationParameters,
     filters: &'a FilterAnswers<'a>,
@@ -40,7 +40,7 @@ struct Part<'a> {
     may_stop: bool,
 }
 
-impl Part<'_> {
+impl StepArgs<'_> {
     /// How first contacts are searched.
     fn policy<'e>(
         &self,
@@ -89,13 +89,13 @@ impl State {
         let filters = FilterAnswers::new(hooks, &exchange);
         let can_stop = !world.has_links_or_particles();
         loop {
-            let part = Part {
+            let args = StepArgs {
                 parameters: &rest,
                 filters: &filters,
                 events,
                 may_stop: can_stop && report.stops < self.tuning.max_stops,
             };
-            let (done, stopped) = self.part(world, part);
+            let (done, stopped) = self.part(world, args);
             // No sum: how many there are in the end.
             report.medial_colliders = 0;
             report += done;
@@ -109,39 +109,39 @@ impl State {
     }
 
     /// A step, or what of it comes before the world stops; the second result is when, in seconds.
-    fn part(&mut self, world: &mut World, part: Part) -> (StepReport, Option<Real>) {
+    fn part(&mut self, world: &mut World, args: StepArgs) -> (StepReport, Option<Real>) {
         let before = self.batch.report().counts;
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         world
             .bodies
             .propagate_modified_body_positions_to_colliders(world.colliders);
         let census = world.census();
-        let lowered = lowered(part.parameters);
-        let part = Part {
+        let lowered = lowered(args.parameters);
+        let args = StepArgs {
             parameters: match census.medial {
-                0 => part.parameters,
+                0 => args.parameters,
                 _ => &lowered,
             },
-            ..part
+            ..args
         };
         let mut report = StepReport::default();
         let mut work = Work::default();
         let kept = self.kept.take().filter(|kept| kept.holds_in(&census));
         let is_kept = kept.is_some();
         let mut plan =
-            kept.unwrap_or_else(|| self.plan(world, part, census, (&mut report, &mut work)));
+            kept.unwrap_or_else(|| self.plan(world, args, census, (&mut report, &mut work)));
 
-        let events = DedupEventHandler::new(part.events, &mut self.reported);
-        let tally = self.rapiers_step(world, part, (&mut plan, is_kept), &events, &mut report);
+        let events = DedupEventHandler::new(args.events, &mut self.reported);
+        let tally = self.rapiers_step(world, args, (&mut plan, is_kept), &events, &mut report);
 
         let clock = Instant::now();
-        let outcome = self.impacts(world, part, (&mut plan, tally.depth), &mut work);
+        let outcome = self.impacts(world, args, (&mut plan, tally.depth), &mut work);
         write_back(&plan.view, &outcome, world);
         if !is_kept || plan.view.followed {
             self.placed.end(&plan.view, world.colliders);
         }
         let scene = Scene {
-            dt: part.parameters.dt,
+            dt: args.parameters.dt,
             bodies: world.bodies,
             colliders: world.colliders,
             narrow_phase: world.narrow_phase,
@@ -166,12 +166,12 @@ impl State {
     fn plan(
         &mut self,
         world: &mut World,
-        part: Part,
+        args: StepArgs,
         census: Census,
         (report, work): (&mut StepReport, &mut Work),
     ) -> StepPlan {
         let clock = Instant::now();
-        let parameters = part.parameters;
+        let parameters = args.parameters;
         medial_colliders::make_unique(world.bodies, world.colliders);
         self.effects.clean(world.colliders);
         let view = if census.medial == 0 || self.effects.none() {
@@ -182,10 +182,10 @@ impl State {
             StepView::take(world.gravity, parameters.dt, bodies, colliders, joints)
         };
         self.placed.begin(&view, world.narrow_phase);
-        let rules = world.rules(part.filters);
+        let rules = world.rules(args.filters);
         let wild = WildMultibodies::find(&view, &rules, world.narrow_phase, parameters.dt);
         let prediction = parameters.prediction_distance();
-        let policy = part.policy(&self.effects, (self.tuning, self.budget), false);
+        let policy = args.policy(&self.effects, (self.tuning, self.budget), false);
         let Muted {
             keys: muted,
             bouncing,
@@ -202,7 +202,7 @@ impl State {
 
         let clock = Instant::now();
         let found = candidates::find(world.sets(parameters), &mut self.recycled, &muted);
-        let forced = found.fresh.union(&stale).copied().collect();
+        let forced = found.forced.union(&stale).copied().collect();
         forced_updates::force_updates(&forced, world.colliders);
         let mut results = self.batch.run(&found.jobs);
         report.pairs = found.pairs;
@@ -241,13 +241,13 @@ impl State {
     fn rapiers_step(
         &self,
         world: &mut World,
-        part: Part,
+        args: StepArgs,
         (plan, is_kept): (&mut StepPlan, bool),
         events: &DedupEventHandler,
         report: &mut StepReport,
     ) -> Tally {
         let clock = Instant::now();
-        let parameters = part.parameters;
+        let parameters = args.parameters;
         let loans = (!is_kept).then(|| {
             let unit = parameters.length_unit;
             let speculators = Speculators::set(&plan.view, &self.effects, unit, world.bodies);
@@ -264,7 +264,7 @@ impl State {
 
         self.exchange.begin_step(Arc::clone(&plan.narrow_phase));
         let clock = Instant::now();
-        world.step(parameters, part.filters, events);
+        world.step(parameters, args.filters, events);
         report.step_seconds = clock.elapsed().as_secs_f64();
         let tally = self.exchange.end_step();
         if let Some(loans) = loans {
@@ -277,7 +277,7 @@ impl State {
     fn impacts(
         &mut self,
         world: &World,
-        part: Part,
+        args: StepArgs,
         (plan, depth): (&mut StepPlan, Real),
         work: &mut Work,
     ) -> Outcome {
@@ -285,15 +285,15 @@ impl State {
         if plan.census.still.is_some() && !moved {
             return Outcome::default();
         }
-        let parameters = part.parameters;
+        let parameters = args.parameters;
         let view = &mut plan.view;
         view.follow(parameters, world.bodies, world.colliders);
-        let rules = world.rules(part.filters);
+        let rules = world.rules(args.filters);
         let wild = std::mem::take(&mut plan.wild);
         wild.take_back(view, &rules, world.narrow_phase, parameters.dt);
         let depth = plan.depth.max(depth);
         let bouncing = plan.bouncing;
-        let policy = part.policy(&self.effects, (self.tuning, self.budget), bouncing);
+        let policy = args.policy(&self.effects, (self.tuning, self.budget), bouncing);
         event_loop::resolve(
             view,
             policy,

@@ -25,7 +25,7 @@ pub struct Candidates {
     /// All medial colliders, for pairs that rapier asks for and that are not among the jobs.
     pub colliders: MedialColliders,
     /// Colliders whose contacts rapier must be made to ask for.
-    pub fresh: HashSet<ColliderHandle>,
+    pub forced: HashSet<ColliderHandle>,
     /// Depth of the deepest of all contacts, a length.
     pub depth: Real,
 }
@@ -34,7 +34,7 @@ pub struct Candidates {
 /// on different bodies, and whose groups are compatible. The order of the two is that of rapier's narrow phase (the
 /// lower collider index first).
 pub fn find(sets: Sets, recycled: &mut RecyclingRecord, muted: &HashSet<PairKey>) -> Candidates {
-    let scene = Scene::new(sets);
+    let scene = ContactScene::new(sets);
     recycled.begin(sets.parameters);
     let asked = |pair: &&[usize; 2]| {
         let place = scene.place(pair);
@@ -42,81 +42,82 @@ pub fn find(sets: Sets, recycled: &mut RecyclingRecord, muted: &HashSet<PairKey>
     };
     let asked = scene.pairs.iter().filter(asked);
     let (ahead, jobs) = asked.map(|pair| scene.at_the_end(pair)).unzip();
-    let fresh = scene.items.all.iter().zip(&scene.fresh);
-    let fresh = fresh.filter(|(_, fresh)| **fresh);
+    let forced = scene.medial.all.iter().zip(&scene.forced);
+    let forced = forced.filter(|(_, forced)| **forced);
     Candidates {
         pairs: scene.pairs.len(),
         jobs,
         ahead,
-        fresh: fresh.map(|(item, _)| item.handle).collect(),
+        forced: forced.map(|(collider, _)| collider.handle).collect(),
         depth: scene.depth,
-        colliders: scene.items,
+        colliders: scene.medial,
     }
 }
 
 /// The jobs that [`find`] will return at the next step, if nothing is changed until then.
 pub fn expect(sets: Sets, recycled: &RecyclingRecord) -> Vec<PairJob> {
-    let scene = Scene::new(sets);
+    let scene = ContactScene::new(sets);
     let asked = |pair: &&[usize; 2]| scene.asked(pair) || !recycled.recycles(&scene.place(pair));
     let asked = scene.pairs.iter().filter(asked);
     asked.map(|pair| scene.at_the_end(pair).1).collect()
 }
 
 /// The medial colliders at the start of a step, and which of them are near each other.
-struct Scene {
-    items: MedialColliders,
+struct ContactScene {
+    medial: MedialColliders,
     /// Near pairs, each in the narrow phase's order.
     pairs: Vec<[usize; 2]>,
     /// Whether rapier has to be made to ask for the contacts of each of them.
-    fresh: Vec<bool>,
-    /// Whether it asks for them in any case: the user has hooks on it, or it is `fresh`.
+    forced: Vec<bool>,
+    /// Whether it asks for them in any case: the user has hooks on it, or it is `forced`.
     asked: Vec<bool>,
     /// Depth of the deepest of all contacts, a length.
     depth: Real,
 }
 
-impl Scene {
+impl ContactScene {
     fn new(sets: Sets) -> Self {
-        let mut items = MedialColliders::new(&sets);
-        let mut boxes: Vec<Aabb> = items.all.iter().map(|item| item.aabb).collect();
-        let speed = |item: &MedialCollider| match item.body {
+        let mut medial = MedialColliders::new(&sets);
+        let mut boxes: Vec<Aabb> = medial.all.iter().map(|collider| collider.aabb).collect();
+        let speed = |collider: &MedialCollider| match collider.body {
             Some(body) if neighbor_speeds::is_tied(&sets, body) => Real::MAX,
-            _ => item.speed(),
+            _ => collider.speed(),
         };
-        let mut speeds: Vec<Real> = items.all.iter().map(speed).collect();
+        let mut speeds: Vec<Real> = medial.all.iter().map(speed).collect();
         for (aabb, speed) in neighbor_speeds::others(&sets) {
             boxes.push(aabb);
             speeds.push(speed);
         }
         let met = overlapping_pairs(&boxes);
         let pushed = neighbor_speeds::neighbor_speed_bounds(&speeds, &met);
-        let hangs = hanging::hang(&sets, &items);
-        for (item, (pushed, hangs)) in items.all.iter_mut().zip(pushed.into_iter().zip(hangs)) {
-            item.pushed = pushed;
-            item.hangs = hangs;
+        let hangs = hanging::hang(&sets, &medial);
+        for (collider, (pushed, hangs)) in medial.all.iter_mut().zip(pushed.into_iter().zip(hangs))
+        {
+            collider.pushed = pushed;
+            collider.hangs = hangs;
         }
-        let medial = met
+        let both_medial = met
             .into_iter()
-            .filter(|pair| pair.iter().all(|k| *k < items.all.len()));
-        let wanted = medial.filter(|pair| items.meet(*pair));
-        let pairs = wanted.map(|pair| items.in_order(pair)).collect();
-        let (fresh, depth) = hanging::find(&sets, &items);
-        let hooked = items.all.iter().map(|item| is_hooked(item.hooks));
+            .filter(|pair| pair.iter().all(|k| *k < medial.all.len()));
+        let wanted = both_medial.filter(|pair| medial.meet(*pair));
+        let pairs = wanted.map(|pair| medial.in_order(pair)).collect();
+        let (forced, depth) = hanging::find(&sets, &medial);
+        let hooked = medial.all.iter().map(|collider| is_hooked(collider.hooks));
         let asked = hooked
-            .zip(&fresh)
-            .map(|(hooked, fresh)| hooked || *fresh)
+            .zip(&forced)
+            .map(|(hooked, forced)| hooked || *forced)
             .collect();
         Self {
-            items,
+            medial,
             pairs,
-            fresh,
+            forced,
             asked,
             depth,
         }
     }
 
     fn of(&self, pair: &[usize; 2]) -> [&MedialCollider; 2] {
-        pair.map(|k| &self.items.all[k])
+        pair.map(|k| &self.medial.all[k])
     }
 
     fn place(&self, pair: &[usize; 2]) -> Place {
@@ -141,7 +142,7 @@ impl Scene {
     /// The job at the poses that the velocities lead to.
     fn at_the_end(&self, pair: &[usize; 2]) -> (PredictedMotion, PairJob) {
         let [a, b] = self.of(pair);
-        let parameters = &self.items.parameters;
+        let parameters = &self.medial.parameters;
         let skins = a.skin + b.skin;
         let pos12 = a.pose().inv_mul(b.pose());
         // Same summation order as rapier, to match its bits.

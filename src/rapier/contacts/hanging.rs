@@ -33,17 +33,17 @@ const RESTS: Real = 1.25;
 /// Finds the medial colliders whose contacts with each other are to be computed anew (one flag each), and the depth of the
 /// deepest contact of all, a length. Known from the world alone, so that a world that was saved and loaded goes on as it
 /// would have.
-pub fn find(sets: &Sets, items: &MedialColliders) -> (Vec<bool>, Real) {
-    let mut anew = vec![false; items.all.len()];
+pub fn find(sets: &Sets, medial: &MedialColliders) -> (Vec<bool>, Real) {
+    let mut anew = vec![false; medial.all.len()];
     let mut depth_of_all: Real = 0.0;
     let touching = sets.narrow_phase.contact_pairs();
     for pair in touching.filter(|pair| !pair.manifolds().is_empty()) {
         depth_of_all = depth_of_all.max(depth(pair, sets.colliders));
-        let places = [pair.collider1, pair.collider2].map(|h| items.place(h));
+        let places = [pair.collider1, pair.collider2].map(|h| medial.place(h));
         let [Some(i), Some(j)] = places else {
             continue;
         };
-        let sides = [&items.all[i], &items.all[j]];
+        let sides = [&medial.all[i], &medial.all[j]];
         let mass = |s: &MedialCollider| s.moving.map_or(Real::MAX, |(mass, _)| mass);
         let (lighter, side) = if mass(sides[1]) <= mass(sides[0]) {
             (j, sides[1])
@@ -55,7 +55,7 @@ pub fn find(sets: &Sets, items: &MedialColliders) -> (Vec<bool>, Real) {
         }
         let skins: Real = sides.iter().map(|s| s.skin).sum();
         anew[lighter] = hanging(pair, sides, skins, sets.parameters.length_unit)
-            || at_rest(pair, sides, skins, &items.parameters);
+            || at_rest(pair, sides, skins, &medial.parameters);
     }
     (anew, depth_of_all)
 }
@@ -72,14 +72,14 @@ fn depth(pair: &ContactPair, colliders: &ColliderSet) -> Real {
 
 /// Which medial colliders touch another so that the contact pulls their body away from its centre of mass,
 /// however little. Known from the world alone, as in [`find`].
-pub fn hang(sets: &Sets, items: &MedialColliders) -> Vec<bool> {
-    let mut hangs = vec![false; items.all.len()];
+pub fn hang(sets: &Sets, medial: &MedialColliders) -> Vec<bool> {
+    let mut hangs = vec![false; medial.all.len()];
     for pair in sets.narrow_phase.contact_pairs() {
-        let places = [pair.collider1, pair.collider2].map(|h| items.place(h));
+        let places = [pair.collider1, pair.collider2].map(|h| medial.place(h));
         let [Some(i), Some(j)] = places else {
             continue;
         };
-        let gap = items.all[i].skin + items.all[j].skin + TOUCHING * sets.parameters.length_unit;
+        let gap = medial.all[i].skin + medial.all[j].skin + TOUCHING * sets.parameters.length_unit;
         for m in pair.manifolds() {
             for p in m.points.iter().filter(|p| p.dist < gap) {
                 let sides = [
@@ -87,8 +87,10 @@ pub fn hang(sets: &Sets, items: &MedialColliders) -> Vec<bool> {
                     (j, p.local_p2, m.data.normal),
                 ];
                 for (place, point, force) in sides {
-                    let item = &items.all[place];
-                    let arm = item.moving.map(|(_, center)| *item.pose() * point - center);
+                    let collider = &medial.all[place];
+                    let arm = collider
+                        .moving
+                        .map(|(_, center)| *collider.pose() * point - center);
                     hangs[place] |= arm.is_some_and(|arm| arm.dot(force) > 0.0);
                 }
             }

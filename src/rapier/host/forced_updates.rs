@@ -11,11 +11,11 @@ use std::collections::HashSet;
 const FORCE_UPDATE_BIT: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
 
 /// Makes rapier compute all contacts of these colliders anew in its next step, and of no others.
-pub fn force_updates(fresh: &HashSet<ColliderHandle>, colliders: &mut ColliderSet) {
+pub fn force_updates(forced: &HashSet<ColliderHandle>, colliders: &mut ColliderSet) {
     let is_asked = |c: &Collider| c.active_hooks().contains(FORCE_UPDATE_BIT);
     let wrong = colliders
         .iter()
-        .filter(|(h, c)| is_asked(c) != fresh.contains(h));
+        .filter(|(h, c)| is_asked(c) != forced.contains(h));
     let wrong: Vec<ColliderHandle> = wrong.map(|(handle, _)| handle).collect();
     for handle in wrong {
         if let Some(collider) = colliders.get_mut(handle) {
