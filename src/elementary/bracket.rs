@@ -8,7 +8,7 @@
 //! 2. `upper` falls to the first root of that fixed pair (paper Eq. 4, root `t⁽¹⁾`): a proven
 //!    contact, since the pair is on both bodies.
 //! 3. `lower` rises by the largest of the proven steps: fixed direction, turning direction, on curved
-//!    paths the bound of the fixed direction over the largest speed ([`super::certificate`]); a little
+//!    paths the bound of the fixed direction over the largest speed (`certificate.rs`); a little
 //!    less than proven, for rounding. Never by the distance of the pair found: that is above the
 //!    least distance by as much as the pair is not the nearest one.
 //! 4. `upper − lower ≤ time_tolerance`: contact. `lower` at the end of the step without a root: separated. No
@@ -150,7 +150,7 @@ pub struct Running<L: Lane> {
 }
 
 impl<L: Lane> Running<L> {
-    /// A search at its start. On straight paths [`first_step`] finishes some lanes at once and lets the others begin
+    /// A search at its start. On straight paths `first_step` finishes some lanes at once and lets the others begin
     /// later.
     #[inline(always)]
     pub fn new<P: Path<L>>(path: &P, domain: Domain, limits: &Limits<L>) -> Self {

@@ -1,6 +1,7 @@
 //! The certificate: lower bounds of the distance of two primitives that hold for all of their interpolated spheres
 //! at once, and how long these bounds stay positive. They replace the paper's termination conditions (§4.4), which
-//! take a local minimum for proof of a miss.
+//! take a local minimum for proof of a miss. On a device `stays_free` in `shaders/elementary.wgsl` proves by fixed
+//! directions in the same way.
 //!
 //! # Fixed direction
 //! For a unit `n`, `D(t) ≥ min over corners of n·y_i(t) − R_i`: the right-hand side is affine in

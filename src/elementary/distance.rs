@@ -5,6 +5,7 @@ use super::test_list::{Domain, ElementaryTest, OwnedFeatures, edges, for_each_te
 use super::{certificate, cone_cone, slab_crossing, sphere_slab};
 use crate::math::lane::{Scalar, Vec3};
 use crate::math::nearest::{Family, Nearest};
+use crate::math::tolerance::ROUNDING_ULPS;
 
 /// A sphere in a common frame: centre and radius.
 pub type Ball<S> = (Vec3<S>, S);
@@ -42,7 +43,7 @@ pub fn nearest_in_family<S: Scalar>(domain: Domain, f: &Family<S>) -> Nearest<S>
 
 /// Whether the spheres of a cone–cone test are certainly further than `margin` from each other, in half
 /// of the time of [`nearest_in_family`]: proven by the direction between the nearest points of the axes
-/// ([`certificate::lower_bound`]), found by solving for one parameter after the other.
+/// (`certificate::lower_bound`), found by solving for one parameter after the other.
 pub fn is_beyond<S: Scalar>(f: &Family<S>, margin: S) -> bool {
     let (uu, vv, uv) = (f.u.length_sq(), f.v.length_sq(), f.u.dot(f.v));
     let (uw, vw) = (f.u.dot(f.w), f.v.dot(f.w));
@@ -53,8 +54,8 @@ pub fn is_beyond<S: Scalar>(f: &Family<S>, margin: S) -> bool {
     let y = f.w + f.u * alpha + f.v * beta;
     let n = y * (S::one() / y.length().max(tiny));
     // The rounding of a few sums of such lengths.
-    let slack =
-        S::splat(64.0 * S::EPSILON) * (f.w.taxicab() + f.u.taxicab() + f.v.taxicab() + f.r0);
+    let slack = S::splat(ROUNDING_ULPS * S::EPSILON)
+        * (f.w.taxicab() + f.u.taxicab() + f.v.taxicab() + f.r0);
     certificate::lower_bound(Domain::Box, f, n) > margin + slack
 }
 
@@ -293,7 +294,7 @@ impl<S: Scalar> Ends<S> {
         let size = |s: &[Ball<S>]| s.iter().fold(S::zero(), |sum, s| sum + s.0.taxicab());
         let far = a.iter().map(|s| self.n.dot(s.0)).reduce(S::max);
         let near = b.iter().map(|s| self.n.dot(s.0)).reduce(S::min);
-        let rounding = S::splat(64.0 * S::EPSILON) * (size(a) + size(b));
+        let rounding = S::splat(ROUNDING_ULPS * S::EPSILON) * (size(a) + size(b));
         far.zip(near)
             .is_some_and(|(far, near)| near - far > rounding)
     }

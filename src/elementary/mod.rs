@@ -88,7 +88,7 @@ pub struct ToiOptions {
 /// their cores do not, so that thick parts may be pressed deeper into each other than thin ones.
 ///
 /// A sphere of radius `r` has a core of radius `r − s min(r, t)`, where `t` is the thickness of the thinner of the two
-/// primitives that meet ([`crate::medial::thickness`]). If both bodies are medial, `s` is half of [`Self::share`] for
+/// primitives that meet (`medial/thickness.rs`). If both bodies are medial, `s` is half of [`Self::share`] for
 /// each of them. If one is a surface without an inside, it loses nothing, and `s` of the other is all of
 /// [`Self::share`]. So bodies whose cores do not overlap are nowhere deeper in each other than `share × t`. And while
 /// `share` is at most 1, each core contains its medial axis, so no axis has crossed another, or a surface, however

@@ -13,6 +13,7 @@
 use super::distance::{Ball, nearest_in_test};
 use super::test_list::{OwnedFeatures, edges, for_each_test};
 use crate::math::lane::{Scalar, Vec3};
+use crate::math::tolerance::ROUNDING_ULPS;
 
 /// Difference of two gaps that counts as none, in units of `EPSILON × gap`: a gap is a sum of 8
 /// rounded terms, with a margin of 2. Less, and equal directions are told apart by rounding.
@@ -122,7 +123,7 @@ fn loose_directions<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>], preferred: Vec3<S>)
         let cosine_sq = S::one() - sine * sine;
         // Where `preferred` leaves nothing but rounding, any direction across the edge serves.
         let wish = along.cross(preferred);
-        let aside = if wish.length() > S::splat(64.0 * S::EPSILON) {
+        let aside = if wish.length() > S::splat(ROUNDING_ULPS * S::EPSILON) {
             unit(wish)?
         } else {
             any_normal(along)?

@@ -44,6 +44,11 @@ pub const TURNING_REGULARISATION: f64 = 1.0e-6;
 /// Stands for "no root in the step"; any number above 1 serves.
 pub const NEVER: f64 = 4.0;
 
+/// Rounding of a few sums and products of lengths, in units of `EPSILON` times the sum of their sizes (no unit). Not tuned:
+/// far above what such a computation rounds. Too small, and a bound may be wrong by its rounding; larger, and pairs are
+/// looked at that need not be.
+pub const ROUNDING_ULPS: f64 = 64.0;
+
 /// Rounding slack of a bound computed on a GPU, in units of `EPSILON × scale` (no unit).
 ///
 /// WGSL lets a device reassociate, fuse, divide to 2.5 ulps and flush what is subnormal. `scale` is

@@ -20,6 +20,7 @@ use crate::elementary::test_list::{Domain, ElementaryTest, OwnedFeatures, for_ea
 use crate::elementary::{penetration, slab_crossing};
 use crate::math::lane::Vec3;
 use crate::math::nearest::{Family, Nearest, edge_minimum};
+use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
@@ -213,7 +214,7 @@ impl<'a> PrimitivePair<'a> {
         let faces = self.along_faces();
         let (a, b) = self.spheres();
         let size = |s: &[Ball]| s.iter().map(|s| s.0.taxicab() + s.1.abs()).sum::<f64>();
-        let beyond = margin + 64.0 * f64::EPSILON * (size(a) + size(b));
+        let beyond = margin + ROUNDING_ULPS * f64::EPSILON * (size(a) + size(b));
         let mut feature = 0;
         for_each_test(self.shares[0], self.shares[1], |test| {
             if !faces.iter().flatten().any(|ends| ends.gap(&test) > beyond) {

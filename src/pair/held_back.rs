@@ -12,6 +12,7 @@
 
 use super::SpherePair;
 use crate::math::Real;
+use crate::math::tolerance::ROUNDING_ULPS;
 
 /// How far two bodies may move against each other before their contacts are computed again.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +43,7 @@ impl RelativeMotionBound {
         let [gap_k, gap_c] = [k, c].map(|c| (c.distance - self.skins).max(0.0));
         // Too far by more than rounding, before any root is taken.
         let turned = self.angle * self.angle * k.points[0].distance_squared(c.points[0]);
-        if turned > gap_c * gap_c * (1.0 + 64.0 * Real::EPSILON) {
+        if turned > gap_c * gap_c * (1.0 + ROUNDING_ULPS as Real * Real::EPSILON) {
             return false;
         }
         let cosine = k.normal.dot(c.normal).clamp(-1.0, 1.0);

@@ -5,6 +5,7 @@ use super::placement::Placement;
 use super::primitive_tree::PrimitiveTree;
 use crate::math::Vector;
 use crate::math::lane::Vec3;
+use crate::math::tolerance::ROUNDING_ULPS;
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 
@@ -30,7 +31,7 @@ impl Resting {
 /// A lower bound of the distance of two hulls at rest; as soon as it is more than `enough` no better one is looked for.
 fn gap([first, second]: [&Resting; 2], enough: f64) -> f64 {
     let (a, b) = (&first.balls, &second.balls);
-    let rounding = 64.0 * f64::EPSILON * (a.size + b.size);
+    let rounding = ROUNDING_ULPS * f64::EPSILON * (a.size + b.size);
     let y = second.middle - first.middle;
     // No direction says more.
     if y.length() - first.core - second.core <= enough {

@@ -35,7 +35,7 @@ pub trait PrimitiveTree {
     }
     /// Spheres of a primitive (unused entries repeat the last one), and which edges and spheres it tests.
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], OwnedFeatures);
-    /// Thickness of a primitive, a length ([`crate::medial::thickness`]). Infinite for surfaces, and for solids
+    /// Thickness of a primitive, a length (`medial/thickness.rs`). Infinite for surfaces, and for solids
     /// that are represented by their surface.
     fn thickness(&self, _primitive: u32) -> Real {
         Real::INFINITY

@@ -8,6 +8,7 @@ use super::primitive_tree::PrimitiveTree;
 use crate::math::approach::first_touch;
 use crate::math::lane::Vec3;
 use crate::math::motion::{Frame, RigidMotion};
+use crate::math::tolerance::ROUNDING_ULPS;
 use crate::medial::tree::NodeKind;
 use std::ops::Range;
 use std::sync::Arc;
@@ -55,7 +56,7 @@ impl Swept {
         let y = other.start - self.start;
         let rate = other.chord - self.chord;
         let radius = self.radius + other.radius + reach;
-        let radius = (radius + 64.0 * f64::EPSILON * radius.abs()).max(0.0);
+        let radius = (radius + ROUNDING_ULPS * f64::EPSILON * radius.abs()).max(0.0);
         let distance = y.length();
         if distance <= radius {
             return Touch::AtStart((distance - radius) / radius.max(f64::MIN_POSITIVE));
@@ -193,7 +194,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         // Times are good to an ulp of the step, in which a point swings an ulp of the angle; up to
         // `COVERED` the margins for coordinates cover that.
         let swing = (self.motion.angle() - COVERED).max(0.0) * arms[0].length();
-        let rounding = 64.0 * f64::EPSILON * swing;
+        let rounding = ROUNDING_ULPS * f64::EPSILON * swing;
         (
             from.center + arms[0],
             (to.center - from.center) + (arms[1] - arms[0]),
@@ -211,7 +212,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         Swept {
             start,
             chord,
-            radius: radius + 64.0 * f64::EPSILON * size,
+            radius: radius + ROUNDING_ULPS * f64::EPSILON * size,
             below: self.body.kind(node),
             near: self.near(node),
             node,

@@ -8,7 +8,7 @@
 //! `upper = lower`, and `D` there is at most the tolerance. All is computed in double precision.
 
 use super::axisymmetric::{Axisymmetric, Ball, NearBall, Place, unit};
-use super::conservative_advancement::{Advance, Limits, TOLERANCE_PER_SLACK, follow};
+use super::conservative_advancement::{Advance, CHASE_TOLERANCE_PER_SLACK, Limits, follow};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
@@ -280,7 +280,9 @@ impl Search<'_> {
 
     /// Keeps what came out of following two primitives, if nothing earlier was found.
     fn keep(&mut self, advance: &Advance, primitives: [u32; 2], target: f64) {
-        self.tolerance = self.tolerance.max(TOLERANCE_PER_SLACK * advance.slack);
+        self.tolerance = self
+            .tolerance
+            .max(CHASE_TOLERANCE_PER_SLACK * advance.slack);
         let sooner = self.found.is_none() || advance.lower < self.lower;
         self.lower = self.lower.min(advance.lower);
         let overlap =

@@ -8,6 +8,7 @@ use super::inside;
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
+use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::simplex::Simplex;
 use crate::medial::{MedialMesh, MedialSphere};
@@ -388,6 +389,6 @@ fn swept_region(
     ];
     let sizes = sizes.as_flattened().iter().map(|p| p.abs().max_element());
     let size = reach + sizes.sum::<Real>();
-    let reach = Vector::splat(reach + 64.0 * Real::EPSILON * size);
+    let reach = Vector::splat(reach + ROUNDING_ULPS as Real * Real::EPSILON * size);
     Aabb::new(from.min(to) - reach, from.max(to) + reach)
 }

@@ -16,7 +16,7 @@
 //!
 //! # Rounding
 //! Positions are sums of at most 16 rounded terms no larger than `scale`, the sum of all lengths in
-//! play, so that `ULPS` ulps of it cover the bound. A tolerance below [`TOLERANCE_PER_SLACK`] times
+//! play, so that `ULPS` ulps of it cover the bound. A tolerance below [`CHASE_TOLERANCE_PER_SLACK`] times
 //! that slack is raised to it.
 
 use super::axisymmetric::{Axisymmetric, Ball, NearBall, Place, unit};
@@ -29,7 +29,7 @@ const ULPS: f64 = 64.0;
 
 /// Smallest tolerance in units of the slack: one slack is lost in the bound, one in the test for
 /// contact, and the last step needs room.
-pub const TOLERANCE_PER_SLACK: f64 = 4.0;
+pub const CHASE_TOLERANCE_PER_SLACK: f64 = 4.0;
 
 /// How one volume is followed.
 #[derive(Clone, Copy)]
@@ -213,7 +213,9 @@ pub fn follow(
         known.slack = moment.slack;
         known.near = body.nearest(&moment.place, &moment.balls[..chase.count]);
         known.place = moment.place;
-        let tolerance = limits.tolerance.max(TOLERANCE_PER_SLACK * known.slack);
+        let tolerance = limits
+            .tolerance
+            .max(CHASE_TOLERANCE_PER_SLACK * known.slack);
         if known.near.distance() - limits.target <= tolerance - known.slack {
             known.met = true;
             return known;

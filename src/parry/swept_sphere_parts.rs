@@ -5,6 +5,7 @@
 //! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::axisymmetric_toi`].
 
 use super::axisymmetric::Axisymmetric;
+use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::PrimitiveList;
@@ -16,7 +17,7 @@ use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
 const PLANE_REACH: Real = 2.0;
 
 /// Rounding error of the coordinates of a box put in another frame, in units of the coordinates.
-const ROUNDING: Real = 64.0 * Real::EPSILON;
+const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// Error: the other shape is neither medial nor one of parry's own, so it cannot be swept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,6 +8,7 @@
 //! which keeps `G v` (Featherstone, Rigid Body Dynamics Algorithms, 2008, 3.2). The motion in time follows the RATTLE
 //! scheme (Andersen 1983), which keeps energy while joints turn velocities.
 
+use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::rapier::joints::limits::Limit;
 use crate::rapier::joints::rows::{Ends, Joint, Row, Twist, dot};
@@ -29,7 +30,7 @@ const STOPPING_ROUNDS: usize = 4;
 /// Opening that is left, a length or an angle in radians; of bodies far from each other more, by the rounding of their
 /// poses.
 const CLOSED: f64 = 1.0e-5;
-const ROUNDING: f64 = 64.0 * Real::EPSILON as f64;
+const ROUNDING: f64 = ROUNDING_ULPS * Real::EPSILON as f64;
 
 /// Bodies tied by joints, at some poses.
 pub struct System<'a> {
