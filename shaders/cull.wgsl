@@ -9,12 +9,12 @@
 @group(0) @binding(1) var pairs: texture_2d<u32>;
 @group(0) @binding(2) var nodes: texture_2d<u32>;
 @group(0) @binding(3) var primitives: texture_2d<u32>;
-// Of each two primitives whose balls meet their indices, that of the mesh pair, and the batch's stamp. An entry
-// without it is of a batch before.
+// Primitive pairs whose balls meet: both indices, that of the mesh pair, and the batch's stamp. An entry without the
+// stamp is of a batch before.
 @group(0) @binding(4) var<storage, read_write> meetings: array<vec4<u32>>;
-// Those of them that are not proven free, in no order.
+// Primitive pairs that are not proven free, in no order.
 @group(0) @binding(5) var<storage, read_write> near: array<vec4<u32>>;
-// For each pair, 0 before, FREE and how many primitive pairs are not proven free, or OPEN; last how many primitive
+// Answer of each mesh pair: 0 before, FREE and how many primitive pairs are not proven free, or OPEN; last how many primitive
 // pairs meet, how many mesh pairs are taken, and how many primitive pairs are listed.
 @group(0) @binding(6) var<storage, read_write> answers: array<atomic<u32>>;
 
@@ -23,18 +23,18 @@
 // meets.
 var<private> first: vec2<u32>;
 var<private> left: u32;
-// From below, such pairs that wait, with what is left of each. From above, primitive pairs whose balls
+// Stack, from below, of such pairs that wait, with what is left of each; from above, primitive pairs whose balls
 // meet. The place for the next of either is written whether or not there is one.
 var<private> work: array<vec2<u32>, WALK_ROOM>;
 var<private> open: u32;
 var<private> kept: u32;
-// How many were handed on of this mesh pair.
+// Number of primitive pairs of this mesh pair that were handed on.
 var<private> handed_on: u32;
 
-// In a node's `below` the mark of a leaf.
+// Mark of a leaf in a node's `below`.
 const MARK = 0x80000000u;
 
-// Where in the highest bits of an index it is kept what is left: fewer nodes than that fit the texture.
+// Place in an index of the highest bits, which keep what is left: fewer nodes than that fit the texture.
 const LEFT = 28u;
 
 fn side(pair: u32, k: u32) -> Side {

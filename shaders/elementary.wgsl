@@ -28,13 +28,13 @@ fn size(triangle: bool, f: Family) -> f32 {
   return sqrt(sq);
 }
 
-// How long from now until y is shortest.
+// Time from now until y is shortest.
 fn closest(y: vec3<f32>, rate: vec3<f32>) -> f32 { return -dot(y, rate) / max(length_sq(rate), TINY); }
 
 // A piece of the step.
 struct Piece { begin: f32, end: f32 }
 
-// What of it is left where a corner's bound is positive: it changes evenly from now to then. What is
+// Rest of the piece where a corner's bound is positive: it changes evenly from now to then. What is
 // not shown positive counts as contact. The slack covers the rounding of a time near 1.
 fn in_front(piece: Piece, n: vec3<f32>, y: vec3<f32>, rate: vec3<f32>, radius: f32) -> Piece {
   let now = dot(n, y) - radius;

@@ -59,7 +59,7 @@
 //! | [`elementary`] | two primitives: distance and first contact, certified; the paper's own method beside it |
 //! | [`meshing`] | from a triangle mesh to a medial mesh |
 //! | [`medial`] | the medial mesh itself, its trees, mass, surface and files |
-//! | [`math`] | SIMD lanes, closed forms, rigid motion, constants |
+//! | [`math`] | SIMD lanes, closed forms, rigid motion, counters, constants |
 
 // Limits are in clippy.toml.
 #![warn(clippy::too_many_lines)]

@@ -3,7 +3,8 @@
 //!
 //! Fix `t` and find the nearest sphere pair; fix the pair and find the time it touches (Eq. 4:
 //! `t⁽¹⁾`, `t⁽²⁾`, roots of the parabola, or `t⁽³⁾`, its axis); repeat, starting at the end of the
-//! step (§4.3, Figure 3). One reading of §4.4, where the text leaves a choice:
+//! step (§4.3, Figure 3). Eq. (3), the square `f` of the distance `S` of Eq. (2), is least where `S ≥ 0` is, and is not
+//! formed. One reading of §4.4, where the text leaves a choice:
 //! - Condition 1 (touching at `t0`, separating): `t⁽²⁾` or `t⁽³⁾` equals `t0` → no collision.
 //! - Condition 2 (leaving contact at `t1`): `t⁽²⁾ = t1` and `t⁽¹⁾ < t1` → go on from `t⁽¹⁾`.
 //! - Condition 3 (`t` no longer changes while the distance is positive) → no collision.
