@@ -17,6 +17,7 @@ pub mod listed;
 pub mod met;
 pub mod near_pairs;
 pub mod outline;
+pub mod pair_list;
 mod placement;
 pub mod primitive_tree;
 mod queue;

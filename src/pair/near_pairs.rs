@@ -22,8 +22,9 @@
 
 use super::apart::free_until;
 use super::outline::ActivePrimitives;
+use super::pair_list::PairList;
 use super::primitive_tree::PrimitiveTree;
-use super::swept::{Bits, Listed, Side, Touch, split};
+use super::swept::{Bits, Side, Touch, split};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::math::Real;
 use crate::math::lane::Vec3;
@@ -41,7 +42,7 @@ const MOST: u32 = 2 * Bits::BITS;
 
 /// Primitive pairs that may come near each other, by the nodes of both trees above them. It may hold others.
 pub struct NearPairs {
-    pub(super) below: Arc<Listed>,
+    pairs: PairList,
     /// What they are listed for: motions, and the step's seconds from their start to its end.
     motions: [NonlinearRigidMotion; 2],
     seconds: f64,
@@ -56,7 +57,7 @@ impl NearPairs {
     /// A list of nothing, for two bodies that never come within `reach` plus `margin` (lengths).
     pub fn none(motions: &[NonlinearRigidMotion; 2], seconds: Real, reaches: [f64; 2]) -> Self {
         Self {
-            below: Arc::default(),
+            pairs: PairList::default(),
             motions: *motions,
             seconds: f64::from(seconds),
             reach: reaches[0],
@@ -133,8 +134,13 @@ impl NearPairs {
             }
         }
         let [first, second] = listed;
-        self.below = Arc::new([sides.0.gathered(first), sides.1.gathered(second)]);
+        self.pairs = PairList(Arc::new([sides.0.gathered(first), sides.1.gathered(second)]));
         true
+    }
+
+    /// The primitive pairs.
+    pub fn pairs(&self) -> &PairList {
+        &self.pairs
     }
 
     /// Node pairs that were looked at for the list.

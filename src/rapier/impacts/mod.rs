@@ -19,6 +19,6 @@ pub(crate) mod reported_impulse;
 pub(crate) mod response;
 pub(crate) mod spent_budget;
 pub(crate) mod swept_boxes;
-pub(crate) mod thin_parts;
+pub(crate) mod fast_parts;
 pub(crate) mod toi_query;
 pub(crate) mod way_out;
