@@ -3,8 +3,8 @@
 //! bounding spheres visits the few that can come first.
 
 use super::met::Met;
-use super::near_pairs::NearPairs;
 use super::outline::ActivePrimitives;
+use super::pair_list::PairList;
 use super::primitive_tree::PrimitiveTree;
 use super::search::Search;
 use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
@@ -82,7 +82,7 @@ pub struct ToiResult {
     pub toi: Toi,
     /// Work it took.
     pub counts: Counts,
-    /// How deep primitives were that touched at the start ([`Query::deepest`]).
+    /// How deep primitives may get that touched at the start ([`Query::deepest`]).
     pub deepest: f64,
     /// The spheres that met ([`Query::met`]).
     pub met: Option<Met>,
@@ -130,12 +130,11 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         }
     }
 
-    /// Has the search go down to the primitives of a list only, which has to hold for its motions
-    /// ([`NearPairs::holds_for`]). The answer is the same.
-    pub fn among(mut self, near: Option<&NearPairs>) -> Self {
-        if let (Some(search), Some(near)) = (&mut self.search, near) {
-            search.sides.0.keep_near(Arc::clone(&near.below), 0);
-            search.sides.1.keep_near(Arc::clone(&near.below), 1);
+    /// Has the search go down to listed primitive pairs only.
+    pub fn among(mut self, pairs: Option<&PairList>) -> Self {
+        if let (Some(search), Some(PairList(listed))) = (&mut self.search, pairs) {
+            search.sides.0.keep_near(Arc::clone(listed), 0);
+            search.sides.1.keep_near(Arc::clone(listed), 1);
         }
         self
     }
@@ -172,12 +171,23 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         }
     }
 
-    /// How deep primitives were that touched at the start and were allowed to sink in
+    /// How deep primitives may get that touched at the start and are allowed to sink in
     /// ([`crate::elementary::InitialContact::Deepen`]): the smallest signed distance, minus the distance that
-    /// counts as touching, in units of the thickness of the thinner of the two. Infinite if none touched. It is
-    /// complete as soon as it is proven that nothing meets before some time above 0.
+    /// counts as touching, minus what they may sink in, in units of the thickness of the thinner of the two. Infinite if
+    /// none touched. It is complete as soon as it is proven that nothing meets before some time above 0.
     pub fn deepest(&self) -> f64 {
-        self.search.as_ref().map_or(f64::INFINITY, |s| s.deepest)
+        let depths = self.search.iter().flat_map(|s| &s.touching).map(|t| t.1);
+        depths.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The primitive pairs that touched at the start and may get that deep or deeper, in the units of [`Self::deepest`];
+    /// `None` if there are none.
+    pub fn may_get_to(&self, depth: f64) -> Option<PairList> {
+        let search = self.search.as_ref()?;
+        let deep = search.touching.iter().filter(|t| t.1 <= depth);
+        let pairs: Vec<[u32; 2]> = deep.map(|t| t.0).collect();
+        let bodies = (search.sides.0.body, search.sides.1.body);
+        (!pairs.is_empty()).then(|| PairList::of_primitives(bodies, &pairs))
     }
 
     /// The answer, once the query is settled.

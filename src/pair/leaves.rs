@@ -47,8 +47,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 if distance > touching {
                     direction = normal;
                 } else {
-                    let depth = (distance - touching) / self.thickness(pair);
-                    self.deepest = self.deepest.min(depth);
+                    let depth = (distance - touching - f64::from(by)) / self.thickness(pair);
+                    self.touching.push((pair, depth));
                     self.list_parts([i, j], pair, by.into(), time, (distance, normal));
                     return true;
                 }

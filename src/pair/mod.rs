@@ -17,6 +17,7 @@ pub(crate) mod listed;
 pub(crate) mod met;
 pub mod near_pairs;
 pub mod outline;
+pub mod pair_list;
 mod placement;
 pub(crate) mod primitive_tree;
 mod queue;

@@ -22,8 +22,9 @@
 
 use super::apart::free_until;
 use super::outline::ActivePrimitives;
+use super::pair_list::PairList;
 use super::primitive_tree::PrimitiveTree;
-use super::swept::{Bits, Listed, Side, Touch, split};
+use super::swept::{Bits, Side, Touch, split};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::math::Real;
 use crate::math::lane::Vec3;
@@ -42,7 +43,7 @@ const MOST: u32 = 2 * Bits::BITS;
 
 /// Primitive pairs that may come near each other, by the nodes of both trees above them. It may hold others.
 pub struct NearPairs {
-    pub(super) below: Arc<Listed>,
+    pairs: PairList,
     /// Motions that they are listed for, and the step's seconds from their start to its end.
     motions: [NonlinearRigidMotion; 2],
     seconds: f64,
@@ -57,7 +58,7 @@ impl NearPairs {
     /// A list of nothing, for two bodies that never come within `reach` plus `margin` (lengths).
     pub fn none(motions: &[NonlinearRigidMotion; 2], seconds: Real, reaches: [f64; 2]) -> Self {
         Self {
-            below: Arc::default(),
+            pairs: PairList::default(),
             motions: *motions,
             seconds: f64::from(seconds),
             reach: reaches[0],
@@ -134,8 +135,16 @@ impl NearPairs {
             }
         }
         let [first, second] = listed;
-        self.below = Arc::new([sides.0.gathered(first), sides.1.gathered(second)]);
+        self.pairs = PairList(Arc::new([
+            sides.0.gathered(first),
+            sides.1.gathered(second),
+        ]));
         true
+    }
+
+    /// The primitive pairs.
+    pub fn pairs(&self) -> &PairList {
+        &self.pairs
     }
 
     /// Node pairs that were looked at for the list.

@@ -75,8 +75,9 @@ pub(super) struct Search<'a, A, B> {
     pub(super) earliest: Earliest<f64>,
     /// Parts of the primitives found that were tested.
     pub(super) found: Option<Tested>,
-    /// Depth of what touches, as [`super::first_contact::Query::deepest`].
-    pub(super) deepest: f64,
+    /// Primitive pairs that touch at the start and may sink in, and how deep they may get, in the units of
+    /// [`super::first_contact::Query::deepest`].
+    pub(super) touching: Vec<([u32; 2], f64)>,
 }
 
 /// How far a search came.
@@ -124,7 +125,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
             nodes: 0,
             earliest: Earliest::new(options_limits(options)),
             found: None,
-            deepest: f64::INFINITY,
+            touching: Vec::new(),
         }
     }
 

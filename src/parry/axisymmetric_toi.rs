@@ -241,7 +241,8 @@ impl Search<'_> {
             let within = limits.target + limits.tolerance;
             if start <= within {
                 touching = Some(starting);
-                let depth = (start - within) / f64::from(thinner.max(Real::MIN_POSITIVE));
+                let deeper = start - within - f64::from(by);
+                let depth = deeper / f64::from(thinner.max(Real::MIN_POSITIVE));
                 self.deepest = self.deepest.min(depth);
                 limits.start = if entry.spent == 0 { 0.0 } else { entry.time };
                 let thinnest = all.iter().map(|b| b.1).fold(f64::INFINITY, f64::min);

@@ -104,7 +104,7 @@ fn ask(rng: &mut Rng, meshes: [&MedialMesh; 2], case: u32) -> Option<Asked> {
     Some(Asked {
         holds: near.holds_for(&new, left, arms, within),
         plain: query().settle(),
-        listed: query().among(Some(&near)).settle(),
+        listed: query().among(Some(near.pairs())).settle(),
     })
 }
 
@@ -180,7 +180,7 @@ fn a_list_spares_most_node_pairs() {
             queries += 1;
             let query = || Query::new(new.each_ref(), of, SECONDS - time, &options, None);
             plain += query().settle().counts.nodes;
-            listed += query().among(Some(&near)).settle().counts.nodes;
+            listed += query().among(Some(near.pairs())).settle().counts.nodes;
         }
     }
     println!("{queries} queries: {plain} node pairs, {listed} with lists that took {listing}");

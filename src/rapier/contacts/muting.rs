@@ -98,7 +98,7 @@ fn reason(
     work: &mut Work,
 ) -> Option<Reason> {
     let may_bounce = policy.may_bounce(view, pair);
-    let is_fast = policy.is_fast(view, pair, policy.tuning.muted);
+    let is_fast = policy.is_fast(view, pair, 0.0, policy.tuning.muted);
     if !(may_bounce || is_fast)
         || policy.speculates(view, pair)
         || policy.left(work) <= policy.budget / 2

@@ -240,6 +240,8 @@ impl Loop<'_> {
         };
         let medial = |k: &usize| self.view.parts[*k].medial().is_some();
         self.jobs += usize::from(self.events == 0 && pair.iter().all(medial));
+        // The floor is for primitives that the search for the first contact names.
+        let known = known.filter(|known| known.deepest > policy.floor_depth());
         if known.is_some() {
             let hit = policy.first_contact(self.view, pair, time, &query_options, known, work);
             if let Some(hit) = hit {

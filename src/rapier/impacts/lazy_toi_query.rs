@@ -5,12 +5,11 @@ use crate::elementary::ToiOptions;
 use crate::math::Real;
 use crate::medial::MedialMesh;
 use crate::pair::first_contact::Query;
-use crate::pair::near_pairs::NearPairs;
+use crate::pair::pair_list::PairList;
 use crate::rapier::impacts::near_lists::NearLists;
 use crate::rapier::impacts::pair_culling::PairCulling;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit, QueryOptions, Work};
 use crate::rapier::view::step_view::StepView;
-use std::sync::Arc;
 
 /// The medial meshes of both, where they are.
 pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
@@ -29,8 +28,6 @@ pub struct LazyToiQuery<'m> {
 type MeshQuery<'m> = Query<'m, MedialMesh, MedialMesh>;
 
 struct Begun<'m> {
-    /// Primitives that may come near, where they are listed.
-    near: Option<Arc<NearPairs>>,
     first: Box<MeshQuery<'m>>,
     /// The query for the floor; `None` outside before it is known whether there is one.
     floor: Option<Option<Box<MeshQuery<'m>>>>,
@@ -89,12 +86,12 @@ impl<'m> LazyToiQuery<'m> {
         };
         let seconds = policy.dt - from;
         let left = &self.query_options.left;
-        let begin = |options: &ToiOptions, near: Option<&NearPairs>, work: &mut Work| {
+        let begin = |options: &ToiOptions, pairs: Option<&PairList>, work: &mut Work| {
             let motions = pair.map(|k| view.motion(k, from));
             work.begin(&motions, options);
             let motions = motions.each_ref();
             let query = Query::new(motions, (mesh1, mesh2), seconds, options, left.clone());
-            Box::new(query.among(near))
+            Box::new(query.among(pairs))
         };
         let look_on = |query: &mut MeshQuery, work: &mut Work| {
             let before = query.counts();
@@ -112,9 +109,8 @@ impl<'m> LazyToiQuery<'m> {
             let (of, options) = ((pair, [mesh1, mesh2]), &query_options.first);
             let near = lists.list(view, outlines, of, [from, policy.dt], options, work);
             Begun {
-                first: begin(options, near.as_deref(), work),
+                first: begin(options, near.as_ref().map(|near| near.pairs()), work),
                 floor: None,
-                near,
             }
         });
         let first = look_on(&mut begun.first, work);
@@ -123,9 +119,9 @@ impl<'m> LazyToiQuery<'m> {
         }
         // All that touched at the start is known now.
         let floor = begun.floor.get_or_insert_with(|| {
-            let deep = policy.is_deep(begun.first.deepest());
-            let asked = query_options.floor.as_ref().filter(|_| deep);
-            asked.map(|options| begin(options, begun.near.as_deref(), work))
+            let options = query_options.floor.as_ref()?;
+            let deep = begun.first.may_get_to(policy.floor_depth())?;
+            Some(begin(options, Some(&deep), work))
         });
         match floor.as_mut().map(|query| look_on(query, work)) {
             Some(floor) if floor.time() < first.time() => floor,

@@ -7,7 +7,7 @@
 //!   ([`crate::elementary::Cores`]), at every place half way to the medial axes, so that no axis crosses another.
 //!
 //! A pair is fast in relation to the thickness of the parts that may meet: one that is slow for two thick bodies is
-//! fast where thin parts of them are near each other ([`Thin`]).
+//! fast where parts of them that may meet are fast for how thin they are ([`FastParts`]).
 
 use crate::batch::ToiJob;
 use crate::elementary::{Cores, InitialContact, Paths, Toi, ToiOptions, ToiStatus};
@@ -18,7 +18,7 @@ use crate::pair::met::Met;
 use crate::pair::outline::ActivePrimitives;
 use crate::parry::cast::Cast;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
-use crate::rapier::impacts::thin_parts::Thin;
+use crate::rapier::impacts::fast_parts::FastParts;
 use crate::rapier::tuning::Tuning;
 use crate::rapier::view::step_view::StepView;
 use parry3d::query::NonlinearRigidMotion;
@@ -134,32 +134,50 @@ impl CcdPolicy<'_> {
         self.effects.of(pair.map(|k| view.parts[k].handle))
     }
 
-    /// Whether the pair as a whole is fast: by default, when it travels more than `share` of its thickness
-    /// in the whole step.
-    pub fn is_fast(&self, view: &StepView, pair: [usize; 2], share: Real) -> bool {
+    /// Whether the pair as a whole is fast on its motion from `time` on: by default, when it would travel more than
+    /// `share` of its thickness in a whole step where it may meet.
+    pub fn is_fast(&self, view: &StepView, pair: [usize; 2], time: Real, share: Real) -> bool {
         match self.effects_of(view, pair).continuous {
             Effect::On => true,
             Effect::Off => false,
-            Effect::Auto => view.travel(pair, self.dt) > share * view.thickness(pair),
+            Effect::Auto => {
+                let way = share * view.thickness(pair);
+                view.travel(pair, self.dt) > way && self.meeting_travel(view, pair, time) > way
+            }
         }
     }
 
-    /// Whether first contacts of the pair are wanted from `time` on: of a fast pair, and by default where parts
-    /// may meet that are so thin that the pair is fast for them.
+    /// Bound on how far the surfaces of a pair would travel against each other in a whole step where they may meet from
+    /// `time` on, a length.
+    fn meeting_travel(&self, view: &StepView, pair: [usize; 2], time: Real) -> Real {
+        let margin = self.gap(view.thickness(pair));
+        view.meeting_speed(pair, [time, self.dt], margin) * self.dt
+    }
+
+    /// Whether first contacts of the pair are wanted from `time` on: by default, of a pair with parts that may meet and
+    /// would travel more than a share of the local thickness against each other in a whole step.
     fn is_searched(&self, view: &StepView, pair: [usize; 2], time: Real) -> bool {
-        if self.is_fast(view, pair, self.tuning.fast) || self.may_bounce(view, pair) {
+        if self.may_bounce(view, pair) {
             return true;
         }
-        if self.effects_of(view, pair).continuous != Effect::Auto {
+        match self.effects_of(view, pair).continuous {
+            Effect::On => return true,
+            Effect::Off => return false,
+            Effect::Auto => {}
+        }
+        let least = pair.map(|k| view.parts[k].least);
+        let travel = view.travel(pair, self.dt);
+        if travel <= self.tuning.fast * least[0].min(least[1]) {
             return false;
         }
         let skins: Real = pair.iter().map(|k| view.parts[*k].skin).sum();
-        let gap = 2.0 * self.gap(view.thickness(pair));
-        let thin = Thin {
-            thickness: view.travel(pair, self.dt) / self.tuning.fast,
-            reach: view.travel(pair, self.dt - time) + skins + gap,
+        let contact = skins + 2.0 * self.gap(view.thickness(pair));
+        let fast = FastParts {
+            seconds: self.dt / self.tuning.fast,
+            reach: view.travel(pair, self.dt - time) + contact,
+            contact,
         };
-        thin.may_meet(view, pair, time)
+        fast.may_meet(view, pair, [time, self.dt])
     }
 
     /// Whether a pair can travel more than `share` of this thickness, or is watched whatever it does. In a
@@ -295,7 +313,7 @@ impl CcdPolicy<'_> {
         };
         let (hit, deepest) = query(&query_options.first, known)?;
         let goes_on = hit.is_none_or(|h| h.time > time);
-        let deep = goes_on && self.is_deep(deepest);
+        let deep = goes_on && deepest <= self.floor_depth();
         let floor = query_options.floor.as_ref().filter(|_| deep);
         match (hit, floor.and_then(|options| query(options, None)?.0)) {
             (Some(a), Some(b)) if a.time <= b.time => Some(a),
@@ -303,10 +321,10 @@ impl CcdPolicy<'_> {
         }
     }
 
-    /// Whether what touches is so deep ([`Query::deepest`]) that the floor is asked for: what is less deep meets
-    /// its own deeper target first.
-    pub fn is_deep(&self, deepest: f64) -> bool {
-        deepest <= f64::from(self.tuning.sink - self.tuning.floor)
+    /// The floor in the units of [`Query::deepest`]: primitives that may get there before they count as in contact have
+    /// a query of their own for it.
+    pub fn floor_depth(&self) -> f64 {
+        -f64::from(self.tuning.floor)
     }
 }
 
