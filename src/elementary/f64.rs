@@ -21,7 +21,8 @@ pub struct MovingSphere {
     pub displacement: [f64; 3],
 }
 
-/// Options of a query: [`super::ToiOptions`] in double precision, without what is only for meshes.
+/// Options of a query: [`super::ToiOptions`] in double precision, without
+/// what is only for meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToiOptions {
     /// Distance at which bodies count as in contact.

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-/// Numbers of faults that a build found in its triangle mesh, and of repairs. [`crate::meshing::BuildReport::notes`]
-/// says the same in words.
+/// Numbers of faults that a build found in its triangle mesh, and of repairs. [`crate::meshing::BuildReport::notes`] says the
+/// same in words.
 ///
 /// A *patch* is a set of triangles that are joined across edges of exactly two triangles. It is *solid* if it
 /// bounds a volume, alone or together with others, else it is a *sheet*.

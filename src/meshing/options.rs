@@ -65,8 +65,8 @@ impl Creases {
     }
 }
 
-/// Options of [`crate::MedialMesh::from_trimesh`]. The defaults are 500 primitives, balanced quality, and a solid that
-/// covers the triangle mesh.
+/// Options of [`crate::MedialMesh::from_trimesh`]. The defaults are 500 primitives, balanced quality, and
+/// a solid that covers the triangle mesh.
 ///
 /// ```
 /// use rapier3d_medial::prelude::*;
@@ -148,8 +148,8 @@ impl Hausdorff {
         self.surface_to_envelope.max(self.envelope_to_surface)
     }
 
-    /// Upper bound on how far the surfaces are off, between the points measured as well: [`Self::error`] and
-    /// [`Self::sampling`] together.
+    /// The largest distance that is possible anywhere, also between the points measured: [`Self::error`] plus
+    /// [`Self::sampling`].
     pub fn bound(&self) -> Real {
         self.error() + self.sampling
     }

@@ -90,8 +90,8 @@ pub struct MedialOptions {
     pub budget: u64,
 }
 
-/// Default of [`MedialOptions::budget`]: seconds of work. Heaps of 48 bodies thrown together take a thirtieth of it,
-/// thirty rings of 200 cones dropped into a pen an eighth.
+/// The default of [`MedialOptions::budget`]: seconds of work. Heaps of 48 bodies thrown together take a thirtieth of
+/// it, thirty rings of 200 cones dropped into a pen an eighth.
 const BUDGET: u64 = 1 << 22;
 
 /// Budget for games: a frame's work.
@@ -176,8 +176,8 @@ impl MedialOptions {
         self
     }
 
-    /// Options for games: all effects, and a budget that keeps the search for first contacts to about a frame. What is
-    /// lost where it does not suffice is time: bodies wait, and nothing passes through anything.
+    /// Options for games: all effects, and a budget of 16,384, which limits the search for first contacts to about the time of a
+    /// frame. Where it does not suffice, bodies wait for the next step; they still pass through nothing.
     pub fn games() -> Self {
         Self::default().budget(BUDGET_OF_GAMES)
     }
