@@ -220,8 +220,7 @@ impl Default for ToiOptions {
     }
 }
 
-/// What a query found out about the first contact. The documentation of [this module](self) has the exact promise of
-/// each.
+/// The outcome of a query for a first contact. The documentation of [this module](self) has the exact promise of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ToiStatus {
     /// No contact in the whole step.

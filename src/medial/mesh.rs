@@ -246,10 +246,10 @@ impl MedialMesh {
         self.data.aabb
     }
 
-    /// How thin the solid typically is, a length: 95 % of the medial mesh, by area, have a larger radius (a
-    /// cone counts as a strip as wide as itself, and a tip that grows thick fast, as at the edges of a box, as the part
-    /// it ends). The smallest radius would not do, because it is near 0 at
-    /// the tips of most meshes, and every motion would count as fast.
+    /// How thin the solid typically is, a length: 95 % of the medial mesh, by area, have a larger radius. A cone counts
+    /// as a strip as wide as itself. A blunt tip, as at the edges of a box, counts as thick as the part it ends.
+    /// The smallest radius would not do, because it is near 0 at the tips of most meshes, and every motion would count
+    /// as fast.
     pub fn thickness(&self) -> Real {
         self.data.parts.thickness
     }
