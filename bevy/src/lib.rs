@@ -51,3 +51,8 @@ pub mod prelude {
         Quality, StepReport,
     };
 }
+
+/// Compiles the README's example.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -87,10 +87,10 @@ impl Description {
 impl Errors {
     pub fn text(&self, title: &str) -> String {
         format!(
-            "{title} (longest side of the source's box = 1)\n\
-             \x20 surface to envelope  {:.5}\n  envelope to surface  {:.5}\n\
-             \x20 uncovered            {:.5}\n\
-             \x20 between samples      {:.5} more at most\n",
+            "{title}, of the triangle mesh's longest side\n\
+             \x20 mesh to collider     {:.5}\n  collider to mesh     {:.5}\n\
+             \x20 mesh sticks out by   {:.5}\n\
+             \x20 between the points measured all may be larger by {:.5}\n",
             self.surface_to_envelope, self.envelope_to_surface, self.uncovered, self.sampling,
         )
     }
