@@ -123,7 +123,7 @@ mod assets {
         }
     }
 
-    /// What to build a collider from.
+    /// A render mesh to build a collider from, and how.
     #[derive(Clone, PartialEq)]
     pub struct MedialBuild {
         /// The render mesh: a list of triangles that the main world may read.

@@ -41,7 +41,7 @@ pub use collider::{MedialAsset, MedialAssetLoader, MedialBuild, MedialBuilt};
 pub use plugin::RapierMedialPlugin;
 pub use step::MedialWorld;
 
-/// What an app needs beside `bevy_rapier3d::prelude::*`.
+/// Everything that an app usually needs beside `bevy_rapier3d::prelude::*`.
 pub mod prelude {
     #[cfg(feature = "assets")]
     pub use crate::{MedialAsset, MedialBuild, MedialBuilt};

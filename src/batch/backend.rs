@@ -20,7 +20,8 @@ use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
 
-/// Where contacts and first contacts of many pairs are computed. Answers are the same on each, bit by bit.
+/// The place where contacts and first contacts of many pairs are computed: the CPU or a GPU. Both give the same answers,
+/// bit by bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// On a GPU for batches that are large enough, if there is one; else on the CPU. Needs the feature `gpu`.
@@ -33,14 +34,14 @@ pub enum Backend {
     Gpu,
 }
 
-/// What a [`Batch`] has done since it was made. A *job* is one pair of meshes or one elementary test.
+/// The work that a [`Batch`] has done since it was made. A *job* is one pair of meshes or one elementary test.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BatchReport {
     /// Jobs that the GPU proved not to meet.
     pub settled_by_gpu: u64,
     /// Jobs that the CPU answered, whether the GPU was asked before or not.
     pub settled_by_cpu: u64,
-    /// Those of them for which the GPU listed the primitives that may meet, so that the CPU did not search.
+    /// Jobs answered by the CPU without a search, because the GPU had listed the primitives that may meet.
     pub listed: u64,
     /// Jobs that the GPU could not take, since a pose or size was not finite or too large.
     pub unfit: u64,
@@ -104,7 +105,7 @@ impl Batch {
         }
     }
 
-    /// What has been done so far.
+    /// The work done so far.
     pub fn report(&self) -> &BatchReport {
         &self.report
     }

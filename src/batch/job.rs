@@ -122,15 +122,15 @@ impl Job for PairJob {
 pub struct ToiJob {
     /// First mesh.
     pub mesh1: MedialMesh,
-    /// Its motion, world space, velocities per second.
+    /// Motion of the first mesh, in world space, with velocities per second.
     pub motion1: NonlinearRigidMotion,
     /// Second mesh.
     pub mesh2: MedialMesh,
-    /// Its motion, world space, velocities per second.
+    /// Motion of the second mesh, in world space, with velocities per second.
     pub motion2: NonlinearRigidMotion,
     /// Length of the step in seconds.
     pub seconds: Real,
-    /// What counts as a contact, and how exact the answer has to be.
+    /// The distance that counts as a contact, and the tolerance of the answer.
     pub options: ToiOptions,
 }
 

@@ -45,7 +45,7 @@ impl Batch {
         self.gpu.as_mut()
     }
 
-    /// What the GPU has done.
+    /// The work that the GPU has done.
     pub fn gpu_counts(&self) -> GpuCounts {
         self.gpu.as_ref().map(Gpu::counts).unwrap_or_default()
     }

@@ -21,7 +21,7 @@ pub struct MovingSphere {
     pub displacement: [f64; 3],
 }
 
-/// What counts as a contact and how exact the answer has to be: [`super::ToiOptions`] in double precision, without
+/// Options of a query: [`super::ToiOptions`] in double precision, without
 /// what is only for meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToiOptions {
@@ -33,7 +33,7 @@ pub struct ToiOptions {
     pub max_iterations: u32,
     /// Signed distance at which bodies count as in contact.
     pub target_distance: f64,
-    /// Where the paper's iteration begins. [`alternating`] only.
+    /// Start of the paper's iteration. Only for [`alternating`].
     pub alternating_start: AlternatingStart,
 }
 
@@ -52,7 +52,7 @@ impl Default for ToiOptions {
 /// First contact of two primitives: [`super::Toi`] in double precision, without spheres and points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Toi {
-    /// What the numbers mean.
+    /// The outcome, which says what the other fields mean.
     pub status: ToiStatus,
     /// No contact before this time.
     pub lower: f64,

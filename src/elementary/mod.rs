@@ -56,8 +56,8 @@ pub struct MovingSphere {
     pub displacement: Vector,
 }
 
-/// What counts as a contact in a query for the first contact, and how exact the answer has to be. The defaults suit
-/// metres.
+/// Options of a query for the first contact: the distance that counts as a contact, and the tolerance of the answer. The
+/// defaults suit metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToiOptions {
     /// How much farther than [`Self::target_distance`] apart bodies may be to count as in contact, in the user's
@@ -73,11 +73,11 @@ pub struct ToiOptions {
     /// because deeper than that medial surfaces may cross: a deeper target is raised to it. (This is so with
     /// [`InitialContact::Stop`]; with [`InitialContact::Deepen`] ask for [`Cores`] instead.)
     pub target_distance: Real,
-    /// How primitives that touch at the start already are treated. Only in queries of meshes.
+    /// Treatment of primitives that touch at the start already. Only in queries of meshes.
     pub initial_contact: InitialContact,
-    /// Where the paper's iteration begins. Only for [`alternating()`].
+    /// Start of the paper's iteration. Only for [`alternating()`].
     pub alternating_start: AlternatingStart,
-    /// On which paths the points of a turning body move. Only in queries of meshes.
+    /// The paths on which the points of a turning body move. Only in queries of meshes.
     pub paths: Paths,
     /// If set, the first contact of the bodies' cores is asked for instead of that of the bodies themselves. Only in
     /// queries of meshes.
@@ -160,10 +160,10 @@ impl Loss {
     }
 }
 
-/// On which paths the points of a body that turns in the step are taken to move.
+/// The paths on which the points of a turning body move in the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Paths {
-    /// On those of its rigid motion.
+    /// The exact paths of the rigid motion.
     #[default]
     Exact,
     /// Straight from where each point is at the start to where it is at the end (paper, Eq. 1). The guarantee then
@@ -237,7 +237,7 @@ pub enum ToiStatus {
 /// First contact of two primitives or meshes; times are fractions of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Toi {
-    /// What the numbers mean.
+    /// The outcome, which says what the other fields mean.
     pub status: ToiStatus,
     /// There is no contact before this time. 1 if separated.
     pub lower: Real,

@@ -146,8 +146,8 @@ impl MedialMesh {
         &self.data.parts
     }
 
-    /// The same mesh with other mass properties, at density 1, in the body's frame: those of the triangle
-    /// mesh that it stands for, for instance. [`Self::from_trimesh`] does this itself.
+    /// Returns this mesh with other mass properties, at density 1, in the body's frame: for instance those of the
+    /// triangle mesh that it stands for. [`Self::from_trimesh`] does this itself.
     pub fn with_mass_properties(self, unit_density: MassProperties) -> Self {
         let parts = Parts {
             source_mass: Some(unit_density),

@@ -19,7 +19,7 @@ pub struct Node {
     leaf: bool,
 }
 
-/// What is below a [`Node`].
+/// The children of a [`Node`], or its primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NodeKind {
     /// One primitive.

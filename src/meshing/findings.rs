@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-/// What a build found in its triangle mesh and did about it, as numbers. [`crate::meshing::BuildReport::notes`] says the
+/// Numbers of faults that a build found in its triangle mesh, and of repairs. [`crate::meshing::BuildReport::notes`] says the
 /// same in words.
 ///
 /// A *patch* is a set of triangles that are joined across edges of exactly two triangles. It is *solid* if it

@@ -65,7 +65,7 @@ impl Creases {
     }
 }
 
-/// What [`crate::MedialMesh::from_trimesh`] should build. The defaults are 500 primitives, balanced quality, and
+/// Options of [`crate::MedialMesh::from_trimesh`]. The defaults are 500 primitives, balanced quality, and
 /// a solid that covers the triangle mesh.
 ///
 /// ```
@@ -92,8 +92,8 @@ pub struct BuildOptions {
     /// ([`Quality::Fast`] only enlarges them). Without this, the error is about seven tenths as large, and parts of the
     /// triangle mesh stick out of the solid.
     pub enclose: bool,
-    /// With `enclose`: how far the triangle mesh may stick out of the solid nevertheless, as a fraction of the
-    /// longest side of the bounding box. The solid becomes thinner by up to as much.
+    /// Distance by which the triangle mesh may stick out of the solid in spite of `enclose`, as a fraction of the longest
+    /// side of the bounding box. The solid becomes thinner by up to as much.
     pub allow_uncovered: Real,
     /// Which edges of the triangle mesh count as sharp.
     pub creases: Creases,
@@ -155,7 +155,7 @@ impl Hausdorff {
     }
 }
 
-/// What became of the sharp edges of a triangle mesh.
+/// Whether the sharp edges of a triangle mesh were kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Variant {
@@ -174,7 +174,7 @@ pub enum Variant {
     Exact,
 }
 
-/// What a build made, how far it is from the triangle mesh, and what was repaired.
+/// The report of a build: how far the result is from the triangle mesh, and what was repaired.
 ///
 /// Look first at [`Self::hausdorff`] (the error), [`Self::target_reached`] (whether you got what you
 /// asked for) and [`Self::notes`] (what you should know, in sentences).
@@ -183,13 +183,14 @@ pub enum Variant {
 pub struct BuildReport {
     /// How far the result is from the triangle mesh, in the user's unit.
     pub hausdorff: Hausdorff,
-    /// The same before spheres were moved and enlarged to cover the triangle mesh; `None` without [`BuildOptions::enclose`].
+    /// How far the result was before spheres were moved and enlarged to cover the triangle mesh; `None` without
+    /// [`BuildOptions::enclose`].
     pub hausdorff_before_enclosure: Option<Hausdorff>,
     /// Longest side of the triangle mesh's bounding box, in the user's unit. Errors are often given as fractions of it.
     pub longest_side: Real,
     /// Number of primitives of the result.
     pub primitives: usize,
-    /// What became of sharp edges.
+    /// Whether sharp edges were kept.
     pub variant: Variant,
     /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring. If the result consists of
     /// overlapping convex pieces (see [`Self::notes`]), it is the number of pieces.
@@ -197,12 +198,12 @@ pub struct BuildReport {
     /// Whether the result keeps to [`BuildOptions::max_error`]; true if none was asked for. The number of primitives
     /// is always kept to.
     pub target_reached: bool,
-    /// What was found wrong in the triangle mesh and what was done about it, as numbers.
+    /// Numbers of faults found in the triangle mesh, and of repairs.
     pub findings: Findings,
     /// Area of the triangle mesh that lies inside the solid, hidden by other parts, in the user's unit squared. It
     /// does not count in the error.
     pub hidden_area: Real,
-    /// What you should know about the triangle mesh and the result, a sentence each.
+    /// Remarks on the triangle mesh and the result, a sentence each.
     pub notes: Vec<String>,
     /// Bytes that the builder's large arrays held at most at any time. Small lists, overhead of the allocator and
     /// your own mesh are not included, so the true number is larger.

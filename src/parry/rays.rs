@@ -18,7 +18,7 @@ use parry3d::shape::FeatureId;
 /// origin, below which it has no direction: what rounding leaves of it.
 const FLAT: f64 = 1.0e-12;
 
-/// Where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back inside, as in
+/// The point where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back inside, as in
 /// parry, and the time is in units of the length of the ray's direction.
 pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
     if !holds(mesh, ray.origin) {
@@ -144,7 +144,7 @@ impl RayFrame {
     }
 }
 
-/// Where a ray enters one primitive: the time in units of the length of the ray's direction, up to `most`, and the outward
+/// The point where a ray enters one primitive: the time in units of the length of the ray's direction, up to `most`, and the outward
 /// normal. A ray that starts inside enters at once, with no normal, if the primitive is `solid`; else it is where it leaves,
 /// with the normal that points back inside, as in parry.
 pub fn enter(

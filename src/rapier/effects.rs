@@ -81,7 +81,7 @@ pub struct Effects {
 pub struct MedialOptions {
     /// The effects of all colliders that have no settings of their own.
     pub effects: Effects,
-    /// Where contacts and first contacts of many pairs are computed. The results are the same on each, bit by bit.
+    /// The CPU or a GPU, for contacts and first contacts of many pairs. The results are the same, bit by bit.
     pub backend: Backend,
     /// How much work the search for first contacts may do in a step, counted in node pairs and elementary tests, of
     /// which each takes half a microsecond to one. Once it is spent, bodies whose paths are not searched to the end stop
@@ -176,7 +176,7 @@ impl MedialOptions {
         self
     }
 
-    /// For games: all effects, and a budget of 16,384, which limits the search for first contacts to about the time of a
+    /// Options for games: all effects, and a budget of 16,384, which limits the search for first contacts to about the time of a
     /// frame. Where it does not suffice, bodies wait for the next step; they still pass through nothing.
     pub fn games() -> Self {
         Self::default().budget(BUDGET_OF_GAMES)
@@ -198,7 +198,7 @@ impl MedialOptions {
 /// The effects of a scene and of single colliders.
 #[derive(Clone, Debug, Default)]
 pub struct EffectSettings {
-    /// Of the scene.
+    /// Effects of the scene.
     pub scene: Effects,
     own: HashMap<ColliderHandle, Effects>,
 }
@@ -248,7 +248,7 @@ impl EffectSettings {
         pairs
     }
 
-    /// Those of a pair: `On` wins, then `Off`, of what the two colliders set; else the scene's.
+    /// Effects of a pair: for each, `On` of either collider wins, then `Off` of either, then the scene's.
     pub fn of(&self, pair: [ColliderHandle; 2]) -> Effects {
         if self.own.is_empty() {
             return self.scene;

@@ -37,7 +37,7 @@ use meshes::Meshes;
 use near::Range;
 use transfer::Transfer;
 
-/// What a GPU has done since it was opened.
+/// The work that a GPU has done since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpuCounts {
     /// Submissions to the GPU.
