@@ -45,7 +45,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Medial meshes: concave colliders for rapier that never tunnel.
 #[derive(Parser)]
-#[command(version)]
+#[command(name = "medial", version)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -3,7 +3,7 @@
 
 pub mod asset;
 pub mod boxes;
-mod check;
+pub(crate) mod check;
 pub mod chord;
 mod cover;
 pub mod envelope;

@@ -112,6 +112,7 @@ pub fn creases(round_edges: bool) -> Creases {
 /// What a build did.
 #[derive(Serialize)]
 struct BuildSummary {
+    #[serde(serialize_with = "crate::output::path")]
     output: PathBuf,
     vertices: usize,
     triangles: usize,

@@ -67,6 +67,7 @@ impl Failure {
 #[derive(Serialize)]
 pub struct Failed {
     /// The triangle mesh.
+    #[serde(serialize_with = "crate::output::path")]
     pub input: PathBuf,
     /// Why.
     pub error: String,

@@ -91,7 +91,10 @@ pub fn info(arguments: &InfoArguments) -> Result<(), Failure> {
     }
     let mesh = load(&arguments.mesh)?;
     let errors = match &arguments.against {
-        Some(path) => Some(measure(&mesh, &mesh_file::read(path)?)?),
+        Some(path) => {
+            let measured = mesh_file::read(path).and_then(|source| measure(&mesh, &source));
+            Some(measured.map_err(|e| Failure::from(e).of(path))?)
+        }
         None => None,
     };
     let summary = InfoSummary {
