@@ -202,6 +202,16 @@ pub enum BuildError {
         /// Position of the vertex.
         position: [f32; 3],
     },
+    /// A vertex that a triangle uses is so far from the origin that the squares of lengths would be infinite.
+    #[error("vertex {index} is too far from the origin: {position:?}, must be within {most:e}")]
+    TooFar {
+        /// Index of the vertex.
+        index: usize,
+        /// Its position.
+        position: [f32; 3],
+        /// Largest coordinate that a vertex may have.
+        most: f32,
+    },
     /// A triangle names a vertex that is not there.
     #[error("triangle {index} names vertex {value}, but there are {count} vertices")]
     IndexOutOfRange {

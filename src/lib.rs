@@ -2,8 +2,8 @@
 //! collision detection: fast bodies do not tunnel.
 //!
 //! A triangle mesh describes the surface of a body. A [`MedialMesh`] describes its inside, by spheres
-//! whose centres lie in the middle of the body (on its *medial axis*). Each two neighbouring spheres are
-//! joined by a *medial cone* and each three by a *medial slab*, the convex shape that wraps round them.
+//! whose centres lie in the middle of the body (on its *medial axis*). Every two neighbouring spheres are
+//! joined by a *medial cone* and every three by a *medial slab*: the convex hull of these spheres.
 //! These are the *primitives* of the mesh. A few dozen follow a concave body (a ring, chain link, hook,
 //! gripper, creature) closely, holes included. They are solid, and the time at which two of them first
 //! touch can be computed with a proof: if a query answers that two bodies do not meet in a step, they

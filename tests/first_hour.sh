@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# A new user's first hour, replayed: the README's package in an empty folder, in a debug build, and every command of
-# the README and the guide as printed there. Needs what the README says: a Rust toolchain.
+# A new user's first hour, replayed: the README's package in an empty folder, in a debug build, and the commands of
+# README and guide as printed there, each of which has to print something within five seconds of its start. Needs a
+# Rust toolchain and `script` (util-linux), which stands for a terminal.
 #
 #   bash tests/first_hour.sh            the package and the command line
 #   bash tests/first_hour.sh --all      the README's examples as well (minutes)
@@ -38,7 +39,34 @@ echo "progress after $first ms, the end after $(( ($(date +%s%N) - start) / 1000
 cat "$work/told"
 grep -q 'it rests at' "$work/told"
 
-say 'the commands of the guide'
+# run COMMAND: runs it in $work as in a terminal; its first output, after cargo's own lines, must come soon.
+run() {
+  echo "\$ $1"
+  local command=${1/cargo run/cargo run --manifest-path "$repo/Cargo.toml"} built start first=
+  # What cargo builds is not part of the time.
+  case $command in
+    cargo\ run*) built=${command/cargo run/cargo build --quiet}; ( cd "$work" && eval "${built%% -- *}" ) ;;
+  esac
+  start=$(date +%s%N)
+  ( cd "$work" && exec script --quiet --return --flush --command "$command" /dev/null ) < /dev/null > "$work/told" &
+  local pid=$!
+  while kill -0 $pid 2> /dev/null && [ -z "$first" ]; do
+    grep -qavE 'Finished|Running|Blocking|^[[:space:]]*$' "$work/told" && first=$(( ($(date +%s%N) - start) / 1000000 ))
+    sleep 0.02
+  done
+  wait $pid || { cat "$work/told"; echo "fails: $1"; exit 1; }
+  tr '\r' '\n' < "$work/told" | grep -avE 'Finished|Running|Blocking|\?25|^[[:space:]]*$' | tail -n 12 || true
+  echo "first output after ${first:-0} ms, the end after $(( ($(date +%s%N) - start) / 1000000 )) ms"
+  [ "${first:-0}" -lt 5000 ] || { echo "no output within five seconds: $1"; exit 1; }
+}
+
+# commands FILE: the lines of its blocks, and the passages in backticks, that call the program or an example.
+commands() {
+  sed -n '/^cargo run --release/p' "$1"
+  grep -oE '`(cargo run --release|medial) [^`]*`' "$1" | tr -d '`' | grep -E ' (body|my)\.(obj|medial)' || true
+}
+
+say 'the commands of README and guide'
 # A body: a frame of square section.
 awk 'BEGIN {
   for (z = -0.1; z < 0.2; z += 0.2) for (r = 0.5; r > 0.2; r -= 0.2) {
@@ -47,23 +75,21 @@ awk 'BEGIN {
   for (k = 1; k <= 4; k++) { n = k % 4 + 1
     print "f", k, k+4, n+4, n; print "f", k+8, n+8, n+12, k+12; print "f", k, n, n+8, k+8; print "f", k+4, k+12, n+12, n+4
   } }' > "$work/body.obj"
+cp "$work/body.obj" "$work/my.obj"
 cargo build --quiet --release --features cli --bin medial --manifest-path "$repo/Cargo.toml"
-medial="${CARGO_TARGET_DIR:-$repo/target}/release/medial"
-{
-  sed -n 's/^cargo run --release --features cli --bin medial -- //p' "$repo/docs/guide.md"
-  grep -o '`medial [^`]*body\.obj[^`]*`' "$repo/docs/guide.md" | sed 's/`medial \(.*\)`/\1/'
-} |
-  while read -r arguments; do
-    echo "medial $arguments"
-    ( cd "$work" && eval "\"$medial\" $arguments" )
-  done
+PATH="${CARGO_TARGET_DIR:-$repo/target}/release:$PATH"
+{ commands "$repo/docs/guide.md"; commands "$repo/README.md" | grep -v -- '--example'; } > "$work/commands"
+[ "$(wc -l < "$work/commands")" -ge 5 ] || { echo 'README and guide have fewer commands than they had'; exit 1; }
+while read -r command <&3; do run "$command"; done 3< "$work/commands"
 
 if [ "${1:-}" = --all ]; then
-  say 'the commands of the README'
-  grep -h '^cargo run --release --example' "$repo/README.md" |
-    while read -r command; do
-      echo "$command"
-      ( cd "$repo" && eval "$command" )
-    done
+  say 'the examples of the README'
+  # The main one, as a command, and those of the table, by name.
+  {
+    commands "$repo/README.md" | grep -- '--example'
+    sed -n '/^| name | shows |/,/^$/p' "$repo/README.md" | grep -oE '^\|( `[^`]*`,?)+' | grep -oE '`[^`]*`' | tr -d '`' |
+      sed 's/^/cargo run --release --example /; s/FILE/body.obj/'
+  } > "$work/examples"
+  while read -r command <&3; do run "$command"; done 3< "$work/examples"
 fi
 say done

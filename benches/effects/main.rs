@@ -1,4 +1,4 @@
-//! What each effect costs and what goes wrong without it: the table of docs/effects.md.
+//! What each effect costs and what goes wrong without it: the table of docs/measurements/effects.md.
 //!
 //! ```text
 //! cargo bench --bench effects              # some minutes

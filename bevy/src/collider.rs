@@ -14,12 +14,12 @@ pub use assets::{MedialAsset, MedialAssetLoader, MedialBuild, MedialBuilt};
 pub(crate) use assets::finish;
 
 /// A concave collider. The entity gets bevy_rapier's `Collider` as soon as the medial mesh is there: at once, when
-/// its file is loaded, or when it is built; until then it collides with nothing. It takes the entity's scale if that
-/// is the same along all axes (a sphere scaled otherwise is none).
+/// its file is loaded, or when it is built. Until then it collides with nothing. The collider follows the entity's
+/// scale if that is the same along all axes; a sphere scaled otherwise would be no sphere.
 #[derive(Component, Clone)]
 #[non_exhaustive]
 pub enum MedialCollider {
-    /// A medial mesh at hand.
+    /// A medial mesh made in code.
     Mesh(MedialMesh),
     /// A `.medial` file, made by `medial build --bake` or `MedialMesh::save_asset`.
     #[cfg(feature = "assets")]
@@ -35,7 +35,7 @@ impl From<MedialMesh> for MedialCollider {
     }
 }
 
-/// On entities whose [`MedialCollider`] is not served yet.
+/// Marks entities whose [`MedialCollider`] has not become a `Collider` yet.
 #[derive(Component)]
 struct Waiting;
 
@@ -47,7 +47,7 @@ pub(crate) fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) 
     app.add_systems(schedule, serve).add_observer(remove);
 }
 
-/// Without its [`MedialCollider`] an entity collides no longer.
+/// Removes the `Collider` of an entity that has lost its [`MedialCollider`].
 fn remove(removed: On<Remove<MedialCollider>>, mut commands: Commands) {
     commands
         .entity(removed.entity)
@@ -123,21 +123,21 @@ mod assets {
         }
     }
 
-    /// What to build a collider from.
+    /// A render mesh to build a collider from, and how.
     #[derive(Clone, PartialEq)]
     pub struct MedialBuild {
         /// The render mesh: a list of triangles that the main world may read.
         pub mesh: Handle<Mesh>,
-        /// How many primitives, and how exact.
+        /// The number of primitives, the error allowed, and more.
         pub options: BuildOptions,
     }
 
-    /// Told once for each entity whose [`MedialCollider::Build`] has ended.
+    /// The message sent once for each entity whose [`MedialCollider::Build`] has ended.
     #[derive(Message)]
     pub struct MedialBuilt {
         /// The entity.
         pub entity: Entity,
-        /// What was built, or why nothing was.
+        /// The report of the build, or the error that ended it.
         pub outcome: Result<BuildReport, String>,
     }
 

@@ -21,11 +21,13 @@
 //!     .add_systems(Startup, spawn);
 //! ```
 //!
-//! # What bevy_rapier keeps to itself
-//! Its step is closed to other crates in four places. Messages about soft bodies that tear are not sent,
-//! `RapierContextSimulation::step_stats` stays empty ([`MedialWorld::report`] tells more), a handler given to
-//! `RapierContextSimulation::set_event_handler` is not called ([`MedialWorld::set_event_handler`] is), and it keeps
-//! some twenty bytes for each collider that was ever removed.
+//! # Differences from bevy_rapier
+//! bevy_rapier keeps parts of its step private, so four things differ:
+//! - Messages about soft bodies that tear are not sent.
+//! - `RapierContextSimulation::step_stats` stays empty; use [`MedialWorld::report`].
+//! - A handler given to `RapierContextSimulation::set_event_handler` is not called; use
+//!   [`MedialWorld::set_event_handler`].
+//! - bevy_rapier keeps some twenty bytes for each collider that was ever removed.
 #![warn(missing_docs)]
 
 mod collider;
@@ -39,7 +41,7 @@ pub use collider::{MedialAsset, MedialAssetLoader, MedialBuild, MedialBuilt};
 pub use plugin::RapierMedialPlugin;
 pub use step::MedialWorld;
 
-/// What an app needs beside `bevy_rapier3d::prelude::*`.
+/// Everything that an app usually needs beside `bevy_rapier3d::prelude::*`.
 pub mod prelude {
     #[cfg(feature = "assets")]
     pub use crate::{MedialAsset, MedialBuild, MedialBuilt};
@@ -49,3 +51,8 @@ pub mod prelude {
         Quality, StepReport,
     };
 }
+
+/// Compiles the README's example.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -30,24 +30,24 @@ impl<Hooks> Default for RapierMedialPlugin<Hooks> {
 }
 
 impl<Hooks> RapierMedialPlugin<Hooks> {
-    /// The same, with these effects and this backend for all physics worlds.
+    /// Sets the effects, backend and budget of all physics worlds.
     pub fn with_options(mut self, options: MedialOptions) -> Self {
         self.options = options;
         self
     }
 
-    /// The same, stepped in `FixedUpdate` instead of `PostUpdate`.
+    /// Steps in `FixedUpdate` instead of `PostUpdate`.
     pub fn in_fixed_schedule(self) -> Self {
         self.in_schedule(FixedUpdate)
     }
 
-    /// The same, stepped in this schedule instead of `PostUpdate`.
+    /// Steps in this schedule instead of `PostUpdate`.
     pub fn in_schedule(mut self, schedule: impl ScheduleLabel) -> Self {
         self.schedule = schedule.intern();
         self
     }
 
-    /// The same, with bevy_rapier's way to set up its first physics world.
+    /// Sets how bevy_rapier makes its first physics world.
     pub fn with_custom_initialization(
         mut self,
         initialization: RapierContextInitialization,
@@ -56,7 +56,7 @@ impl<Hooks> RapierMedialPlugin<Hooks> {
         self
     }
 
-    /// The same, for scenes whose unit is not the metre: how many of its units make one.
+    /// Sets rapier's length unit, for scenes whose unit is not the metre: the number of their units in a metre.
     pub fn with_length_unit(self, length_unit: f32) -> Self {
         self.with_custom_initialization(RapierContextInitialization::default_with_length_unit(
             length_unit,

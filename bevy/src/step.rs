@@ -11,7 +11,7 @@ use rapier3d_medial::{MedialOptions, MedialPipeline, StepReport};
 use std::collections::HashMap;
 use std::sync::Mutex;
 
-/// What a physics world has beside bevy_rapier's components; on the same entity as `RapierContextSimulation`.
+/// The medial pipeline of a physics world: a component on the same entity as `RapierContextSimulation`.
 #[derive(Component)]
 pub struct MedialWorld {
     pipeline: MedialPipeline,
@@ -38,17 +38,17 @@ impl MedialWorld {
         }
     }
 
-    /// The pipeline, for effects of single colliders.
+    /// The pipeline, to set the effects of single colliders.
     pub fn pipeline(&mut self) -> &mut MedialPipeline {
         &mut self.pipeline
     }
 
-    /// What the last step did.
+    /// The report of the last step.
     pub fn report(&self) -> &StepReport {
         &self.report
     }
 
-    /// Has all events of rapier told to this handler as well, or to none.
+    /// Sets a handler that gets all of rapier's events besides bevy's messages; `None` removes it.
     pub fn set_event_handler(&mut self, handler: Option<Box<dyn EventHandler + Send + Sync>>) {
         self.events = handler;
     }

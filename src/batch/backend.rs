@@ -35,7 +35,7 @@ pub enum Backend {
     Gpu,
 }
 
-/// The work that a [`Batch`] has done since it was made.
+/// The work that a [`Batch`] has done since it was made. A *job* is one pair of meshes or one elementary test.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BatchReport {
     /// Counts of jobs, submissions and failures.

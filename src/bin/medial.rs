@@ -45,7 +45,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Medial meshes: concave colliders for rapier that never tunnel.
 #[derive(Parser)]
-#[command(version)]
+#[command(name = "medial", version)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -55,13 +55,13 @@ struct Arguments {
 enum Command {
     /// Build medial meshes (.ma, or baked as .medial) from triangle meshes (obj, stl, ply, off, glb, gltf).
     Build(BuildArguments),
-    /// Bake a medial mesh (.ma) with its trees and mass properties, to load in no time.
+    /// Turn a medial mesh (.ma) into one that loads at once (.medial), with its trees and mass properties.
     Bake(BakeArguments),
-    /// Describe a medial mesh (.ma or baked), or the errors by count that a triangle mesh may be built with.
+    /// Describe a medial mesh (.ma or .medial), or show the error of a triangle mesh at several numbers of primitives.
     Info(InfoArguments),
-    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side; tell error and cost of each.
+    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side, and measure error and cost of each.
     Compare(CompareArguments),
-    /// Measure from which batch sizes on the GPU pays, for `Backend::Auto`.
+    /// Measure how large a batch must be for the GPU to be faster than the CPU, for `Backend::Auto`.
     #[cfg(feature = "gpu")]
     Calibrate(calibrate::CalibrateArguments),
 }

@@ -73,7 +73,7 @@ pub struct ToiOptions {
     /// because deeper than that medial surfaces may cross: a deeper target is raised to it. (This is so with
     /// [`InitialContact::Stop`]; with [`InitialContact::Deepen`] ask for [`Cores`] instead.)
     pub target_distance: Real,
-    /// How primitives that touch at the start already are treated. Only in queries of meshes.
+    /// Treatment of primitives that touch at the start already. Only in queries of meshes.
     pub initial_contact: InitialContact,
     /// Start of the paper's iteration. Only for [`alternating()`].
     pub alternating_start: AlternatingStart,

@@ -8,7 +8,7 @@ use crate::math::Real;
 /// Farthest that a sphere may reach from its body's origin along an axis, in the user's unit. Two points
 /// are then at most 3.5e18 apart, whose square is a number in `f32`: ten times farther, and lengths,
 /// bounding spheres and the thickness are infinite or wrong.
-const LARGEST_REACH: Real = 1.0e18;
+pub const LARGEST_REACH: Real = 1.0e18;
 
 /// Fails on the first item that is not finite, too far away, negative, out of range or degenerate.
 pub fn check(

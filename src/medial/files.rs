@@ -1,4 +1,4 @@
-//! Writing files safely: if a write fails half way, the old file is still there.
+//! Writing files safely: if a write fails half way, the old file is still there. Devices and pipes are written to.
 
 use crate::error::MeshError;
 use std::fs::{self, File, OpenOptions};
@@ -6,12 +6,20 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Writes a new file beside `path`, then renames it to `path`.
+/// Writes a new file beside `path`, then renames it to `path`. If `path` is a link, the file that it leads to is replaced.
+/// If it is a device or pipe (`/dev/stdout`), which no file may take the place of, it is written to.
 pub fn replace(path: &Path, write: impl FnOnce(&File) -> io::Result<()>) -> Result<(), MeshError> {
-    let (partial, file) = create_beside(path).map_err(|source| file_error(path, source))?;
+    let followed = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if fs::metadata(&followed).is_ok_and(|is| !is.is_file() && !is.is_dir()) {
+        let opened = OpenOptions::new().write(true).open(&followed);
+        return opened
+            .and_then(|file| write(&file))
+            .map_err(|source| file_error(path, source));
+    }
+    let (partial, file) = create_beside(&followed).map_err(|source| file_error(path, source))?;
     write(&file)
         .and_then(|()| file.sync_all())
-        .and_then(|()| fs::rename(&partial, path))
+        .and_then(|()| fs::rename(&partial, &followed))
         .map_err(|source| {
             // The first error is the one to report; a leftover partial file is harmless.
             let _ = fs::remove_file(&partial);

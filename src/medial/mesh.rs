@@ -146,8 +146,8 @@ impl MedialMesh {
         &self.data.parts
     }
 
-    /// The same mesh with other mass properties, at density 1, in the body's frame: those of the triangle
-    /// mesh that it stands for, for instance. [`Self::from_trimesh`] does this itself.
+    /// Returns this mesh with other mass properties, at density 1, in the body's frame: for instance those of the
+    /// triangle mesh that it stands for. [`Self::from_trimesh`] does this itself.
     pub fn with_mass_properties(self, unit_density: MassProperties) -> Self {
         let parts = Parts {
             source_mass: Some(unit_density),
@@ -246,10 +246,10 @@ impl MedialMesh {
         self.data.aabb
     }
 
-    /// How thin the solid typically is, a length: 95 % of the medial mesh, by area, have a larger radius (a
-    /// cone counts as a strip as wide as itself, and a tip that grows thick fast, as at the edges of a box, as the part
-    /// it ends). The smallest radius would not do, because it is near 0 at
-    /// the tips of most meshes, and every motion would count as fast.
+    /// How thin the solid typically is, a length: 95 % of the medial mesh, by area, have a larger radius. A cone counts
+    /// as a strip as wide as itself. A blunt tip, as at the edges of a box, counts as thick as the part it ends.
+    /// The smallest radius would not do, because it is near 0 at the tips of most meshes, and every motion would count
+    /// as fast.
     pub fn thickness(&self) -> Real {
         self.data.parts.thickness
     }

@@ -3,7 +3,7 @@
 
 pub mod asset;
 pub(crate) mod boxes;
-mod check;
+pub(crate) mod check;
 pub(crate) mod chord;
 mod cover;
 pub(crate) mod envelope;

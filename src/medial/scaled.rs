@@ -18,7 +18,7 @@ pub fn uniform_factor(scale: Vector) -> Option<Real> {
 
 impl MedialMesh {
     /// The mesh scaled about the origin by the same factor along all axes; an axis may also be mirrored (a negative
-    /// number). Mass properties that it has of a triangle mesh are scaled with it; where `f32` cannot hold them, the
+    /// number). If it has the mass properties of a triangle mesh, they are scaled too; if `f32` cannot hold them, the
     /// result has those of its spheres, cones and slabs. `None` for all other scalings, which would turn spheres into
     /// ellipsoids, and for a result that [`MedialMesh::new`] refuses.
     ///

@@ -119,28 +119,28 @@ impl Findings {
         if self.triangles_thin > 0 {
             let count = self.triangles_thin;
             notes.push(format!(
-                "{count} triangles where matter is too thin for balls: built as sheets"
+                "{count} triangles where the solid is too thin for spheres: built as sheets"
             ));
         }
         if self.triangles_buried > 0 {
             notes.push("parts of sheets that lie inside solid matter are left out".into());
         }
         if self.overlapping {
-            notes.push("solid patches overlap or pass through themselves: built as one".into());
+            notes
+                .push("solid pieces overlap or pass through themselves: built as one solid".into());
         }
         match self.mass {
             MassSource::Surface => {}
             MassSource::Lines => notes.push(
-                "mass properties are within about a thousandth: the solid part's surface overlaps \
-                 or has openings, so that they are summed along lines"
+                "mass properties are exact to about a thousandth, because the solid's surface overlaps or has openings"
                     .into(),
             ),
             MassSource::MedialMesh => notes.push(
-                "mass properties are those of the medial mesh: the source encloses nothing".into(),
+                "mass properties are those of the medial mesh, because the triangle mesh encloses no volume".into(),
             ),
         }
         if sheets && self.mass != MassSource::MedialMesh {
-            notes.push("sheets count nothing in the mass properties: they have no volume".into());
+            notes.push("sheets add nothing to the mass, because they have no volume".into());
         }
         notes
     }
@@ -162,20 +162,23 @@ impl Findings {
     /// Sentence on what is hidden inside matter, `share` of the area.
     pub(crate) fn hidden_in_words(&self, share: f64) -> String {
         let mut text = format!(
-            "{:.1} % of the source's area lies inside solid matter, and counts for nothing in the error: {} triangles \
-             and parts of others",
+            "{:.1} % of the mesh's area lies inside solid matter and does not count in the error: {} triangles and parts \
+             of others",
             100.0 * share,
             self.triangles_hidden
         );
         if self.patches_hidden > 0 {
             // Writing to a string does not fail.
-            let _ = write!(text, "; {} patches are hidden whole", self.patches_hidden);
+            let _ = write!(text, "; {} pieces are hidden entirely", self.patches_hidden);
         }
         text
     }
 
     fn patches_in_words(&self) -> String {
-        let mut text = format!("{} patches: {} solid", self.patches, self.patches_solid);
+        let mut text = format!(
+            "{} connected pieces of surface: {} solid",
+            self.patches, self.patches_solid
+        );
         // Writing to a string does not fail.
         if self.patches_mended > 0 {
             let _ = write!(

@@ -21,6 +21,7 @@ use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::text::TextError;
 use std::collections::HashMap;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// A triangle mesh from a file, in the file's unit of length.
@@ -83,6 +84,12 @@ impl MeshFormat {
 /// ```
 pub fn read(path: impl AsRef<Path>) -> Result<TriangleMesh, BuildError> {
     let path = path.as_ref();
+    if path.is_dir() {
+        return Err(BuildError::File {
+            path: path.to_owned(),
+            source: ErrorKind::IsADirectory.into(),
+        });
+    }
     let Some(format) = MeshFormat::of(path) else {
         let extension = path.extension().unwrap_or_default();
         return Err(BuildError::UnknownFormat {

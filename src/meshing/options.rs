@@ -25,10 +25,10 @@ pub enum Quality {
 /// Which edges of the triangle mesh count as sharp. Convex sharp edges may be kept, by spheres of radius 0 that lie
 /// on them; all other edges are rounded.
 ///
-/// Convex bodies with flat faces, alone or several apart, become their own medial axis if the number of primitives
-/// allows it, and are then exact. Of other closed bodies whose surface does not overlap itself one medial mesh is
-/// made with sharp edges and one without, and the one of smaller error is returned ([`Quality::Fast`] makes only
-/// the one without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
+/// Bodies with flat faces become their own medial axes (if they are not convex, those of convex pieces) if the number
+/// of primitives allows it, and are then exact. Other closed bodies whose surface does not overlap itself are built
+/// twice, with sharp edges and without, and the result of smaller error is returned ([`Quality::Fast`] builds only the
+/// one without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Creases {
     /// Edges at which the surface bends by more than 25°, unless most of these edges end within a face, as on a
@@ -133,9 +133,9 @@ pub struct Hausdorff {
     pub envelope_to_surface: Real,
     /// How far the triangle mesh sticks out of the medial mesh, at most.
     pub uncovered: Real,
-    /// How far the medial mesh sticks out of the triangle mesh, at the points that were looked at.
+    /// How far the medial mesh sticks out of the triangle mesh, at the points that were measured.
     pub bloat: Real,
-    /// Uncertainty of [`Self::error`], since only some points were looked at: no point of either surface is farther from
+    /// Uncertainty of [`Self::error`], since only some points were measured: no point of either surface is farther from
     /// the other than `error() + sampling`. It is a quarter of the error (half with [`Quality::Fast`] and no
     /// [`BuildOptions::max_error`]), or more if the error is below two thousandths of the size or the
     /// search ran out of its budget.
@@ -167,10 +167,10 @@ pub enum Variant {
         /// Number of edges of the triangle mesh that could be kept.
         edges: usize,
     },
-    /// The medial mesh is exact: it is the medial axes of convex bodies with flat faces, or of convex pieces that overlap
-    /// and together are the body. Of such pieces [`Hausdorff::error`] is measured: some millionths of the size, more where
-    /// vertices are off their planes or rounded far from the origin. [`Hausdorff::sampling`] may be a hundredth of the
-    /// size.
+    /// The medial mesh is exact: it consists of the medial axes of convex bodies with flat faces, or of overlapping
+    /// convex pieces that together are the body. For such pieces [`Hausdorff::error`] is measured, and is some millionths
+    /// of the size, or more where vertices are off their planes or rounded far from the origin. [`Hausdorff::sampling`]
+    /// may be a hundredth of the size.
     Exact,
 }
 
@@ -183,7 +183,8 @@ pub enum Variant {
 pub struct BuildReport {
     /// How far the result is from the triangle mesh, in the user's unit.
     pub hausdorff: Hausdorff,
-    /// The same before spheres were moved and enlarged to cover the triangle mesh; `None` without [`BuildOptions::enclose`].
+    /// How far the result was before spheres were moved and enlarged to cover the triangle mesh; `None` without
+    /// [`BuildOptions::enclose`].
     pub hausdorff_before_enclosure: Option<Hausdorff>,
     /// Longest side of the triangle mesh's bounding box, in the user's unit. Errors are often given as fractions of it.
     pub longest_side: Real,
@@ -191,8 +192,8 @@ pub struct BuildReport {
     pub primitives: usize,
     /// Whether sharp edges were kept.
     pub variant: Variant,
-    /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring. Of convex
-    /// pieces that overlap (see [`Self::notes`]) it is their number.
+    /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring. If the result consists of
+    /// overlapping convex pieces (see [`Self::notes`]), it is the number of pieces.
     pub euler: i64,
     /// Whether the result keeps to [`BuildOptions::max_error`]; true if none was asked for. The number of primitives
     /// is always kept to.

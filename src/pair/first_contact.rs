@@ -145,8 +145,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         self.search_within(until, u64::MAX)
     }
 
-    /// The same, but pauses once it has looked at about so many node pairs and tests: at the time before which
-    /// nothing meets, as far as it knows then.
+    /// Continues the search like [`Self::search`], but pauses after about `work` node pairs and tests, and then returns
+    /// the time before which nothing meets as far as is proven.
     pub fn search_within(&mut self, until: f64, work: u64) -> Option<Real> {
         if self.settled {
             return None;

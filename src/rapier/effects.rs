@@ -1,5 +1,5 @@
 //! The settings of the pipeline: which work beyond rapier's own step is done for the pairs of a scene or of single
-//! colliders. What is off costs nothing. `docs/effects.md` has the inequality by which each is decided.
+//! colliders. An effect that is off costs nothing. `docs/effects.md` has the inequality by which each is decided.
 
 use crate::batch::Backend;
 use crate::medial::MedialMesh;
@@ -68,10 +68,9 @@ pub struct Effects {
     pub stop: Effect,
     /// Lets pairs with restitution bounce where they meet within the step, by an impulse that gains no energy, and keeps
     /// them from rapier's solver in that step. `On`: for pairs whose restitution is above 0, if they may approach by more
-    /// than twice what gravity adds in the step. `Auto`: for those of them that no gravity, force of yours or joint pulls on, as
-    /// in space: nothing else takes from these what rapier's solver gives them. Off: slow pairs bounce in that solver, in
-    /// which elastic bodies that are not round gain or lose much of their energy within seconds. Pairs with [`Self::stop`]
-    /// on are left to it too.
+    /// than twice the distance that gravity adds in the step. `Auto`: the same, but only for pairs on which no gravity,
+    /// force of yours or joint acts, as in space. Off, and for pairs with [`Self::stop`] on: slow pairs bounce in rapier's
+    /// solver, in which elastic bodies that are not round gain or lose much of their energy within seconds.
     pub restitution: Effect,
 }
 
@@ -84,9 +83,10 @@ pub struct MedialOptions {
     pub effects: Effects,
     /// The CPU or a GPU, for contacts and first contacts of many pairs. The results are the same, bit by bit.
     pub backend: Backend,
-    /// Node pairs and elementary tests that the search for first contacts may take in a step, each half a
-    /// microsecond to one. Once it is spent, bodies of which more would have to be asked wait until the next step where they
-    /// are proven free ([`crate::StepReport::waiting`]), and keep their speed: they lose time, and pass through nothing.
+    /// How much work the search for first contacts may do in a step, counted in node pairs and elementary tests, of
+    /// which each takes half a microsecond to one. Once it is spent, bodies whose paths are not searched to the end stop
+    /// where they are proven free, and go on in the next step at the speed they had ([`crate::StepReport::waiting`]). So
+    /// they lose time, but pass through nothing.
     pub budget: u64,
 }
 
@@ -108,8 +108,8 @@ impl Default for MedialOptions {
 }
 
 impl Effects {
-    /// Nothing beyond rapier's own step: contacts between medial colliders, and no continuous collision detection but
-    /// rapier's.
+    /// Nothing beyond rapier's own step: medial colliders have contacts, and rapier's own continuous collision detection
+    /// only.
     pub const OFF: Self = Self {
         continuous: Effect::Off,
         guard: Effect::Off,

@@ -29,7 +29,7 @@ use std::sync::Arc;
 ///
 /// Before rapier's step it computes the contacts between medial colliders that are near each other. After the
 /// step it finds fast bodies that met within it, of which at least one is medial, and resolves these
-/// impacts: see [`Effects`]. What it does to the world besides is said at [`Self::attach`].
+/// impacts: see [`Effects`]. [`Self::attach`] and [`Self::step`] say what else changes in the world.
 ///
 /// In a world that is stepped without a pipeline, medial colliders still have contacts, computed by parry as for
 /// its compound shapes, but fast bodies pass through each other.

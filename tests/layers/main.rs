@@ -1,7 +1,8 @@
 //! The import rules of the design, checked on the source text: imports go down the layers only, and
-//! each foreign library stays in its layer.
+//! each foreign library stays in its layer. And the links between pages lead somewhere.
 
 mod circles;
+mod links;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -203,7 +203,7 @@ fn build_writes_a_mesh_and_info_measures_it_alike() {
     assert!(info["errors"]["uncovered"].as_f64().unwrap() < 1e-5);
 
     let lines = medial(&directory, &["info", "out.ma", "--against", "corner.obj"]);
-    assert!(text(&lines.stdout).contains("envelope to surface"));
+    assert!(text(&lines.stdout).contains("collider to mesh"));
     assert_fails(
         &medial(&directory, &["info", "out.ma", "--against", "no.obj"]),
         "no.obj",

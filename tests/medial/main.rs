@@ -8,6 +8,8 @@ mod cli;
 mod cli_compare;
 #[cfg(feature = "cli")]
 mod cli_errors;
+#[cfg(feature = "cli")]
+mod cli_paths;
 mod envelope;
 mod fuzz;
 #[cfg(feature = "gltf")]

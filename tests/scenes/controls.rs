@@ -301,7 +301,7 @@ fn slides(offset: Real) -> Vector {
     world.bodies[ring].translation() - at
 }
 
-/// The table of docs/rapier.md: a moving body loses what `f32` cannot resolve of its steps.
+/// The table of docs/measurements/with-rapier.md: a moving body loses what `f32` cannot resolve of its steps.
 #[test]
 fn sliding_bodies_err_by_what_f32_resolves() {
     let near = slides(0.0);
@@ -334,7 +334,7 @@ fn at_rest(offset: Real) -> (Real, Real) {
     (fastest, world.bodies[ring].translation().y - RADIUS - MINOR)
 }
 
-/// The table of docs/rapier.md.
+/// The table of docs/measurements/with-rapier.md.
 #[test]
 fn scenes_rest_as_far_out_as_f32_lets_them() {
     for offset in [0.0, 100.0, 1000.0, 10_000.0, 100_000.0] {

@@ -121,7 +121,7 @@ fn full_heaps() {
 
 /// Steps until all sleep, ours and those of rapier's compounds, six seeds each.
 #[test]
-#[ignore = "minutes in release: prints steps until sleep, for docs/rapier.md"]
+#[ignore = "minutes in release: prints steps until sleep, for docs/measurements/with-rapier.md"]
 fn full_heaps_sleep() {
     for (name, shapes, grid) in kinds().into_iter().take(3) {
         let mut steps = [vec![], vec![]];

@@ -1,5 +1,5 @@
 //! Each effect: what goes wrong without it, planted, and that nothing is counted where nothing calls
-//! for it. `docs/effects.md` has the table of all on random scenes.
+//! for it. `docs/measurements/effects.md` has the table of all on random scenes.
 
 use crate::bodies::*;
 use crate::impacts::{ball_bar, crossed, passed};

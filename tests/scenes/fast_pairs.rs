@@ -244,7 +244,7 @@ const PARTNERS: [Partner; 4] = [
 ];
 
 #[test]
-#[ignore = "minutes in release: the table of docs/rapier.md, of which CI runs a part"]
+#[ignore = "minutes in release: the table of docs/measurements/with-rapier.md, of which CI runs a part"]
 fn full_size() {
     let medial = count(9001, 12_000, &ALL, any_medial);
     let cuboid = count(9002, 3_000, &ALL, any_cuboid);
@@ -254,7 +254,7 @@ fn full_size() {
 }
 
 #[test]
-#[ignore = "minutes in release: the table of docs/rapier.md, of which CI runs a part"]
+#[ignore = "minutes in release: the table of docs/measurements/with-rapier.md, of which CI runs a part"]
 fn full_partners() {
     let counts = PARTNERS.map(|(name, any)| {
         println!("medial and {name}");

@@ -25,43 +25,43 @@ pub struct BuildArguments {
     /// Triangle meshes: obj, stl, ply, off, glb or gltf, or folders of them.
     #[arg(required = true)]
     inputs: Vec<PathBuf>,
-    /// Where to write the medial mesh: baked, with the mass properties of the triangle mesh, if it ends
-    /// in .medial, else in the .ma format, which has none; of several, the folder to write them into.
-    #[arg(short, long, value_name = "OUT.ma")]
+    /// File to write: OUT.medial loads at once and has the mass of the triangle mesh, OUT.ma is text without
+    /// mass. For several meshes, the folder to write into.
+    #[arg(short, long, value_name = "OUT.medial")]
     output: PathBuf,
     /// Largest number of primitives: slabs, cones that belong to no slab, lone spheres
     /// [default: 500, or what the largest error needs].
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     primitives: Option<u32>,
-    /// Largest two-sided Hausdorff error, as a fraction of the longest side of the mesh's box. Without --primitives
-    /// the smallest mesh that keeps it is built.
+    /// Largest distance between the surfaces of mesh and collider, as a fraction of the mesh's longest side. Without
+    /// --primitives, the smallest medial mesh that keeps to it is built.
     #[arg(short = 'e', long, value_name = "E", value_parser = positive)]
     max_error: Option<f32>,
-    /// The same as a length: 0.02 in the unit of the files, or 0.02mm.
+    /// The same as a length: 0.02 in the unit of the file, or 0.02mm with --unit.
     #[arg(long, value_name = "LENGTH", conflicts_with = "max_error")]
     tolerance: Option<Length>,
-    /// What one unit of the files is (um, mm, cm, m, km, in, ft); glTF is in metres.
+    /// The unit of the file (um, mm, cm, m, km, in, ft); glTF is in metres.
     #[arg(long, value_name = "UNIT")]
     unit: Option<Unit>,
     /// How much work to spend on a small error.
     #[arg(short, long, value_enum, default_value_t)]
     quality: QualityArgument,
-    /// Fit the surface on both sides instead of enclosing it.
+    /// Fit the surface from both sides instead of covering it.
     #[arg(long)]
     no_enclose: bool,
     /// Round all edges, also where sharp ones would make the error smaller.
     #[arg(long)]
     round_edges: bool,
-    /// Of several meshes: write them baked (.medial), not as .ma.
+    /// Into a folder: write .medial files, which load at once, instead of .ma.
     #[arg(long)]
     bake: bool,
     /// Multiply all lengths first: 0.001 takes millimetres to metres.
     #[arg(long, value_name = "S", value_parser = positive)]
     scale: Option<f32>,
-    /// Which axis points up in the files; z is turned to rapier's usual y.
+    /// Which axis points up in the file; z is turned to y.
     #[arg(long, value_enum, default_value_t)]
     up: Up,
-    /// Say nothing unless something fails.
+    /// Print nothing unless something fails.
     #[arg(long, conflicts_with = "json")]
     quiet: bool,
     /// Print the report as JSON.
@@ -112,6 +112,7 @@ pub fn creases(round_edges: bool) -> Creases {
 /// Summary of a build.
 #[derive(Serialize)]
 struct BuildSummary {
+    #[serde(serialize_with = "crate::output::path")]
     output: PathBuf,
     vertices: usize,
     triangles: usize,

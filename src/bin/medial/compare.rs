@@ -66,6 +66,7 @@ pub struct CompareArguments {
 /// The colliders of one mesh, with what they cost.
 #[derive(Serialize)]
 struct Comparison {
+    #[serde(serialize_with = "crate::output::path")]
     picture: PathBuf,
     triangles: usize,
     /// Longest side of the bounding box, in the unit of the file.

@@ -1,4 +1,4 @@
-//! `medial info --curve`: the errors by count that a triangle mesh may be built with.
+//! `medial info --curve`: the error of a triangle mesh at several numbers of primitives.
 
 use crate::STOP;
 use crate::build::{BAR_STEPS, bar, listen};
@@ -23,14 +23,14 @@ struct Point {
     errors: Errors,
 }
 
-/// All of them.
+/// What `info --curve` prints.
 #[derive(Serialize)]
 struct Curve {
     longest_side: f32,
     points: Vec<Point>,
 }
 
-/// Tells the error at each count.
+/// Prints the error at each count.
 pub fn curve(arguments: &InfoArguments) -> Result<(), Failure> {
     let path = &arguments.mesh;
     if path.is_file() && MeshFormat::of(path).is_none() {
@@ -77,8 +77,8 @@ pub fn curve(arguments: &InfoArguments) -> Result<(), Failure> {
 impl Curve {
     fn text(&self) -> String {
         let mut text = format!(
-            "errors by count; longest side of the source's box {}\n\
-             primitives  error/side   error        of primitives\n",
+            "error by number of primitives; the mesh's longest side is {}\n\
+             at most     error/side   error        primitives\n",
             self.longest_side
         );
         for point in &self.points {

@@ -64,8 +64,14 @@ pub fn relative(hausdorff: &Hausdorff, longest_side: f32) -> Errors {
 
 impl Description {
     pub fn text(&self) -> String {
-        let point = |[x, y, z]: [f32; 3]| format!("({x}, {y}, {z})");
-        let [lo, hi] = [self.box_min, self.box_max].map(point);
+        let side = (0..3).map(|axis| self.box_max[axis] - self.box_min[axis]);
+        let side = side.fold(0.0, f32::max);
+        // Millionths of the size are rounding.
+        let point = |[x, y, z]: [f32; 3], size: f32| {
+            let round = |c: f32| if c.abs() < 1e-6 * size { 0.0 } else { c };
+            format!("({}, {}, {})", round(x), round(y), round(z))
+        };
+        let [lo, hi] = [self.box_min, self.box_max].map(|corner| point(corner, side));
         format!(
             "spheres     {}\nprimitives  {}: slabs {}, cones {}, lone spheres {}\n\
              box         {lo} to {hi}\nthickness   {}\nEuler       {}\n\
@@ -78,8 +84,8 @@ impl Description {
             self.thickness,
             self.euler,
             self.mass,
-            point(self.center_of_mass),
-            point(self.principal_inertia),
+            point(self.center_of_mass, side),
+            point(self.principal_inertia, 0.0),
         )
     }
 }
@@ -87,10 +93,10 @@ impl Description {
 impl Errors {
     pub fn text(&self, title: &str) -> String {
         format!(
-            "{title} (longest side of the source's box = 1)\n\
-             \x20 surface to envelope  {:.5}\n  envelope to surface  {:.5}\n\
-             \x20 uncovered            {:.5}\n\
-             \x20 between samples      {:.5} more at most\n",
+            "{title}, of the triangle mesh's longest side\n\
+             \x20 mesh to collider     {:.5}\n  collider to mesh     {:.5}\n\
+             \x20 mesh sticks out by   {:.5}\n\
+             \x20 between the points measured all may be larger by {:.5}\n",
             self.surface_to_envelope, self.envelope_to_surface, self.uncovered, self.sampling,
         )
     }

@@ -24,15 +24,15 @@ pub enum Failure {
     #[error(transparent)]
     Unit(#[from] UnitUnknown),
     #[error(
-        "{0} is a triangle mesh; a medial mesh is built from it with `medial build`, and `medial info --curve` tells \
-         its errors by count"
+        "{0} is a triangle mesh, not a medial mesh: build one with `medial build {0} -o OUT.medial`, or show its error \
+         at several numbers of primitives with `medial info --curve {0}`"
     )]
     TriangleMesh(PathBuf),
     #[error("{path}: {source}")]
     OfFile { path: PathBuf, source: Box<Failure> },
-    #[error("{0} is no triangle mesh, of which --curve tells the errors by count")]
+    #[error("{0} is not a triangle mesh, for which --curve shows the errors")]
     NoTriangleMesh(PathBuf),
-    #[error("rapier makes no convex hull of this mesh")]
+    #[error("rapier cannot make a convex hull of this mesh")]
     NoHull,
     #[error("{0}")]
     NoPicture(String),
@@ -67,6 +67,7 @@ impl Failure {
 #[derive(Serialize)]
 pub struct Failed {
     /// The triangle mesh.
+    #[serde(serialize_with = "crate::output::path")]
     pub input: PathBuf,
     /// Why.
     pub error: String,

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 pub struct BakeArguments {
-    /// Medial mesh in the .ma format, or baked.
+    /// Medial mesh (.ma or .medial).
     input: PathBuf,
     /// Where to write the baked mesh.
     #[arg(short, long, value_name = "OUT.medial")]
@@ -31,22 +31,22 @@ const COUNTS: [u32; 6] = [10, 20, 50, 100, 200, 500];
 
 #[derive(Args)]
 pub struct InfoArguments {
-    /// Medial mesh in the .ma format, or baked; with --curve a triangle mesh.
+    /// Medial mesh (.ma or .medial); with --curve a triangle mesh.
     pub mesh: PathBuf,
-    /// Measure both Hausdorff distances to the triangle mesh that it was built from.
+    /// Measure how far it is from the triangle mesh that it was built from.
     #[arg(long, value_name = "IN")]
     against: Option<PathBuf>,
-    /// Tell the error at each of some counts of primitives that a triangle mesh may be built with.
+    /// Show the error of a triangle mesh at several numbers of primitives.
     #[arg(long, conflicts_with = "against")]
     curve: bool,
-    /// The counts.
+    /// The numbers of primitives.
     #[arg(long, value_name = "N,N,…", value_delimiter = ',', requires = "curve", default_values_t = COUNTS,
           value_parser = clap::value_parser!(u32).range(1..))]
     pub counts: Vec<u32>,
-    /// How much work to spend on each.
+    /// How much work to spend on a small error.
     #[arg(short, long, value_enum, default_value_t, requires = "curve")]
     pub quality: QualityArgument,
-    /// Fit the surface on both sides instead of enclosing it.
+    /// Fit the surface from both sides instead of covering it.
     #[arg(long, requires = "curve")]
     pub no_enclose: bool,
     /// Print as JSON.
@@ -91,7 +91,10 @@ pub fn info(arguments: &InfoArguments) -> Result<(), Failure> {
     }
     let mesh = load(&arguments.mesh)?;
     let errors = match &arguments.against {
-        Some(path) => Some(measure(&mesh, &mesh_file::read(path)?)?),
+        Some(path) => {
+            let measured = mesh_file::read(path).and_then(|source| measure(&mesh, &source));
+            Some(measured.map_err(|e| Failure::from(e).of(path))?)
+        }
         None => None,
     };
     let summary = InfoSummary {

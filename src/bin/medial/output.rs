@@ -1,8 +1,9 @@
 //! Output of the program.
 
 use crate::failure::Failure;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::io::{self, ErrorKind, Write as _};
+use std::path::Path;
 
 /// A failure, on standard error.
 pub fn say(failure: &Failure) {
@@ -17,6 +18,11 @@ pub fn print(json: bool, value: &impl Serialize, text: impl Fn() -> String) -> R
         text()
     };
     write(&printed)
+}
+
+/// A path in JSON, which has no signs for bytes that are not UTF-8: they are replaced.
+pub fn path<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&path.to_string_lossy())
 }
 
 /// Writes to standard output. A reader that went away, as `head` does, is no failure.

@@ -31,7 +31,8 @@ impl Candidate {
     /// Says that spheres of radius 0 lie on `edges` of the source, as far as they pay.
     pub fn keeps_creases(&mut self, edges: usize) {
         self.variant = Variant::Creased { edges };
-        let note = format!("{edges} convex edges are kept where they pay");
+        let note =
+            format!("{edges} sharp convex edges are kept where that makes the error smaller");
         self.notes.push(note);
     }
 

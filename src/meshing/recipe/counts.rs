@@ -154,8 +154,7 @@ impl Source {
             candidate.notes.push(match left {
                 0 => format!("{wins} primitives fit better than {most}"),
                 _ => format!(
-                    "a round body: {wins} primitives fit best, and larger counts than were tried, up to \
-                     {most}, gain nothing"
+                    "a round body: {wins} primitives fit best, and larger numbers, up to {most}, gain nothing"
                 ),
             });
         }

@@ -6,7 +6,8 @@ use crate::meshing::surface::boundary::Boundary;
 use crate::meshing::surface::checked_surface::Surface;
 
 /// Note on a result that is not what the source was.
-pub const GAVE_UP: &str = "holes or parts were given up to reach the count";
+pub const GAVE_UP: &str =
+    "holes or parts were given up to reach the number of primitives: with more they are kept";
 
 /// The checked surface, its tree, and what to build from it.
 pub struct Source {

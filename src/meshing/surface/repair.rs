@@ -3,6 +3,7 @@
 
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
+use crate::medial::check::LARGEST_REACH;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
@@ -166,6 +167,14 @@ fn check(vertices: &[Vector], indices: &[[u32; 3]], watch: &mut Watch) -> Result
                 index,
                 value: value.into(),
                 count,
+            });
+        }
+        let is_far = |v: &&u32| vertices[**v as usize].abs().max_element() > LARGEST_REACH;
+        if let Some(&vertex) = triangle.iter().find(is_far) {
+            return Err(BuildError::TooFar {
+                index: vertex as usize,
+                position: vertices[vertex as usize].into(),
+                most: LARGEST_REACH,
             });
         }
     }

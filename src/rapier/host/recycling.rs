@@ -11,12 +11,12 @@ use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Rotation};
 use rapier3d::dynamics::IntegrationParameters;
 
-/// The `normalized_contact_recycle_distance` that [`MedialPipeline::attach`](crate::rapier::MedialPipeline::attach) sets:
-/// how far a pair may move before rapier computes its contacts anew, in units of rapier's length unit (rapier's own
-/// default is 0.05).
+/// The largest `normalized_contact_recycle_distance` with which worlds with medial colliders are stepped
+/// ([`MedialPipeline::step`](crate::rapier::MedialPipeline::step)): how far a pair may move before rapier computes its
+/// contacts anew, in units of rapier's length unit (rapier's own default is 0.05).
 ///
-/// Contacts must be known for all that a pair may touch until it has moved so far, and in the step after. So a
-/// smaller distance means more frequent computations of fewer contacts. The contacts of hanging bodies are computed
+/// A pair's contacts are computed for all places that may touch until the pair has moved this far, and in the step
+/// after. So a smaller distance means that fewer contacts are computed, but more often. The contacts of hanging bodies are computed
 /// anew much sooner, whatever this value is; this is requested from rapier by bit 31 of the collider's hooks, which
 /// is set until the next step and calls no hook.
 pub const RECYCLE_DISTANCE: Real = 0.004;

@@ -1,0 +1,95 @@
+//! The command line program and paths that are no plain files: links, pipes, folders, names that are not UTF-8; and that
+//! each message names the file and what is wrong with it.
+
+use crate::cli::{CORNER, assert_fails, medial, scratch, text};
+use rapier3d_medial::MedialMesh;
+use serde_json::Value;
+use std::fs;
+use std::process::Command;
+
+/// A file at the end of a link is replaced, and a pipe is written to: neither is replaced by a file of its own. (As root
+/// the program once put a file in the place of `/dev/full`.)
+#[cfg(unix)]
+#[test]
+fn links_and_pipes_stay() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let directory = scratch("links");
+    let torus = MedialMesh::torus(1.0, 0.25, 16).unwrap();
+    torus.save_ma(directory.join("torus.ma")).unwrap();
+    let bake = |output| medial(&directory, &["bake", "torus.ma", "-o", output]);
+
+    fs::write(directory.join("real.medial"), "old").unwrap();
+    symlink("real.medial", directory.join("link.medial")).unwrap();
+    let output = bake("link.medial");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let link = fs::symlink_metadata(directory.join("link.medial")).unwrap();
+    assert!(link.is_symlink());
+    let real = fs::read(directory.join("real.medial")).unwrap();
+    assert_eq!(real, torus.to_bytes());
+
+    let pipe = directory.join("pipe.medial");
+    let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
+    assert!(made.success());
+    let reader = {
+        let pipe = pipe.clone();
+        std::thread::spawn(move || fs::read(pipe))
+    };
+    let output = bake("pipe.medial");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(reader.join().unwrap().unwrap(), torus.to_bytes());
+    let still = fs::symlink_metadata(&pipe).unwrap();
+    assert!(still.file_type().is_fifo());
+}
+
+/// JSON cannot hold a path that is not UTF-8: its bytes are replaced there, and the file has its own name.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_need_not_be_utf_8() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let directory = scratch("names");
+    let input = OsStr::from_bytes(b"corner\xff.obj");
+    let output = OsStr::from_bytes(b"out\xff.medial");
+    fs::write(directory.join(input), CORNER).unwrap();
+    let run = Command::new(env!("CARGO_BIN_EXE_medial"))
+        .arg("build")
+        .arg(input)
+        .arg("-o")
+        .arg(output)
+        .args(["-p", "20", "--quality", "fast", "--json"])
+        .current_dir(&directory)
+        .output()
+        .unwrap();
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let built: Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!(built["output"], "out\u{fffd}.medial");
+    MedialMesh::load_asset(directory.join(output)).unwrap();
+}
+
+#[test]
+fn messages_name_the_file_and_the_fault() {
+    let directory = scratch("messages");
+    let ball = MedialMesh::ball(1.0).unwrap();
+    ball.save_ma(directory.join("ball.ma")).unwrap();
+    fs::write(directory.join("empty.obj"), "").unwrap();
+    fs::write(
+        directory.join("far.obj"),
+        "v 0 0 0\nv 1e38 0 0\nv 0 1e38 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    fs::create_dir(directory.join("folder")).unwrap();
+
+    let run = |arguments: &[&str]| medial(&directory, arguments);
+    let against = run(&["info", "ball.ma", "--against", "empty.obj"]);
+    assert_fails(&against, "empty.obj: the mesh has no triangles");
+    let far = run(&["build", "far.obj", "-o", "out.medial"]);
+    assert_fails(&far, "far.obj: vertex 1 is too far from the origin");
+    for of_folder in [
+        run(&["compare", "folder"]),
+        run(&["info", "--curve", "folder"]),
+    ] {
+        assert_fails(&of_folder, "folder: is a directory");
+    }
+    let mesh = run(&["bake", "empty.obj", "-o", "out.medial"]);
+    assert_fails(&mesh, "medial build empty.obj -o OUT.medial");
+}
