@@ -26,7 +26,7 @@ pub struct Tuning {
     /// three heaps of 12 blocks with flat faces 308 times in 240 steps, at 0.1 33 times, at 0.2 twice; their corners get
     /// 2.4 cm into the ground at 0.1 and 3.7 cm at 0.2, of a thickness of 17.5 cm.
     pub tips: Real,
-    /// Relative travel in a step, in units of the thickness, from which a pair is muted. Between this
+    /// Relative travel in a step where a pair may meet, in units of the thickness, from which the pair is muted. Between this
     /// and [`Self::fast`] both the solver and the loop have it.
     pub muted: Real,
     /// Gap at which a fast pair counts as in contact, in units of rapier's length unit, and of the
