@@ -94,7 +94,7 @@ fn a_curve_lists_errors_by_count() {
         .save_ma(directory.join("ball.ma"))
         .unwrap();
     let of_ball = medial(&directory, &["info", "ball.ma", "--curve"]);
-    assert_fails(&of_ball, "ball.ma is no triangle mesh");
+    assert_fails(&of_ball, "ball.ma is not a triangle mesh");
     assert_fails(
         &medial(&directory, &["info", "no.obj", "--curve"]),
         "no.obj",
