@@ -36,6 +36,7 @@ mod grasps;
 mod hanging;
 mod hanging_limits;
 mod heaps;
+mod heavy_blows;
 mod heavy_on_light;
 mod held;
 mod impact_laws;
