@@ -1,8 +1,10 @@
 //! Whole rapier scenes: what rests, what hangs, what must never pass; saving, drawing, repeating.
 
+mod after_blows;
 mod bodies;
 mod bounces;
 mod budget;
+mod changes;
 mod characters;
 mod combs;
 mod controls;
@@ -32,7 +34,9 @@ mod force_events;
 mod golden;
 mod grasps;
 mod hanging;
+mod hanging_limits;
 mod heaps;
+mod heavy_blows;
 mod heavy_on_light;
 mod held;
 mod impact_laws;
@@ -45,6 +49,7 @@ mod lock_box;
 mod modified;
 mod multibodies;
 mod neighbours;
+mod odd_steps;
 mod oracle;
 mod partners;
 mod random;

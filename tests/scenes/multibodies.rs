@@ -13,7 +13,7 @@ const HALF: Real = 0.2;
 
 /// What is struck.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Struck {
+pub enum Struck {
     /// A bar on a hinge.
     Hinge,
     /// Four bars on ball joints, the first on a fixed body.
@@ -24,7 +24,7 @@ enum Struck {
 
 /// How its joints are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum By {
+pub enum By {
     Multibody,
     ImpulseJoints,
 }
@@ -42,7 +42,7 @@ fn bar(medial: bool, axis: Vector, half: Real) -> ColliderBuilder {
     collider.friction(0.0).density(1000.0)
 }
 
-struct Scene {
+pub struct Scene {
     world: PhysicsWorld,
     links: Vec<RigidBodyHandle>,
     /// Long axes of the links in their own frames.
@@ -53,7 +53,7 @@ struct Scene {
 }
 
 impl Scene {
-    fn new(struck: Struck, by: By, medial: bool, speed: Real, phase: Real) -> Self {
+    pub fn new(struck: Struck, by: By, medial: bool, speed: Real, phase: Real) -> Self {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         // The rod comes along Z, across what it strikes.
@@ -174,7 +174,7 @@ impl Scene {
     }
 
     /// Steps of the given lengths.
-    fn run(mut self, hooked: bool, steps: &[Real]) -> End {
+    pub fn run(mut self, hooked: bool, steps: &[Real]) -> End {
         let mut pipeline = attached(&mut self.world);
         let mut end = End::default();
         let mut time = 0.0;
@@ -211,7 +211,7 @@ impl Scene {
 
 /// How a scene ends.
 #[derive(Default)]
-struct End {
+pub struct End {
     /// Widest opening of a joint: after steps without impacts, and with them.
     widest: [Real; 2],
     turns: Vec<Rotation>,
@@ -220,7 +220,7 @@ struct End {
     /// How far the fastest link turned.
     turned: Real,
     /// Velocity of the rod, and that before the last 60th of a second.
-    rod: Real,
+    pub rod: Real,
     rod_before: Real,
     /// Of all bodies: in the end, and after the last step with an impact.
     momentum: Real,
@@ -229,14 +229,14 @@ struct End {
 
 impl End {
     /// The largest angle between a link's axis and another's, in units of how far the fastest turned there.
-    fn bent(&self, other: &Self) -> Real {
+    pub fn bent(&self, other: &Self) -> Real {
         let off = |(a, b): (&Vector, &Vector)| a.angle_between(*b);
         let off = self.axes.iter().zip(&other.axes).map(off);
         off.fold(0.0, Real::max) / other.turned
     }
 
     /// The same of their rotations, which know how bars turn about their own axes.
-    fn off(&self, other: &Self) -> Real {
+    pub fn off(&self, other: &Self) -> Real {
         let off = |(a, b): (&Rotation, &Rotation)| a.angle_between(*b);
         self.turns
             .iter()

@@ -187,7 +187,7 @@ fn gained(view: &StepView, bodies: &[usize]) -> f64 {
     let (mut had, mut has) = (0.0, 0.0);
     for body in bodies.iter().map(|b| &view.bodies[*b]) {
         let inertia = Inertia::of(body);
-        let work = (inertia.masses() * body.pull()).dot(body.motion.linvel);
+        let work = (inertia.masses() * body.pull()).dot(body.twist(0.0)[0]);
         had += inertia.energy(body.velocity_before) + f64::from(work);
         has += inertia.energy(body.velocity);
     }

@@ -7,8 +7,16 @@ use crate::parry::distance::{is_within, nearest};
 use crate::rapier::effects::Effect;
 use crate::rapier::impacts::impulse::Material;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Hit, Work, reach};
+use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 use parry3d::shape::Shape;
+
+/// Turn in a step, in radians, from which a body that a joint holds may swing. Motors turn wheels by less, and its square
+/// over 6 is 0.04 of the way.
+const SWINGS: Real = 0.5;
+
+/// By how much of its thickness the arc of a body's contact point ends short of its tangent before the body swings.
+const SHORT: Real = 0.5;
 
 impl CcdPolicy<'_> {
     /// Speed of approach, in units of length per second, up to which a pair does not bounce: twice what forces add in a
@@ -76,20 +84,54 @@ impl CcdPolicy<'_> {
     /// How fast a pair that touches at the start of the step approaches at its nearest points, a length per second;
     /// `None` if it does not touch.
     pub fn approach(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> Option<Real> {
+        let [v1, v2] = self.speeds_along_normal(view, pair, work)?;
+        Some(v1 - v2)
+    }
+
+    /// Whether a body that a joint holds leaves the straight path of its contact point: it turns while it moves along the
+    /// normal of a pair that touches at the start of the step, and the other flies free. By a way `s` along the
+    /// normal and a turn `θ` about the joint, an arc ends `s θ² / 6` short of its tangent, to first order.
+    pub fn swings(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> bool {
+        let bodies = pair.map(|k| &view.bodies[view.parts[k].body]);
+        let turns = bodies.map(|b| b.motion.angvel.length() * self.dt);
+        let held = match bodies.map(|b| b.jointed) {
+            [true, false] => 0,
+            [false, true] => 1,
+            _ => return false,
+        };
+        if bodies.iter().any(|b| b.kind != Kind::Free) || turns[held] <= SWINGS {
+            return false;
+        }
+        let Some(speeds) = self.speeds_along_normal(view, pair, work) else {
+            return false;
+        };
+        let way = speeds[held].abs() * self.dt;
+        way * turns[held] * turns[held] / 6.0 > SHORT * view.thickness(pair)
+    }
+
+    /// Speeds of both bodies' points at the nearest points of a pair that touches at the start of the step, along its
+    /// normal, a length per second; `None` if it does not touch.
+    fn speeds_along_normal(
+        &self,
+        view: &StepView,
+        pair: [usize; 2],
+        work: &mut Work,
+    ) -> Option<[Real; 2]> {
         let (mesh, other, pos12, reach) = self.at_start(view, pair);
         let (found, counts) = nearest(mesh?, other, &pos12, reach).ok()?;
         work.counts += counts;
         let contact = found?;
         let flipped = view.parts[pair[0]].medial().is_none();
-        let [k, l] = if flipped { [pair[1], pair[0]] } else { pair };
+        let k = pair[usize::from(flipped)];
         let motion = view.motion(k, 0.0);
         let point = motion.start * contact.points[0];
-        let normal = motion.start.rotation * contact.normal;
-        let velocity = |k: usize| {
+        let outward = motion.start.rotation * contact.normal;
+        let normal = if flipped { -outward } else { outward };
+        Some(pair.map(|k| {
             let m = view.motion(k, 0.0);
-            m.linvel + m.angvel.cross(point - m.start * m.local_center)
-        };
-        Some((velocity(k) - velocity(l)).dot(normal))
+            let velocity = m.linvel + m.angvel.cross(point - m.start * m.local_center);
+            velocity.dot(normal)
+        }))
     }
 
     /// The medial mesh of a pair and the other shape, which the pose at the start of the step takes to the mesh's frame,

@@ -15,6 +15,10 @@ use std::f32::consts::TAU;
 /// Turn in a step, in radians, from which the end rotation alone may hide whole turns.
 const MAY_WRAP: Real = 2.5;
 
+/// Turn in a step, in radians, from which the path of a body about a pivot is taken as an arc: an eighth of its square is
+/// the share of the radius by which its chord misses it.
+const TURNS: Real = 0.1;
+
 /// Whether an impact may move a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -82,6 +86,8 @@ pub struct Body {
     pub whirl: Real,
     /// Whether a joint holds it.
     pub jointed: bool,
+    /// The point, in its frame, at which a joint holds it to what no impact moves; it turns about it.
+    pub pivot: Option<Vector>,
     /// Angles of a link of a multibody before rapier's step.
     pub turned_before: Option<LinkAngles>,
     /// Whether rapier's step is taken back from it.
@@ -121,6 +127,7 @@ impl Body {
             dominance: body.effective_dominance_group(),
             whirl: 0.0,
             jointed: false,
+            pivot: None,
             turned_before: None,
             is_taken_back: false,
         }
@@ -158,6 +165,7 @@ impl Body {
             dominance: i16::from(i8::MAX) + 1,
             whirl: 0.0,
             jointed: false,
+            pivot: None,
             turned_before: None,
             is_taken_back: false,
         }
@@ -185,14 +193,17 @@ impl Body {
         self.inverse_mass = properties.effective_inv_mass;
         self.locked = properties.flags;
         self.dominance = body.effective_dominance_group();
-        self.motion.local_center = com;
         let (start, end) = (self.motion.start, *body.position());
         self.end = end;
         let spin = start.rotation * (end.rotation.inverse() * body.angvel());
         self.velocity = [body.linvel(), spin];
         let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
         let turn = unwrapped(turn, body.angvel() * dt, iterations.max(1) as Real);
-        self.motion.linvel = (end * com - start * com) / dt;
+        // The path of a centre that goes round a pivot is an arc, of which rapier's step tells the chord.
+        let center = self.pivot.filter(|_| turn.length() > TURNS).unwrap_or(com);
+        self.reach += (center - com).length();
+        self.motion.local_center = center;
+        self.motion.linvel = (end * center - start * center) / dt;
         self.motion.angvel = turn / dt;
         self.awake |= self.motion.linvel != Vector::ZERO || self.motion.angvel != Vector::ZERO;
     }

@@ -11,8 +11,8 @@ use crate::rapier::view::motion::{Body, Kind};
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
-    CoefficientCombineRule, ImpulseJointSet, IntegrationParameters, Multibody, MultibodyJointSet,
-    MultibodyLink, RigidBodyHandle, RigidBodySet,
+    CoefficientCombineRule, GenericJoint, ImpulseJointSet, IntegrationParameters, JointAxesMask,
+    Multibody, MultibodyJointSet, MultibodyLink, RigidBodyHandle, RigidBodySet,
 };
 use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, SharedShape};
 
@@ -124,7 +124,36 @@ impl StepView {
                 view.bodies[b].whirl = fastest;
             }
         }
+        view.find_pivots(joints, multibodies);
         view
+    }
+
+    /// Finds the pivots about which joints let bodies turn.
+    fn find_pivots(&mut self, joints: &ImpulseJointSet, multibodies: &MultibodyJointSet) {
+        let mut add = |handles: [RigidBodyHandle; 2], joint: &GenericJoint| {
+            let [Some(&a), Some(&b)] = handles.map(|h| self.index.get(&h)) else {
+                return;
+            };
+            let held = match [a, b].map(|k| self.bodies[k].kind) {
+                [Kind::Free, Kind::Fixed | Kind::Driven] => (a, joint.local_frame1),
+                [Kind::Fixed | Kind::Driven, Kind::Free] => (b, joint.local_frame2),
+                _ => return,
+            };
+            if joint.is_enabled() && joint.locked_axes.contains(JointAxesMask::LIN_AXES) {
+                self.bodies[held.0].pivot = Some(held.1.translation);
+            }
+        };
+        for (_, joint) in joints.iter() {
+            add([joint.body1(), joint.body2()], &joint.data);
+        }
+        for multibody in multibodies.multibodies() {
+            for link in multibody.links() {
+                if let Some(parent) = link.parent_id().and_then(|id| multibody.link(id)) {
+                    let handles = [parent, link].map(|l| l.rigid_body_handle());
+                    add(handles, &link.joint.data);
+                }
+            }
+        }
     }
 
     fn add_part(&mut self, handle: ColliderHandle, collider: &Collider, index: usize) {
