@@ -23,6 +23,7 @@ mod options;
 mod oracle;
 mod planted;
 mod polyhedra;
+mod prisms;
 mod scale;
 mod shapes;
 mod smallest;

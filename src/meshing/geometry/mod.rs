@@ -5,6 +5,7 @@ pub(crate) mod chunks;
 pub(crate) mod convex;
 pub(crate) mod four_boxes;
 pub(crate) mod nearest_triangle;
+pub(crate) mod polygon_triangles;
 pub(crate) mod quadric;
 pub(crate) mod random;
 pub(crate) mod sorted_points;

@@ -2,6 +2,7 @@
 
 pub(crate) mod candidate;
 pub(crate) mod counts;
+pub(crate) mod extruded;
 pub(crate) mod ladder;
 pub(crate) mod pieces;
 pub(crate) mod pipeline;

@@ -18,6 +18,10 @@ use crate::meshing::watch::Watch;
 /// residual is above this many of the other's is not fitted.
 const HOPELESS: f64 = 2.0;
 
+/// A prism that is off by no more than this (longest side 1) is not fitted as well: fits of prisms by 200 primitives are
+/// off by .002 to .006.
+const NEAR: f64 = 2.5e-3;
+
 /// Samples for tens of primitives.
 const FEW_SAMPLES: usize = 2_000;
 
@@ -34,9 +38,17 @@ impl Source {
         {
             return Ok(exact);
         }
+        let prism = match self.limits.max_error {
+            None => self.extruded(watch)?,
+            Some(_) => None,
+        };
+        let prism = match prism {
+            Some(prism) if prism.error() <= NEAR => return Ok(prism),
+            other => other,
+        };
         let (start, samples) = self.start(exact.is_some(), watch)?;
         match self.limits.max_error {
-            None => self.rounded_or_creased(start, samples, watch),
+            None => self.rounded_or_creased(start, samples, prism, watch),
             Some(limit) => self.within(limit, start, samples, exact, watch),
         }
     }
@@ -88,6 +100,7 @@ impl Source {
         &self,
         start: Start,
         samples: usize,
+        prism: Option<Candidate>,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
         watch.begin("simplify")?;
@@ -102,7 +115,11 @@ impl Source {
                 creases,
             }) => Some(self.collapses(Parts::solid(simplifier), creases, most, watch)?),
         };
-        self.better(rounded, creased, watch)
+        let best = self.better(rounded, creased, watch)?;
+        Ok(match prism {
+            Some(prism) if prism.error() < best.error() => prism,
+            _ => best,
+        })
     }
 
     /// A medial mesh that keeps creases, if any are wanted, and there are any.

@@ -9,6 +9,7 @@ pub(crate) mod folds;
 pub(crate) mod openings;
 pub(crate) mod orient;
 pub(crate) mod patches;
+pub(crate) mod profile;
 pub(crate) mod repair;
 pub(crate) mod samples;
 pub(crate) mod seams;
