@@ -52,3 +52,21 @@ impl LinkAngles {
 pub fn shortest(q: Rotation) -> Rotation {
     if q.w < 0.0 { -q } else { q }
 }
+
+/// Turn in a step, in radians, from which the end rotation alone may hide whole turns.
+const MAY_WRAP: Real = 2.5;
+
+/// The turn `turn` plus whole turns, as rapier's integration of `expected` in `n` pieces made it.
+pub fn unwrapped(turn: Vector, expected: Vector, n: Real) -> Vector {
+    let asked = expected.length();
+    if asked <= MAY_WRAP {
+        return turn;
+    }
+    let made = expected * (n * 2.0 * (asked / (2.0 * n)).atan() / asked);
+    let axis = turn.normalize_or_zero();
+    if axis == Vector::ZERO {
+        // Whole turns only: about the axis expected.
+        return made.normalize() * (made.length() / TAU).round() * TAU;
+    }
+    turn + axis * (((made.dot(axis) - turn.length()) / TAU).round() * TAU)
+}

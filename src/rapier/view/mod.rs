@@ -8,6 +8,7 @@ pub(crate) mod filter_answers;
 pub(crate) mod inertia;
 pub(crate) mod link_angles;
 pub(crate) mod medial_colliders;
+pub(crate) mod meeting_speed;
 pub(crate) mod motion;
 pub(crate) mod overlapping_boxes;
 pub(crate) mod step_view;

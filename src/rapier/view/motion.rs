@@ -4,16 +4,12 @@
 //! poses before and after, and from the number of full turns in between.
 
 use crate::math::{Pose, Real, Rotation, Vector};
-use crate::rapier::view::link_angles::{LinkAngles, shortest};
+use crate::rapier::view::link_angles::{LinkAngles, shortest, unwrapped};
 use parry3d::mass_properties::MassProperties;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
     LockedAxes, MultibodyLink, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType,
 };
-use std::f32::consts::TAU;
-
-/// Turn in a step, in radians, from which the end rotation alone may hide whole turns.
-const MAY_WRAP: Real = 2.5;
 
 /// Turn in a step, in radians, from which the path of a body about a pivot is taken as an arc: an eighth of its square is
 /// the share of the radius by which its chord misses it.
@@ -387,19 +383,4 @@ pub fn velocities(body: &RigidBody, dt: Real) -> [Vector; 2] {
     let com = body.mass_properties().local_mprops.local_com;
     let turn = shortest(end.rotation * start.rotation.inverse());
     [*end * com - *start * com, turn.to_scaled_axis()].map(|moved| moved / dt)
-}
-
-/// The turn `turn` plus whole turns, as rapier's integration of `expected` in `n` pieces made it.
-fn unwrapped(turn: Vector, expected: Vector, n: Real) -> Vector {
-    let asked = expected.length();
-    if asked <= MAY_WRAP {
-        return turn;
-    }
-    let made = expected * (n * 2.0 * (asked / (2.0 * n)).atan() / asked);
-    let axis = turn.normalize_or_zero();
-    if axis == Vector::ZERO {
-        // Whole turns only: about the axis expected.
-        return made.normalize() * (made.length() / TAU).round() * TAU;
-    }
-    turn + axis * (((made.dot(axis) - turn.length()) / TAU).round() * TAU)
 }
