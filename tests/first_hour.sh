@@ -47,6 +47,7 @@ run() {
   case $command in
     cargo\ run*) built=${command/cargo run/cargo build --quiet}; ( cd "$work" && eval "${built%% -- *}" ) ;;
   esac
+  : > "$work/told"
   start=$(date +%s%N)
   ( cd "$work" && exec script --quiet --return --flush --command "$command" /dev/null ) < /dev/null > "$work/told" &
   local pid=$!
@@ -55,7 +56,7 @@ run() {
     sleep 0.02
   done
   wait $pid || { cat "$work/told"; echo "fails: $1"; exit 1; }
-  tr '\r' '\n' < "$work/told" | grep -avE 'Finished|Running|Blocking|\?25|^[[:space:]]*$' | tail -n 12 || true
+  tr '\r' '\n' < "$work/told" | grep -avE 'Finished|Running|Blocking|\?25|█|^[[:space:]]*$' | tail -n 12 || true
   echo "first output after ${first:-0} ms, the end after $(( ($(date +%s%N) - start) / 1000000 )) ms"
   [ "${first:-0}" -lt 5000 ] || { echo "no output within five seconds: $1"; exit 1; }
 }

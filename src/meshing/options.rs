@@ -129,7 +129,8 @@ pub struct Progress {
 pub struct Hausdorff {
     /// Largest distance from a point of the triangle mesh to the surface of the medial mesh.
     pub surface_to_envelope: Real,
-    /// Largest distance from a point on the surface of the medial mesh to the triangle mesh.
+    /// Largest distance from a point on the surface of the medial mesh to the triangle mesh. If this is below
+    /// [`Self::surface_to_envelope`] it may be understated, down to 0, because it is not searched for then.
     pub envelope_to_surface: Real,
     /// How far the triangle mesh sticks out of the medial mesh, at most.
     pub uncovered: Real,

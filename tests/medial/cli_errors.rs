@@ -1,6 +1,6 @@
 //! The command line program where an error is asked for: tolerances in a unit, and curves of error by count.
 
-use crate::cli::{assert_fails, medial, scratch, text};
+use crate::cli::{CORNER, assert_fails, medial, scratch, text};
 use rapier3d_medial::MedialMesh;
 use serde_json::Value;
 use std::fs;
@@ -88,6 +88,20 @@ fn a_curve_lists_errors_by_count() {
         .collect();
     assert_eq!([rows[0][0], rows[1][0]], [3.0, 12.0]);
     assert!(rows[0][1] > 0.05 && rows[1][1] < 1e-6, "{rows:?}");
+
+    // A concave body of flat faces is exact here too, as it is when it is built.
+    fs::write(directory.join("corner.obj"), CORNER).unwrap();
+    let curve = [
+        "info",
+        "corner.obj",
+        "--curve",
+        "--counts",
+        "20,50",
+        "--json",
+    ];
+    let curve: Value = serde_json::from_slice(&medial(&directory, &curve).stdout).unwrap();
+    let error = |k: usize| curve["points"][k]["error"].as_f64().unwrap();
+    assert!(error(0) > 0.01 && error(1) < 1e-5, "{curve}");
 
     MedialMesh::ball(1.0)
         .unwrap()

@@ -6,7 +6,7 @@ use crate::common::mesh::Mesh;
 use crate::common::render::{Camera, Image};
 use crate::common::scene_strip::{View, rainbow};
 use crate::common::strip::tile;
-use crate::common::surfaces::{primitive_surfaces, surface};
+use crate::common::surfaces::surface;
 use crate::compare::SIZE;
 use crate::failure::Failure;
 use rapier3d::parry::query::PointQuery as _;
@@ -24,6 +24,8 @@ const FIELD_OF_VIEW: Real = 0.42;
 const FILLED: Real = 0.92;
 /// Cosine of the angle between two triangles, 40°, from which on the edge between them is drawn sharp.
 const CREASE: Real = 0.766;
+/// Distances (m) from primitives that differ by less are the same.
+const SAME: Real = SIZE / 500.0;
 const SLATE: Vector = Vector::new(0.35, 0.37, 0.42);
 /// Colours of a surface that is where the mesh is, and of one that is as far off as any point.
 const EXACT: Vector = Vector::new(0.80, 0.82, 0.85);
@@ -167,12 +169,29 @@ fn axis(medial: &MedialMesh) -> Result<Vec<Facet>, Failure> {
     ))
 }
 
-/// Every primitive in a colour of its own.
+/// Every primitive in a colour of its own: each triangle of the surface of all has that of the first that is as near as
+/// any. (Drawn one by one, primitives that share a part of their surface would show through each other in stripes.)
 fn primitives(medial: &MedialMesh) -> Vec<Facet> {
-    let surfaces = primitive_surfaces(medial, SPACING).enumerate();
-    surfaces
-        .flat_map(|(number, surface)| colored(&surface, hue(number)))
-        .collect()
+    let (vertices, indices) = medial.envelope(SPACING);
+    let boxes: Vec<_> = medial
+        .primitives()
+        .map(|p| (p.aabb().loosened(SAME), p))
+        .collect();
+    let mut seen = colored(&Mesh { vertices, indices }, EXACT);
+    for facet in &mut seen {
+        let center = facet.corners.iter().sum::<Vector>() / 3.0;
+        let mut nearest = None;
+        for (number, (around, primitive)) in boxes.iter().enumerate() {
+            if around.contains_local_point(center) {
+                let distance = primitive.signed_distance(center).distance;
+                if nearest.is_none_or(|(least, _)| distance < least - SAME) {
+                    nearest = Some((distance, number));
+                }
+            }
+        }
+        facet.color = nearest.map_or(EXACT, |(_, number)| hue(number));
+    }
+    seen
 }
 
 /// The surface of the medial mesh, the redder the further it is from the triangle mesh.

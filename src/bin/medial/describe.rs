@@ -92,9 +92,14 @@ impl Description {
 
 impl Errors {
     pub fn text(&self, title: &str) -> String {
+        // The smaller of the two is not searched for to the end.
+        let or_more = match self.envelope_to_surface < self.surface_to_envelope {
+            true => " or more",
+            false => "",
+        };
         format!(
             "{title}, of the triangle mesh's longest side\n\
-             \x20 mesh to collider     {:.5}\n  collider to mesh     {:.5}\n\
+             \x20 mesh to collider     {:.5}\n  collider to mesh     {:.5}{or_more}\n\
              \x20 mesh sticks out by   {:.5}\n\
              \x20 between the points measured all may be larger by {:.5}\n",
             self.surface_to_envelope, self.envelope_to_surface, self.uncovered, self.sampling,
