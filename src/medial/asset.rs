@@ -4,7 +4,8 @@
 //! bytes        little-endian words of 4 bytes
 //! 0..8         "\x89medial\n"
 //! 8            version
-//! 12           1 if the mass properties of a source mesh follow those of the solid, else 0
+//! 12           flags: 1 if the mass properties of a source mesh follow those of the solid, 2 if each connected part
+//!              is convex
 //! 16           counts: spheres, edges, faces, primitives
 //! 32           thickness
 //! 36, 80       mass properties of the solid, of the source (zeros without): centre, 1/mass,
@@ -21,7 +22,7 @@
 //! # Trust
 //! Counts are compared with the length of the bytes before anything is allocated. The checksum finds every
 //! changed byte. A file forged with a good checksum is checked so far that no query on it panics. It is not
-//! checked that its tree bounds its primitives, nor that its mass is that of its solid.
+//! checked that its tree bounds its primitives, that its mass is that of its solid, nor that its parts are convex.
 
 use super::check::{check, check_primitives};
 use super::files::{self, file_error};
@@ -42,6 +43,10 @@ pub const MAGIC: [u8; 8] = *b"\x89medial\n";
 
 /// Version of the layout that is written and read.
 pub const VERSION: u32 = 2;
+
+/// Flags.
+const HAS_SOURCE: u32 = 1;
+const OF_CONVEX_PIECES: u32 = 2;
 
 const HEADER: usize = 128;
 const CHECKSUM: usize = 8;
@@ -70,7 +75,12 @@ impl MedialMesh {
         };
         let mut out = Writer(Vec::with_capacity(counts.bytes() as usize));
         out.0.extend(MAGIC);
-        out.words([VERSION, u32::from(parts.source_mass.is_some())]);
+        let flags = [
+            (HAS_SOURCE, parts.source_mass.is_some()),
+            (OF_CONVEX_PIECES, parts.is_of_convex_pieces),
+        ];
+        let flags = flags.iter().filter(|f| f.1).map(|f| f.0).sum();
+        out.words([VERSION, flags]);
         out.words([
             counts.spheres,
             counts.edges,
@@ -221,11 +231,11 @@ fn read(content: &[u8], counts: &Counts) -> Result<MedialMesh, AssetError> {
     let (header, mut rest) = content.split_at_checked(HEADER).unwrap_or((content, &[]));
     let mut header = records::<1>(&mut &header[12..], 29).flatten();
     let mut word = || header.next().unwrap_or_default();
-    let has_source = match word() {
-        0 => false,
-        1 => true,
-        other => return Err(AssetError::content("header word", 3, other, "0 or 1")),
-    };
+    let flags = word();
+    if flags > HAS_SOURCE + OF_CONVEX_PIECES {
+        return Err(AssetError::content("header word", 3, flags, "from 0 to 3"));
+    }
+    let has_source = flags & HAS_SOURCE != 0;
     let mut word = header.skip(4);
     let mut numbers = || f32::from_bits(word.next().unwrap_or_default());
     let thickness = numbers();
@@ -289,6 +299,7 @@ fn read(content: &[u8], counts: &Counts) -> Result<MedialMesh, AssetError> {
         tree,
         thickness,
         source_mass,
+        is_of_convex_pieces: flags & OF_CONVEX_PIECES != 0,
     };
     Ok(MedialMesh::from_parts(parts, solid.into()))
 }

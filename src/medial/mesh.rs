@@ -2,6 +2,7 @@
 //! Source: paper §3 (medial mesh, a non-manifold triangle mesh of medial spheres).
 
 use super::check::check;
+use super::convex_pieces::{ConvexPieces, connected};
 use super::exact::balls;
 use super::leaf_order::LeafOrder;
 use super::mass;
@@ -44,6 +45,7 @@ struct MedialData {
     rectangles: OnceLock<SweptRectangles>,
     thicknesses: OnceLock<Thicknesses>,
     leaf_order: OnceLock<LeafOrder>,
+    convex_pieces: OnceLock<ConvexPieces>,
 }
 
 /// Data of a mesh, and what was computed from it ahead of all queries.
@@ -59,6 +61,8 @@ pub(super) struct Parts {
     pub(super) thickness: Real,
     /// Mass properties measured on the source, at unit density.
     pub(super) source_mass: Option<MassProperties>,
+    /// Whether each connected part is known to be convex ([`ConvexPieces`]). Each then has a node of the tree.
+    pub(super) is_of_convex_pieces: bool,
 }
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(1);
@@ -116,8 +120,21 @@ impl MedialMesh {
             tree,
             thickness,
             source_mass: None,
+            is_of_convex_pieces: false,
         };
         Ok(Self::from_parts(parts, OnceLock::new()))
+    }
+
+    /// The same mesh, of which it is known that each connected part is convex.
+    pub(crate) fn of_convex_pieces(self) -> Self {
+        let mut parts = self.data.parts.clone();
+        let groups = connected(parts.spheres.len(), &parts.primitives);
+        parts.tree = SphereTree::of_groups(&parts.spheres, &parts.primitives, &groups);
+        parts.is_of_convex_pieces = true;
+        Self {
+            id: self.id,
+            ..Self::from_parts(parts, self.data.solid_mass.clone())
+        }
     }
 
     /// Takes parts that fit each other, and the solid's mass properties if they are known.
@@ -135,6 +152,7 @@ impl MedialMesh {
             rectangles: OnceLock::new(),
             thicknesses: OnceLock::new(),
             leaf_order: OnceLock::new(),
+            convex_pieces: OnceLock::new(),
         };
         Self {
             data: Arc::new(data),
@@ -239,6 +257,18 @@ impl MedialMesh {
     pub(crate) fn leaf_order(&self) -> &LeafOrder {
         let leaf_order = &self.data.leaf_order;
         leaf_order.get_or_init(|| LeafOrder::new(self.tree()))
+    }
+
+    /// Convex pieces of several primitives, as far as they are known. Found at the first call.
+    pub(crate) fn convex_pieces(&self) -> &ConvexPieces {
+        let parts = &self.data.parts;
+        self.data.convex_pieces.get_or_init(|| {
+            if parts.is_of_convex_pieces {
+                ConvexPieces::new(&parts.spheres, &parts.primitives, &parts.tree)
+            } else {
+                ConvexPieces::default()
+            }
+        })
     }
 
     /// Bounding box of the solid, in the body's frame.

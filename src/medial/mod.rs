@@ -5,6 +5,7 @@ pub mod asset;
 pub(crate) mod boxes;
 pub(crate) mod check;
 pub(crate) mod chord;
+pub mod convex_pieces;
 mod cover;
 pub(crate) mod envelope;
 pub(crate) mod exact;

@@ -23,6 +23,9 @@ struct Listed {
     /// its frame (x y z w).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     source_mass: Option<[Real; 11]>,
+    /// Whether each connected part is convex.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    of_convex_pieces: bool,
 }
 
 impl Serialize for MedialMesh {
@@ -36,6 +39,7 @@ impl Serialize for MedialMesh {
             edges: self.edges().to_vec(),
             faces: self.faces().to_vec(),
             source_mass: self.parts().source_mass.as_ref().map(mass_numbers),
+            of_convex_pieces: self.parts().is_of_convex_pieces,
         }
         .serialize(serializer)
     }
@@ -50,6 +54,10 @@ impl<'de> Deserialize<'de> for MedialMesh {
         let sphere = |&[x, y, z, r]: &[Real; 4]| MedialSphere::new(Vector::new(x, y, z), r);
         let spheres = listed.spheres.iter().map(sphere).collect();
         let mesh = Self::new(spheres, listed.edges, listed.faces).map_err(D::Error::custom)?;
+        let mesh = match listed.of_convex_pieces {
+            true => mesh.of_convex_pieces(),
+            false => mesh,
+        };
         Ok(match listed.source_mass {
             Some(numbers) => {
                 mesh.with_mass_properties(mass_of(1, &numbers).map_err(D::Error::custom)?)

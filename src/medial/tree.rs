@@ -6,6 +6,7 @@
 use super::simplex::Simplex;
 use super::sphere::MedialSphere;
 use crate::math::{Real, Vector};
+use std::ops::Range;
 
 /// A node of the tree: a sphere that encloses some primitives of a medial mesh.
 #[derive(Clone, Copy, Debug)]
@@ -66,19 +67,30 @@ pub struct SphereTree {
 impl SphereTree {
     /// Builds the tree top down, each node split where its two halves have the smallest surfaces.
     pub fn new(spheres: &[MedialSphere], primitives: &[Simplex]) -> Self {
-        let mut items: Vec<(Vector, u32)> = primitives
-            .iter()
-            .enumerate()
-            .map(|(i, p)| {
-                let n = Real::from(p.len);
-                let sum = (0..p.len as usize)
-                    .map(|k| spheres[p.vertices[k] as usize].center)
-                    .fold(Vector::ZERO, |a, b| a + b);
-                (sum / n, i as u32)
-            })
-            .collect();
+        let all = (0..primitives.len() as u32).collect();
+        Self::of_items(&Items::single(spheres, primitives, all))
+    }
+
+    /// The same, with the primitives of each group below a node of their own.
+    pub fn of_groups(
+        spheres: &[MedialSphere],
+        primitives: &[Simplex],
+        groups: &[Vec<u32>],
+    ) -> Self {
+        let mut items = Items::single(spheres, primitives, groups.concat());
+        let mut end = 0;
+        let range = |group: &Vec<u32>| {
+            let start = end;
+            end += group.len();
+            start..end
+        };
+        items.ranges = groups.iter().map(range).collect();
+        Self::of_items(&items)
+    }
+
+    fn of_items(items: &Items) -> Self {
         let mut tree = Self {
-            nodes: Vec::with_capacity(2 * items.len()),
+            nodes: Vec::with_capacity(2 * items.order.len()),
         };
         tree.nodes.push(Node {
             center: Vector::ZERO,
@@ -86,7 +98,7 @@ impl SphereTree {
             index: 0,
             leaf: true,
         });
-        tree.build(0, &mut items, spheres, primitives);
+        tree.build(0, items, &mut items.centers());
         tree
     }
 
@@ -125,25 +137,21 @@ impl SphereTree {
         &self.nodes
     }
 
-    fn build(
-        &mut self,
-        node: usize,
-        items: &mut [(Vector, u32)],
-        spheres: &[MedialSphere],
-        primitives: &[Simplex],
-    ) {
-        let members = items
-            .iter()
-            .flat_map(|&(_, i)| primitives[i as usize].vertices)
-            .map(|v| spheres[v as usize]);
-        let (center, radius) = enclosing_sphere(members);
-        self.nodes[node].center = center;
-        self.nodes[node].radius = radius;
-        if let [(_, primitive)] = items {
-            self.nodes[node].index = *primitive;
-            return;
+    fn build(&mut self, node: usize, all: &Items, items: &mut [Item]) {
+        if let [(_, item)] = *items {
+            let members = all.members(item);
+            if let [primitive] = *members {
+                (self.nodes[node].center, self.nodes[node].radius) =
+                    enclosing_sphere(all.spheres_of(items));
+                self.nodes[node].index = primitive;
+                return;
+            }
+            let group = Items::single(all.spheres, all.primitives, members.to_vec());
+            return self.build(node, &group, &mut group.centers());
         }
-        let middle = best_split(items, spheres, primitives);
+        (self.nodes[node].center, self.nodes[node].radius) =
+            enclosing_sphere(all.spheres_of(items));
+        let middle = best_split(all, items);
         let first = self.nodes.len();
         let empty = self.nodes[node];
         self.nodes.push(Node {
@@ -157,8 +165,68 @@ impl SphereTree {
         self.nodes[node].index = first as u32;
         self.nodes[node].leaf = false;
         let (left, right) = items.split_at_mut(middle);
-        self.build(first, left, spheres, primitives);
-        self.build(first + 1, right, spheres, primitives);
+        self.build(first, all, left);
+        self.build(first + 1, all, right);
+    }
+}
+
+/// A middle, and the number of what is there among [`Items`].
+type Item = (Vector, u32);
+
+/// What a tree is built over: primitives, or groups of them.
+struct Items<'a> {
+    spheres: &'a [MedialSphere],
+    primitives: &'a [Simplex],
+    /// The primitives, item by item.
+    order: Vec<u32>,
+    /// Those of each item.
+    ranges: Vec<Range<usize>>,
+}
+
+impl<'a> Items<'a> {
+    /// One item for each of these primitives.
+    fn single(spheres: &'a [MedialSphere], primitives: &'a [Simplex], order: Vec<u32>) -> Self {
+        Self {
+            spheres,
+            primitives,
+            ranges: (0..order.len()).map(|k| k..k + 1).collect(),
+            order,
+        }
+    }
+
+    fn members(&self, item: u32) -> &[u32] {
+        &self.order[self.ranges[item as usize].clone()]
+    }
+
+    /// The middle of each item: that of the middles of its primitives.
+    fn centers(&self) -> Vec<Item> {
+        let middle = |i: &u32| {
+            let p = &self.primitives[*i as usize];
+            let n = Real::from(p.len);
+            let sum = (0..p.len as usize)
+                .map(|k| self.spheres[p.vertices[k] as usize].center)
+                .fold(Vector::ZERO, |a, b| a + b);
+            sum / n
+        };
+        let center = |item: u32| {
+            let members = self.members(item);
+            let sum = members.iter().map(middle).fold(Vector::ZERO, |a, b| a + b);
+            (sum / members.len() as Real, item)
+        };
+        (0..self.ranges.len() as u32).map(center).collect()
+    }
+
+    /// The spheres of the primitives of these items.
+    fn spheres_of(&self, items: &[Item]) -> impl Iterator<Item = MedialSphere> + Clone {
+        (items.iter().flat_map(|&(_, item)| self.members(item)))
+            .flat_map(|i| self.primitives[*i as usize].vertices)
+            .map(|v| self.spheres[v as usize])
+    }
+
+    /// How many primitives these items have.
+    fn count(&self, items: &[Item]) -> usize {
+        let members = items.iter().map(|&(_, item)| self.members(item).len());
+        members.sum()
     }
 }
 
@@ -168,28 +236,20 @@ const SPLITS: usize = 8;
 /// Orders the items along the axis, and gives the position, of the cheapest of a few splits: the
 /// surface area heuristic with balls, `count × radius²` summed over both halves, a half's radius
 /// being half the diagonal of its box.
-fn best_split(
-    items: &mut [(Vector, u32)],
-    spheres: &[MedialSphere],
-    primitives: &[Simplex],
-) -> usize {
+fn best_split(all: &Items, items: &mut [Item]) -> usize {
     let n = items.len();
-    let order = |items: &mut [(Vector, u32)], axis: usize| {
+    let order = |items: &mut [Item], axis: usize| {
         items.sort_unstable_by(|a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
     };
-    let cost = |half: &[(Vector, u32)]| {
-        let (lo, hi) = half
-            .iter()
-            .flat_map(|&(_, i)| primitives[i as usize].vertices)
-            .map(|v| spheres[v as usize])
-            .fold(
-                (Vector::splat(Real::MAX), Vector::splat(Real::MIN)),
-                |(lo, hi), s| {
-                    let r = Vector::splat(s.radius);
-                    (lo.min(s.center - r), hi.max(s.center + r))
-                },
-            );
-        half.len() as Real * (hi - lo).length_squared()
+    let cost = |half: &[Item]| {
+        let (lo, hi) = all.spheres_of(half).fold(
+            (Vector::splat(Real::MAX), Vector::splat(Real::MIN)),
+            |(lo, hi), s| {
+                let r = Vector::splat(s.radius);
+                (lo.min(s.center - r), hi.max(s.center + r))
+            },
+        );
+        all.count(half) as Real * (hi - lo).length_squared()
     };
     let mut best = (Real::MAX, 0, n / 2);
     for axis in 0..3 {

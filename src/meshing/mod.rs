@@ -110,6 +110,9 @@ impl MedialMesh {
         let surface = source.surface;
         let (mass, mass_source) = mass_properties(&surface, &mut watch)?;
         let mut mesh = candidate.draft.to_medial_mesh(&surface.frame)?;
+        if candidate.variant == Variant::Exact {
+            mesh = mesh.of_convex_pieces();
+        }
         if let Some(mass) = mass {
             mesh = mesh.with_mass_properties(mass);
         }

@@ -133,8 +133,8 @@ impl Balls {
     /// length of `n`: on its far side where `length` is that, on its near side where it is the negative of that.
     fn along(&self, n: Vec3<f64>, length: f64) -> [(f64, f64); 4] {
         let mut ends = [(0.0, 0.0); 4];
-        for (end, (center, chord, radius)) in ends.iter_mut().zip(self.all()) {
-            *end = (n.dot(*center) + length * radius, n.dot(*chord));
+        for (end, ball) in ends.iter_mut().zip(self.all()) {
+            *end = end_along(ball, n, length);
         }
         ends
     }
@@ -148,6 +148,11 @@ impl Balls {
     pub(super) fn core(&self) -> f64 {
         self.all().iter().map(|s| s.2).sum::<f64>() / self.len as f64
     }
+}
+
+/// Where a ball ends along a direction of this length ([`Balls::along`]).
+pub(super) fn end_along((center, chord, radius): &Ball, n: Vec3<f64>, length: f64) -> (f64, f64) {
+    (n.dot(*center) + length * radius, n.dot(*chord))
 }
 
 /// Part of the time asked for that ends the search for a better direction: the primitives wait, and
@@ -323,11 +328,19 @@ fn holds(
     least: f64,
     contact: f64,
 ) -> Option<f64> {
-    let [from, until] = span;
     let length = n.length();
-    let (least, contact) = (least * length, contact * length);
     let (far, near) = (a.along(n, length), b.along(n, -length));
-    let (far, near) = (&far[..a.len], &near[..b.len]);
+    let ends = [&far[..a.len], &near[..b.len]];
+    ends_hold(ends, span, least * length, contact * length)
+}
+
+/// The same, given where the spheres of each end along the direction, and how fast that changes.
+pub(super) fn ends_hold(
+    [far, near]: [&[(f64, f64)]; 2],
+    [from, until]: [f64; 2],
+    least: f64,
+    contact: f64,
+) -> Option<f64> {
     // The least distance of two of them: concave in time.
     let gap = |t: f64| {
         let at = |s: &(f64, f64)| s.0 + s.1 * t;

@@ -6,11 +6,13 @@
 //! lost, and the true penetration depth and normal take its place ([`crate::elementary::penetration`]). Long
 //! parallel cones get a second pair, so that they can rest on a line.
 
+use super::descent::Step;
 use super::first_contact::Counts;
 use super::hulls::Hulls;
 use super::outline;
 use super::placement::Placement;
 use super::primitive_tree::PrimitiveTree;
+use super::sphere_pair::SpherePair;
 use crate::elementary::certificate::ActiveFace;
 use crate::elementary::distance::{
     Ends, crossing, deeper, face, family, is_beyond, nearest_in_family,
@@ -23,7 +25,6 @@ use crate::math::nearest::{Family, Nearest, edge_minimum};
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
-use crate::medial::tree::NodeKind;
 
 /// Cosine from which two directions of one primitive pair belong to one contact patch (10°).
 const SAME_PATCH: f64 = 0.985;
@@ -45,22 +46,6 @@ const SAME_POINT: f64 = 1.0e-4;
 
 /// Feature of a pair whose medial surfaces cross: it belongs to no one test.
 const CROSSING: u32 = 1 << 17;
-
-/// A contact of two bodies: a pair of interpolated spheres that touch or are near each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpherePair {
-    /// Index of the primitive of each body.
-    pub primitives: [u32; 2],
-    /// A number of the elementary test of the two primitives, and of the point of it: the same from step to step as
-    /// long as the same features touch.
-    pub feature: u32,
-    /// Signed distance of the two spheres, a length, negative where they overlap.
-    pub distance: Real,
-    /// Unit normal from the first body to the second, in the first body's frame.
-    pub normal: Vector,
-    /// Nearest points on the surfaces, each in its own body's frame.
-    pub points: [Vector; 2],
-}
 
 type Ball = (Vec3<f64>, f64);
 
@@ -104,7 +89,7 @@ pub fn contacts(
         if y.length_sq() > reach * reach * (1.0 + 1.0e-12) {
             continue;
         }
-        let step = Step::new([body1.kind(i), body2.kind(j)], [ra, rb]);
+        let step = Step::of((body1, body2), [i, j]);
         let is_leaf = matches!(step, Step::Leaves(_));
         let [kept, split] = inner;
         let is_idle = split >= FAILED && 3 * kept <= split && margin >= 0.0;
@@ -112,6 +97,10 @@ pub fn contacts(
         let is_apart = is_tried && hulls.gap([i, j], margin) > margin;
         inner[usize::from(!is_apart)] += u32::from(is_tried && !is_leaf);
         if is_apart {
+            continue;
+        }
+        if let Some(contacts) = hulls.pieces_contacts([i, j], margin) {
+            found.extend(contacts);
             continue;
         }
         let splits = if is_tried {
@@ -135,28 +124,6 @@ pub fn contacts(
     (found, counts)
 }
 
-/// The next step of a walk down two trees, given what is below two nodes and their radii. It depends on nothing else, so
-/// all walks of two trees come to primitive pairs in one order.
-pub(super) enum Step {
-    /// Two leaves, of these primitives.
-    Leaves([u32; 2]),
-    /// The first node is replaced by its children, in this order.
-    First([u32; 2]),
-    /// The second node is.
-    Second([u32; 2]),
-}
-
-impl Step {
-    pub(super) fn new(below: [NodeKind; 2], [ra, rb]: [f64; 2]) -> Self {
-        match below {
-            [NodeKind::Primitive(p), NodeKind::Primitive(q)] => Self::Leaves([p, q]),
-            [NodeKind::Nodes(c, d), NodeKind::Primitive(_)] => Self::First([c, d]),
-            [NodeKind::Nodes(c, d), NodeKind::Nodes(..)] if ra >= rb => Self::First([c, d]),
-            [_, NodeKind::Nodes(c, d)] => Self::Second([c, d]),
-        }
-    }
-}
-
 /// The sphere pair of two overlapping primitives along the normal nearest to `old`, that of the step
 /// before, among those hardly deeper than the least ([`penetration::HYSTERESIS`]). `at`: their
 /// deepest contact now; the points stay in the middle of its.
@@ -169,8 +136,14 @@ pub(crate) fn along_old_normal(
 ) -> SpherePair {
     let place = Placement::new(pos12);
     let pair = PrimitivePair::new(body1, body2, at.primitives, &place);
-    let (a, b) = pair.spheres();
-    let (gap, n) = penetration::deepest(a, b, Vec3::from_vector(old), penetration::HYSTERESIS);
+    let [p, q] = at.primitives;
+    let (gap, n) = match (body1.piece_of(p), body2.piece_of(q)) {
+        (Some(i), Some(j)) => Hulls::new((body1, body2), &place).along_old_normal([i, j], old, at),
+        _ => {
+            let (a, b) = pair.spheres();
+            penetration::deepest(a, b, Vec3::from_vector(old), penetration::HYSTERESIS)
+        }
+    };
     let middle = (Vec3::from_vector(at.points[0]) + place.point(at.points[1])) * 0.5;
     pair.across(middle, gap, n)
 }

@@ -180,14 +180,14 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         depths.fold(f64::INFINITY, f64::min)
     }
 
-    /// The primitive pairs that touched at the start and may get that deep or deeper, in the units of [`Self::deepest`];
-    /// `None` if there are none.
+    /// The pairs of primitives, or of convex pieces, that touched at the start and may get that deep or deeper, in the units
+    /// of [`Self::deepest`]; `None` if there are none.
     pub fn may_get_to(&self, depth: f64) -> Option<PairList> {
         let search = self.search.as_ref()?;
         let deep = search.touching.iter().filter(|t| t.1 <= depth);
         let pairs: Vec<[u32; 2]> = deep.map(|t| t.0).collect();
         let bodies = (search.sides.0.body, search.sides.1.body);
-        (!pairs.is_empty()).then(|| PairList::of_primitives(bodies, &pairs))
+        (!pairs.is_empty()).then(|| PairList::of_nodes(bodies, &pairs))
     }
 
     /// The answer, once the query is settled.

@@ -1,9 +1,14 @@
 //! The hulls of the nodes of two bodies at fixed poses, each placed once, and a lower bound of the distance of two.
 
 use super::apart::{Balls, Plane, approached};
+use super::face_contacts::face_contacts;
+use super::hull_gap::{PlacedHull, hull_gap};
 use super::placement::Placement;
 use super::primitive_tree::PrimitiveTree;
+use super::sphere_pair::SpherePair;
+use crate::elementary::penetration::{HYSTERESIS, gap_along};
 use crate::math::Vector;
+use crate::math::fast_hash::FastMap;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::medial::MedialSphere;
@@ -65,6 +70,8 @@ pub(super) struct Hulls<'a, A, B> {
     bodies: (&'a A, &'a B),
     place: &'a Placement,
     placed: [Placed; 2],
+    /// Convex pieces that were asked for, by their nodes.
+    pieces: [FastMap<u32, PlacedHull<'a>>; 2],
 }
 
 /// The hulls of one body that were asked for.
@@ -103,6 +110,63 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
             bodies,
             place,
             placed: Default::default(),
+            pieces: Default::default(),
+        }
+    }
+
+    /// Contacts of two nodes that hold convex pieces within `margin` of each other; `None` where they do not, or may have
+    /// contacts that their primitives have to tell.
+    pub(super) fn pieces_contacts(
+        &mut self,
+        [i, j]: [u32; 2],
+        margin: f64,
+    ) -> Option<Vec<SpherePair>> {
+        let (first, second) = self.bodies;
+        let pieces = [first.convex_piece(i), second.convex_piece(j)];
+        let is_piece = pieces.iter().any(Option::is_some);
+        if !(is_piece && first.is_convex(i) && second.is_convex(j)) {
+            return None;
+        }
+        let place = self.place;
+        let hulls = self.pieces([i, j]);
+        match pieces {
+            [Some(p), Some(q)] => {
+                let primitives = [p.primitive, q.primitive];
+                Some(face_contacts(hulls, primitives, place, margin))
+            }
+            _ if hull_gap(hulls, margin).gap > margin => Some(Vec::new()),
+            _ => None,
+        }
+    }
+
+    /// Two nodes' pieces, placed.
+    fn pieces(&mut self, [i, j]: [u32; 2]) -> [&PlacedHull<'a>; 2] {
+        let ((first, second), place) = (self.bodies, self.place);
+        let [a, b] = &mut self.pieces;
+        let a = (a.entry(i))
+            .or_insert_with(|| PlacedHull::of_node(first, i, Vec3::from_vector, Vec3::from_vector));
+        let b = (b.entry(j)).or_insert_with(|| {
+            PlacedHull::of_node(second, j, |p| place.point(p), |n| place.direction(n))
+        });
+        [a, b]
+    }
+
+    /// Gap and normal of the overlapping pieces of two nodes: along the normal `old` of the step before while that is hardly
+    /// deeper than their contact `at` ([`HYSTERESIS`]), else along that of the contact.
+    pub(super) fn along_old_normal(
+        &mut self,
+        nodes: [u32; 2],
+        old: Vector,
+        at: &SpherePair,
+    ) -> (f64, Vec3<f64>) {
+        let [a, b] = self.pieces(nodes);
+        let gap_along = |n| gap_along(&a.spheres, &b.spheres, n);
+        let [old, new] = [old, at.normal].map(Vec3::from_vector);
+        let (before, now) = (gap_along(old), gap_along(new));
+        if before >= now - HYSTERESIS * now.abs() {
+            (before, old)
+        } else {
+            (now, new)
         }
     }
 

@@ -48,7 +48,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                     direction = normal;
                 } else {
                     let depth = (distance - touching - f64::from(by)) / self.thickness(pair);
-                    self.touching.push((pair, depth));
+                    let (a, b) = (self.sides.0.node(i).node, self.sides.1.node(j).node);
+                    self.touching.push(([a, b], depth));
                     self.list_parts([i, j], pair, by.into(), time, (distance, normal));
                     return true;
                 }
@@ -127,7 +128,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     }
 
     /// Whether primitives that are free until `time` are known not to touch at the start of the motions.
-    fn is_known_apart(&self, time: f64) -> bool {
+    pub(super) fn is_known_apart(&self, time: f64) -> bool {
         self.pieces == 1 && time > 0.0
     }
 
@@ -335,8 +336,12 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Thickness of the thinner of two primitives, or the least number where it has none.
     fn thickness(&self, [p, q]: [u32; 2]) -> f64 {
         let (a, b) = (self.sides.0.body, self.sides.1.body);
-        let thinner = a.thickness(p).min(b.thickness(q));
-        let thinner = self.cores.map_or(thinner, |c| thinner.min(c.at_most));
+        self.at_most(a.thickness(p).min(b.thickness(q)))
+    }
+
+    /// A thickness as far as that of the partner allows.
+    pub(super) fn at_most(&self, thickness: Real) -> f64 {
+        let thinner = (self.cores).map_or(thickness, |c| thickness.min(c.at_most));
         f64::from(thinner.max(Real::MIN_POSITIVE))
     }
 

@@ -8,20 +8,21 @@
 //! holds: farther pairs add none.
 
 use super::SpherePair;
-use super::contacts::{PrimitivePair, Step, contacts};
+use super::contacts::{PrimitivePair, contacts};
+use super::descent::Step;
 use super::first_contact::Counts;
 use super::placement::Placement;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::medial::leaf_order::LeafOrder;
-use crate::medial::tree::{Node, SphereTree};
 
 /// Contacts of two meshes, equal to those of [`contacts()`] in every bit, if `listed` holds all pairs of their primitives
 /// within `prediction` (a length) of each other. It may hold others, in any order and repeatedly; pairs that do not
 /// exist are ignored. It is left in disorder.
 ///
-/// A negative prediction is searched as if there were no list: of primitives whose medial surfaces cross, only bounds
-/// decide then whether they are deep enough, and a list does not know the bounds of the search.
+/// Two meshes with convex pieces are searched as if there were no list: pieces meet as a whole. So is a negative
+/// prediction: of primitives whose medial surfaces cross, only bounds decide then whether they are deep enough, and a list
+/// does not know the bounds of the search.
 pub fn contacts_of_listed(
     mesh1: &MedialMesh,
     mesh2: &MedialMesh,
@@ -29,7 +30,8 @@ pub fn contacts_of_listed(
     prediction: Real,
     listed: &mut [[u32; 2]],
 ) -> (Vec<SpherePair>, Counts) {
-    if prediction < 0.0 {
+    let has_pieces = |mesh: &MedialMesh| !mesh.convex_pieces().is_empty();
+    if prediction < 0.0 || has_pieces(mesh1) && has_pieces(mesh2) {
         return contacts(mesh1, mesh2, pos12, prediction);
     }
     let (mut found, mut counts) = (Vec::with_capacity(listed.len()), Counts::default());
@@ -63,10 +65,7 @@ fn in_order(meshes: [&MedialMesh; 2], listed: &mut [[u32; 2]], mut take: impl Fn
             }
         }
     }
-    let walk = Walk {
-        nodes: meshes.map(|mesh| SphereTree::nodes(mesh.tree())),
-        orders,
-    };
+    let walk = Walk { meshes, orders };
     if end > 0 {
         walk.down([0, 0], &mut listed[..end], &mut take);
     }
@@ -74,7 +73,7 @@ fn in_order(meshes: [&MedialMesh; 2], listed: &mut [[u32; 2]], mut take: impl Fn
 
 /// Two trees on the way down.
 struct Walk<'a> {
-    nodes: [&'a [Node]; 2],
+    meshes: [&'a MedialMesh; 2],
     orders: [&'a LeafOrder; 2],
 }
 
@@ -85,9 +84,7 @@ impl Walk<'_> {
         // The walk to one pair, or to one that is listed several times, passes no other.
         let first = pairs[0];
         while pairs.iter().any(|pair| *pair != first) {
-            let [a, b] = [0, 1].map(|k| &self.nodes[k][at[k] as usize]);
-            let radii = [a, b].map(|node| f64::from(node.radius));
-            let (side, [c, d]) = match Step::new([a.kind(), b.kind()], radii) {
+            let (side, [c, d]) = match Step::of((self.meshes[0], self.meshes[1]), at) {
                 Step::First(children) => (0, children),
                 Step::Second(children) => (1, children),
                 // Not reached: below two leaves there is one pair.

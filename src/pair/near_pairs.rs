@@ -30,7 +30,6 @@ use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::tolerance::ROUNDING_ULPS;
-use crate::medial::tree::NodeKind;
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
 
@@ -41,7 +40,8 @@ const MOST_ANGLE: f64 = 0.5;
 /// some of them, and nothing is spared.
 const MOST: u32 = 2 * Bits::BITS;
 
-/// Primitive pairs that may come near each other, by the nodes of both trees above them. It may hold others.
+/// Primitive pairs, and pairs of convex pieces, that may come near each other, by the nodes of both trees above them. It may
+/// hold others.
 pub struct NearPairs {
     pairs: PairList,
     /// Motions that they are listed for, and the step's seconds from their start to its end.
@@ -116,7 +116,12 @@ impl NearPairs {
             if free_until(hulls, [0.0, 1.0], reach, 0.0).is_none() {
                 continue;
             }
-            if let (NodeKind::Primitive(_), NodeKind::Primitive(_)) = (a.below, b.below) {
+            let convex = [
+                sides.0.body.is_convex(a.node),
+                sides.1.body.is_convex(b.node),
+            ];
+            // Convex pieces are listed whole: they are also searched so.
+            if convex == [true; 2] {
                 for (bits, at) in listed.iter_mut().zip([i, j]) {
                     if bits.len() <= at as usize {
                         bits.resize(at as usize + 1, 0);

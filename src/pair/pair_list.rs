@@ -1,7 +1,7 @@
 //! A set of primitive pairs of two bodies, by the nodes of both trees above them: a search goes down to these only.
 
 use super::primitive_tree::PrimitiveTree;
-use super::swept::{Bits, Listed};
+use super::swept::{Bits, Listed, add_bits};
 use crate::medial::tree::NodeKind;
 use std::sync::Arc;
 
@@ -10,48 +10,41 @@ use std::sync::Arc;
 pub struct PairList(pub(super) Arc<Listed>);
 
 impl PairList {
-    /// These pairs of primitives, given by their numbers in the first and the second body.
-    pub(super) fn of_primitives(
+    /// All pairs of primitives below these pairs of nodes of the first and the second body.
+    pub(super) fn of_nodes(
         bodies: (&impl PrimitiveTree, &impl PrimitiveTree),
         pairs: &[[u32; 2]],
     ) -> Self {
         Self(Arc::new([
-            nodes_above(bodies.0, pairs.iter().map(|p| p[0])),
-            nodes_above(bodies.1, pairs.iter().map(|p| p[1])),
+            bits_of_nodes(bodies.0, pairs.iter().map(|p| p[0])),
+            bits_of_nodes(bodies.1, pairs.iter().map(|p| p[1])),
         ]))
     }
 }
 
-/// Of each node of a body, the bits of the primitives below it; the n-th primitive given has the n-th bit.
-fn nodes_above(body: &impl PrimitiveTree, primitives: impl Iterator<Item = u32>) -> Vec<Bits> {
+/// Of each node of a body, the bits of the nodes given that are below it, above it or itself; the n-th node given has the
+/// n-th bit.
+fn bits_of_nodes(body: &impl PrimitiveTree, nodes: impl Iterator<Item = u32>) -> Vec<Bits> {
     let mut bits: Vec<Bits> = Vec::new();
-    for (n, primitive) in primitives.enumerate() {
-        let primitive = primitive as usize;
-        if bits.len() <= primitive {
-            bits.resize(primitive + 1, 0);
-        }
-        bits[primitive] |= 1 << (n as u32 % Bits::BITS);
+    for (n, node) in nodes.enumerate() {
+        add_bits(&mut bits, node, 1 << (n as u32 % Bits::BITS));
     }
-    let mut above = Vec::new();
     for root in 0..body.roots() {
-        gather(body, root, &bits, &mut above);
+        spread(body, root, 0, &mut bits);
     }
-    above
+    bits
 }
 
-fn gather(body: &impl PrimitiveTree, node: u32, bits: &[Bits], above: &mut Vec<Bits>) -> Bits {
+/// Adds the bits `above` a node to all below it, and theirs to it; returns the latter.
+fn spread(body: &impl PrimitiveTree, node: u32, above: Bits, bits: &mut Vec<Bits>) -> Bits {
+    let own = bits.get(node as usize).copied().unwrap_or(0);
     let below = match body.kind(node) {
-        NodeKind::Primitive(p) => bits.get(p as usize).copied().unwrap_or(0),
-        NodeKind::Nodes(first, second) => {
-            gather(body, first, bits, above) | gather(body, second, bits, above)
-        }
+        NodeKind::Primitive(_) => 0,
+        NodeKind::Nodes(first, second) => [first, second]
+            .map(|child| spread(body, child, above | own, bits))
+            .into_iter()
+            .fold(0, |all, child| all | child),
     };
-    if below != 0 {
-        let at = node as usize;
-        if above.len() <= at {
-            above.resize(at + 1, 0);
-        }
-        above[at] = below;
-    }
-    below
+    add_bits(bits, node, above | below);
+    own | below
 }

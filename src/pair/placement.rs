@@ -23,6 +23,10 @@ impl Placement {
         let [x, y, z] = self.rotation;
         self.translation + x * v.x + y * v.y + z * v.z
     }
+    /// A direction of the second body.
+    pub(super) fn direction(&self, local: Vector) -> Vec3<f64> {
+        self.point(local) - self.translation
+    }
     pub(super) fn inverse_point(&self, p: Vec3<f64>) -> Vector {
         let v = p - self.translation;
         let [x, y, z] = self.rotation;

@@ -4,6 +4,7 @@
 
 use crate::elementary::test_list::OwnedFeatures;
 use crate::math::{Real, Vector};
+use crate::medial::convex_pieces::ConvexPiece;
 use crate::medial::proxy_hull::ProxyHull;
 use crate::medial::simplex::Simplex;
 use crate::medial::tree::NodeKind;
@@ -39,6 +40,18 @@ pub trait PrimitiveTree {
     /// that are represented by their surface.
     fn thickness(&self, _primitive: u32) -> Real {
         Real::INFINITY
+    }
+    /// The convex piece of several primitives that a node holds, neither more nor less, if it is known to hold one.
+    fn convex_piece(&self, _node: u32) -> Option<&ConvexPiece> {
+        None
+    }
+    /// The node that holds the convex piece of several primitives that a primitive is of, if it is of one.
+    fn piece_of(&self, _primitive: u32) -> Option<u32> {
+        None
+    }
+    /// Whether what is below a node is known to be convex.
+    fn is_convex(&self, node: u32) -> bool {
+        matches!(self.kind(node), NodeKind::Primitive(_)) || self.convex_piece(node).is_some()
     }
     /// The range of primitives that bound the same convex body as this one. By default the primitive itself.
     fn convex_part(&self, index: u32) -> Range<u32> {
@@ -82,6 +95,12 @@ impl PrimitiveTree for MedialMesh {
     }
     fn thickness(&self, primitive: u32) -> Real {
         self.thicknesses().primitives[primitive as usize]
+    }
+    fn convex_piece(&self, node: u32) -> Option<&ConvexPiece> {
+        self.convex_pieces().of_node(node)
+    }
+    fn piece_of(&self, primitive: u32) -> Option<u32> {
+        self.convex_pieces().node_of(primitive)
     }
     fn proxy_hull(&self) -> Option<&Arc<ProxyHull>> {
         Some(MedialMesh::proxy_hull(self))

@@ -7,6 +7,7 @@
 //!   moved along the chords, touch: the smaller root of a quadratic.
 //! - Two nodes cannot meet while a direction keeps their hulls apart: swept rectangles, which fit better than balls
 //!   ([`crate::medial::rectangle`]).
+//! - Two convex pieces of several primitives are looked at as a whole before their primitives are ([`super::convex_pieces`]).
 //! - Two primitives cannot meet while a direction keeps them apart ([`super::apart`]), nor can the spheres of one of
 //!   their elementary tests. "Meet" here means to come within the tolerance, so that what touches at the start is
 //!   found there.
@@ -75,8 +76,8 @@ pub(super) struct Search<'a, A, B> {
     pub(super) earliest: Earliest<f64>,
     /// Parts of the primitives found that were tested.
     pub(super) found: Option<Tested>,
-    /// Primitive pairs that touch at the start and may sink in, and how deep they may get, in the units of
-    /// [`super::first_contact::Query::deepest`].
+    /// Pairs of the bodies' nodes, primitives or convex pieces, that touch at the start and may sink in, and how deep they
+    /// may get, in the units of [`super::first_contact::Query::deepest`].
     pub(super) touching: Vec<([u32; 2], f64)>,
 }
 
@@ -299,6 +300,12 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
         }
         if primitives.is_some() {
             return self.list_tests([i, j], free);
+        }
+        let Some(free) = self.pieces_free_until([i, j], free) else {
+            return true;
+        };
+        if !self.soon(free, time) {
+            return self.wait([i, j], free);
         }
         let [parts_of_a, parts_of_b] = split(&mut self.sides, [i, j]);
         for a in parts_of_a.clone() {

@@ -2,13 +2,14 @@
 //! along which the centres of its nodes and primitives move, and radii enlarged by the sagitta, which is how far a
 //! centre may be off its chord. Twin of `Side::chord` on a device: `sweep` in `shaders/swept.wgsl`.
 
-use super::apart::Balls;
+use super::apart::{Ball, Balls};
 use super::outline::ActivePrimitives;
 use super::primitive_tree::PrimitiveTree;
 use crate::math::approach::first_touch;
 use crate::math::lane::Vec3;
 use crate::math::motion::{Frame, RigidMotion};
 use crate::math::tolerance::ROUNDING_ULPS;
+use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 use std::ops::Range;
 use std::sync::Arc;
@@ -36,9 +37,22 @@ pub(super) struct Swept {
     next: u32,
     /// Place of the balls of its hull; [`NOT_YET`] before they are wanted.
     hull: u32,
+    /// Place of the balls of its convex piece; [`NOT_YET`] before they are wanted.
+    piece: u32,
 }
 
 const NOT_YET: u32 = u32::MAX;
+
+/// Adds bits to those of one of a body's nodes.
+pub(super) fn add_bits(bits: &mut Vec<Bits>, node: u32, more: Bits) {
+    let place = node as usize;
+    if more != 0 && bits.len() <= place {
+        bits.resize(place + 1, 0);
+    }
+    if more != 0 {
+        bits[place] |= more;
+    }
+}
 
 /// Time at which two swept nodes come within a distance.
 pub(super) enum Touch {
@@ -83,6 +97,8 @@ pub(super) struct Side<'a, V> {
     frames: [Frame<f64>; 2],
     nodes: Vec<Swept>,
     balls: Vec<Balls>,
+    /// Balls of convex pieces, and the bound of the coordinates in play.
+    pieces: Vec<(Vec<Ball>, f64)>,
     /// Primitives that may meet the other side; `None`: all.
     left: Option<ActivePrimitives>,
     /// List of what may come near it, and which of the bodies this is.
@@ -102,6 +118,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
             frames: [motion.frame(0.0); 2],
             nodes: Vec::with_capacity(48),
             balls: Vec::with_capacity(16),
+            pieces: Vec::new(),
             left,
             near: None,
         }
@@ -112,20 +129,32 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         self.near = Some((near, side));
     }
 
-    /// Bits of swept nodes, those of what is below them added, by the body's nodes.
+    /// Bits of swept nodes, those of what is below them added, by the body's nodes. What is below a convex piece that was
+    /// not split has its bits.
     pub(super) fn gathered(&self, mut bits: Vec<Bits>) -> Vec<Bits> {
         bits.resize(self.nodes.len(), 0);
-        let most = self.nodes.iter().map(|n| n.node + 1).max().unwrap_or(0);
-        let mut gathered = vec![0; most as usize];
+        let mut gathered = Vec::new();
         // What is below a node is swept after it.
         for (at, swept) in self.nodes.iter().enumerate().rev() {
             if swept.next != NOT_YET {
                 let next = swept.next as usize;
                 bits[at] |= bits[next] | bits[next + 1];
             }
-            gathered[swept.node as usize] = bits[at];
+            add_bits(&mut gathered, swept.node, bits[at]);
+            if swept.next == NOT_YET && bits[at] != 0 {
+                self.add_below(&mut gathered, swept.below, bits[at]);
+            }
         }
         gathered
+    }
+
+    fn add_below(&self, gathered: &mut Vec<Bits>, below: NodeKind, bits: Bits) {
+        if let NodeKind::Nodes(first, second) = below {
+            for child in [first, second] {
+                add_bits(gathered, child, bits);
+                self.add_below(gathered, self.body.kind(child), bits);
+            }
+        }
     }
 
     /// Turns to the piece between two times, with its roots swept: the first of [`Self::node`].
@@ -134,6 +163,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         self.frames = self.times.map(|t| self.motion.frame(t));
         self.nodes.clear();
         self.balls.clear();
+        self.pieces.clear();
         for root in 0..self.body.roots() {
             self.nodes.push(self.sweep(root));
         }
@@ -171,12 +201,38 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         }
         *hull = self.balls.len() as u32;
         let (spheres, len) = self.body.hull(*node);
-        let balls = spheres[..len].iter().map(|s| {
-            let (from, chord, sagitta) = self.chord(Vec3::from_vector(s.center));
-            (from, chord, f64::from(s.radius) + sagitta)
-        });
+        let balls = spheres[..len].iter().map(|s| self.ball(s));
         let balls = Balls::new(balls, self.motion.terms());
         self.balls.push(balls);
+    }
+
+    /// Sweeps the spheres of the convex piece that a node holds, or of its primitive, for [`Self::piece`].
+    pub(super) fn sweep_piece(&mut self, at: u32) {
+        let Swept { node, piece, .. } = *self.node(at);
+        let Some(of) = self.body.convex_piece(node).filter(|_| piece == NOT_YET) else {
+            return self.sweep_hull(at);
+        };
+        let balls: Vec<Ball> = of.spheres.iter().map(|s| self.ball(s)).collect();
+        let size = |ball: &Ball| ball.0.taxicab() + ball.1.taxicab() + ball.2;
+        let size = balls.iter().map(size).sum::<f64>() + self.motion.terms();
+        self.nodes[at as usize].piece = self.pieces.len() as u32;
+        self.pieces.push((balls, size));
+    }
+
+    /// The spheres of a node's convex piece or primitive, which are swept, and the bound of the coordinates in play.
+    pub(super) fn piece(&self, at: u32) -> (&[Ball], f64) {
+        match self.node(at).piece {
+            NOT_YET => (self.hull(at).all(), self.hull(at).size),
+            piece => {
+                let (balls, size) = &self.pieces[piece as usize];
+                (balls, *size)
+            }
+        }
+    }
+
+    fn ball(&self, s: &MedialSphere) -> Ball {
+        let (from, chord, sagitta) = self.chord(Vec3::from_vector(s.center));
+        (from, chord, f64::from(s.radius) + sagitta)
     }
 
     /// The spheres of a node's hull, which are swept.
@@ -218,6 +274,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
             node,
             next: NOT_YET,
             hull: NOT_YET,
+            piece: NOT_YET,
         }
     }
 
@@ -246,8 +303,18 @@ pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
     // be split. Below that, the larger one.
     let (small, large) = (a.radius * SIMILAR < b.radius, b.radius * SIMILAR < a.radius);
     let inner = [a.below, b.below].map(|below| matches!(below, NodeKind::Nodes(..)));
+    // What is convex is split against what is not only once that is convex too: then the two are looked at whole.
+    let convex = [
+        sides.0.body.is_convex(a.node),
+        sides.1.body.is_convex(b.node),
+    ];
+    let [waits_a, waits_b] = [convex[0] && !convex[1], convex[1] && !convex[0]];
     [
-        sides.0.parts(i, !(small && inner[1])),
-        sides.1.parts(j, !(large && inner[0])),
+        sides
+            .0
+            .parts(i, !(waits_a || small && inner[1] && !waits_b)),
+        sides
+            .1
+            .parts(j, !(waits_b || large && inner[0] && !waits_a)),
     ]
 }

@@ -59,7 +59,11 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     }
 
     /// Answer to two fractions of the piece that is searched, from `time` to the end, as a time.
-    fn in_piece(&self, time: f64, free: impl Fn([f64; 2]) -> Option<f64>) -> Option<f64> {
+    pub(super) fn in_piece(
+        &self,
+        time: f64,
+        free: impl Fn([f64; 2]) -> Option<f64>,
+    ) -> Option<f64> {
         let [start, length] = [self.times[0], self.times[1] - self.times[0]];
         let [from, until] = self.span(time);
         let free = free([from, until])?;

@@ -295,7 +295,7 @@ fn forged_items_are_named() {
         .to_bytes();
     let nan = f32::NAN.to_bits();
     let cases: [(usize, u32, &str); 13] = [
-        (12, 2, "header word 3 is 2"),
+        (12, 4, "header word 3 is 4"),
         (32, nan, "thickness 0 is NaN"),
         (36, nan, "mass properties 0"),
         (48, (-1.0_f32).to_bits(), "mass properties 0"),

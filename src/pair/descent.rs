@@ -1,0 +1,32 @@
+//! The order in which contacts are searched for in two trees ([`super::contacts()`]).
+
+use super::primitive_tree::PrimitiveTree;
+use crate::medial::tree::NodeKind;
+
+/// The next step of a walk down two trees from two nodes. It depends on nothing else, so all walks of two trees come to
+/// primitive pairs in one order.
+pub(super) enum Step {
+    /// Two leaves, of these primitives.
+    Leaves([u32; 2]),
+    /// The first node is replaced by its children, in this order.
+    First([u32; 2]),
+    /// The second node is.
+    Second([u32; 2]),
+}
+
+impl Step {
+    pub(super) fn of((a, b): (&impl PrimitiveTree, &impl PrimitiveTree), [i, j]: [u32; 2]) -> Self {
+        // What is convex waits until the other is too: then both are looked at whole.
+        let first = || match (a.is_convex(i), b.is_convex(j)) {
+            (true, false) => false,
+            (false, true) => true,
+            _ => a.bound(i).1 >= b.bound(j).1,
+        };
+        match [a.kind(i), b.kind(j)] {
+            [NodeKind::Primitive(p), NodeKind::Primitive(q)] => Self::Leaves([p, q]),
+            [NodeKind::Nodes(c, d), NodeKind::Primitive(_)] => Self::First([c, d]),
+            [NodeKind::Nodes(c, d), NodeKind::Nodes(..)] if first() => Self::First([c, d]),
+            [_, NodeKind::Nodes(c, d)] => Self::Second([c, d]),
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Contacts of two convex pieces at fixed poses: where a flat face of one lies about flat on the other, the corners of
+//! the polygon in which the two faces overlap, as in other engines (Sutherland and Hodgman, "Reentrant polygon clipping",
+//! 1974); else their nearest points. Each contact is a pair of spheres, as those of two primitives are.
+
+use super::hull_gap::{HullGap, PlacedHull, hull_gap};
+use super::placement::Placement;
+use super::sphere_pair::SpherePair;
+use crate::math::Real;
+use crate::math::lane::Vec3;
+
+/// Cosine of the angle between the normal of a face and the direction of the contact up to which the face lies flat
+/// (10°, that of one contact patch).
+const FLAT: f64 = 0.985;
+
+/// How much better, in cosines, the face of the second has to lie to be the one that contacts are measured from. At 0
+/// rounding decides, and contacts change from step to step.
+const BETTER: f64 = 1.0e-3;
+
+/// Feature of the nearest points, which belong to no face.
+const NEAREST: u32 = 1 << 18;
+
+/// Added to the features of contacts that are measured from a face of the second.
+const SECOND: u32 = 1 << 19;
+
+/// Corners of faces and polygons that have features of their own; of more, some share them.
+const NUMBERED: usize = 256;
+
+/// A corner of a polygon, and its number: that of a corner, or of an edge and the edge that cuts it.
+type Corner = (Vec3<f64>, u32);
+
+/// Contacts of two pieces within `margin` (a length) of each other. `primitives` are those that the contacts are told of;
+/// points of the second are given in its frame, of which `place` is the pose.
+pub(super) fn face_contacts(
+    hulls: [&PlacedHull; 2],
+    primitives: [u32; 2],
+    place: &Placement,
+    margin: f64,
+) -> Vec<SpherePair> {
+    let HullGap {
+        gap,
+        direction,
+        nearest,
+    } = hull_gap(hulls, f64::MAX);
+    if gap > margin {
+        return Vec::new();
+    }
+    let pair =
+        |feature: u32, distance: f64, normal: Vec3<f64>, points: [Vec3<f64>; 2]| SpherePair {
+            primitives,
+            feature,
+            distance: distance as Real,
+            normal: normal.to_vector(),
+            points: [points[0].to_vector(), place.inverse_point(points[1])],
+        };
+    let mut found = Vec::new();
+    let best = [(hulls[0], direction), (hulls[1], -direction)].map(|(hull, n)| flattest(hull, n));
+    let cosines = best.map(|face| face.map_or(-1.0, |(_, cosine)| cosine));
+    let from = usize::from(cosines[1] > cosines[0] + BETTER);
+    if let Some((face, _)) = best[from].filter(|_| cosines[from] >= FLAT) {
+        let (reference, other) = (hulls[from], hulls[1 - from]);
+        let normal = reference.normals[face];
+        let outline = polygon(reference, face, normal);
+        let Some((base, _)) = outline.first() else {
+            return found;
+        };
+        let facing = flattest(other, -normal).map(|(face, _)| polygon(other, face, -normal));
+        for (corner, number) in clipped(facing.unwrap_or_default(), &outline, normal) {
+            let height = normal.dot(corner - *base);
+            if height > margin {
+                continue;
+            }
+            let foot = corner - normal * height;
+            found.push(match from {
+                0 => pair(number, height, normal, [foot, corner]),
+                _ => pair(SECOND | number, height, -normal, [corner, foot]),
+            });
+        }
+    }
+    if found.is_empty()
+        && let Some(points) = nearest
+    {
+        let middle = (points[0] + points[1]) * 0.5;
+        let half = direction * (0.5 * gap);
+        found.push(pair(
+            NEAREST,
+            gap,
+            direction,
+            [middle - half, middle + half],
+        ));
+    }
+    found
+}
+
+/// The face whose normal is nearest to a direction, and the cosine of the angle between them.
+fn flattest(hull: &PlacedHull, n: Vec3<f64>) -> Option<(usize, f64)> {
+    let cosines = hull.normals.iter().map(|normal| normal.dot(n)).enumerate();
+    cosines.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
+}
+
+/// The corners of a face where its spheres end along a direction.
+fn polygon(hull: &PlacedHull, face: usize, n: Vec3<f64>) -> Vec<Corner> {
+    let corners = hull.faces[face].corners.iter();
+    let end = |k: &u32| {
+        let (center, radius) = hull.spheres[*k as usize];
+        (center + n * radius, *k)
+    };
+    corners.map(end).collect()
+}
+
+/// What of a polygon is inside the edges of another, seen along its normal.
+fn clipped(polygon: Vec<Corner>, outline: &[Corner], normal: Vec3<f64>) -> Vec<Corner> {
+    let mut polygon = polygon;
+    for (k, (from, _)) in outline.iter().enumerate() {
+        let edge = outline[(k + 1) % outline.len()].0 - *from;
+        let inward = normal.cross(edge);
+        let inside = |c: &Corner| inward.dot(c.0 - *from);
+        let mut kept = Vec::with_capacity(polygon.len() + 1);
+        for (i, p) in polygon.iter().enumerate() {
+            let q = &polygon[(i + 1) % polygon.len()];
+            let (a, b) = (inside(p), inside(q));
+            if a >= 0.0 {
+                kept.push(*p);
+            }
+            if (a >= 0.0) != (b >= 0.0) {
+                let number = NUMBERED * (1 + k % NUMBERED) + i.min(NUMBERED - 1);
+                kept.push((p.0 + (q.0 - p.0) * (a / (a - b)), number as u32));
+            }
+        }
+        polygon = kept;
+    }
+    polygon
+}

@@ -1,0 +1,180 @@
+//! How far two convex hulls of spheres are apart at fixed poses, or how deep in each other, and along which direction.
+//!
+//! Along any direction the gap of two hulls follows from their spheres, in double precision; it is never more than their
+//! distance. Flat faces give directions first. Where their gap is not enough, parry's GJK and EPA algorithms propose one
+//! more, in single precision.
+
+use super::primitive_tree::PrimitiveTree;
+use crate::elementary::distance::Ball;
+use crate::elementary::penetration::gap_along;
+use crate::math::lane::Vec3;
+use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::{Pose, Real, Vector};
+use crate::medial::MedialSphere;
+use crate::medial::convex_pieces::Face;
+use parry3d::query::details::contact_support_map_support_map;
+use parry3d::shape::SupportMap;
+
+/// A convex hull of spheres at a pose.
+pub(super) struct PlacedHull<'a> {
+    pub(super) spheres: Vec<Ball<f64>>,
+    /// Its flat faces as they are in the body's frame, and their outward normals now. A primitive has none.
+    pub(super) faces: &'a [Face],
+    pub(super) normals: Vec<Vec3<f64>>,
+}
+
+impl<'a> PlacedHull<'a> {
+    /// The convex piece or the primitive that a node holds; `point` and `direction` place what is given in its frame.
+    pub(super) fn of_node(
+        body: &'a impl PrimitiveTree,
+        node: u32,
+        point: impl Fn(Vector) -> Vec3<f64>,
+        direction: impl Fn(Vector) -> Vec3<f64>,
+    ) -> Self {
+        let hull;
+        let (spheres, faces) = match body.convex_piece(node) {
+            Some(piece) => (&piece.spheres[..], &piece.faces[..]),
+            None => {
+                hull = body.hull(node);
+                (&hull.0[..hull.1], &[][..])
+            }
+        };
+        let sphere = |s: &MedialSphere| (point(s.center), f64::from(s.radius));
+        Self {
+            spheres: spheres.iter().map(sphere).collect(),
+            normals: faces.iter().map(|face| direction(face.normal)).collect(),
+            faces,
+        }
+    }
+
+    fn middle(&self) -> Vec3<f64> {
+        let sum = (self.spheres.iter()).fold(Vec3::zero(), |sum, s| sum + s.0);
+        sum * (1.0 / self.spheres.len() as f64)
+    }
+
+    /// The centre of the farthest sphere along a unit direction, and the way to the next one, if that is about as far.
+    fn farthest(&self, n: Vec3<f64>) -> [Vec3<f64>; 2] {
+        let end = |s: &Ball<f64>| n.dot(s.0) + s.1;
+        let most = self.spheres.iter().map(end).fold(f64::MIN, f64::max);
+        let first = self
+            .spheres
+            .iter()
+            .position(|s| end(s) >= most)
+            .unwrap_or(0);
+        let corner = self.spheres[first].0;
+        let others = self.spheres.iter().enumerate().filter(|(k, _)| *k != first);
+        let next = others.max_by(|a, b| end(a.1).total_cmp(&end(b.1)));
+        let edge = next.map_or(Vec3::zero(), |(_, s)| s.0 - corner);
+        let is_edge = next.is_some_and(|(_, s)| most - end(s) <= EDGE * edge.length());
+        [corner, if is_edge { edge } else { Vec3::zero() }]
+    }
+
+    fn size(&self) -> f64 {
+        let of_one = |s: &Ball<f64>| s.0.taxicab() + s.1.abs();
+        self.spheres.iter().map(of_one).fold(0.0, f64::max)
+    }
+
+    /// About `origin`, in units of `unit`.
+    fn support(&self, origin: Vec3<f64>, unit: f64) -> Support {
+        let inverse = 1.0 / unit;
+        let local = |s: &Ball<f64>| {
+            let center = (s.0 - origin) * inverse;
+            (center.to_vector(), (s.1 * inverse) as Real)
+        };
+        Support(self.spheres.iter().map(local).collect())
+    }
+}
+
+/// What directions say of two hulls.
+#[derive(Clone, Copy)]
+pub(super) struct HullGap {
+    /// The largest gap along the directions tried, less its rounding: a lower bound of the distance.
+    pub(super) gap: f64,
+    /// Its direction, of length 1, from the first to the second.
+    pub(super) direction: Vec3<f64>,
+    /// The nearest points of the two, or those where they are deepest in each other, as parry found them, if it was asked.
+    pub(super) nearest: Option<[Vec3<f64>; 2]>,
+}
+
+/// The largest gap of two hulls along directions. No more are tried as soon as it is more than `enough`.
+pub(super) fn hull_gap([a, b]: [&PlacedHull; 2], enough: f64) -> HullGap {
+    let y = b.middle() - a.middle();
+    let rounding = 4.0 * ROUNDING_ULPS * f64::EPSILON * (a.size() + b.size());
+    let mut most = (f64::MIN, Vec3::new(1.0, 0.0, 0.0));
+    let mut attempt = |n: Vec3<f64>| {
+        let length = n.length();
+        if length > 0.0 {
+            let n = n * (1.0 / length);
+            let gap = gap_along(&a.spheres, &b.spheres, n) - rounding;
+            if gap > most.0 {
+                most = (gap, n);
+            }
+        }
+        most.0 > enough
+    };
+    let faces = (a.normals.iter().copied()).chain(b.normals.iter().map(|n| -*n));
+    let found = faces.into_iter().any(&mut attempt) || attempt(y);
+    let mut nearest = None;
+    if !found && let Some((n, points)) = proposed([a, b], y) {
+        attempt(n);
+        across([a, b], n).into_iter().flatten().for_each(|n| {
+            attempt(n);
+        });
+        nearest = Some(points);
+    }
+    HullGap {
+        gap: most.0,
+        direction: most.1,
+        nearest,
+    }
+}
+
+/// How much less far than its farthest sphere another of a hull reaches along a direction, in units of the way between them, to
+/// be at the other end of an edge that is nearest.
+const EDGE: f64 = 1.0e-3;
+
+/// Directions near `n` that the corners and edges farthest along it decide, in double precision: from corner to corner,
+/// across one edge, across both.
+fn across([a, b]: [&PlacedHull; 2], n: Vec3<f64>) -> [Option<Vec3<f64>>; 4] {
+    let ([p, e], [q, f]) = (a.farthest(n), b.farthest(-n));
+    let y = q - p;
+    let beside = |e: Vec3<f64>| {
+        let ee = e.length_sq();
+        (ee > 0.0).then(|| y - e * (e.dot(y) / ee))
+    };
+    let along = |m: Vec3<f64>| if m.dot(n) < 0.0 { -m } else { m };
+    [Some(y), beside(e), beside(f), Some(e.cross(f))].map(|m| m.map(along))
+}
+
+/// The direction along which parry finds two hulls apart, or least deep in each other, and the points where they are.
+/// `y`: from middle to middle.
+fn proposed([a, b]: [&PlacedHull; 2], y: Vec3<f64>) -> Option<(Vec3<f64>, [Vec3<f64>; 2])> {
+    let (origin, far) = (a.middle(), b.middle());
+    let extent = |hull: &PlacedHull, middle: Vec3<f64>| {
+        let reaches = hull.spheres.iter().map(|s| (s.0 - middle).length() + s.1);
+        reaches.fold(0.0, f64::max)
+    };
+    let unit = extent(a, origin).max(extent(b, far));
+    if !(unit.is_normal() && y.length().is_finite()) {
+        return None;
+    }
+    let pose = Pose::from_translation((y * (1.0 / unit)).to_vector());
+    let (first, second) = (a.support(origin, unit), b.support(far, unit));
+    let contact = contact_support_map_support_map(&pose, &first, &second, Real::MAX)?;
+    let points = [(contact.point1, origin), (contact.point2, far)];
+    let points = points.map(|(p, origin)| origin + Vec3::from_vector(p) * unit);
+    Some((Vec3::from_vector(contact.normal1), points))
+}
+
+/// Spheres in single precision, as parry's algorithms see their hull.
+struct Support(Vec<(Vector, Real)>);
+
+impl SupportMap for Support {
+    fn local_support_point(&self, direction: Vector) -> Vector {
+        let n = direction.normalize_or_zero();
+        let far = |s: &(Vector, Real)| n.dot(s.0) + s.1;
+        let farther = |a: &&(Vector, Real), b: &&(Vector, Real)| far(a).total_cmp(&far(b));
+        let most = self.0.iter().max_by(farther);
+        most.map_or(Vector::ZERO, |(center, radius)| *center + n * *radius)
+    }
+}
