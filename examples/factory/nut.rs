@@ -58,11 +58,16 @@ pub struct Descent {
 }
 
 impl Descent {
-    /// Advance in a turn over the pitch, from half a turn on; of a nut that made one more.
+    /// Advance in a turn over the pitch, of a nut that made one more from half a turn on: the slope of the line nearest to
+    /// all its ways from there. Its ends alone may be off by its axial play.
     pub fn advance(&self, thread: &Thread) -> Option<f64> {
-        let [turns, down] = *self.ways.iter().find(|[turns, _]| *turns >= 0.5)?;
-        let whole = self.turns - turns;
-        (whole >= 1.0).then(|| (self.down - down) / whole / thread.pitch)
+        let begun = self.ways.iter().position(|[turns, _]| *turns >= 0.5)?;
+        let ways = &self.ways[begun..];
+        let count = ways.len() as f64;
+        let [turns, down] = [0, 1].map(|k| ways.iter().map(|way| way[k]).sum::<f64>() / count);
+        let both: f64 = ways.iter().map(|w| (w[0] - turns) * (w[1] - down)).sum();
+        let square: f64 = ways.iter().map(|w| (w[0] - turns).powi(2)).sum();
+        (self.turns - ways[0][0] >= 1.0).then(|| both / square / thread.pitch)
     }
 
     /// Whether the nut left its thread.
