@@ -46,6 +46,7 @@ mod limits;
 mod linking;
 mod local_thickness;
 mod lock_box;
+mod locked_axes;
 mod modified;
 mod multibodies;
 mod neighbours;

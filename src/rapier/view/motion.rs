@@ -367,10 +367,11 @@ impl Body {
     }
 }
 
-/// Acceleration of a dynamic body by gravity and the user's forces.
+/// Acceleration of a dynamic body by gravity and the user's forces: none along axes that are locked.
 pub fn forces_per_mass(body: &RigidBody, gravity: Vector) -> Vector {
     let inverse_mass = body.mass_properties().effective_inv_mass;
-    gravity * body.gravity_scale() + body.user_force() * inverse_mass
+    let free = inverse_mass.map(|inverse| if inverse > 0.0 { 1.0 } else { 0.0 });
+    gravity * free * body.gravity_scale() + body.user_force() * inverse_mass
 }
 
 /// Linear and angular velocity with which a body starts into a step of `dt` seconds. Of a body that is
