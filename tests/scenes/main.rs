@@ -49,6 +49,7 @@ mod lock_box;
 mod locked_axes;
 mod modified;
 mod multibodies;
+mod muted;
 mod neighbours;
 mod odd_steps;
 mod oracle;

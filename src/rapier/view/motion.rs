@@ -262,8 +262,11 @@ impl Body {
         };
     }
 
-    /// Motion from `time` on.
+    /// Motion from `time` on; at its own time it starts where the body is, to the bit.
     pub fn motion_from(&self, time: Real) -> NonlinearRigidMotion {
+        if time == self.time {
+            return self.motion;
+        }
         NonlinearRigidMotion {
             start: self.motion.position_at_time(time - self.time),
             ..self.motion
