@@ -57,12 +57,11 @@ impl Response {
                 blow.add_to(self.impulses.entry(pair).or_default());
                 self.change_velocities(view, &moved, &point, j);
             }
+            let mut is_stopped = false;
             if let Some(moving) = moving {
                 impact = point.impact(&moving, material);
-                let stands = both.map(|b| self.stands(view, b));
-                let share = 1.0 - hit.time / policy.dt;
-                lose_gains(view, both, stands, &point, (&moving, &impact), share);
                 moved = moving;
+                is_stopped = true;
             }
             let motion = point.relative_motion();
             let approach = -motion.dot(hit.normal);
@@ -75,6 +74,19 @@ impl Response {
             let is_held = impact.resistance() < HELD * resistance_alone(free, &point, hit.normal);
             if let Some(j) = impact.impulse(motion, out).filter(|_| !is_held) {
                 change_motions(view, &moved, &point, j);
+                if is_stopped {
+                    let stands = both.map(|b| self.stands(view, b));
+                    let share = 1.0 - hit.time / policy.dt;
+                    let deflected = j.dot(hit.normal) * impact.resistance();
+                    lose_gains(
+                        view,
+                        both,
+                        stands,
+                        &point,
+                        (&moved, &impact),
+                        (share, deflected),
+                    );
+                }
             }
         }
         let moved = moved.bodies;
