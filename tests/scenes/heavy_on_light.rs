@@ -52,17 +52,14 @@ fn rolls_over_rings(seed: u64, ratio: Real) -> [Real; 2] {
     [start, gained]
 }
 
-/// What stopped light bodies hold up gains no speed by its weight while it gets no lower. Without taking that back, such
-/// balls gained up to 1.5 times their energy (decision 0009). One heap of 16 gave a ball .01 to .03 of it, one of the first four
-/// .07 with `enhanced-determinism`: which one is chance. (A ball of 100,000 times a ring's mass is lifted by rings that it rolls against, and gains up to 0.4 of its energy.)
+/// Symptom: a ball of 10,000 times a ring's mass that rolled over rings rose with a velocity that went on falling, in one of
+/// eight heaps by 0.07 of its energy. Cause: rings that were stopped turn its path upwards as a wall would, but take of its
+/// velocity only what so light a body can. What its weight would take on that way is taken back too.
 #[test]
 fn a_heavy_ball_that_rolls_over_light_rings_gains_no_energy() {
-    let gains = (1..=8).map(|seed| {
+    for seed in 1..=8 {
         let [start, gained] = rolls_over_rings(seed, 1.0e4);
         println!("heap {seed}: starts with {start} J/kg, gains {gained}");
-        gained / start
-    });
-    let mut gains: Vec<Real> = gains.collect();
-    gains.sort_by(Real::total_cmp);
-    assert!(gains[6] < 0.02 && gains[7] < 0.1, "gains {gains:?}");
+        assert!(gained < 1.0e-3 * start, "heap {seed}: gains {gained} J/kg");
+    }
 }

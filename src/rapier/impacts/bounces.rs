@@ -6,7 +6,7 @@ use crate::medial::MedialMesh;
 use crate::parry::distance::{is_within, nearest};
 use crate::rapier::effects::Effect;
 use crate::rapier::impacts::impulse::Material;
-use crate::rapier::impacts::toi_query::{CcdPolicy, Hit, Work, reach};
+use crate::rapier::impacts::toi_query::{CcdPolicy, Hit, Work};
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 use parry3d::shape::Shape;
@@ -144,7 +144,7 @@ impl CcdPolicy<'_> {
         let gap = self.tuning.touching * self.gap(view.thickness(pair));
         let [start1, start2] = pair.map(|k| view.motion(k, 0.0).start);
         let [shape1, shape2] = pair.map(|k| &*view.parts[k].shape);
-        let reach = reach(view, pair, gap);
+        let reach = self.reach(view, pair, gap);
         match shape1.as_shape::<MedialMesh>() {
             Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2), reach),
             None => (shape2.as_shape(), shape1, start2.inv_mul(&start1), reach),

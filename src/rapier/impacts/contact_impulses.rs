@@ -19,8 +19,9 @@ use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 
-/// Share of the speed that an impulse gives two bodies which joints leave of it, below which joints hold the contact
-/// itself, as between neighbours in a chain: there is nothing to push, and the impulse would have no bound.
+/// Share of the speed that an impulse gives two bodies which joints and locked axes leave of it, below which these hold
+/// the contact itself, as between neighbours in a chain, or where a body is driven along an axis that is locked: there is
+/// nothing to push, and the impulse would have no bound.
 const HELD: Real = 0.02;
 
 impl Response {
@@ -47,7 +48,8 @@ impl Response {
         let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, Material::of(c1, c2));
         let own = point.impact(&system, material);
         let (mut moved, mut impact) = (system, own);
-        if own.resistance() >= HELD * resistance_alone(view, both, &point, hit.normal) {
+        let free = both.map(|b| unlocked(view, both, b));
+        if own.resistance() >= HELD * resistance_alone(free, &point, hit.normal) {
             if let Some(j) = own.impulse(approach, 0.0) {
                 let poses = pair.map(|k| view.motion(k, hit.time).start);
                 let contact = (hit.point, hit.normal, -hit.depth);
@@ -55,19 +57,36 @@ impl Response {
                 blow.add_to(self.impulses.entry(pair).or_default());
                 self.change_velocities(view, &moved, &point, j);
             }
+            let mut is_stopped = false;
             if let Some(moving) = moving {
                 impact = point.impact(&moving, material);
-                let stands = both.map(|b| self.stands(view, b));
-                let share = 1.0 - hit.time / policy.dt;
-                lose_gains(view, both, stands, &point, (&moving, &impact), share);
                 moved = moving;
+                is_stopped = true;
             }
             let motion = point.relative_motion();
             let approach = -motion.dot(hit.normal);
             let fastest = point.greatest_speed(both.map(|b| view.bodies[b].velocity));
             let out = way_out(view, policy, pair, hit, approach, fastest, undisturbed);
-            if let Some(j) = impact.impulse(motion, out) {
+            let free = [0, 1].map(|k| match self.courses[both[k]].frozen {
+                true => Inertia::INFINITE,
+                false => free[k],
+            });
+            let is_held = impact.resistance() < HELD * resistance_alone(free, &point, hit.normal);
+            if let Some(j) = impact.impulse(motion, out).filter(|_| !is_held) {
                 change_motions(view, &moved, &point, j);
+                if is_stopped {
+                    let stands = both.map(|b| self.stands(view, b));
+                    let share = 1.0 - hit.time / policy.dt;
+                    let deflected = j.dot(hit.normal) * impact.resistance();
+                    lose_gains(
+                        view,
+                        both,
+                        stands,
+                        &point,
+                        (&moved, &impact),
+                        (share, deflected),
+                    );
+                }
             }
         }
         let moved = moved.bodies;
@@ -144,28 +163,34 @@ fn change_motions(view: &mut StepView, system: &System, point: &ContactPoint, im
     }
 }
 
-/// Inertia that resists an impulse on a body, where the two bodies of a contact are `both`.
-fn inertia(view: &StepView, both: [usize; 2], body: usize) -> Inertia {
+/// Whether an impulse moves a body, where the two bodies of a contact are `both`.
+fn is_movable(view: &StepView, both: [usize; 2], body: usize) -> bool {
     let dominance = both.map(|b| view.bodies[b].dominance);
     let [first, second] = both.map(|b| b == body);
     let is_strong = first && dominance[0] > dominance[1] || second && dominance[1] > dominance[0];
-    if view.bodies[body].kind == Kind::Free && !is_strong {
-        Inertia::of(&view.bodies[body])
-    } else {
-        Inertia::INFINITE
+    view.bodies[body].kind == Kind::Free && !is_strong
+}
+
+/// Inertia that resists an impulse on a body, where the two bodies of a contact are `both`.
+fn inertia(view: &StepView, both: [usize; 2], body: usize) -> Inertia {
+    match is_movable(view, both, body) {
+        true => Inertia::of(&view.bodies[body]),
+        false => Inertia::INFINITE,
     }
 }
 
-/// Relative speed along the normal that a unit impulse along it would give the two bodies of a contact without their
-/// joints.
-fn resistance_alone(
-    view: &StepView,
-    both: [usize; 2],
-    point: &ContactPoint,
-    normal: Vector,
-) -> Real {
+/// The same without locked axes.
+fn unlocked(view: &StepView, both: [usize; 2], body: usize) -> Inertia {
+    match is_movable(view, both, body) {
+        true => Inertia::unlocked(&view.bodies[body]),
+        false => Inertia::INFINITE,
+    }
+}
+
+/// Relative speed along the normal that a unit impulse along it would give two bodies of these inertias without joints.
+fn resistance_alone(inertias: [Inertia; 2], point: &ContactPoint, normal: Vector) -> Real {
     let alone = |k: usize| {
-        let change = inertia(view, both, both[k]).apply(point.wrench(k, normal));
+        let change = inertias[k].apply(point.wrench(k, normal));
         point.velocity(change, k).dot(normal)
     };
     alone(0) + alone(1)

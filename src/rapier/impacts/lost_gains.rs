@@ -1,10 +1,14 @@
-//! Takes back what forces give a body in the rest of a step in which it gets nowhere, because it presses on one that
-//! was stopped.
+//! Takes back what forces give a body, or would take from it, on a way that it does not go, or goes only because bodies that
+//! were stopped turn it aside.
 //!
 //! A stopped body is in the way of the other's path as if its mass were infinite, but takes of its velocity only what its
 //! own mass can. A heavy body on light ones that are stopped would so gain speed by its weight in each step without
-//! getting lower. So the stopped body also holds its velocity, by an impulse that takes back no more than forces give the
-//! other along the normal until the step ends.
+//! getting lower, or rise against it for nothing. So the stopped body also holds its velocity.
+//!
+//! Let the path be turned aside by the speed `u` along the normal, for the rest `τ` of the step, and let forces pull with
+//! the acceleration `g` against the normal: on that way they do the work `g u τ` per mass less. An impulse that takes `δ`
+//! of the approach `v` of the velocities takes the energy `δ v` per mass, to first order, so `δ = g τ u / v`, and no more
+//! than `v`. Where the path approached as fast as the velocities, `u = v`, this is the speed that forces add in that time.
 
 use crate::math::{Real, Vector};
 use crate::rapier::impacts::contact_point::ContactPoint;
@@ -13,17 +17,18 @@ use crate::rapier::joints::tied_system::System;
 use crate::rapier::view::step_view::StepView;
 
 /// Takes back what forces give two bodies towards each other in the last `share` of the step, one of which `stands`, and
-/// what joints tie to them. `system`: what moves of these; `impact`: of the two in it.
+/// what joints tie to them, where the paths were `deflected` by so much speed along the normal. `system`: what moves of
+/// these; `impact`: of the two in it.
 pub fn lose_gains(
     view: &mut StepView,
     bodies: [usize; 2],
     stands: [bool; 2],
     point: &ContactPoint,
     (system, impact): (&System, &Impact),
-    share: Real,
+    (share, deflected): (Real, Real),
 ) {
     let gain = |k: usize| {
-        let gains = view.bodies[bodies[k]].gains(share);
+        let gains = view.bodies[bodies[k]].pull() * share;
         if stands[k] { Vector::ZERO } else { gains }
     };
     let velocity = |k: usize| {
@@ -31,8 +36,9 @@ pub fn lose_gains(
         if stands[k] { point.motion(k) } else { velocity }
     };
     let approach = (velocity(0) - velocity(1)).dot(impact.normal);
-    let lost = (gain(0) - gain(1)).dot(impact.normal).min(approach);
-    if lost <= 0.0 || impact.resistance() <= Real::MIN_POSITIVE {
+    let gained = (gain(0) - gain(1)).dot(impact.normal);
+    let lost = (gained * deflected / approach).min(approach);
+    if approach <= 0.0 || lost <= 0.0 || impact.resistance() <= Real::MIN_POSITIVE {
         return;
     }
     let impulse = impact.normal * (lost / impact.resistance());

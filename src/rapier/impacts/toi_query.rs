@@ -23,6 +23,11 @@ use crate::rapier::tuning::Tuning;
 use crate::rapier::view::step_view::StepView;
 use parry3d::query::NonlinearRigidMotion;
 
+/// Distance by which a pair that touches at the start of the step may be farther apart than the gap at which it was left,
+/// in units of rapier's length unit. Smaller, and a pair that rests is muted for rounding; larger, and thin parts that pass
+/// beside each other are left to the solver, which stops them.
+const TOUCHING_MORE: Real = 1.0e-4;
+
 counters! {
     /// Work that the searches of a step for first contacts took.
     pub struct Work {
@@ -321,18 +326,17 @@ impl CcdPolicy<'_> {
         }
     }
 
+    /// Distance between two shapes, a length, up to which their surfaces count as `distance` apart, skins included.
+    pub fn reach(&self, view: &StepView, [i, j]: [usize; 2], distance: Real) -> Real {
+        let skins = view.parts[i].skin + view.parts[j].skin;
+        distance + skins + TOUCHING_MORE * self.unit
+    }
+
     /// The floor in the units of [`Query::deepest`]: primitives that may get there before they count as in contact have
     /// a query of their own for it.
     pub fn floor_depth(&self) -> f64 {
         -f64::from(self.tuning.floor)
     }
-}
-
-/// Distance between two shapes, a length, up to which their surfaces count as `distance` apart, skins
-/// included.
-pub fn reach(view: &StepView, [i, j]: [usize; 2], distance: Real) -> Real {
-    let skins = view.parts[i].skin + view.parts[j].skin;
-    distance + skins + ToiOptions::default().tolerance
 }
 
 /// The certified query for two colliders, one of them medial. `None` for shapes that cannot be swept.

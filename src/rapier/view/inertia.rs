@@ -26,9 +26,17 @@ impl Inertia {
         },
     };
 
+    /// Inertia of a free body where it is now, as if it had no locked axes.
+    pub fn unlocked(body: &Body) -> Self {
+        Self {
+            mass: Vector::splat(body.mass.inv_mass),
+            angular: body.mass.world_inv_inertia(&body.motion.start.rotation),
+        }
+    }
+
     /// Inertia of a free body where it is now.
     pub fn of(body: &Body) -> Self {
-        let mut i = body.mass.world_inv_inertia(&body.motion.start.rotation);
+        let mut i = Self::unlocked(body).angular;
         if body.locked.contains(LockedAxes::ROTATION_LOCKED_X) {
             (i.m11, i.m12, i.m13) = (0.0, 0.0, 0.0);
         }

@@ -262,8 +262,11 @@ impl Body {
         };
     }
 
-    /// Motion from `time` on.
+    /// Motion from `time` on; at its own time it starts where the body is, to the bit.
     pub fn motion_from(&self, time: Real) -> NonlinearRigidMotion {
+        if time == self.time {
+            return self.motion;
+        }
         NonlinearRigidMotion {
             start: self.motion.position_at_time(time - self.time),
             ..self.motion
@@ -367,10 +370,11 @@ impl Body {
     }
 }
 
-/// Acceleration of a dynamic body by gravity and the user's forces.
+/// Acceleration of a dynamic body by gravity and the user's forces: none along axes that are locked.
 pub fn forces_per_mass(body: &RigidBody, gravity: Vector) -> Vector {
     let inverse_mass = body.mass_properties().effective_inv_mass;
-    gravity * body.gravity_scale() + body.user_force() * inverse_mass
+    let free = inverse_mass.map(|inverse| if inverse > 0.0 { 1.0 } else { 0.0 });
+    gravity * free * body.gravity_scale() + body.user_force() * inverse_mass
 }
 
 /// Linear and angular velocity with which a body starts into a step of `dt` seconds. Of a body that is
