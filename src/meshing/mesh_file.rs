@@ -180,8 +180,10 @@ impl Source<'_> {
 #[derive(Default)]
 struct Polygons {
     vertices: Vec<Vector>,
-    /// Vertices of all polygons, one after the other, as the file counts them less its first index.
+    /// Vertices of all polygons, one after the other, counted from 0.
     corners: Vec<u64>,
+    /// The index by which the file calls its first vertex.
+    first_index: u64,
     /// End of each polygon in `corners`, and its line in a text file.
     ends: Vec<(usize, Option<usize>)>,
 }
@@ -213,7 +215,11 @@ impl Polygons {
                     return Err(match line {
                         Some(line) => source.at_line(
                             line,
-                            format!("vertex {value} (from 0) is not among the {count}"),
+                            format!(
+                                "vertex {} (from {}) is not among the {count}",
+                                value.saturating_add(self.first_index),
+                                self.first_index
+                            ),
                         ),
                         None => BuildError::IndexOutOfRange {
                             index,

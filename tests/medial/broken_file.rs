@@ -29,7 +29,7 @@ fn malformed_text_names_its_line() {
             Obj,
             format!("{triangle}\nf 1 2 4\n"),
             "line 5",
-            "vertex 3 (from 0)",
+            "vertex 4 (from 1) is not among the 3",
         ),
         (
             Obj,

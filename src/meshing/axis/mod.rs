@@ -12,6 +12,7 @@ pub(crate) mod inner_balls;
 pub(crate) mod insertion_order;
 pub(crate) mod local_spacing;
 pub(crate) mod prism_axis;
+pub(crate) mod ribs;
 pub(crate) mod roof;
 pub(crate) mod sheet_triangles;
 pub(crate) mod sheets;

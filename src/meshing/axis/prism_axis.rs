@@ -28,8 +28,18 @@ const SAME_AREA: f64 = 1e-3;
 pub fn prism_axis(loops: &[Vec<Point>], half: f64, same: f64) -> Option<Draft> {
     (0..SEEDS).find_map(|seed| {
         let roof = polygon_roof(loops, half, seed)?;
-        Lift::new(loops, half, roof, same).draft()
+        Lift::new(loops, half, roof, same).whole()
     })
+}
+
+/// Those balls and slabs of a prism that are of given edges of its polygon alone: the sheets between these and the caps, and
+/// the walls between two of them.
+pub fn prism_axis_of(loops: &[Vec<Point>], half: f64, same: f64, is_of: &[bool]) -> Option<Draft> {
+    let roof = polygon_roof(loops, half, 0)?;
+    let mut lift = Lift::new(loops, half, roof, same);
+    lift.cells(&|side| is_of[side])?;
+    lift.walls(&|side| is_of[side]);
+    Some(lift.draft)
 }
 
 struct Lift<'a> {
@@ -94,10 +104,11 @@ impl<'a> Lift<'a> {
         }
     }
 
-    fn draft(mut self) -> Option<Draft> {
-        let mut area = self.cells()?;
+    /// All of it.
+    fn whole(mut self) -> Option<Draft> {
+        let mut area = self.cells(&|_| true)?;
         area += self.top();
-        self.walls();
+        self.walls(&|_| true);
         let wanted: f64 = self.loops.iter().map(|l| polygon_area(l)).sum();
         ((area - wanted).abs() <= SAME_AREA * wanted).then_some(self.draft)
     }
@@ -106,8 +117,8 @@ impl<'a> Lift<'a> {
         self.roof.nodes[node as usize]
     }
 
-    /// Sheets between each edge and the caps; their area, seen from above.
-    fn cells(&mut self) -> Option<f64> {
+    /// Sheets between edges and the caps; their area, seen from above.
+    fn cells(&mut self, is_of: &dyn Fn(usize) -> bool) -> Option<f64> {
         let sides: usize = self.loops.iter().map(Vec::len).sum();
         let mut bounds: Vec<Vec<[u32; 2]>> = vec![Vec::new(); sides];
         let mut first = 0;
@@ -130,7 +141,7 @@ impl<'a> Lift<'a> {
             }
         }
         let mut area = 0.0;
-        for bound in bounds {
+        for (_, bound) in (0..).zip(bounds).filter(|(side, _)| is_of(*side)) {
             let bound = bound.iter().map(|ends| ends.map(|v| self.own[v as usize]));
             for around in chained(bound.filter(|[a, b]| a != b).collect())? {
                 area += self.cell(around);
@@ -187,12 +198,12 @@ impl<'a> Lift<'a> {
         area
     }
 
-    /// Walls over the ridges.
-    fn walls(&mut self) {
+    /// Walls over the ridges between edges.
+    fn walls(&mut self, is_of: &dyn Fn(usize) -> bool) {
         let edges = std::mem::take(&mut self.roof.edges);
         for edge in edges.iter().filter(|e| !e.is_valley) {
             let [a, b] = edge.ends.map(|v| self.own[v as usize]);
-            if a == b {
+            if a == b || !edge.sides.iter().all(|side| is_of(*side)) {
                 continue;
             }
             let [[a_up, a_low], [b_up, b_low]] = [a, b].map(|v| self.balls_of(v));

@@ -88,6 +88,9 @@ enum Event {
 /// The roof over a polygon up to `height`: loops around it, matter on their left. `None` where it is not simple, or where
 /// rounding spoilt it: another `seed` may do.
 pub fn polygon_roof(loops: &[Vec<Point>], height: f64, seed: u64) -> Option<PolygonRoof> {
+    if crosses_itself(loops) {
+        return None;
+    }
     let mut front = Wavefront::new(loops, seed)?;
     let most = EVENTS * front.lines.len();
     for _ in 0..most {
@@ -316,6 +319,27 @@ impl Wavefront {
             self.roof.top.push(around);
         }
     }
+}
+
+/// Whether two edges of loops cross.
+fn crosses_itself(loops: &[Vec<Point>]) -> bool {
+    let next = |points: &Vec<Point>, k: usize| points[(k + 1) % points.len()];
+    let of = |points: &Vec<Point>| -> Vec<[Point; 2]> {
+        let edge = |k: usize| [points[k], next(points, k)];
+        (0..points.len()).map(edge).collect()
+    };
+    let edges: Vec<[Point; 2]> = loops.iter().flat_map(of).collect();
+    let parts = |[a, b]: [Point; 2], [c, d]: [Point; 2]| {
+        let side = |p: Point| cross(b - a, p - a);
+        side(c) * side(d) < 0.0
+    };
+    let crosses = |(k, edge): (usize, &[Point; 2])| {
+        let later = edges[k + 1..].iter();
+        later
+            .clone()
+            .any(|other| parts(*edge, *other) && parts(*other, *edge))
+    };
+    edges.iter().enumerate().any(crosses)
 }
 
 /// To the left of a direction.

@@ -7,7 +7,10 @@ use crate::math::Vector;
 use crate::medial::text::{Line, Lines, TextError, quote};
 
 pub(super) fn read(source: &Source) -> Result<Polygons, BuildError> {
-    let mut polygons = Polygons::default();
+    let mut polygons = Polygons {
+        first_index: 1,
+        ..Default::default()
+    };
     let mut lines = Lines::new(source.bytes);
     let mut read_all = || -> Result<(), TextError> {
         while let Some(line) = lines.next_line()? {

@@ -5,6 +5,7 @@ use crate::math::Real;
 use crate::meshing::axis::start::{Start, start};
 use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::recipe::counts::{Collapses, LARGEST_GAIN};
+use crate::meshing::recipe::extruded::NEAR;
 use crate::meshing::recipe::ladder::Ladder;
 use crate::meshing::recipe::polyhedron::polyhedra;
 use crate::meshing::recipe::smallest::Smallest;
@@ -17,10 +18,6 @@ use crate::meshing::watch::Watch;
 /// The plain collapses of two medial meshes of one body are compared by few samples: the one whose largest
 /// residual is above this many of the other's is not fitted.
 const HOPELESS: f64 = 2.0;
-
-/// A prism that is off by no more than this (longest side 1) is not fitted as well: fits of prisms by 200 primitives are
-/// off by .002 to .006.
-const NEAR: f64 = 2.5e-3;
 
 /// Samples for tens of primitives.
 const FEW_SAMPLES: usize = 2_000;
@@ -39,8 +36,9 @@ impl Source {
             return Ok(exact);
         }
         let prism = match self.limits.max_error {
+            _ if exact.is_some() => None,
             None => self.extruded(watch)?,
-            Some(_) => None,
+            Some(limit) => self.extruded_within(limit, watch)?,
         };
         let prism = match prism {
             Some(prism) if prism.error() <= NEAR => return Ok(prism),
@@ -49,7 +47,7 @@ impl Source {
         let (start, samples) = self.start(exact.is_some(), watch)?;
         match self.limits.max_error {
             None => self.rounded_or_creased(start, samples, prism, watch),
-            Some(limit) => self.within(limit, start, samples, exact, watch),
+            Some(limit) => self.within(limit, start, samples, exact.or(prism), watch),
         }
     }
 
@@ -115,11 +113,7 @@ impl Source {
                 creases,
             }) => Some(self.collapses(Parts::solid(simplifier), creases, most, watch)?),
         };
-        let best = self.better(rounded, creased, watch)?;
-        Ok(match prism {
-            Some(prism) if prism.error() < best.error() => prism,
-            _ => best,
-        })
+        self.better(rounded, creased, prism, watch)
     }
 
     /// A medial mesh that keeps creases, if any are wanted, and there are any.
@@ -135,38 +129,51 @@ impl Source {
         }
     }
 
-    /// The better of two medial meshes of one body, fitted and measured.
+    /// The best of two medial meshes of one body, fitted and measured, and a prism. What is too far off to become better than
+    /// another by a fit is not fitted.
     fn better(
         &self,
         rounded: Collapses,
         creased: Option<Collapses>,
+        prism: Option<Candidate>,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
-        let Some(creased) = creased else {
-            return self.best_of(&rounded, None, watch);
-        };
-        let sharp_first = creased.rough_error <= rounded.rough_error;
-        let (first, second) = match sharp_first {
-            true => (&creased, &rounded),
-            false => (&rounded, &creased),
-        };
-        let mut best = self.best_of(first, Some(f64::INFINITY), watch)?;
-        let mut is_sharp = sharp_first;
-        // The other has that error to beat, and no fit gains more than so much.
-        let bar = LARGEST_GAIN * best.error();
-        if second.rough_error <= bar.min(HOPELESS * first.rough_error) {
-            let other = self.best_of(second, Some(best.error()), watch)?;
-            if other.error() < best.error() || (sharp_first && other.error() == best.error()) {
-                (best, is_sharp) = (other, !sharp_first);
+        let both = creased.is_some();
+        let fitted = |own: &Collapses, rival: f64, watch: &mut Watch| {
+            let mut best = self.best_of(own, both.then_some(rival), watch)?;
+            if own.creases() > 0 {
+                best.keeps_creases(own.creases());
             }
-        }
-        if is_sharp {
-            best.keeps_creases(creased.creases());
+            Ok::<_, BuildError>(best)
+        };
+        let sharp_first = creased
+            .as_ref()
+            .is_some_and(|c| c.rough_error <= rounded.rough_error);
+        let (first, second) = match &creased {
+            Some(creased) if sharp_first => (creased, Some(&rounded)),
+            creased => (&rounded, creased.as_ref()),
+        };
+        let mut best = match prism {
+            Some(prism) if first.rough_error > self.gain(first, both) * prism.error() => prism,
+            prism => {
+                let rival = prism.as_ref().map_or(f64::INFINITY, Candidate::error);
+                nearer(fitted(first, rival, watch)?, prism)
+            }
+        };
+        if let Some(second) = second {
+            // It has that error to beat, and no fit gains more than so much.
+            let bar = LARGEST_GAIN * best.error();
+            if second.rough_error <= bar.min(HOPELESS * first.rough_error) {
+                let other = fitted(second, best.error(), watch)?;
+                if other.error() < best.error() || (sharp_first && other.error() == best.error()) {
+                    best = other;
+                }
+            }
         }
         Ok(best)
     }
 
-    /// The smallest medial mesh whose error is at most `limit`, or the best that there is; `exact` is one that may
+    /// The smallest medial mesh whose error is at most `limit`, or the best that there is; `exact` is one that keeps it and may
     /// be larger than it takes.
     fn within(
         &self,
@@ -195,7 +202,8 @@ impl Source {
             None => None,
             Some(creased) => Some(self.collapses(creased.finest, creased.creases, top, watch)?),
         };
-        let mut candidate = self.better(rounded, creased, watch)?;
+        let prism = self.extruded(watch)?;
+        let mut candidate = self.better(rounded, creased, prism, watch)?;
         let (count, error) = (candidate.draft.primitives().len(), candidate.error());
         candidate.notes.push(match asked.filter(|most| *most <= top) {
             Some(most) => format!(
@@ -208,5 +216,13 @@ impl Source {
             ),
         });
         Ok(candidate)
+    }
+}
+
+/// The nearer of a medial mesh and a prism, if there is one.
+fn nearer(fitted: Candidate, prism: Option<Candidate>) -> Candidate {
+    match prism {
+        Some(prism) if prism.error() < fitted.error() => prism,
+        _ => fitted,
     }
 }

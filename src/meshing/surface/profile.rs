@@ -149,7 +149,7 @@ fn sides(around: &[Point]) -> impl Iterator<Item = Point> {
 }
 
 /// A loop of fewer edges outside of another, within `thickness` and evenly near.
-fn fewer(points: &[Point], thickness: f64) -> Option<Vec<Point>> {
+pub fn fewer(points: &[Point], thickness: f64) -> Option<Vec<Point>> {
     let n = points.len();
     let turn = |k: &usize| {
         let (d, e) = (
