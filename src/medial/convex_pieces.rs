@@ -28,13 +28,13 @@ pub struct Face {
 /// A connected part of a mesh that is the convex hull of its spheres, in the body's frame.
 #[derive(Clone, Debug)]
 pub struct ConvexPiece {
-    /// Its first primitive.
+    /// Its thinnest primitive, of which its contacts are told: they count as thick as it is.
     pub primitive: u32,
     /// Its spheres.
     pub spheres: Vec<MedialSphere>,
     /// Its flat faces.
     pub faces: Vec<Face>,
-    /// The least thickness of its primitives, a length (`thickness.rs`).
+    /// The thickness of that, a length (`thickness.rs`).
     pub thickness: Real,
 }
 
@@ -53,15 +53,20 @@ impl ConvexPiece {
                 }
             }
         }
-        let thickness = of_group().map(|p| {
+        let thickness = |p: &Simplex| {
             let own = p.vertices.map(|v| spheres[v as usize]);
             thickness::of_primitive(&own[..usize::from(p.len).clamp(1, 3)])
-        });
+        };
+        let thicknesses = group
+            .iter()
+            .map(|p| (*p, thickness(&primitives[*p as usize])));
+        let thinnest = thicknesses.min_by(|p, q| p.1.total_cmp(&q.1));
+        let (primitive, thickness) = thinnest.unwrap_or((group[0], 0.0));
         let spheres: Vec<_> = vertices.iter().map(|v| spheres[*v as usize]).collect();
         Self {
-            primitive: group[0],
+            primitive,
             faces: normals.iter().filter_map(|n| face(&spheres, *n)).collect(),
-            thickness: thickness.fold(Real::MAX, Real::min),
+            thickness,
             spheres,
         }
     }

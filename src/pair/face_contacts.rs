@@ -7,6 +7,7 @@ use super::placement::Placement;
 use super::sphere_pair::SpherePair;
 use crate::math::Real;
 use crate::math::lane::Vec3;
+use crate::math::tolerance::ROUNDING_ULPS;
 
 /// Cosine of the angle between the normal of a face and the direction of the contact up to which the face lies flat
 /// (10°, that of one contact patch).
@@ -15,6 +16,10 @@ const FLAT: f64 = 0.985;
 /// How much better, in cosines, the face of the second has to lie to be the one that contacts are measured from. At 0
 /// rounding decides, and contacts change from step to step.
 const BETTER: f64 = 1.0e-3;
+
+/// By how much the deepest corner of two faces may be less deep than the hulls are, in units of that, for the nearest points
+/// to be no contact of their own.
+const MISSED: f64 = 0.05;
 
 /// Feature of the nearest points, which belong to no face.
 const NEAREST: u32 = 1 << 18;
@@ -76,9 +81,10 @@ pub(super) fn face_contacts(
             });
         }
     }
-    if found.is_empty()
-        && let Some(points) = nearest
-    {
+    // Corners of the facing polygon need not be the deepest of their hull: that may be where other faces meet.
+    let deepest = found.iter().map(|c| f64::from(c.distance));
+    let is_deepest_missing = deepest.fold(f64::MAX, f64::min) > gap + least_missed(hulls, gap);
+    if is_deepest_missing && let Some(points) = nearest {
         let middle = (points[0] + points[1]) * 0.5;
         let half = direction * (0.5 * gap);
         found.push(pair(
@@ -89,6 +95,11 @@ pub(super) fn face_contacts(
         ));
     }
     found
+}
+
+/// By how much the deepest corner is less deep than the hulls, of this gap, if it is missing: more than rounding.
+fn least_missed([a, b]: [&PlacedHull; 2], gap: f64) -> f64 {
+    MISSED * gap.abs() + ROUNDING_ULPS * f64::from(Real::EPSILON) * (a.size() + b.size())
 }
 
 /// The face whose normal is nearest to a direction, and the cosine of the angle between them.

@@ -69,7 +69,8 @@ impl<'a> PlacedHull<'a> {
         [corner, if is_edge { edge } else { Vec3::zero() }]
     }
 
-    fn size(&self) -> f64 {
+    /// A bound of the coordinates of its spheres.
+    pub(super) fn size(&self) -> f64 {
         let of_one = |s: &Ball<f64>| s.0.taxicab() + s.1.abs();
         self.spheres.iter().map(of_one).fold(0.0, f64::max)
     }
@@ -97,36 +98,97 @@ pub(super) struct HullGap {
 }
 
 /// The largest gap of two hulls along directions. No more are tried as soon as it is more than `enough`.
-pub(super) fn hull_gap([a, b]: [&PlacedHull; 2], enough: f64) -> HullGap {
+pub(super) fn hull_gap(hulls: [&PlacedHull; 2], enough: f64) -> HullGap {
+    let [a, b] = hulls;
     let y = b.middle() - a.middle();
-    let rounding = 4.0 * ROUNDING_ULPS * f64::EPSILON * (a.size() + b.size());
-    let mut most = (f64::MIN, Vec3::new(1.0, 0.0, 0.0));
-    let mut attempt = |n: Vec3<f64>| {
+    let mut best = Best {
+        hulls,
+        rounding: 4.0 * ROUNDING_ULPS * f64::EPSILON * (a.size() + b.size()),
+        gap: f64::MIN,
+        direction: Vec3::new(1.0, 0.0, 0.0),
+    };
+    let faces = (a.normals.iter().copied()).chain(b.normals.iter().map(|n| -*n));
+    let found = faces.chain([y]).any(|n| best.attempt(n) > enough);
+    let mut nearest = None;
+    if !found && let Some(unit) = unit(hulls, y) {
+        if let Some((n, points)) = proposed(hulls, y, unit) {
+            best.attempt_about(n);
+            nearest = Some(points);
+        }
+        for _ in 0..ROUNDS {
+            if best.gap > enough {
+                break;
+            }
+            let (before, along) = (best.gap, best.direction);
+            let way = along * (APART * unit - before);
+            let Some((n, [p, q])) = proposed(hulls, y + way, unit) else {
+                break;
+            };
+            best.attempt_about(n);
+            nearest = Some([p, q - way]);
+            if best.gap - before <= BETTER * before.abs() {
+                break;
+            }
+        }
+    }
+    HullGap {
+        gap: best.gap,
+        direction: best.direction,
+        nearest,
+    }
+}
+
+/// How far hulls are moved apart along the best direction known, to ask for the direction in which they are nearest then,
+/// in units of the larger one's extent. No gap is less along that: of all directions it has the largest gap of the moved
+/// hulls, and moving them added to the gap along the best one as much as to any. EPA errs where hulls just touch, and GJK
+/// has no more than single precision; hulls that are apart by this much are not hard for it.
+const APART: f64 = 0.02;
+
+/// Gain in units of the gap from which hulls are moved apart once more, along the better direction, and how often at most.
+const BETTER: f64 = 1.0e-3;
+const ROUNDS: usize = 4;
+
+/// The direction of the largest gap of two hulls among those tried.
+struct Best<'a> {
+    hulls: [&'a PlacedHull<'a>; 2],
+    rounding: f64,
+    gap: f64,
+    direction: Vec3<f64>,
+}
+
+impl Best<'_> {
+    /// Tries a direction of any length; returns the largest gap so far.
+    fn attempt(&mut self, n: Vec3<f64>) -> f64 {
         let length = n.length();
         if length > 0.0 {
             let n = n * (1.0 / length);
-            let gap = gap_along(&a.spheres, &b.spheres, n) - rounding;
-            if gap > most.0 {
-                most = (gap, n);
+            let [a, b] = self.hulls;
+            let gap = gap_along(&a.spheres, &b.spheres, n) - self.rounding;
+            if gap > self.gap {
+                (self.gap, self.direction) = (gap, n);
             }
         }
-        most.0 > enough
+        self.gap
+    }
+
+    /// Tries a direction in single precision, and those near it.
+    fn attempt_about(&mut self, n: Vec3<f64>) {
+        let near = across(self.hulls, n).into_iter().flatten();
+        for n in [n].into_iter().chain(near) {
+            self.attempt(n);
+        }
+    }
+}
+
+/// The larger extent of two hulls, `y` from middle to middle; `None` where numbers are bad.
+fn unit(hulls: [&PlacedHull; 2], y: Vec3<f64>) -> Option<f64> {
+    let extent = |hull: &PlacedHull| {
+        let middle = hull.middle();
+        let reaches = hull.spheres.iter().map(|s| (s.0 - middle).length() + s.1);
+        reaches.fold(0.0, f64::max)
     };
-    let faces = (a.normals.iter().copied()).chain(b.normals.iter().map(|n| -*n));
-    let found = faces.into_iter().any(&mut attempt) || attempt(y);
-    let mut nearest = None;
-    if !found && let Some((n, points)) = proposed([a, b], y) {
-        attempt(n);
-        across([a, b], n).into_iter().flatten().for_each(|n| {
-            attempt(n);
-        });
-        nearest = Some(points);
-    }
-    HullGap {
-        gap: most.0,
-        direction: most.1,
-        nearest,
-    }
+    let unit = extent(hulls[0]).max(extent(hulls[1]));
+    (unit.is_normal() && y.length().is_finite()).then_some(unit)
 }
 
 /// How much less far than its farthest sphere another of a hull reaches along a direction, in units of the way between them, to
@@ -146,22 +208,18 @@ fn across([a, b]: [&PlacedHull; 2], n: Vec3<f64>) -> [Option<Vec3<f64>>; 4] {
     [Some(y), beside(e), beside(f), Some(e.cross(f))].map(|m| m.map(along))
 }
 
-/// The direction along which parry finds two hulls apart, or least deep in each other, and the points where they are.
-/// `y`: from middle to middle.
-fn proposed([a, b]: [&PlacedHull; 2], y: Vec3<f64>) -> Option<(Vec3<f64>, [Vec3<f64>; 2])> {
-    let (origin, far) = (a.middle(), b.middle());
-    let extent = |hull: &PlacedHull, middle: Vec3<f64>| {
-        let reaches = hull.spheres.iter().map(|s| (s.0 - middle).length() + s.1);
-        reaches.fold(0.0, f64::max)
-    };
-    let unit = extent(a, origin).max(extent(b, far));
-    if !(unit.is_normal() && y.length().is_finite()) {
-        return None;
-    }
+/// The direction along which parry finds two hulls apart, or least deep in each other, and the points where they are, if the
+/// way from middle to middle is `y`. `unit`: their extent.
+fn proposed(
+    [a, b]: [&PlacedHull; 2],
+    y: Vec3<f64>,
+    unit: f64,
+) -> Option<(Vec3<f64>, [Vec3<f64>; 2])> {
+    let origin = a.middle();
     let pose = Pose::from_translation((y * (1.0 / unit)).to_vector());
-    let (first, second) = (a.support(origin, unit), b.support(far, unit));
+    let (first, second) = (a.support(origin, unit), b.support(b.middle(), unit));
     let contact = contact_support_map_support_map(&pose, &first, &second, Real::MAX)?;
-    let points = [(contact.point1, origin), (contact.point2, far)];
+    let points = [(contact.point1, origin), (contact.point2, origin + y)];
     let points = points.map(|(p, origin)| origin + Vec3::from_vector(p) * unit);
     Some((Vec3::from_vector(contact.normal1), points))
 }

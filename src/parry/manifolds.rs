@@ -38,7 +38,7 @@ pub fn write_manifolds<M, C>(
 {
     let old = std::mem::take(manifolds);
     let near = contacts.iter().filter(|c| c.distance <= prediction);
-    let mut near = deepest_of_each_patch(near, meshes[0].thickness().min(meshes[1].thickness()));
+    let mut near = deepest_of_each_patch(near, meshes);
     near.sort_by(|a, b| {
         a.primitives
             .cmp(&b.primitives)
@@ -131,11 +131,17 @@ pub fn write_one_point<M, C>(
     manifolds.push(manifold);
 }
 
-/// The contacts that have no deeper one of about the same normal within `radius`.
+/// The contacts that have no deeper one of about the same normal within the thickness of the thinner mesh. Those of two
+/// convex pieces are no neighbours of one place, but the corners of the faces on which a body rests: all of them stay.
 fn deepest_of_each_patch<'a>(
     contacts: impl Iterator<Item = &'a SpherePair>,
-    radius: Real,
+    meshes: [&MedialMesh; 2],
 ) -> Vec<&'a SpherePair> {
+    let radius = meshes[0].thickness().min(meshes[1].thickness());
+    let is_of_pieces = |c: &SpherePair| {
+        let of_piece = |k: usize| meshes[k].convex_pieces().node_of(c.primitives[k]);
+        of_piece(0).is_some() && of_piece(1).is_some()
+    };
     let mut sorted: Vec<&SpherePair> = contacts.collect();
     sorted.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let mut kept: Vec<&SpherePair> = Vec::new();
@@ -144,7 +150,7 @@ fn deepest_of_each_patch<'a>(
             k.points[0].distance_squared(c.points[0]) < radius * radius
                 && k.normal.dot(c.normal) >= SAME_PATCH
         };
-        if !kept.iter().any(covers) {
+        if is_of_pieces(c) || !kept.iter().any(covers) {
             kept.push(c);
         }
     }

@@ -14,9 +14,9 @@ use rapier3d_medial::pair::first_contact::first_contact_counted;
 use rapier3d_medial::pair::{contacts, first_contact};
 use rapier3d_medial::{BuildOptions, InitialContact, MedialMesh, ToiOptions, ToiStatus};
 
-type V = Vector3<f64>;
+pub type V = Vector3<f64>;
 
-fn mesh_of(triangles: &Mesh) -> MedialMesh {
+pub fn mesh_of(triangles: &Mesh) -> MedialMesh {
     let built = MedialMesh::from_trimesh(
         &triangles.vertices,
         &triangles.indices,
@@ -189,29 +189,32 @@ impl Box64 {
     }
 }
 
-fn random_rotation(rng: &mut Rng) -> Rotation3<f64> {
+pub fn random_rotation(rng: &mut Rng) -> Rotation3<f64> {
     Rotation3::from_scaled_axis(rng.direction() * rng.range(0.0, 3.1))
+}
+
+pub fn double(v: Vector) -> V {
+    V::new(v.x.into(), v.y.into(), v.z.into())
+}
+
+/// A rotation in single precision, and exactly this one.
+pub fn rounded(rotation: &Rotation3<f64>) -> (Rotation, Rotation3<f64>) {
+    let q = nalgebra::UnitQuaternion::from_rotation_matrix(rotation);
+    let [x, y, z, w] = [q.i, q.j, q.k, q.w].map(|v| v as Real);
+    let [i, j, k, r] = [x, y, z, w].map(f64::from);
+    let exact = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(r, i, j, k));
+    (Rotation::from_xyzw(x, y, z, w), exact.to_rotation_matrix())
 }
 
 /// The pose in single precision, and the box at exactly this pose.
 fn placed(half: [Real; 3], rotation: &Rotation3<f64>, middle: V) -> (Pose, Box64) {
-    let q = nalgebra::UnitQuaternion::from_rotation_matrix(rotation);
-    let [x, y, z, w] = [q.i, q.j, q.k, q.w].map(|v| v as Real);
-    let pose = Pose::from_parts(
-        Vector::new(middle.x as Real, middle.y as Real, middle.z as Real),
-        Rotation::from_xyzw(x, y, z, w),
-    );
-    let exact = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(
-        w.into(),
-        x.into(),
-        y.into(),
-        z.into(),
-    ));
-    let middle = pose.translation;
+    let (single, exact) = rounded(rotation);
+    let at = Vector::new(middle.x as Real, middle.y as Real, middle.z as Real);
+    let pose = Pose::from_parts(at, single);
     let of = Box64 {
-        axes: *exact.to_rotation_matrix().matrix(),
+        axes: *exact.matrix(),
         half: V::from(half.map(f64::from)),
-        middle: V::new(middle.x.into(), middle.y.into(), middle.z.into()),
+        middle: double(at),
     };
     (pose, of)
 }
@@ -269,11 +272,7 @@ fn contacts_of_boxes_are_as_deep_as_separating_axes_say() {
                 "case {case}: told {told}, is {gap}"
             );
         }
-        let normal = V::new(
-            deepest.normal.x.into(),
-            deepest.normal.y.into(),
-            deepest.normal.z.into(),
-        );
+        let normal = double(deepest.normal);
         // Another axis may be as good.
         let is_as_good = along(&first, &second, &normal) > gap - 2.0e-6;
         assert!(
@@ -281,20 +280,14 @@ fn contacts_of_boxes_are_as_deep_as_separating_axes_say() {
             "case {case}: {normal} is not {n}"
         );
         for c in &found {
-            let on_first = V::new(
-                c.points[0].x.into(),
-                c.points[0].y.into(),
-                c.points[0].z.into(),
-            );
-            let local = pose * c.points[1];
-            let on_second = V::new(local.x.into(), local.y.into(), local.z.into());
+            let [on_first, on_second] = [c.points[0], pose * c.points[1]].map(double);
             // Feet of corners that are beyond an edge by the tilt may be off the face by as much.
             let (a, b) = (first.distance(&on_first), second.distance(&on_second));
             assert!(
                 a.abs() < 4.0e-3 && b.abs() < 4.0e-3,
                 "case {case}: {a}, {b}"
             );
-            let n = V::new(c.normal.x.into(), c.normal.y.into(), c.normal.z.into());
+            let n = double(c.normal);
             let way = (on_second - on_first).dot(&n);
             assert!((way - f64::from(c.distance)).abs() < 1.0e-5, "case {case}");
         }

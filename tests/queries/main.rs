@@ -16,6 +16,7 @@ mod truth_of_examples {
 mod bad_input;
 mod batch;
 mod coherence;
+mod convex_contacts;
 mod convex_pieces;
 mod deepening;
 mod detail;

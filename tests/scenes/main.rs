@@ -3,6 +3,7 @@
 mod after_blows;
 mod bodies;
 mod bounces;
+mod brickwork;
 mod budget;
 mod changes;
 mod characters;
