@@ -104,7 +104,7 @@ fn sheets_and_thin_matter_are_fitted() {
         card(8).map(|v| Vector::new(4.0 * v.x - 2.0, v.y - 0.5, 0.3 * (2.0 * v.x - 1.0).powi(2)));
     for (name, mesh, primitives) in [
         ("a ball with wings", ball(0.8).and(wings), 40),
-        ("a body with thin wings", winged(), 40),
+        ("a body with thin wings", winged(), 60),
     ] {
         let (_, fast) = built(&mesh, primitives, Quality::Fast);
         let (medial, fitted) = built(&mesh, primitives, Quality::Balanced);

@@ -94,7 +94,12 @@ impl Source {
         } = collapses;
         let most = first.most;
         let rough = self.rough_target();
-        let gain = self.gain(collapses, rival.is_some());
+        let gain = match () {
+            _ if !self.fits() => 1.0,
+            _ if !creases.is_empty() => GAIN_OF_CREASED,
+            _ if rival.is_some() => GAIN_OF_ROUNDED,
+            _ => LARGEST_GAIN,
+        };
         let round = match self.fits() && creases.is_empty() {
             true => fit::round_from(first, smaller, &rough, watch)?,
             false => None,
@@ -157,17 +162,6 @@ impl Source {
             candidate.notes.push(GAVE_UP.into());
         }
         Ok(candidate)
-    }
-
-    /// How much larger the error of a medial mesh's plain collapse may be than that of its fit; `both` says that there is one
-    /// that keeps creases and one that does not.
-    pub fn gain(&self, collapses: &Collapses, both: bool) -> f64 {
-        match () {
-            _ if !self.fits() => 1.0,
-            _ if collapses.creases() > 0 => GAIN_OF_CREASED,
-            _ if both => GAIN_OF_ROUNDED,
-            _ => LARGEST_GAIN,
-        }
     }
 
     /// Whether drafts are fitted.

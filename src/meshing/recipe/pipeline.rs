@@ -113,7 +113,7 @@ impl Source {
                 creases,
             }) => Some(self.collapses(Parts::solid(simplifier), creases, most, watch)?),
         };
-        self.better(rounded, creased, prism, watch)
+        Ok(nearer(self.better(rounded, creased, watch)?, prism))
     }
 
     /// A medial mesh that keeps creases, if any are wanted, and there are any.
@@ -129,46 +129,33 @@ impl Source {
         }
     }
 
-    /// The best of two medial meshes of one body, fitted and measured, and a prism. What is too far off to become better than
-    /// another by a fit is not fitted.
+    /// The better of two medial meshes of one body, fitted and measured.
     fn better(
         &self,
         rounded: Collapses,
         creased: Option<Collapses>,
-        prism: Option<Candidate>,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
-        let both = creased.is_some();
-        let fitted = |own: &Collapses, rival: f64, watch: &mut Watch| {
-            let mut best = self.best_of(own, both.then_some(rival), watch)?;
-            if own.creases() > 0 {
-                best.keeps_creases(own.creases());
-            }
-            Ok::<_, BuildError>(best)
+        let Some(creased) = creased else {
+            return self.best_of(&rounded, None, watch);
         };
-        let sharp_first = creased
-            .as_ref()
-            .is_some_and(|c| c.rough_error <= rounded.rough_error);
-        let (first, second) = match &creased {
-            Some(creased) if sharp_first => (creased, Some(&rounded)),
-            creased => (&rounded, creased.as_ref()),
+        let sharp_first = creased.rough_error <= rounded.rough_error;
+        let (first, second) = match sharp_first {
+            true => (&creased, &rounded),
+            false => (&rounded, &creased),
         };
-        let mut best = match prism {
-            Some(prism) if first.rough_error > self.gain(first, both) * prism.error() => prism,
-            prism => {
-                let rival = prism.as_ref().map_or(f64::INFINITY, Candidate::error);
-                nearer(fitted(first, rival, watch)?, prism)
+        let mut best = self.best_of(first, Some(f64::INFINITY), watch)?;
+        let mut is_sharp = sharp_first;
+        // The other has that error to beat, and no fit gains more than so much.
+        let bar = LARGEST_GAIN * best.error();
+        if second.rough_error <= bar.min(HOPELESS * first.rough_error) {
+            let other = self.best_of(second, Some(best.error()), watch)?;
+            if other.error() < best.error() || (sharp_first && other.error() == best.error()) {
+                (best, is_sharp) = (other, !sharp_first);
             }
-        };
-        if let Some(second) = second {
-            // It has that error to beat, and no fit gains more than so much.
-            let bar = LARGEST_GAIN * best.error();
-            if second.rough_error <= bar.min(HOPELESS * first.rough_error) {
-                let other = fitted(second, best.error(), watch)?;
-                if other.error() < best.error() || (sharp_first && other.error() == best.error()) {
-                    best = other;
-                }
-            }
+        }
+        if is_sharp {
+            best.keeps_creases(creased.creases());
         }
         Ok(best)
     }
@@ -203,7 +190,7 @@ impl Source {
             Some(creased) => Some(self.collapses(creased.finest, creased.creases, top, watch)?),
         };
         let prism = self.extruded(watch)?;
-        let mut candidate = self.better(rounded, creased, prism, watch)?;
+        let mut candidate = nearer(self.better(rounded, creased, watch)?, prism);
         let (count, error) = (candidate.draft.primitives().len(), candidate.error());
         candidate.notes.push(match asked.filter(|most| *most <= top) {
             Some(most) => format!(
