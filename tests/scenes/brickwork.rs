@@ -1,4 +1,5 @@
-//! Blocks that lie on the edges of others, over seams narrower than they are thick: they stand as rapier's own cuboids do.
+//! Blocks that lie on others over seams narrower than they are thick stand, and rows of dominoes fall, as those of rapier's own
+//! cuboids do.
 
 use crate::bodies::{attached, world_with_ground};
 use rapier3d::prelude::*;
@@ -64,5 +65,56 @@ fn pyramids_stand_as_those_of_cuboids_do() {
             asleep <= own_asleep + 10,
             "{spacing}: {asleep}, own {own_asleep}"
         );
+    }
+}
+
+/// The step in which the last of a row of dominoes lies flat or leans, and node pairs, tests and proofs of the searches.
+fn dominoes(collider: &ColliderBuilder, spacing: Real, is_medial: bool) -> (Option<usize>, u64) {
+    let mut world = world_with_ground();
+    let mut row = Vec::new();
+    for k in 0..20 {
+        let body = RigidBodyBuilder::dynamic()
+            .translation(Vector::new(spacing * k as Real, 0.5, 0.0))
+            .angvel(Vector::Z * if k == 0 { -2.0 } else { 0.0 });
+        row.push(world.insert(body, collider.clone()).0);
+    }
+    let mut pipeline = attached(&mut world);
+    let (mut fallen, mut spent) = (None, 0);
+    for step in 0..300 {
+        if is_medial {
+            let report = pipeline.step(&mut world);
+            assert_eq!(report.frozen, 0, "step {step}");
+            spent += report.spent;
+        } else {
+            world.step();
+        }
+        let leans = |domino: &RigidBodyHandle| world.bodies[*domino].translation().y < 0.4;
+        if fallen.is_none() && row.last().is_some_and(leans) {
+            fallen = Some(step);
+        }
+    }
+    (fallen, spent)
+}
+
+/// Each domino slides down on the next as it falls, while its faces turn away under any one direction.
+#[test]
+fn dominoes_fall_as_those_of_cuboids_do() {
+    let half = Vector::new(0.05, 0.5, 0.25);
+    let (vertices, indices) = Cuboid::new(half).to_trimesh();
+    let built = MedialMesh::from_trimesh(&vertices, &indices, &BuildOptions::default());
+    let ours = ColliderBuilder::medial_mesh(built.expect("a domino").0);
+    let own = ColliderBuilder::cuboid(half.x, half.y, half.z);
+    for spacing in [0.25, 0.35, 0.5] {
+        let (fallen, spent) = dominoes(&ours, spacing, true);
+        let (own_fallen, _) = dominoes(&own, spacing, false);
+        println!("{spacing}: step {fallen:?}, cuboids {own_fallen:?}, {spent} spent");
+        let (Some(fallen), Some(own_fallen)) = (fallen, own_fallen) else {
+            panic!("{spacing}: step {fallen:?}, cuboids {own_fallen:?}");
+        };
+        assert!(
+            fallen.abs_diff(own_fallen) <= own_fallen / 8,
+            "{spacing}: step {fallen}, cuboids {own_fallen}"
+        );
+        assert!(spent < 45_000, "{spacing}: {spent} spent");
     }
 }
