@@ -3,9 +3,9 @@
 //! all their primitives, so most pairs of pieces are settled without a look at these.
 //!
 //! **Pieces that touch at the start** and may sink in ([`InitialContact::Deepen`]) are settled too, where directions prove
-//! that in the rest of the step they get deeper by no more than that. They are not where they are so deep in each other,
-//! or so thin, that the middle of one might get into the other. And if it takes more than a look to prove it, they are
-//! not either: then their primitives decide, each pair with a distance of its own at the start.
+//! that in the rest of the step they get deeper by no more than that. Where no directions do, or the pieces are so deep in
+//! each other or so thin that the middle of one might get into the other, their primitives decide, each pair with a
+//! distance of its own at the start.
 
 use super::apart::{end_along, ends_hold};
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
