@@ -50,16 +50,20 @@
 //! Each module imports only modules below it in this table; a test checks this. Most games need only
 //! [`prelude`].
 //!
-//! | module | contents |
-//! |---|---|
-//! | [`rapier`] | the pipeline around rapier's step, traits for rapier's builders, the report of a step |
-//! | [`parry`] | the medial mesh as a shape of parry, rapier's geometry library: queries, contacts, casts |
-//! | [`batch`] | contacts or first contacts of many pairs at once, on the CPU or a GPU |
-//! | [`pair`] | two medial meshes: which primitives can meet, first contact, contacts |
-//! | [`elementary`] | two primitives: distance and first contact, certified; the paper's own method beside it |
-//! | [`meshing`] | from a triangle mesh to a medial mesh |
-//! | [`medial`] | the medial mesh itself, its trees, mass, surface and files |
-//! | [`math`] | SIMD lanes, closed forms, rigid motion, counters, constants |
+//! | module | contents | to read first |
+//! |---|---|---|
+//! | [`rapier`] | the pipeline around rapier's step, traits for rapier's builders, the report of a step | `step.rs` |
+//! | [`parry`] | the medial mesh as a shape of parry, rapier's geometry: queries, contacts, casts | `dispatcher.rs` |
+//! | [`batch`] | contacts or first contacts of many pairs at once, on the CPU or a GPU | `backend.rs` |
+//! | [`pair`] | two medial meshes: which primitives can meet, first contact, contacts | `search.rs`, `contacts.rs` |
+//! | [`elementary`] | two primitives: distance and first contact, certified; the paper's own method | `bracket.rs` |
+//! | [`meshing`] | from a triangle mesh to a medial mesh | `recipe/pipeline.rs` |
+//! | [`medial`] | the medial mesh itself, its trees, mass, surface and files | `mesh.rs` |
+//! | [`math`] | SIMD lanes, closed forms, rigid motion, counters, constants | `nearest.rs`, `motion.rs` |
+//!
+//! `CONTRIBUTING.md` in the repository has the map: which file answers which question, from the paper's equations and
+//! what proves an answer to what a new version of rapier changes. The first lines of each folder's `mod.rs` list its
+//! files.
 
 // Limits are in clippy.toml.
 #![warn(clippy::too_many_lines)]

@@ -1,6 +1,7 @@
-//! Decides whether a batch runs on the CPU or a GPU. A GPU only finds what certainly does not meet: pairs, and primitives
-//! of other pairs, of which it lists those that may. The CPU computes these, and pairs without a list as if there were
-//! no GPU. So answers are the same on both, except for counts of work, and a GPU that fails costs nothing but time.
+//! Decides whether a batch runs on the CPU or a GPU. A GPU only finds what certainly does not meet: pairs, and
+//! primitives of other pairs, of which it lists those that may. The CPU computes these, and pairs without a list as
+//! if there were no GPU. So answers are the same on both, except for counts of work, and a GPU that fails costs
+//! nothing but time.
 
 #[cfg(feature = "gpu")]
 use super::calibration::Least;

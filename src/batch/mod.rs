@@ -1,5 +1,9 @@
 //! Many pairs at once (layer 4): contacts at fixed poses, or first contacts in motion, on the CPU or a GPU. A call
 //! takes a list of jobs and returns their answers in the same order.
+//!
+//! # Files
+//! `job.rs` has jobs and answers, `backend.rs` decides where they run, `cpu.rs` answers them. A GPU (`on_device.rs`,
+//! `gpu/`) only says what certainly does not meet; it never computes an answer.
 
 mod backend;
 #[cfg(feature = "gpu")]

@@ -1,4 +1,4 @@
-//! The GPU's part of a batch: whether asking it pays, what it said, and what is left for the CPU.
+//! The GPU's part of a batch, seen from the CPU: whether asking it pays, what it said, and what is left for the CPU.
 
 use super::backend::{Backend, Batch};
 use super::calibration::{Calibration, Least};

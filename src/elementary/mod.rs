@@ -21,6 +21,15 @@
 //! Every bound that is compared with 0 first loses a rounding slack,
 //! [`crate::math::tolerance::SLACK_ULPS`]` × EPSILON × scale`; a tolerance below twice that is
 //! raised to it, and [`Toi::tolerance`] says so.
+//!
+//! # Files
+//! - What is computed: `test_list.rs` (which tests two primitives need), `path.rs` (their motion), `cone_cone.rs` and
+//!   `sphere_slab.rs` (nearest spheres at a fixed time).
+//! - First contact: `bracket.rs` (the loop), `certificate.rs` (why no contact is missed), `first_contact.rs` and
+//!   `earliest.rs` (the earliest of many tests), `resumed.rs`; in eight lanes `many.rs`, in double precision
+//!   `f64.rs`.
+//! - At fixed poses: `distance.rs`, `penetration.rs`, `slab_crossing.rs`.
+//! - The paper's own iteration, only to compare with: `alternating.rs`.
 
 pub mod alternating;
 pub mod bracket;

@@ -1,4 +1,9 @@
 //! Numbers and geometry that know nothing of medial meshes (layer 0).
+//!
+//! # Files
+//! - Closed forms: `nearest.rs` (paper Eq. 2 at a fixed time), `approach.rs` (Eq. 4 for spheres), `motion.rs` (rigid
+//!   motion and sagitta).
+//! - Constants: `tolerance.rs`. Counters: `counters.rs`. Lanes: `lane.rs`, `lane_avx.rs`.
 
 pub(crate) mod approach;
 pub(crate) mod counters;

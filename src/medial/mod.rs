@@ -1,5 +1,13 @@
 //! The medial mesh itself (layer 1): spheres joined by medial cones and slabs, their trees, mass, surface and
 //! files.
+//!
+//! # Files
+//! - The mesh: `mesh.rs`, of `sphere.rs`, `primitive.rs` and `simplex.rs`; what is refused: `check.rs`.
+//! - Trees for queries: `tree.rs`, `rectangle.rs` and `proxy_hull.rs` (bounds), `leaf_order.rs`, `convex_pieces.rs`.
+//! - Geometry: `mass.rs`, `thickness.rs`, `chord.rs` (rays), `exact.rs`, `scaled.rs`; the surface as triangles:
+//!   `envelope.rs`.
+//! - Files: `asset.rs` (the layout of a baked mesh), `saved.rs` (serde), `ma_file.rs`.
+//! - Meshes that need no build: `solids.rs`, `boxes.rs`, `polygon.rs`.
 
 pub mod asset;
 pub(crate) mod boxes;

@@ -1,5 +1,12 @@
 //! Builds a [`MedialMesh`] from a triangle mesh (layer 2). This file has the functions that users call;
 //! `recipe/pipeline.rs` calls the stages in order.
+//!
+//! # Files
+//! - In the order of a build: `mesh_file.rs` (reads files), `surface/` (repair, creases), `axis/` (the mesh to start
+//!   from), `simplify/`, `refine/`, `certify/` (covers the surface, error, mass). `geometry/` serves all of them.
+//! - `recipe/` decides which candidates are made, and which is returned. Each is a `draft.rs` until it is done.
+//! - Around a build: `options.rs`, `watch.rs` (progress), `findings.rs` (faults of the mesh), `cached.rs`,
+//!   `curve.rs`.
 
 mod axis;
 mod cached;

@@ -1,5 +1,8 @@
-//! How long two primitives, or the hulls of two nodes, are certainly apart, because one direction after another separates
-//! them while they move along the chords of their paths. This cheap bound decides which primitives are worth an elementary test.
+//! Proofs that two primitives, or the hulls of two nodes, are apart up to some time while they move along the chords
+//! of their paths: one direction after another separates them. This cheap bound decides which primitives are worth an
+//! elementary test. Its maths is that of the fixed direction in [`crate::elementary::certificate`]: along a direction
+//! the least gap of two sets of spheres is a concave function of time.
+//!
 //! On a device `stays_free` in `shaders/swept.wgsl` proves the same, with directions found in another way.
 
 use crate::elementary::distance::face;

@@ -1,5 +1,7 @@
-//! Contacts of two bodies at fixed poses: pairs of near spheres, from which contact manifolds are made. Parts that
-//! a few directions keep apart ([`super::outline`]) are not searched.
+//! Contacts of two bodies at fixed poses: pairs of near spheres, from which contact manifolds are made
+//! (`parry/manifolds.rs`). A walk down both trees finds them. Parts that a few directions keep apart
+//! ([`super::outline`]) are not searched. Two convex pieces, which the builder makes of blocks, are settled as a
+//! whole (`face_contacts.rs`); of all other bodies primitives are taken pair by pair, in this file.
 //!
 //! Each elementary test gives its nearest pair of spheres, in contact along the line of their centres (paper §4.5:
 //! "contact point and contact normal through the nearest sphere pair"). Where medial surfaces cross, that line is

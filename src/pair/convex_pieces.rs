@@ -1,6 +1,7 @@
-//! The part of the search for a first contact ([`super::search`]) that deals with convex pieces: parts of a body that are
-//! the hull of a few spheres, although many primitives make them up. One direction that keeps two pieces apart does so for
-//! all their primitives, so most pairs of pieces are settled without a look at these.
+//! The part of the search for a first contact ([`super::search`]) that deals with convex pieces: parts of a body that
+//! are the hull of a few spheres, although many primitives make them up. One direction that keeps two pieces apart
+//! does so for all their primitives, so most pairs of pieces are settled without a look at these. Which pieces there
+//! are: `medial/convex_pieces.rs`; their contacts at fixed poses: [`super::face_contacts`].
 //!
 //! **Pieces that touch at the start** and may sink in ([`InitialContact::Deepen`]) are settled too, where directions prove
 //! that in the rest of the step they get deeper by no more than that. Where no directions do, or the pieces are so deep in

@@ -1,10 +1,11 @@
-//! The order in which contacts are searched for in two trees ([`super::contacts()`]).
+//! The order in which a walk down two trees looks for contacts ([`super::contacts()`]): which of two nodes is split
+//! next. It has a file of its own because lists of primitive pairs are sorted in the same order ([`super::listed`]).
 
 use super::primitive_tree::PrimitiveTree;
 use crate::medial::tree::NodeKind;
 
-/// The next step of a walk down two trees from two nodes. It depends on nothing else, so all walks of two trees come to
-/// primitive pairs in one order.
+/// The next step of a walk down two trees from two nodes. It depends on these two nodes alone, so all walks of two
+/// trees come to primitive pairs in one order.
 pub(super) enum Step {
     /// Two leaves, of these primitives.
     Leaves([u32; 2]),

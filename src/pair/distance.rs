@@ -126,6 +126,7 @@ pub fn near_spheres(
     (best, counts)
 }
 
+/// An entry of the queue: two nodes with a lower bound of their distance, the nearest first.
 struct Entry {
     bound: f64,
     nodes: [u32; 2],

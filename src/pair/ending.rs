@@ -1,5 +1,5 @@
-//! The two ends of a search for a first contact ([`super::search`]): its answer with the spheres and points that
-//! touch, or "unresolved" when its limit of work is used up.
+//! The part of the search for a first contact ([`super::search`]) that ends it: with an answer, its spheres and the
+//! points that touch, or as "unresolved" when the limit of work is used up.
 
 use super::apart::Balls;
 use super::deepening::Threshold;

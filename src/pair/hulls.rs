@@ -1,4 +1,6 @@
-//! The hulls of the nodes of two bodies at fixed poses, each placed once, and a lower bound of the distance of two.
+//! Lower bounds of the distance of two nodes' hulls at fixed poses, for the search for contacts
+//! ([`super::contacts()`]) and for the distance (`distance.rs`). Each hull is placed once, however often it is asked
+//! for.
 
 use super::apart::{Balls, Plane, approached};
 use super::face_contacts::face_contacts;
@@ -14,7 +16,7 @@ use crate::math::tolerance::ROUNDING_ULPS;
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 
-/// A hull at rest, with what each look at it would compute again.
+/// The hull of a node at a fixed pose, with what each look at it would compute again.
 struct Resting {
     balls: Balls,
     middle: Vec3<f64>,
@@ -74,7 +76,7 @@ pub(super) struct Hulls<'a, A, B> {
     pieces: [FastMap<u32, PlacedHull<'a>>; 2],
 }
 
-/// The hulls of one body that were asked for.
+/// The hulls of one body that are placed already, because they were asked for.
 #[derive(Default)]
 struct Placed {
     /// One more than the place of each node's hull; 0 where it was not asked for.

@@ -10,7 +10,8 @@ use crate::math::nearest::Nearest;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 
-/// The two primitives that met.
+/// The two primitives that met first, with the radii that counted, so that their contact can be computed at other
+/// poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
     /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]).
@@ -19,7 +20,7 @@ pub struct Met {
     pub(super) counts: [usize; 2],
 }
 
-/// The contact of what met, at other poses.
+/// The contact of two primitives that met ([`Met`]), computed again at other poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
     /// Signed distance, a length.

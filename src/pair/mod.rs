@@ -3,6 +3,15 @@
 //!
 //! This layer decides which primitives can meet, by bounding spheres and directions; the distance of two primitives is
 //! always computed by [`crate::elementary`].
+//!
+//! # Files
+//! - First contact in motion: `first_contact.rs` is the call and `search.rs` the search. Parts of the search:
+//!   `swept.rs` (one body in motion), `queue.rs`, `waiting.rs`, `leaves.rs` (two primitives), `convex_pieces.rs`,
+//!   `deepening.rs`, `tips.rs`, `ending.rs`. Proofs that two are apart: `apart.rs`.
+//! - Contacts at fixed poses: `contacts.rs`, in the order of `descent.rs`; of two convex pieces (the blocks of a body
+//!   with flat faces) `face_contacts.rs`; from a list of primitive pairs `listed.rs`; `held_back.rs` leaves some out.
+//! - Distance at fixed poses: `distance.rs`. Proofs at fixed poses: `hulls.rs`, `hull_gap.rs`.
+//! - What spares a search: `outline.rs`, `near_pairs.rs`, `pair_list.rs`.
 
 mod apart;
 pub mod contacts;

@@ -1,5 +1,5 @@
-//! A list of the primitive pairs of two bodies that may come near each other, on a known motion and on others like it: a
-//! pair that is searched again and again in one step goes down its trees only to these.
+//! A list of the primitive pairs of two bodies that may come near each other, on a known motion and on others like
+//! it: a pair of bodies that is searched again and again in one step goes down its trees only to these.
 //!
 //! **What is listed.** On the motion known, from a time `t0` to the end of the step, all primitive pairs that the bounds of
 //! the search (`pair::search`) do not prove farther apart than a reach `r` plus a margin `m`.

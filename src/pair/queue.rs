@@ -6,7 +6,8 @@ use super::tips::Part;
 use crate::elementary::test_list::ElementaryTest;
 use std::cmp::Ordering;
 
-/// Work item of the queue: a node pair or an elementary test that may meet.
+/// What waits in the queue: a pair of nodes, a pair of (parts of) primitives, or an elementary test, of which it is
+/// not known yet whether the two meet.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Candidate {
     /// Two swept nodes: their balls meet then, or directions keep their primitives apart until then.
@@ -17,7 +18,8 @@ pub(super) enum Candidate {
     Test(u32),
 }
 
-/// Parts of two primitives that are tested, and from when on they are in contact.
+/// A pair of primitives, or parts of them, whose elementary tests are listed, with the distance that counts as
+/// contact.
 #[derive(Clone, Copy)]
 pub(super) struct Tested {
     /// The swept nodes that they are.
@@ -29,19 +31,21 @@ pub(super) struct Tested {
     pub(super) threshold: Threshold,
 }
 
-/// An elementary test that is not settled.
+/// An elementary test that is under way: its bracket is neither closed nor proven free.
 #[derive(Clone, Copy)]
 pub(super) struct Open {
-    /// Place of what it is of.
+    /// Place of its [`Tested`] pair in the list of these.
     pub(super) of: u32,
     pub(super) test: ElementaryTest,
     /// Iterations so far.
     pub(super) spent: u32,
 }
 
-/// A candidate, ordered by the time until which it is free; of several at the same time, first the
-/// tests, then primitives, then the node pair that overlaps deepest for its size. Of several of these it is the one whose
-/// nodes come first in their trees, so that the order does not depend on what else is looked at.
+/// An entry of the queue: a candidate with the time until which it is proven free, by which entries are ordered.
+///
+/// Of several at the same time, first come the tests, then primitives, then the node pair that overlaps deepest for
+/// its size. Of several of these it is the one whose nodes come first in their trees, so that the order does not
+/// depend on what else is looked at.
 pub(super) struct Entry {
     pub(super) time: f64,
     /// Signed distance of two node balls at the start of the piece, in units of their radii, so at

@@ -43,7 +43,8 @@ const ROOT_PIECES: u64 = 64;
 /// lever arm. Larger pieces cull worse, smaller ones repeat the walk down the trees.
 const PIECE_ANGLE: f64 = 0.5;
 
-/// One query on its way.
+/// The state of one search for a first contact: both bodies, the queue, and what is under way. Its methods are in
+/// `waiting.rs`, `leaves.rs`, `convex_pieces.rs` and `ending.rs` too.
 pub(super) struct Search<'a, A, B> {
     pub(super) sides: (Side<'a, A>, Side<'a, B>),
     pub(super) motions: [RigidMotion<f64>; 2],

@@ -1,6 +1,7 @@
 //! Primitives without their tips. Where the radius of a primitive grows from nearly nothing, as towards the edges of a
 //! box, its outermost piece is thinner than what has to be kept from passing through another body
 //! ([`crate::elementary::Cores::tips`]). What is left is one primitive or two, with spheres that lie on the whole one.
+//! Which tips may be cut off, and why nothing passes through: `docs/effects.md`.
 
 use super::apart::Balls;
 use crate::elementary::distance::Ball;
@@ -8,8 +9,8 @@ use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::medial::MedialSphere;
 
-/// A primitive on another one: the share that each sphere of that one has in each sphere of this one. Shares of one
-/// sphere sum to 1.
+/// A part of a primitive, as up to three spheres that are means of the primitive's own: `shares[k][i]` is the share
+/// of the primitive's sphere `i` in sphere `k` of the part. The shares of one sphere sum to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Part {
     shares: [[f64; 3]; 3],
@@ -65,7 +66,7 @@ impl Part {
     }
 }
 
-/// Rest of a primitive without its tips: one or two parts.
+/// What is left of a primitive without its tips: one or two parts.
 #[derive(Clone, Copy)]
 pub(super) struct Parts {
     parts: [Part; 2],

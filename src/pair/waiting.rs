@@ -1,4 +1,5 @@
-//! The part of the search for a first contact ([`super::search`]) that puts off what directions keep apart for a while.
+//! The part of the search for a first contact ([`super::search`]) that lets a candidate wait: where directions
+//! ([`super::apart`]) prove two primitives or nodes apart for a while, they go back into the queue with that time.
 
 use super::apart::{Balls, free_until, held_until};
 use super::deepening::Threshold;

@@ -90,6 +90,7 @@ pub fn first_contact(
     }
 }
 
+/// The state of one search for the first contact of a mesh with cylinders and cones.
 struct Search<'a> {
     mesh: &'a MedialMesh,
     motions: [RigidMotion<f64>; 2],
@@ -107,6 +108,7 @@ struct Search<'a> {
     deepest: f64,
 }
 
+/// The contact found: the nearest sphere, the body's placement then, and the primitives on both sides.
 #[derive(Clone, Copy)]
 struct Found {
     near: NearBall,
@@ -114,7 +116,8 @@ struct Found {
     primitives: [u32; 2],
 }
 
-/// A node of the tree, or a primitive on its way, by the time until which it is free of a body.
+/// An entry of the queue: a node of the tree, or a primitive on its way, with the time until which it is free of a
+/// body.
 struct Entry {
     time: f64,
     body: u32,

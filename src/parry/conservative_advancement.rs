@@ -64,6 +64,7 @@ pub struct Advance {
     pub place: Place,
 }
 
+/// One corner sphere of the primitive, on its way.
 #[derive(Clone, Copy)]
 struct Corner {
     path: PointPath<f64>,

@@ -1,5 +1,6 @@
-//! Contact manifolds with medial meshes, as parry asks for them from step to step: from the batch's answers for two
-//! meshes, from our own clipping for a mesh and a flat face, and from parry for a mesh and all other shapes.
+//! Contact manifolds with medial meshes, as parry asks for them from step to step: the entry. It takes those of two
+//! meshes from the batch's answers (`manifolds.rs`), those of a mesh and a flat face from our own clipping
+//! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
 use super::contact_reduction;
 use super::dispatcher::{MedialDispatcher, medial};

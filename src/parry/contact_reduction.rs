@@ -30,7 +30,7 @@ const STEEPEST: f64 = 0.02;
 /// Pivots after which the facet found so far has to do.
 const PIVOTS: usize = 64;
 
-/// A contact as it is seen along the normal.
+/// A contact seen along its normal: a place in the plane across it, and a gap.
 #[derive(Clone, Copy)]
 struct Seen {
     /// Index of its manifold, and of its point there.

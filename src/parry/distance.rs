@@ -213,7 +213,7 @@ fn out_of(body: &Axisymmetric, place: &Place, near: &NearBall) -> (Vec3<f64>, f6
     (unit(near.direction), near.distance())
 }
 
-/// A node by a lower bound of its distance.
+/// An entry of the queue: a node of the mesh with a lower bound of its distance, the nearest first.
 struct Entry {
     bound: f64,
     node: u32,

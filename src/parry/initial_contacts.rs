@@ -1,5 +1,5 @@
-//! Shape casts whose bodies touch at the start, or are within the target distance then: which of these contacts
-//! count as hits, and how near other places may come.
+//! Start of a shape cast whose bodies touch already, or are within the target distance: which of these contacts count
+//! as hits, and how near other places may come.
 //!
 //! - In straight motion the distance of two primitives is convex in time: if they do not come nearer at once, they
 //!   never do. So each pair of primitives that comes nearer is a hit at time 0, and one that does not is none.

@@ -1,7 +1,9 @@
-//! Turns pairs of near spheres into contact manifolds of parry, which persist from step to step. There is one
-//! contact for each patch, because the time of a solver grows with the number of contacts, and one manifold for
-//! each pair of primitives, so that each keeps its own normal. (With one manifold for each pair of colliders a
-//! chain of rings falls apart.)
+//! Turns pairs of near spheres (`pair/contacts.rs`) into contact manifolds of parry, which persist from step to
+//! step. `contact_manifolds.rs` calls it when parry asks.
+//!
+//! There is one contact for each patch, because the time of a solver grows with the number of contacts, and one
+//! manifold for each pair of primitives, so that each keeps its own normal. (With one manifold for each pair of
+//! colliders a chain of rings falls apart.)
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;

@@ -1,5 +1,15 @@
 //! The medial mesh as a shape of parry, rapier's geometry library (layer 5): queries, contact manifolds and shape
 //! casts, against medial meshes and all of parry's shapes.
+//!
+//! # Files
+//! - The entry: `dispatcher.rs`; the shape: `shape.rs`, of convex parts: `medial_part.rs`; rays: `rays.rs`.
+//! - Contact manifolds: `contact_manifolds.rs` is what parry calls; it takes those of two meshes from `manifolds.rs`,
+//!   those on a flat face from `flat_face.rs`, and leaves the ones that bear the load (`contact_reduction.rs`).
+//! - Casts: `cast.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
+//!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
+//!   `initial_contacts.rs` treat what touches at the start.
+//! - Distance: `distance.rs`.
+//! - What a pipeline tells the dispatcher for a step, muted pairs among it: `narrow_phase_plan.rs`.
 
 pub(crate) mod axisymmetric;
 pub(crate) mod axisymmetric_toi;

@@ -1,5 +1,6 @@
-//! Turns parry's other shapes into swept spheres, so that one certified query serves all of them: a ball is a sphere, a
-//! capsule a cone, a flat face a slab of radius 0, a rounded face a slab of its border radius.
+//! Turns parry's other shapes into swept spheres, so that one certified query serves all of them: a ball is a sphere,
+//! a capsule a cone, a flat face a slab of radius 0, a rounded face a slab of its border radius. A new shape of
+//! rapier is added here ([`add_surface`]), and in [`super::inside`] if it is closed.
 //!
 //! A closed body is represented by its surface only, so [`super::inside`] has to find out whether the other body starts
 //! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::axisymmetric_toi`].

@@ -1,8 +1,12 @@
 //! Medial colliders in rapier (layer 6): what a user calls, and what is done before and after rapier's step.
 //!
-//! A step in order (`step.rs`): it takes a view of the world (`view/`), plans the step (`contacts/`: the contacts that
-//! rapier will ask for, and the pairs that are kept from its solver), has rapier step, and resolves the impacts within
-//! the step that rapier missed (`impacts/`, `joints/`). What rapier 0.36 has to be told in roundabout ways is in `host/`.
+//! A step in order (`step.rs`): it takes a view of the world (`view/`), plans the step (`contacts/`: the contacts
+//! that rapier will ask for, and the pairs that are muted, that is kept from its solver), has rapier step, and
+//! resolves the impacts within the step that rapier missed (`impacts/`, `joints/`). What rapier 0.36 has to be told
+//! in roundabout ways is in `host/`.
+//!
+//! What users call is in `pipeline.rs`, and `integration/` adds to rapier's builders. Settings are in `effects.rs`,
+//! the constants of the event loop in `tuning.rs`.
 
 mod contacts;
 mod effects;

@@ -21,6 +21,7 @@ const COUNTERS: usize = 3;
 /// Bytes of a meeting.
 const MEETING: usize = 16;
 
+/// The two stages that prove mesh pairs free or list their primitive pairs, with their buffers.
 pub(super) struct Cull {
     /// Walk and proof.
     stages: Vec<Stage>,

@@ -1,4 +1,5 @@
-//! Has the GPU prove (`shaders/elementary.wgsl`) which of many elementary tests on straight paths find no contact.
+//! Has the GPU prove which of many elementary tests on straight paths find no contact. The maths is in
+//! `shaders/elementary.wgsl`: the fixed direction of `src/elementary/certificate.rs`.
 
 use super::clock::Clock;
 use super::context::{Context, Growing};
@@ -27,6 +28,7 @@ const FOLLOWS: f32 = 4.0 * f32::EPSILON;
 /// Bytes of a query.
 const QUERY: usize = size_of::<Query>();
 
+/// The stage that proves elementary tests free, with its buffers.
 pub(super) struct Elementary {
     /// Cone–cone and sphere–slab.
     stages: Vec<Stage>,

@@ -10,6 +10,7 @@ use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
 /// Marks a leaf in [`Node::below`].
 const LEAF: u32 = 1 << 31;
 
+/// A mesh that the device holds.
 struct Resident {
     /// Keeps the address, by which it is found, from being given to another.
     mesh: MedialMesh,

@@ -1,11 +1,16 @@
-//! Batches on a GPU. The GPU gets meshes and motions, and proves primitive pairs not to come within reach. Mesh pairs of
-//! which all are proven are free; of the others it returns the list of those that are not, and the CPU computes these
-//! alone. Nothing else that it computes reaches the physics. Its bounds carry a slack for the rounding of any device
-//! that conforms to WGSL ([`crate::math::tolerance::GPU_SLACK_ULPS`]), so what is not on a list does not come within
-//! reach on any.
+//! Batches on a GPU. The GPU gets meshes and motions, and proves primitive pairs not to come within reach. Mesh pairs
+//! of which all are proven are free; of the others it returns the list of those that are not, and the CPU computes
+//! these alone. Nothing else that it computes reaches the physics. Its bounds carry a slack for the rounding of any
+//! device that conforms to WGSL ([`crate::math::tolerance::GPU_SLACK_ULPS`]), so what is not on a list does not come
+//! within reach on any.
 //!
 //! Each batch takes one submission and one map. In steps that are like those before nothing is allocated, neither
 //! on the GPU nor by this crate on the CPU. Every failure is a [`GpuError`], after which the CPU does the work.
+//!
+//! - What is proven: `cull.rs` (mesh pairs), `near.rs` (the list that comes back), `elementary.rs` (elementary
+//!   tests).
+//! - What is sent: `sweep.rs` (motions), `meshes.rs`, `layout.rs` (twins of the shaders' structs), `texels.rs`.
+//! - The device: `context.rs`, `shaders.rs`, `stage.rs`, `transfer.rs`, `clock.rs`.
 
 mod clock;
 mod context;

@@ -1,5 +1,6 @@
-//! Sorts the device's list of primitive pairs, which `prove` in `shaders/cull.wgsl` writes, by mesh pair. A mesh pair whose answer says that another number of them
-//! has to be there is left to the CPU: some found no room, or the driver has not run all that it was given.
+//! Sorts the device's list of primitive pairs, which `prove` in `shaders/cull.wgsl` writes, by mesh pair. A mesh pair
+//! whose answer says that another number of them has to be there is left to the CPU: some found no room, or the
+//! driver has not run all that it was given.
 
 use super::Proposal;
 use super::layout::{FREE, GIVEN_UP, MOST_MEETINGS, Near};

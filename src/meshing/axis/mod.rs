@@ -1,4 +1,9 @@
 //! The medial mesh to start from: the medial axis of samples of the surface, or of flat faces exactly.
+//!
+//! - From samples: `start.rs` chooses; `delaunay.rs`, `inner_balls.rs`; with creases `crease_samples.rs`, `clip.rs`;
+//!   where the surface is a sheet `sheets.rs`.
+//! - Exactly: a convex body of flat faces `flat_axis.rs` (over `roof.rs`), one that is not convex `convex_pieces.rs`,
+//!   a prism `prism_axis.rs` (over `wavefront.rs`), a prism with teeth, webs or thin walls, as of gears, `ribs.rs`.
 
 pub(crate) mod blunt_sheets;
 pub(crate) mod clip;

@@ -1,4 +1,7 @@
 //! Certificates of a result: that it covers the surface, how far it is off, its mass.
+//!
+//! `enclose.rs` raises radii until the solid covers the surface, and proves it; `hausdorff.rs` measures the error, by
+//! the branch and bound of `largest.rs`; `mass.rs` has the mass of the source.
 
 pub(crate) mod enclose;
 pub mod hausdorff;

@@ -1,4 +1,8 @@
 //! Makes the surface of a solid from triangles: repair, orientation, creases, the boundary of what overlaps.
+//!
+//! `repair.rs` calls the stages: `weld.rs`, `orient.rs` (with the loose seams of `sew.rs`), `seams.rs`, `patches.rs`
+//! (matter or sheet), `openings.rs`; their result is `checked_surface.rs`. Where it overlaps itself: `boundary.rs`,
+//! with `folds.rs`. Sharp edges: `creases.rs`; flat faces: `flat_faces.rs`; prisms: `profile.rs`.
 
 pub(crate) mod boundary;
 pub(crate) mod checked_surface;

@@ -1,4 +1,12 @@
-//! Contacts that rapier will ask for: which pairs, how far to look, where bodies will be.
+//! Contacts of a step, planned before rapier's step: for which pairs rapier will ask, how far to look, where bodies
+//! will be, and which pairs are muted, that is kept from its solver.
+//!
+//! - Which pairs: `candidates.rs`, `hanging.rs` (computed anew though they hardly moved), `muting.rs` (none for
+//!   rapier).
+//! - How far to look: `reach.rs`, with `neighbor_speeds.rs`.
+//! - At which poses: `predicted_contacts.rs`.
+//!
+//! The contacts themselves are computed by [`crate::batch`]; [`crate::parry`] makes manifolds of them.
 
 pub(crate) mod candidates;
 pub(crate) mod hanging;

@@ -1,10 +1,15 @@
-//! Chooses the pairs that are kept from rapier's solver and left to the event loop: those that move by more than
-//! their thickness in the step and do not touch yet. Contacts computed at the start of the step would come too late
-//! for them, or lie at places where the bodies never meet. Where both bodies may be moved, and one belongs to a multibody
-//! that turns wildly ([`crate::rapier::host::multibody_energy`]), touching pairs are left to the event loop too. So are those of a body that a
-//! joint has swing far in the step: rapier keeps the normal of the step's start and a point on either body, and a point
-//! that goes along an arc falls behind what flies on before it; it is pressed back, the harder the more sub-steps there
-//! are. Half of the step's budget may go into this; without it a pair is left to both.
+//! Chooses the pairs that are muted, that is kept from rapier's solver and left to the event loop: those that move by
+//! more than their thickness in the step and do not touch yet. Contacts computed at the start of the step would come
+//! too late for them, or lie at places where the bodies never meet. The inequality is that of `continuous` in
+//! `docs/effects.md`; the dispatcher then answers "no contacts" ([`crate::parry::narrow_phase_plan`]).
+//!
+//! Where both bodies may be moved, and one belongs to a multibody that turns wildly
+//! ([`crate::rapier::host::multibody_energy`]), touching pairs are left to the event loop too. So are those of a body
+//! that a joint has swing far in the step: rapier keeps the normal of the step's start and a point on either body,
+//! and a point that goes along an arc falls behind what flies on before it; it is pressed back, the harder the more
+//! sub-steps there are.
+//!
+//! Half of the step's budget may go into this; without it a pair is left to both.
 
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::PairKey;

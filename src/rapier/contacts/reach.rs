@@ -1,5 +1,5 @@
-//! How far two medial colliders may move against each other before their contacts are computed again, and so how far away
-//! contacts have to be known.
+//! How far two medial colliders may move against each other before their contacts are computed again, and so how far
+//! away contacts have to be known. The bound goes by velocities, gravity, forces and neighbours.
 
 use crate::math::Real;
 use crate::rapier::view::medial_colliders::MedialCollider;

@@ -32,6 +32,7 @@ pub struct DedupEventHandler<'a> {
     state: Mutex<State>,
 }
 
+/// What rapier has told in this step.
 #[derive(Default)]
 struct State {
     started: Vec<Pair>,

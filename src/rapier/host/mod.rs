@@ -1,4 +1,5 @@
-//! Workarounds of rapier 0.36, one file each. `docs/host.md` lists them, with the test that tells when one is no longer needed.
+//! Workarounds of rapier 0.36, one file each. `docs/host.md` lists them, with the test that tells when one is no
+//! longer needed.
 
 pub(crate) mod contact_depth;
 pub(crate) mod events_of_impacts;

@@ -34,6 +34,7 @@ const GAIN: f64 = 0.1;
 #[derive(Default)]
 pub struct WildMultibodies(Vec<WildMultibody>);
 
+/// A multibody that turns far in this step.
 struct WildMultibody {
     handle: MultibodyIndex,
     /// Free links, in the view.

@@ -36,6 +36,7 @@ pub struct Place {
     pub reach: Real,
 }
 
+/// Poses of a pair at its last full update, from which rapier measures how far it has moved.
 struct Frozen {
     pos12: Pose,
     rotations: [Rotation; 2],

@@ -1,5 +1,5 @@
-//! Which pairs bounce within a step ([`Effects::restitution`](crate::Effects::restitution)), and what of a pair touches at
-//! its start, so that rapier's solver has it.
+//! Which pairs bounce within a step ([`Effects::restitution`](crate::Effects::restitution), whose inequality is in
+//! `docs/effects.md`), and what of a pair touches at its start, so that rapier's solver has it.
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;

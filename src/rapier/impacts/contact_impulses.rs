@@ -1,7 +1,7 @@
-//! The two impulses of one contact within the step. One changes the velocities that the solver left, so that the next step
-//! begins right; the other changes the motions of this step, so that the rest of it is right. They differ where a body was
-//! stopped after too many impacts: it takes impulses for the next step, and keeps its motion. What joints tie to the two
-//! bodies takes part.
+//! The two impulses of one contact within the step, by the law of [`crate::rapier::impacts::impulse`]. One changes
+//! the velocities that the solver left, so that the next step begins right; the other changes the motions of this
+//! step, so that the rest of it is right. They differ where a body was stopped after too many impacts: it takes
+//! impulses for the next step, and keeps its motion. What joints tie to the two bodies takes part.
 
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;

@@ -1,4 +1,5 @@
-//! Pairs that are watched however slow they are, since rapier's contacts of them are deep.
+//! Pairs that are watched however slow they are, since rapier's contacts of them are deep: the effect `guard`, whose
+//! inequality is in `docs/effects.md`.
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;

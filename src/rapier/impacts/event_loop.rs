@@ -2,12 +2,13 @@
 //! in the order of their times.
 //!
 //! Each pair waits in a queue at the time before which it is known not to meet. The first in the queue is searched
-//! further until its first contact is known or another pair comes first. An impact moves both bodies to its time
-//! and gives two impulses: one to the velocities that the solver left, so that the next step begins right, and one
-//! to the motion of this step, so that the rest of it is right ([`crate::rapier::impacts::response`]). Then all pairs of the bodies
-//! that changed are searched again. A body with more than [`Tuning::max_events`](crate::rapier::tuning::Tuning) impacts
-//! stays where it is for the rest of the step, or is carried along by what pushes it. No impact is ever dropped,
-//! not even at the current time; so no medial axis crosses another on the motion that is executed.
+//! further until its first contact is known or another pair comes first. An impact moves both bodies to its time and
+//! gives two impulses: one to the velocities that the solver left, so that the next step begins right, and one to the
+//! motion of this step, so that the rest of it is right ([`crate::rapier::impacts::response`]; the law is in
+//! [`crate::rapier::impacts::impulse`]). Then all pairs of the bodies that changed are searched again. A body with
+//! more than [`Tuning::max_events`](crate::rapier::tuning::Tuning) impacts stays where it is for the rest of the
+//! step, or is carried along by what pushes it. No impact is ever dropped, not even at the current time; so no medial
+//! axis crosses another on the motion that is executed.
 
 use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::Real;

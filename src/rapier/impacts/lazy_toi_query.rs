@@ -14,10 +14,10 @@ use crate::rapier::view::step_view::StepView;
 /// The medial meshes of both, where they are.
 pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
 
-/// Records of the pairs of a step: what culling and lists of near primitives know.
+/// What earlier searches of the step left for later ones: the records of culling, and the lists of near primitives.
 pub type Known<'k> = (&'k mut PairCulling, &'k mut NearLists);
 
-/// A question about a pair from some time on, while neither of the two has another motion.
+/// The search for the first contact of one pair from some time on, valid while neither of the two has another motion.
 pub struct LazyToiQuery<'m> {
     /// Seconds into the step.
     from: Real,
@@ -27,6 +27,7 @@ pub struct LazyToiQuery<'m> {
 
 type MeshQuery<'m> = Query<'m, MedialMesh, MedialMesh>;
 
+/// The searches of two medial meshes once they have begun: for the first contact, and for the floor.
 struct Begun<'m> {
     first: Box<MeshQuery<'m>>,
     /// The query for the floor; `None` outside before it is known whether there is one.

@@ -1,6 +1,6 @@
-//! Lists of what may come near of pairs that are asked again in one step: an impact gives two bodies another motion, and
-//! their neighbours are searched for once more, although the same few primitives are near them
-//! ([`crate::pair::near_pairs`]).
+//! Lists of near primitives, kept for pairs that are searched again in one step. An impact gives two bodies another
+//! motion, and all their pairs are searched once more, although the same few primitives are near. This file decides
+//! when a list is made; what a list is, and why it holds, is in [`crate::pair::near_pairs`].
 
 use crate::elementary::{Paths, ToiOptions};
 use crate::math::Real;
@@ -23,6 +23,7 @@ const MARGIN: f64 = 0.5;
 #[derive(Default)]
 pub struct NearLists(FastMap<[usize; 2], Asked>);
 
+/// How often a pair was searched in this step, and its list once it has one.
 #[derive(Default)]
 struct Asked {
     times: u32,

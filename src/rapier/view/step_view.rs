@@ -23,7 +23,7 @@ pub const MOST_JOINTS: usize = 128;
 /// Turn in a step, in radians, up to which the boxes at both ends, grown by the sagitta, bound it.
 const SMALL_TURN: Real = 0.5;
 
-/// A collider in a step.
+/// A collider as a step sees it: its shape, place, box and thickness. A body has one part for each of its colliders.
 #[derive(Clone)]
 pub struct Part {
     /// Handle of the collider.
