@@ -13,15 +13,11 @@
 use super::distance::{Ball, nearest_in_test};
 use super::test_list::{OwnedFeatures, edges, for_each_test};
 use crate::math::lane::{Scalar, Vec3};
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
 
 /// Difference of two gaps that counts as none, in units of `EPSILON × gap`: a gap is a sum of 8
 /// rounded terms, with a margin of 2. Less, and equal directions are told apart by rounding.
 const TIE_ULPS: f64 = 32.0;
-
-/// Cosine from which a direction is another one turned (10°, that of one contact patch). Wider, and a
-/// normal that is only rounding's is followed; narrower, and one that turns with its body is not.
-const TURNED: f64 = 0.985;
 
 /// Distance of two centres, in units of the sum of their radii, below which it has no direction of its
 /// own: `f32` poses leave no digit of it. Larger, and normals jump where surfaces begin to cross;
@@ -78,7 +74,7 @@ pub fn deepest<S: Scalar>(
     // A loose direction is where `preferred` was and does not turn with the bodies: it only serves
     // where nothing else is there.
     nearest(&mut steady.iter())
-        .filter(|c| c.1.dot(preferred) >= S::splat(TURNED))
+        .filter(|c| c.1.dot(preferred) >= S::splat(ONE_DIRECTION))
         .or_else(|| nearest(&mut all()))
         .unwrap_or((most, preferred))
 }

@@ -24,12 +24,9 @@ use crate::elementary::test_list::{Domain, ElementaryTest, OwnedFeatures, for_ea
 use crate::elementary::{penetration, slab_crossing};
 use crate::math::lane::Vec3;
 use crate::math::nearest::{Family, Nearest, edge_minimum};
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
-
-/// Cosine from which two directions of one primitive pair belong to one contact patch (10°).
-const SAME_PATCH: f64 = 0.985;
 
 /// Squared sine under which two cones count as parallel for a second contact point (6°).
 const PARALLEL_SINE_SQ: f64 = 0.01;
@@ -312,7 +309,7 @@ impl<'a> PrimitivePair<'a> {
             let along = f64::from(c.points[0].x) - point1.x;
             along * along <= near * near
                 && (Vec3::<f64>::from_vector(c.points[0]) - point1).length_sq() <= near * near
-                && Vec3::<f64>::from_vector(c.normal).dot(normal) >= SAME_PATCH
+                && Vec3::<f64>::from_vector(c.normal).dot(normal) >= ONE_DIRECTION
         });
         let pair = self.sphere_pair(feature, s.distance, normal, [point1, point2]);
         match same {
@@ -370,6 +367,8 @@ fn second_on_line(
         f.at(edge_minimum(f.w + f.v, f.u, f.da), 1.0),
     ]
     .into_iter()
-    .filter(|c| c.distance <= margin && run(c) > thick && c.y.dot(normal) >= SAME_PATCH * c.length)
+    .filter(|c| {
+        c.distance <= margin && run(c) > thick && c.y.dot(normal) >= ONE_DIRECTION * c.length
+    })
     .max_by(|a, b| run(a).total_cmp(&run(b)))
 }

@@ -7,11 +7,7 @@ use super::placement::Placement;
 use super::sphere_pair::SpherePair;
 use crate::math::Real;
 use crate::math::lane::Vec3;
-use crate::math::tolerance::ROUNDING_ULPS;
-
-/// Cosine of the angle between the normal of a face and the direction of the contact up to which the face lies flat
-/// (10°, that of one contact patch).
-const FLAT: f64 = 0.985;
+use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
 
 /// How much better, in cosines, the face of the second has to lie to be the one that contacts are measured from. At 0
 /// rounding decides, and contacts change from step to step.
@@ -61,7 +57,7 @@ pub(super) fn face_contacts(
     let best = [(hulls[0], direction), (hulls[1], -direction)].map(|(hull, n)| flattest(hull, n));
     let cosines = best.map(|face| face.map_or(-1.0, |(_, cosine)| cosine));
     let from = usize::from(cosines[1] > cosines[0] + BETTER);
-    if let Some((face, _)) = best[from].filter(|_| cosines[from] >= FLAT) {
+    if let Some((face, _)) = best[from].filter(|_| cosines[from] >= ONE_DIRECTION) {
         let (reference, other) = (hulls[from], hulls[1 - from]);
         let normal = reference.normals[face];
         let outline = polygon(reference, face, normal);

@@ -5,6 +5,7 @@
 //! manifold for each pair of primitives, so that each keeps its own normal. (With one manifold for each pair of
 //! colliders a chain of rings falls apart.)
 
+use crate::math::tolerance::ONE_DIRECTION;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
@@ -15,9 +16,8 @@ use parry3d::query::{
 };
 use parry3d::shape::{PackedFeatureId, Shape};
 
-/// Cosine under which two contacts of one primitive pair get manifolds of their own (10°): a
-/// manifold has one normal.
-const SAME_NORMAL: Real = 0.985;
+/// Cosine under which two contacts of one primitive pair get manifolds of their own: a manifold has one normal.
+const SAME_NORMAL: Real = ONE_DIRECTION as Real;
 
 /// Cosine from which two contacts closer than the thinner body's thickness are one patch (11°): the
 /// neighbours of a joint all report the contact there, under normals a little apart. At 20° two rings

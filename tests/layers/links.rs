@@ -1,4 +1,5 @@
-//! The links between pages lead somewhere: each names a page that is there, and a heading of it if it names one.
+//! The links between pages lead somewhere: each names a page that is there, and a heading of it if it names one. The paths
+//! of source files that the maps of the code name are there.
 
 use std::collections::HashSet;
 use std::fs;
@@ -43,7 +44,7 @@ fn links(text: &str) -> impl Iterator<Item = &str> {
 fn links_between_pages_lead_somewhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut all = pages(&root.join("docs"));
-    all.extend(["README.md", "CHANGELOG.md"].map(|name| root.join(name)));
+    all.extend(["README.md", "CHANGELOG.md", "CONTRIBUTING.md"].map(|name| root.join(name)));
     let mut checked = 0;
     let mut wrong = Vec::new();
     for page in &all {
@@ -67,4 +68,30 @@ fn links_between_pages_lead_somewhere() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(checked > 50, "only {checked} links were found");
+}
+
+/// The maps for those who change the code.
+#[test]
+fn files_named_by_the_maps_of_the_code_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut checked = 0;
+    let mut wrong = Vec::new();
+    for map in ["CONTRIBUTING.md", "docs/host.md"] {
+        let text = fs::read_to_string(root.join(map)).expect("a map");
+        for named in text.split('`').skip(1).step_by(2) {
+            let file = named.split(' ').next().unwrap_or(named);
+            let is_path = ["src/", "tests/", "shaders/", "benches/"]
+                .iter()
+                .any(|folder| file.starts_with(folder));
+            if !is_path || file.contains('*') {
+                continue;
+            }
+            checked += 1;
+            if !root.join(file).exists() {
+                wrong.push(format!("{map}: {named}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(checked > 60, "only {checked} paths were found");
 }

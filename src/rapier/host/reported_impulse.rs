@@ -1,11 +1,12 @@
 //! An impulse that two colliders gave each other in an impact within the step, in the form in which contact force
 //! events report it.
 
+use crate::math::tolerance::ONE_DIRECTION;
 use crate::math::{Pose, Real, Vector};
 use rapier3d::geometry::ColliderHandle;
 
-/// Cosine from which the blows of a pair count as one (10°), as points of one manifold.
-const SAME_NORMAL: Real = 0.985;
+/// Cosine from which the blows of a pair count as one, as points of one manifold.
+const SAME_NORMAL: Real = ONE_DIRECTION as Real;
 
 /// Impulses that two colliders gave each other in the impacts of a step.
 #[derive(Clone, Debug)]
