@@ -1,20 +1,20 @@
 //! Concave colliders for the [rapier](https://rapier.rs) physics engine, with certified continuous
 //! collision detection: fast bodies do not tunnel.
 //!
-//! A triangle mesh describes the surface of a body. A [`MedialMesh`] describes its inside, by spheres
-//! whose centres lie in the middle of the body (on its *medial axis*). Every two neighbouring spheres are
-//! joined by a *medial cone* and every three by a *medial slab*: the convex hull of these spheres.
-//! These are the *primitives* of the mesh. A few dozen follow a concave body (a ring, chain link, hook,
-//! gripper, creature) closely, holes included. They are solid, and the time at which two of them first
-//! touch can be computed with a proof: if a query answers that two bodies do not meet in a step, they
-//! do not. `docs/guarantee.md` says for which inputs, and how rounding is accounted for.
+//! A triangle mesh describes the surface of a body. A [`MedialMesh`] describes its inside, by spheres whose centres
+//! lie in the middle of the body (on its *medial axis*). Every two neighbouring spheres are joined by a *medial cone*
+//! and every three by a *medial slab*; each is the convex hull of its spheres. These cones and slabs are the
+//! *primitives* of the mesh. A few dozen follow a concave body (a ring, chain link, hook, gripper, creature) closely,
+//! holes included. They are solid, and the time at which two of them first touch can be computed, with a proof that
+//! there was no earlier contact: if a query answers that two bodies do not meet in a step, they do not.
+//! `docs/guarantee.md` says for which inputs, and how rounding is accounted for.
 //!
 //! How to use it:
 //! 1. [`MedialMesh::from_trimesh`] builds a medial mesh from your triangles, once, in seconds.
 //!    [`MedialMesh::save_asset`] and [`MedialMesh::load_asset`] keep it in a file.
 //! 2. [`ColliderBuilder::medial_mesh`](MedialColliderBuilder::medial_mesh) makes a collider of it.
-//! 3. [`MedialPipeline::step`] takes the place of `world.step()`. [`MedialPipeline::attach`] is for worlds that
-//!    were loaded.
+//! 3. [`MedialPipeline::step`] takes the place of `world.step()`. After loading a saved world, call
+//!    [`MedialPipeline::attach`].
 //!
 //! ```
 //! use rapier3d::prelude::*;
@@ -40,11 +40,11 @@
 //! # }
 //! ```
 //!
-//! Lengths are in your unit (metres in rapier), times are fractions of the step from 0 to 1 unless a
-//! name says seconds. `docs/guide.md` goes on from here; `docs/notation.md` lists the symbols.
+//! Lengths are in your unit (metres in rapier). Times are fractions of the step, from 0 to 1, unless a name says
+//! seconds. `docs/guide.md` goes on from here; `docs/notation.md` lists the symbols.
 //!
-//! The method is that of the paper "Continuous Collision Detection with Medial Axis Transform for Rigid
-//! Body Simulation". Each file that departs from the paper says so at its beginning.
+//! The method comes from the paper "Continuous Collision Detection with Medial Axis Transform for Rigid Body
+//! Simulation". Each file that departs from the paper says so at its beginning.
 //!
 //! # Layers
 //! Each module imports only modules below it in this table; a test checks this. Most games need only

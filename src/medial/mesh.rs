@@ -27,8 +27,8 @@ use std::sync::{Arc, OnceLock};
 ///
 /// [`MedialMesh::from_trimesh`] builds one from triangles, [`MedialMesh::load_asset`] loads one, and
 /// [`MedialMesh::torus`] and other constructors make simple solids. Make a collider of it with
-/// [`ColliderBuilder::medial_mesh`](crate::MedialColliderBuilder::medial_mesh), which takes a clone for
-/// each collider: clones share the data, so cloning is cheap.
+/// [`ColliderBuilder::medial_mesh`](crate::MedialColliderBuilder::medial_mesh). Give each collider a clone: clones
+/// share the data, so cloning is cheap.
 #[derive(Clone, Debug)]
 pub struct MedialMesh {
     data: Arc<MedialData>,
@@ -68,8 +68,8 @@ pub(super) struct Parts {
 static NEXT_ID: AtomicU64 = AtomicU64::new(1);
 
 impl MedialMesh {
-    /// A medial mesh from its parts. Each edge joins two spheres by a medial cone, each face three by a
-    /// medial slab; both name spheres by index. A sphere without an edge stands alone. The edges of a face
+    /// A medial mesh from its parts. Each edge joins two spheres by a medial cone, each face joins three by a medial
+    /// slab. Edges and faces name their spheres by index. A sphere without an edge stands alone. The edges of a face
     /// are added if they are not listed, and repeated edges and faces are dropped.
     ///
     /// # Errors
@@ -164,8 +164,8 @@ impl MedialMesh {
         &self.data.parts
     }
 
-    /// Returns this mesh with other mass properties, at density 1, in the body's frame: for instance those of the
-    /// triangle mesh that it stands for. [`Self::from_trimesh`] does this itself.
+    /// Returns this mesh with other mass properties (at density 1, in the body's frame), for instance those of the
+    /// triangle mesh that it stands for. [`Self::from_trimesh`] sets those of its triangles itself.
     pub fn with_mass_properties(self, unit_density: MassProperties) -> Self {
         let parts = Parts {
             source_mass: Some(unit_density),
@@ -183,7 +183,8 @@ impl MedialMesh {
         &self.data.parts.spheres
     }
 
-    /// All edges, those of faces included: each once, as indices of two spheres, the smaller first.
+    /// All edges, those of faces included. Each is listed once, as the indices of its two spheres, the smaller index
+    /// first.
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.data.parts.edges
     }
@@ -193,7 +194,7 @@ impl MedialMesh {
         &self.data.parts.faces
     }
 
-    /// Number of primitives, the convex parts of the solid: slabs, cones that belong to no slab, and lone
+    /// Number of primitives. These are the convex parts of the solid: slabs, cones that belong to no slab, and lone
     /// spheres.
     pub fn primitive_count(&self) -> usize {
         self.data.parts.primitives.len()
@@ -213,20 +214,19 @@ impl MedialMesh {
         (0..self.primitive_count()).map(|i| self.primitive(i))
     }
 
-    /// The spheres of each primitive by index, and which edges and spheres it tests for its neighbours, in
-    /// the order of [`Self::primitive`].
+    /// For each primitive, in the order of [`Self::primitive`]: the indices of its spheres, and the edges and spheres
+    /// that it tests for its neighbours.
     pub fn simplices(&self) -> &[Simplex] {
         &self.data.parts.primitives
     }
 
-    /// The tree of bounding spheres over the primitives, in the body's frame: what this crate's queries
-    /// search.
+    /// The tree of bounding spheres over the primitives, in the body's frame. This crate's queries search it.
     pub fn tree(&self) -> &SphereTree {
         &self.data.parts.tree
     }
 
-    /// The tree of boxes over the primitives that parry's own queries search, in the body's frame. Built at
-    /// the first call, in 1 ms for 5,000 primitives.
+    /// The tree of boxes over the primitives, in the body's frame. parry's own queries search it. It is built at the
+    /// first call, in 1 ms for 5,000 primitives.
     pub fn bvh(&self) -> &Bvh {
         self.data.boxes.get_or_init(|| {
             let boxes: Vec<Aabb> = self.primitives().map(|p| p.aabb()).collect();
@@ -276,10 +276,10 @@ impl MedialMesh {
         self.data.aabb
     }
 
-    /// How thin the solid typically is, a length: 95 % of the medial mesh, by area, have a larger radius. A cone counts
-    /// as a strip as wide as itself. A blunt tip, as at the edges of a box, counts as thick as the part it ends.
-    /// The smallest radius would not do, because it is near 0 at the tips of most meshes, and every motion would count
-    /// as fast.
+    /// How thin the solid typically is: the radius that 95 % of the medial mesh, by area, exceed. For the area, a
+    /// cone counts as a strip as wide as the cone. A blunt tip, as at the edges of a box, is taken to be as thick as
+    /// the part at whose end it is. The smallest radius would not do instead: it is near 0 at the tips of most
+    /// meshes, so every motion would count as fast.
     pub fn thickness(&self) -> Real {
         self.data.parts.thickness
     }
@@ -296,10 +296,10 @@ impl MedialMesh {
         thicknesses.get_or_init(|| Thicknesses::new(spheres, primitives, tree))
     }
 
-    /// Mass, centre of mass and inertia at a density (mass per cubed unit of length), in the body's frame.
-    /// They are those of the triangle mesh if this was built from one, else those of the solid, with
-    /// overlaps of primitives counted once. The latter are measured at the first call, in 10 ms for a ball and
-    /// 0.3 s for 1,250 slabs. Density 0 gives no mass, and measures nothing.
+    /// Mass, centre of mass and inertia at a density (mass per cubed unit of length), in the body's frame. If the
+    /// medial mesh was built from a triangle mesh, they are those of the triangle mesh; otherwise they are those of
+    /// the solid, with overlaps of primitives counted once. Those of the solid are measured at the first call, in 10
+    /// ms for a ball and 0.3 s for 1,250 slabs. Density 0 gives no mass, and measures nothing.
     pub fn mass_properties(&self, density: Real) -> MassProperties {
         if density == 0.0 {
             return MassProperties::default();
@@ -315,8 +315,8 @@ impl MedialMesh {
         source.unwrap_or_else(|| self.solid_mass_properties())
     }
 
-    /// Volume of the solid in cubed units of length, with overlaps of primitives counted once. It is that of
-    /// the medial mesh, even if the mass properties are those of a triangle mesh. Computed at the first call.
+    /// Volume of the solid in cubed units of length, with overlaps of primitives counted once. It is the volume of
+    /// the medial mesh, even if the mass properties are those of a triangle mesh. It is computed at the first call.
     pub fn volume(&self) -> Real {
         self.solid_mass_properties().mass()
     }
@@ -327,8 +327,8 @@ impl MedialMesh {
         solid.get_or_init(|| mass::solid_mass_properties(&primitives().collect::<Vec<_>>()))
     }
 
-    /// Number by which [`crate::MedialPipeline`] tells colliders apart. Clones share it; the pipeline gives each
-    /// collider one of its own.
+    /// The number by which [`crate::MedialPipeline`] tells colliders apart. Clones have the same number; the pipeline
+    /// gives each collider a number of its own.
     pub fn instance_id(&self) -> u64 {
         self.id
     }

@@ -41,16 +41,17 @@ use surface::checked_surface::Surface;
 use watch::Watch;
 
 impl MedialMesh {
-    /// Builds a medial mesh from a triangle mesh. Where the triangles enclose a volume it becomes a solid, where
-    /// they do not they become sheets without thickness. The result is in the unit and frame of the
-    /// vertices, and has the mass, centre of mass and inertia of the solid.
+    /// Builds a medial mesh from a triangle mesh. Triangles that enclose a volume become a solid; all others become
+    /// sheets without thickness. The result is in the unit and frame of the vertices, and has the mass, centre of
+    /// mass and inertia of the solid.
     ///
-    /// Triangles are meant to be counter-clockwise seen from outside; those that are not are turned round.
-    /// Other damage (cracks, small openings, repeated triangles, overlapping parts) is repaired if possible, and
-    /// [`BuildReport::findings`] counts it.
+    /// The vertices of each triangle should be in counter-clockwise order, seen from outside; triangles in the other
+    /// order are turned round. Other damage (cracks, small openings, repeated triangles, overlapping parts) is
+    /// repaired if possible, and [`BuildReport::findings`] counts it.
     ///
-    /// A build takes a second to half a minute in optimised code (`docs/measurements/medial-mesh-error.md` has a table), and
-    /// many times as long without optimisation. Build once and save the result ([`MedialMesh::save_asset`]).
+    /// A build takes a second to half a minute in optimised code (`docs/measurements/medial-mesh-error.md` has a
+    /// table), and many times as long without optimisation. Build once and save the result
+    /// ([`MedialMesh::save_asset`]).
     ///
     /// # Errors
     /// [`BuildError`] says what is wrong: an option out of its range, no triangles, coordinates that are

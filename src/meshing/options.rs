@@ -6,33 +6,34 @@ use crate::meshing::findings::Findings;
 
 /// How much work a build spends on making the error small.
 ///
-/// A higher quality never gives a larger error ([`Hausdorff::error`], up to its `sampling`), because a build
+/// A higher quality never gives a larger error ([`Hausdorff::error`], give or take its `sampling`), because a build
 /// also makes the result of the lower quality and keeps the better one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quality {
-    /// A fifth of the time of [`Self::Balanced`], and one and a half to three times its error: edges are
-    /// collapsed by an error estimate (the quadric error of Q-MAT), and that is all.
+    /// A fifth of the time of [`Self::Balanced`], and one and a half to three times its error. Edges are collapsed in
+    /// the order of an estimated error (the quadric error of Q-MAT); nothing else is done.
     Fast,
-    /// The default. After that, edges are collapsed by the measured error, primitives are inserted where the error is
-    /// largest, and centres and radii are fitted by least squares.
+    /// The default. After the work of [`Self::Fast`], edges are collapsed by the measured error, primitives are
+    /// inserted where the error is largest, and centres and radii are fitted by least squares.
     #[default]
     Balanced,
-    /// Three times the time of [`Self::Balanced`] for little gain: more rounds in which primitives are removed in one
-    /// place and inserted in another and, if their number is small, a second start.
+    /// Three times the time of [`Self::Balanced`] for little gain. There are more rounds, in which primitives are
+    /// removed in one place and inserted in another. If the number of primitives is small, there is also a second
+    /// start.
     Best,
 }
 
 /// Which edges of the triangle mesh count as sharp. Convex sharp edges may be kept, by spheres of radius 0 that lie
 /// on them; all other edges are rounded.
 ///
-/// Bodies with flat faces become their own medial axes (if they are not convex, those of convex pieces) if the number
-/// of primitives allows it, and are then exact. Other closed bodies whose surface does not overlap itself are built
-/// twice, with sharp edges and without, and the result of smaller error is returned ([`Quality::Fast`] builds only the
+/// Bodies with flat faces are exact if the number of primitives allows it: their medial axis is used, or, if they are
+/// not convex, those of convex pieces. Other closed bodies whose surface does not overlap itself are built twice,
+/// with sharp edges and without, and the result with the smaller error is returned ([`Quality::Fast`] builds only the
 /// one without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Creases {
-    /// Edges at which the surface bends by more than 25°, unless most of these edges end within a face, as on a
-    /// coarse mesh of an animal. On a convex body with flat faces, all edges.
+    /// Edges at which the surface bends by more than 25°. If most of these edges end within a face, as on a coarse
+    /// mesh of an animal, no edges. On a convex body with flat faces, all edges.
     #[default]
     Auto,
     /// Edges at which the normals of the two faces differ by more than this angle, in radians.
@@ -77,23 +78,23 @@ impl Creases {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuildOptions {
-    /// Largest number of primitives (slabs, cones that belong to no slab, lone spheres): what the collider costs.
-    /// `None` leaves it to `max_error`; without that either, it is 500.
+    /// Largest number of primitives (slabs, cones that belong to no slab, lone spheres). It decides what the collider
+    /// costs. With `None`, `max_error` decides the number; if that is `None` too, it is 500.
     pub primitives: Option<usize>,
     /// Largest error ([`Hausdorff::error`] of the result), as a fraction of the longest side of the bounding box.
-    /// The smallest mesh that keeps to it is built, among the numbers of primitives that were tried
-    /// ([`BuildReport::notes`]); with `primitives` set as well, it has at most that many. If no mesh
-    /// keeps to it, the best one found is returned, and [`BuildReport::target_reached`] is false. Such a build takes
-    /// five to fifteen times as long as one for a given number of primitives.
+    /// Several numbers of primitives are tried ([`BuildReport::notes`]), and the smallest mesh that keeps to this
+    /// error is returned. If `primitives` is set as well, the mesh has at most that many. If no mesh keeps to the
+    /// error, the best one found is returned, and [`BuildReport::target_reached`] is false. A build with `max_error`
+    /// takes five to fifteen times as long as one for a given number of primitives.
     pub max_error: Option<Real>,
     /// How much work to spend on making the error small.
     pub quality: Quality,
     /// Whether the solid provably covers the whole triangle mesh: spheres are moved and enlarged until it does
-    /// ([`Quality::Fast`] only enlarges them). Without this, the error is about seven tenths as large, and parts of the
-    /// triangle mesh stick out of the solid.
+    /// ([`Quality::Fast`] only enlarges them). With `false`, the error is about seven tenths as large, and parts of
+    /// the triangle mesh stick out of the solid.
     pub enclose: bool,
-    /// Distance by which the triangle mesh may stick out of the solid in spite of `enclose`, as a fraction of the longest
-    /// side of the bounding box. The solid becomes thinner by up to as much.
+    /// Distance by which the triangle mesh may stick out of the solid in spite of `enclose`, as a fraction of the
+    /// longest side of the bounding box. The solid becomes thinner by up to this distance.
     pub allow_uncovered: Real,
     /// Which edges of the triangle mesh count as sharp.
     pub creases: Creases,
@@ -112,7 +113,7 @@ impl Default for BuildOptions {
     }
 }
 
-/// How far a build has got, as its callback is told
+/// How far a build has got. The build passes it to its callback
 /// ([`MedialMesh::from_trimesh_with_progress`](crate::MedialMesh::from_trimesh_with_progress)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
@@ -122,15 +123,16 @@ pub struct Progress {
     pub fraction: Real,
 }
 
-/// How far a medial mesh is from the triangle mesh: the Hausdorff distance of the two surfaces, that is the largest
-/// distance from a point of either surface to the nearest point of the other. All fields are lengths in the
-/// user's unit. Triangles that lie inside the solid that all parts of the triangle mesh make together do not count.
+/// How far a medial mesh is from the triangle mesh: the Hausdorff distance of the two surfaces, which is the largest
+/// distance from a point of either surface to the nearest point of the other. All fields are lengths in the user's
+/// unit. All parts of the triangle mesh together make one solid; triangles that lie inside it do not count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hausdorff {
     /// Largest distance from a point of the triangle mesh to the surface of the medial mesh.
     pub surface_to_envelope: Real,
     /// Largest distance from a point on the surface of the medial mesh to the triangle mesh. If this is below
-    /// [`Self::surface_to_envelope`] it may be understated, down to 0, because it is not searched for then.
+    /// [`Self::surface_to_envelope`], the true distance may be larger than given here (which may be 0), because it is
+    /// then not searched for.
     pub envelope_to_surface: Real,
     /// How far the triangle mesh sticks out of the medial mesh, at most.
     pub uncovered: Real,
@@ -169,9 +171,9 @@ pub enum Variant {
         edges: usize,
     },
     /// The medial mesh is exact: it consists of the medial axes of convex bodies with flat faces, or of overlapping
-    /// convex pieces that together are the body. For such pieces [`Hausdorff::error`] is measured, and is some millionths
-    /// of the size, or more where vertices are off their planes or rounded far from the origin. [`Hausdorff::sampling`]
-    /// may be a hundredth of the size.
+    /// convex pieces that together are the body. For such pieces [`Hausdorff::error`] is measured. It is some
+    /// millionths of the size, or more if vertices lie off the planes of their faces, or are rounded because the mesh
+    /// is far from the origin. [`Hausdorff::sampling`] may be a hundredth of the size.
     Exact,
 }
 
@@ -196,18 +198,18 @@ pub struct BuildReport {
     /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring. If the result consists of
     /// overlapping convex pieces (see [`Self::notes`]), it is the number of pieces.
     pub euler: i64,
-    /// Whether the result keeps to [`BuildOptions::max_error`]; true if none was asked for. The number of primitives
-    /// is always kept to.
+    /// Whether the result keeps to [`BuildOptions::max_error`]; true if none was asked for.
+    /// [`BuildOptions::primitives`] is never exceeded.
     pub target_reached: bool,
-    /// Numbers of faults found in the triangle mesh, and of repairs.
+    /// How many faults were found in the triangle mesh, and how many repairs were made.
     pub findings: Findings,
     /// Area of the triangle mesh that lies inside the solid, hidden by other parts, in the user's unit squared. It
     /// does not count in the error.
     pub hidden_area: Real,
     /// Remarks on the triangle mesh and the result, a sentence each.
     pub notes: Vec<String>,
-    /// Bytes that the builder's large arrays held at most at any time. Small lists, overhead of the allocator and
-    /// your own mesh are not included, so the true number is larger.
+    /// The most bytes that the builder's large arrays held at any one time. Small lists, overhead of the allocator
+    /// and your own mesh are not included, so the true number is larger.
     pub memory: usize,
     /// Seconds that each stage took, in order.
     pub seconds: Vec<(&'static str, f64)>,

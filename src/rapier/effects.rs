@@ -14,20 +14,21 @@ pub enum Effect {
     Off,
     /// Always.
     On,
-    /// Decided for each pair in each step, as the documentation of each effect says. In the settings of a collider:
-    /// the scene's setting holds.
+    /// Decided for each pair in each step, as the documentation of each effect says. In the settings of a single
+    /// collider it means that the scene's setting holds.
     #[default]
     Auto,
 }
 
-/// Which work beyond rapier's own step is done for a pair of colliders. By default all of it is decided
-/// automatically, and only pairs that move fast, or are deep in each other, cost extra time.
+/// Which work beyond rapier's own step is done for a pair of colliders. By default all of this is decided
+/// automatically. Then only pairs that move fast, or are deep in each other, cost extra time.
 ///
 /// Set effects for the whole scene by [`MedialOptions::effects`], or for single colliders by
-/// [`MedialPipeline::set_effects`](crate::rapier::MedialPipeline::set_effects). For each effect of a pair, `On` of either
-/// collider wins, then `Off` of either, then the scene's setting.
+/// [`MedialPipeline::set_effects`](crate::rapier::MedialPipeline::set_effects). For a pair, each effect is decided by
+/// three rules, in this order: it is on if either collider has `On`; it is off if either has `Off`; otherwise the
+/// scene's setting holds.
 ///
-/// *Thickness* below is that of the thinner of the two parts that may meet, a length: roughly their radius.
+/// *Thickness* below is a length: roughly the radius of the thinner of the two parts that may meet.
 ///
 /// ```
 /// use rapier3d_medial::prelude::*;
@@ -44,21 +45,21 @@ pub struct Effects {
     /// that move relative to each other by more than a quarter of their thickness in the step. Off: fast
     /// bodies may pass through each other, as rapier's own do.
     pub continuous: Effect,
-    /// Resolves first contacts of slow pairs before they are so deep in each other that one could pass through the
-    /// other. `Auto`: for pairs of which rapier knows a contact deeper than a quarter of their thickness. Off: a heavy
-    /// load may press a slow body through another.
+    /// Resolves first contacts of slow pairs before the two are so deep in each other that one could pass through the
+    /// other. `Auto`: for pairs of which rapier knows a contact deeper than a quarter of their thickness. Off: a
+    /// heavy load may press a slow body through another.
     pub guard: Effect,
-    /// Follows turning bodies on their exact paths to find a first contact. `Auto`: always. Off: each point is
-    /// taken to move straight from where it is at the start of the step to where it is at the end, as in the paper
-    /// (Eq. 1), and contacts of turning bodies beside these lines are missed. For pairs of two medial
+    /// Follows turning bodies on their exact paths to find a first contact. `Auto`: always. Off: each point is taken
+    /// to move straight from where it is at the start of the step to where it is at the end, as in the paper (Eq. 1).
+    /// Contacts of turning bodies that lie beside these lines are then missed. This effect is for pairs of two medial
     /// meshes only.
     pub exact_rotation: Effect,
     /// Gives the solver all contacts of a pair. `Auto`: always. Off: only the deepest one, which is enough for
     /// bullets and debris, but bodies cannot rest on it. Sensors have no contacts in either case.
     pub full_manifolds: Effect,
-    /// Uses rapier's own speculative contacts (`RigidBody::set_soft_ccd_prediction`), for comparison: the solver gets
-    /// contacts with all that the body may reach in the step, computed at the start of the step. `Auto`: never,
-    /// because such contacts also stop bodies that would pass beside each other.
+    /// Uses rapier's own speculative contacts (`RigidBody::set_soft_ccd_prediction`), for comparison. At the start of
+    /// the step, the solver gets contacts with everything that the body may reach in the step. `Auto`: never, because
+    /// such contacts also stop bodies that would pass each other without touching.
     pub speculative: Effect,
     /// Stops the whole world at the first contact that [`Self::continuous`] finds for the pair, and lets rapier's
     /// solver resolve it in a step over the time that is left (the paper's response, §4.5). Better for bodies that
@@ -66,16 +67,17 @@ pub struct Effects {
     /// bodies get an impulse, and all others go on. There are at most eight stops in a step, and none in worlds
     /// with multibodies or soft bodies.
     pub stop: Effect,
-    /// Lets pairs with restitution bounce where they meet within the step, by an impulse that gains no energy, and keeps
-    /// them from rapier's solver in that step. `On`: for pairs whose restitution is above 0, if they may approach by more
-    /// than twice the distance that gravity adds in the step. `Auto`: the same, but only for pairs on which no gravity,
-    /// force of yours or joint acts, as in space. Off, and for pairs with [`Self::stop`] on: slow pairs bounce in rapier's
-    /// solver, in which elastic bodies that are not round gain or lose much of their energy within seconds.
+    /// Lets pairs with restitution bounce where they meet within the step, by an impulse that gains no energy. In
+    /// that step, rapier's solver does not get these pairs. `On`: for pairs whose restitution is above 0, if they may
+    /// approach by more than twice the distance that gravity adds in the step. `Auto`: the same, but only for pairs
+    /// on which no gravity, force of yours or joint acts, as in space. If this is off, or [`Self::stop`] is on for
+    /// the pair, slow pairs bounce in rapier's solver. There, elastic bodies that are not round gain or lose much of
+    /// their energy within seconds.
     pub restitution: Effect,
 }
 
-/// Settings of a [`MedialPipeline`](crate::rapier::MedialPipeline). The defaults give up nothing; for games
-/// there is [`MedialOptions::games`].
+/// Settings of a [`MedialPipeline`](crate::rapier::MedialPipeline). The defaults leave nothing out; for games, which
+/// want short steps, there is [`MedialOptions::games`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MedialOptions {
@@ -83,10 +85,10 @@ pub struct MedialOptions {
     pub effects: Effects,
     /// The CPU or a GPU, for contacts and first contacts of many pairs. The results are the same, bit by bit.
     pub backend: Backend,
-    /// How much work the search for first contacts may do in a step, counted in node pairs and elementary tests, of
-    /// which each takes half a microsecond to one. Once it is spent, bodies whose paths are not searched to the end stop
-    /// where they are proven free, and go on in the next step at the speed they had ([`crate::StepReport::waiting`]). So
-    /// they lose time, but pass through nothing.
+    /// How much work the search for first contacts may do in a step, counted in tests (of pairs of tree nodes, and of
+    /// pairs of primitives), each of which takes half a microsecond to one. Once the budget is spent, a body whose
+    /// path is not searched to the end stops where it is proven free, and goes on in the next step at the speed it
+    /// had ([`crate::StepReport::waiting`] counts such bodies). So these bodies lose time, but pass through nothing.
     pub budget: u64,
 }
 
@@ -108,8 +110,8 @@ impl Default for MedialOptions {
 }
 
 impl Effects {
-    /// Nothing beyond rapier's own step: medial colliders have contacts, and rapier's own continuous collision detection
-    /// only.
+    /// Nothing beyond rapier's own step: medial colliders have contacts, but no continuous collision detection except
+    /// rapier's own.
     pub const OFF: Self = Self {
         continuous: Effect::Off,
         guard: Effect::Off,
@@ -176,8 +178,9 @@ impl MedialOptions {
         self
     }
 
-    /// Options for games: all effects, and a budget of 16,384, which limits the search for first contacts to about the time of a
-    /// frame. Where it does not suffice, bodies wait for the next step; they still pass through nothing.
+    /// Options for games: all effects, and a budget of 16,384, which limits the search for first contacts to about
+    /// the time of a frame. If the budget does not suffice, bodies wait for the next step; they still pass through
+    /// nothing.
     pub fn games() -> Self {
         Self::default().budget(BUDGET_OF_GAMES)
     }

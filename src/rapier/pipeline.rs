@@ -27,8 +27,8 @@ use std::sync::Arc;
 /// Steps a world with medial colliders: call [`Self::step`] in place of `world.step()`. Use one pipeline for
 /// each world.
 ///
-/// Before rapier's step it computes the contacts between medial colliders that are near each other. After the
-/// step it finds fast bodies that met within it, of which at least one is medial, and resolves these
+/// Before rapier's step it computes the contacts between medial colliders that are near each other. After rapier's
+/// step it finds pairs of fast bodies that met within the step, at least one of them medial, and resolves these
 /// impacts: see [`Effects`]. [`Self::attach`] and [`Self::step`] say what else changes in the world.
 ///
 /// In a world that is stepped without a pipeline, medial colliders still have contacts, computed by parry as for
@@ -63,9 +63,9 @@ impl Default for MedialPipeline {
 }
 
 impl MedialPipeline {
-    /// A pipeline for one world. Opens a GPU if [`MedialOptions::backend`] asks for one. If there is none, the CPU
-    /// does its work, and [`BatchReport::error`](crate::batch::BatchReport::error) of [`Self::batch`] says why. In a
-    /// browser, where a GPU cannot be opened like this, use [`Self::with_batch`].
+    /// A pipeline for one world. It opens a GPU if [`MedialOptions::backend`] asks for one. If there is none, the CPU
+    /// does the GPU's work, and [`BatchReport::error`](crate::batch::BatchReport::error) of [`Self::batch`] says why.
+    /// In a browser, where a GPU cannot be opened like this, use [`Self::with_batch`].
     pub fn new(options: MedialOptions) -> Self {
         Self::with_batch(options, Batch::new(options.backend))
     }
@@ -112,9 +112,9 @@ impl MedialPipeline {
         self.state.batch.ready().await;
     }
 
-    /// Does the same as [`Self::prepare`] for many worlds in one submission to one GPU, that of `batch`: the pipelines
-    /// themselves need none. Await it between two steps; each world goes on as by itself, bit by bit. Other jobs of
-    /// the steps are computed on the CPU, as everything is without a GPU.
+    /// Does the same as [`Self::prepare`] for many worlds in one submission to one GPU, that of `batch`. The
+    /// pipelines themselves need no GPU. Await it between two steps. Each world goes on as it would by itself, bit by
+    /// bit. All other work of the steps is done on the CPU, as everything is without a GPU.
     #[cfg(feature = "gpu")]
     pub async fn prepare_many<'a>(
         batch: &mut Batch,
@@ -139,9 +139,9 @@ impl MedialPipeline {
         candidates::expect(sets, &self.state.recycled)
     }
 
-    /// Sets the effects of one collider. An effect left at [`Effect::Auto`](crate::Effect::Auto) follows the scene's setting, so
-    /// [`Effects::default`] removes the collider's own settings. If two colliders of a pair differ in an effect,
-    /// `On` wins over `Off`.
+    /// Sets the effects of one collider. An effect left at [`Effect::Auto`](crate::Effect::Auto) follows the scene's
+    /// setting, so [`Effects::default`] removes the collider's own settings. If the two colliders of a pair have
+    /// different settings for an effect, `On` wins over `Off`.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
         self.state.effects.set(collider, effects);
         self.state.kept = None;
@@ -155,9 +155,9 @@ impl MedialPipeline {
     }
 
     /// Prepares a world to be stepped by this pipeline: the narrow phase (the part of rapier that computes contacts)
-    /// asks this pipeline first, and parry after that. A query dispatcher that you set yourself is replaced; nothing else
-    /// of the world changes. A pipeline that was attached to nothing attaches itself in its first step; call this after
-    /// the world was loaded or its narrow phase replaced.
+    /// asks this pipeline first, and parry after that. A query dispatcher that you have set yourself is replaced;
+    /// nothing else in the world changes. For a new world you need not call this: a pipeline that is not attached yet
+    /// attaches itself in its first step. Call it after the world was loaded or its narrow phase was replaced.
     pub fn attach(&mut self, world: &mut PhysicsWorld) {
         self.attach_sets(&mut world.narrow_phase);
     }
@@ -173,9 +173,10 @@ impl MedialPipeline {
     /// counts what was done; [`StepReport::events`], [`StepReport::continuous_queries`] and [`StepReport::frozen`] tell
     /// most.
     ///
-    /// While there are medial colliders, `integration_parameters.normalized_contact_recycle_distance`, the distance that a
-    /// pair may move before rapier computes its contacts anew, counts as
-    /// [`RECYCLE_DISTANCE`](crate::rapier::RECYCLE_DISTANCE) if it is larger. This holds for all bodies.
+    /// `integration_parameters.normalized_contact_recycle_distance` is the distance that a pair may move before
+    /// rapier computes its contacts anew. While there are medial colliders, the step uses
+    /// [`RECYCLE_DISTANCE`](crate::rapier::RECYCLE_DISTANCE) in its place if yours is larger. This holds for all
+    /// bodies.
     pub fn step(&mut self, world: &mut PhysicsWorld) -> StepReport {
         self.step_with_events(world, &(), &())
     }
@@ -207,7 +208,7 @@ impl MedialPipeline {
     }
 
     /// Steps like [`Self::step_with_events`], for games that keep rapier's sets themselves. It takes the arguments of
-    /// [`PhysicsPipeline::step`], the pipeline first.
+    /// [`PhysicsPipeline::step`], and before them rapier's pipeline itself.
     #[expect(
         clippy::too_many_arguments,
         reason = "the arguments of rapier's own step"

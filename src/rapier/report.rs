@@ -8,32 +8,34 @@ use crate::rapier::impacts::outcome::Outcome;
 use crate::rapier::impacts::toi_query::Work;
 
 counters! {
-    /// Counters and times of one step of a [`crate::MedialPipeline`], about medial colliders only. Three counters tell
-    /// most:
+    /// Counters and times of one step of a [`crate::MedialPipeline`]. They are about medial colliders only. Three
+    /// counters tell most:
     /// - [`Self::events`]: impacts that were resolved within the step. 0 in a quiet scene, dozens when bodies fly.
     /// - [`Self::continuous_queries`]: how often a first contact was searched for. Thousands mean that many bodies move
     ///   fast, or that one has parts of (nearly) no thickness, and the step is slow.
-    /// - [`Self::frozen`]: bodies that stopped before the end of the step, after too many impacts. A few are normal in
-    ///   a crash. Otherwise bodies are pressed where there is no room, or very thin ones were spawned inside each other.
+    /// - [`Self::frozen`]: bodies that stopped before the end of the step, after too many impacts. A few are normal
+    ///   in a crash. If there is no crash, bodies are pressed into a place without room, or very thin ones were
+    ///   spawned inside each other.
     #[non_exhaustive]
     pub struct StepReport {
         /// Number of enabled medial colliders in the world.
         pub medial_colliders: usize,
-        /// Pairs of medial colliders, at least one of them awake, whose bounding boxes were near each other at the start.
+        /// Pairs of medial colliders, at least one of the two awake, whose bounding boxes were near each other at the
+        /// start of the step.
         pub pairs: usize,
-        /// Pairs of these whose contacts were computed in one batch before rapier's step. The others had moved so
-        /// little that rapier keeps their contacts, or are muted ([`Self::muted`]).
+        /// How many of these pairs had their contacts computed in one batch before rapier's step. The others had
+        /// moved so little that rapier keeps their contacts, or are muted ([`Self::muted`]).
         pub jobs: usize,
         /// Counters of the backend: jobs that a GPU settled, lists, submissions.
         pub batch: BatchCounts,
-        /// Contacts found in the batch: pairs of spheres near enough to touch within the step, without those that cannot
-        /// touch while a nearer contact holds.
+        /// Contacts found in the batch: pairs of spheres near enough to touch within the step. Pairs that cannot
+        /// touch while a nearer contact holds are left out.
         pub contacts: usize,
         /// Contact manifolds that rapier asked for and that the batch had computed. (A manifold is a set of contacts
         /// with one normal.)
         pub cache_hits: u64,
-        /// Contact manifolds that rapier asked for and that were computed only then: those of new pairs, and of bodies that
-        /// you changed.
+        /// Contact manifolds that were computed only when rapier asked for them: those of new pairs, and of bodies
+        /// that you changed.
         pub cache_misses: u64,
         /// Contact manifolds given to rapier for pairs of two medial colliders, and for pairs that get one contact only
         /// ([`crate::Effects::full_manifolds`]). Other manifolds with rapier's shapes are not counted.
@@ -44,9 +46,10 @@ counters! {
         pub continuous_queries: u64,
         /// Continuous queries after rapier's step in which a body turned and was followed on its exact path.
         pub rotating_queries: u64,
-        /// Pairs of two medial colliders whose first contact was asked for at the end of rapier's step, before any impact.
-        /// Not all take a query: bounding spheres or a direction may keep the two apart, or an earlier impact comes
-        /// between. Other continuous queries are with rapier's shapes, by rapier's own sweeps, or after an impact.
+        /// Pairs of two medial colliders whose first contact was asked for at the end of rapier's step, before any
+        /// impact. Not all of these need a query: bounding spheres or a direction may show that the two stay apart,
+        /// or an earlier impact comes between. Other continuous queries are with rapier's shapes, by rapier's own
+        /// sweeps, or after an impact.
         pub continuous_jobs: usize,
         /// Fast pairs whose contacts were kept from rapier's solver, because their first contact is resolved after
         /// rapier's step.
@@ -56,13 +59,14 @@ counters! {
         /// Bodies that stopped before the step's end, or were carried along by what pushed them, after too many impacts
         /// (more than 16).
         pub frozen: usize,
-        /// Node pairs and elementary tests that first contacts took, of [`crate::MedialOptions::budget`].
+        /// How much of [`crate::MedialOptions::budget`] was spent: node pairs and elementary tests for first
+        /// contacts.
         pub spent: u64,
-        /// Bodies that stopped before the step's end because the budget was spent: nothing is known to be free further.
-        /// They go on in the next step, at the speed they had.
+        /// Bodies that stopped before the step's end because the budget was spent: it is not known whether their path
+        /// is free beyond that point. They go on in the next step, at the speed they had.
         pub waiting: usize,
-        /// Times that the whole world stopped at a first contact ([`crate::Effects::stop`]). Each stop makes another step,
-        /// whose work is included in all counters.
+        /// Times that the whole world stopped at a first contact ([`crate::Effects::stop`]). Each stop makes another
+        /// step, whose work is included in all counters.
         pub stops: usize,
         /// Bodies that got speculative contacts ([`crate::Effects::speculative`]), summed over the steps between stops.
         pub speculative: usize,
@@ -72,7 +76,7 @@ counters! {
         pub elementary_tests: u64,
         /// Seconds spent on finding near pairs and computing their contacts before rapier's step.
         pub batch_seconds: f64,
-        /// Seconds spent on gathering colliders and choosing the muted pairs.
+        /// Seconds spent on gathering colliders and choosing the pairs to be muted ([`Self::muted`]).
         pub mute_seconds: f64,
         /// Seconds spent on impacts after rapier's step.
         pub event_seconds: f64,
