@@ -1,5 +1,7 @@
 //! Elementary queries, judged by an independent oracle; and the oracle, judged by closed forms.
 
+#[path = "../common/blocks.rs"]
+mod blocks;
 #[path = "../common/ccd/mod.rs"]
 mod ccd;
 #[path = "../common/creature.rs"]

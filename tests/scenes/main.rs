@@ -1,6 +1,12 @@
 //! Whole rapier scenes: what rests, what hangs, what must never pass; saving, drawing, repeating.
 
 mod after_blows;
+#[cfg_attr(
+    not(feature = "enhanced-determinism"),
+    allow(dead_code, reason = "the golden holds with that feature only")
+)]
+#[path = "../common/blocks.rs"]
+mod blocks;
 mod bodies;
 mod bounces;
 mod brickwork;
@@ -27,10 +33,6 @@ mod filters;
 mod fixed_partners;
 mod fixtures;
 mod force_events;
-#[cfg_attr(
-    not(feature = "enhanced-determinism"),
-    allow(dead_code, reason = "the golden holds with that feature only")
-)]
 #[path = "../common/golden.rs"]
 mod golden;
 mod grasps;
