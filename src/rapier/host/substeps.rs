@@ -5,6 +5,7 @@
 
 use crate::math::Real;
 use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{
@@ -37,7 +38,7 @@ impl Substeps {
             medial[part.body] |= part.medial().is_some();
         }
         let mut own = Vec::new();
-        let mut add = |handles: [RigidBodyHandle; 2], joint: &GenericJoint| {
+        let add = |handles: [RigidBodyHandle; 2], joint: &GenericJoint| {
             let [Some(&a), Some(&b)] = handles.map(|h| view.index.get(&h)) else {
                 return;
             };
@@ -56,17 +57,7 @@ impl Substeps {
                 body.set_additional_solver_iterations(added);
             }
         };
-        for (_, joint) in joints.iter() {
-            add([joint.body1(), joint.body2()], &joint.data);
-        }
-        for multibody in multibodies.multibodies() {
-            for link in multibody.links() {
-                if let Some(parent) = link.parent_id().and_then(|id| multibody.link(id)) {
-                    let handles = [parent, link].map(|l| l.rigid_body_handle());
-                    add(handles, &link.joint.data);
-                }
-            }
-        }
+        for_each_joint(joints, multibodies, add);
         Self(own)
     }
 

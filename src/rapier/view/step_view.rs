@@ -5,6 +5,7 @@ use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::parry::swept_sphere_parts;
+use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::enabled::enabled;
 use crate::rapier::view::link_angles::LinkAngles;
 use crate::rapier::view::motion::{Body, Kind};
@@ -130,7 +131,7 @@ impl StepView {
 
     /// Finds the pivots about which joints let bodies turn.
     fn find_pivots(&mut self, joints: &ImpulseJointSet, multibodies: &MultibodyJointSet) {
-        let mut add = |handles: [RigidBodyHandle; 2], joint: &GenericJoint| {
+        let add = |handles: [RigidBodyHandle; 2], joint: &GenericJoint| {
             let [Some(&a), Some(&b)] = handles.map(|h| self.index.get(&h)) else {
                 return;
             };
@@ -143,17 +144,7 @@ impl StepView {
                 self.bodies[held.0].pivot = Some(held.1.translation);
             }
         };
-        for (_, joint) in joints.iter() {
-            add([joint.body1(), joint.body2()], &joint.data);
-        }
-        for multibody in multibodies.multibodies() {
-            for link in multibody.links() {
-                if let Some(parent) = link.parent_id().and_then(|id| multibody.link(id)) {
-                    let handles = [parent, link].map(|l| l.rigid_body_handle());
-                    add(handles, &link.joint.data);
-                }
-            }
-        }
+        for_each_joint(joints, multibodies, add);
     }
 
     fn add_part(&mut self, handle: ColliderHandle, collider: &Collider, index: usize) {
