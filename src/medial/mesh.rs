@@ -125,8 +125,11 @@ impl MedialMesh {
         Ok(Self::from_parts(parts, OnceLock::new()))
     }
 
-    /// The same mesh, of which it is known that each connected part is convex.
-    pub(crate) fn of_convex_pieces(self) -> Self {
+    /// The same mesh, of which it is known whether each connected part is convex.
+    pub(crate) fn of_convex_pieces(self, is_of_them: bool) -> Self {
+        if !is_of_them {
+            return self;
+        }
         let mut parts = self.data.parts.clone();
         let groups = connected(parts.spheres.len(), &parts.primitives);
         parts.tree = SphereTree::of_groups(&parts.spheres, &parts.primitives, &groups);

@@ -54,10 +54,7 @@ impl<'de> Deserialize<'de> for MedialMesh {
         let sphere = |&[x, y, z, r]: &[Real; 4]| MedialSphere::new(Vector::new(x, y, z), r);
         let spheres = listed.spheres.iter().map(sphere).collect();
         let mesh = Self::new(spheres, listed.edges, listed.faces).map_err(D::Error::custom)?;
-        let mesh = match listed.of_convex_pieces {
-            true => mesh.of_convex_pieces(),
-            false => mesh,
-        };
+        let mesh = mesh.of_convex_pieces(listed.of_convex_pieces);
         Ok(match listed.source_mass {
             Some(numbers) => {
                 mesh.with_mass_properties(mass_of(1, &numbers).map_err(D::Error::custom)?)

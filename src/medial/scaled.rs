@@ -36,10 +36,7 @@ impl MedialMesh {
         let sphere = |s: &MedialSphere| MedialSphere::new(s.center * scale, s.radius * factor);
         let spheres = self.spheres().iter().map(sphere).collect();
         let mesh = Self::new(spheres, self.edges().to_vec(), self.faces().to_vec()).ok()?;
-        let mesh = match self.parts().is_of_convex_pieces {
-            true => mesh.of_convex_pieces(),
-            false => mesh,
-        };
+        let mesh = mesh.of_convex_pieces(self.parts().is_of_convex_pieces);
         let source = self.parts().source_mass.as_ref();
         Some(
             match source.and_then(|mass| scaled_mass(mass, scale, factor)) {

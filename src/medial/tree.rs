@@ -138,19 +138,20 @@ impl SphereTree {
     }
 
     fn build(&mut self, node: usize, all: &Items, items: &mut [Item]) {
-        if let [(_, item)] = *items {
-            let members = all.members(item);
-            if let [primitive] = *members {
-                (self.nodes[node].center, self.nodes[node].radius) =
-                    enclosing_sphere(all.spheres_of(items));
-                self.nodes[node].index = primitive;
-                return;
-            }
-            let group = Items::single(all.spheres, all.primitives, members.to_vec());
+        let alone = match *items {
+            [(_, item)] => all.members(item),
+            _ => &[],
+        };
+        if alone.len() > 1 {
+            let group = Items::single(all.spheres, all.primitives, alone.to_vec());
             return self.build(node, &group, &mut group.centers());
         }
         (self.nodes[node].center, self.nodes[node].radius) =
             enclosing_sphere(all.spheres_of(items));
+        if let [primitive] = *alone {
+            self.nodes[node].index = primitive;
+            return;
+        }
         let middle = best_split(all, items);
         let first = self.nodes.len();
         let empty = self.nodes[node];

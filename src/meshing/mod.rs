@@ -117,10 +117,8 @@ impl MedialMesh {
         let hidden = source.boundary.as_ref().map_or(0.0, |b| b.hidden);
         let surface = source.surface;
         let (mass, mass_source) = mass_properties(&surface, &mut watch)?;
-        let mut mesh = candidate.draft.to_medial_mesh(&surface.frame)?;
-        if candidate.variant == Variant::Exact {
-            mesh = mesh.of_convex_pieces();
-        }
+        let mesh = candidate.draft.to_medial_mesh(&surface.frame)?;
+        let mut mesh = mesh.of_convex_pieces(candidate.variant == Variant::Exact);
         if let Some(mass) = mass {
             mesh = mesh.with_mass_properties(mass);
         }
