@@ -1,10 +1,6 @@
 //! Whole rapier scenes: what rests, what hangs, what must never pass; saving, drawing, repeating.
 
 mod after_blows;
-#[cfg_attr(
-    not(feature = "enhanced-determinism"),
-    allow(dead_code, reason = "the golden holds with that feature only")
-)]
 #[path = "../common/blocks.rs"]
 mod blocks;
 mod bodies;
@@ -33,6 +29,10 @@ mod filters;
 mod fixed_partners;
 mod fixtures;
 mod force_events;
+#[cfg_attr(
+    not(feature = "enhanced-determinism"),
+    allow(dead_code, reason = "the golden holds with that feature only")
+)]
 #[path = "../common/golden.rs"]
 mod golden;
 mod grasps;
