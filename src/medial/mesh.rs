@@ -301,8 +301,9 @@ impl MedialMesh {
 
     /// Mass, centre of mass and inertia at a density (mass per cubed unit of length), in the body's frame. If the
     /// medial mesh was built from a triangle mesh, they are those of the triangle mesh; otherwise they are those of
-    /// the solid, with overlaps of primitives counted once. Those of the solid are measured at the first call, in 10
-    /// ms for a ball and 0.3 s for 1,250 slabs. Density 0 gives no mass, and measures nothing.
+    /// the solid, with overlaps of primitives counted once. Those of the solid are measured when they are first asked
+    /// for, here or by the first contact, in 1.5 ms for a ball and 80 ms for 1,200 cones. Density 0 gives no mass, and
+    /// measures nothing.
     pub fn mass_properties(&self, density: Real) -> MassProperties {
         if density == 0.0 {
             return MassProperties::default();

@@ -44,7 +44,7 @@ fn same_solid(name: &str, mesh: &MedialMesh, seed: u64, distance: impl Fn(Point)
 fn volume(name: &str, mesh: &MedialMesh, wanted: f64) {
     let error = (f64::from(mesh.volume()) - wanted).abs() / wanted;
     assert!(
-        error < 5.0e-4,
+        error < 2.0e-4,
         "{name}: {} instead of {wanted}",
         mesh.volume()
     );
