@@ -34,39 +34,47 @@ impl Census {
         (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
         soft: &SoftBodySet,
     ) -> Self {
-        let mut census = Self::default();
-        for (_, collider) in colliders.iter() {
-            let hooks = collider.active_hooks();
-            census.any_modified |= hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS);
-            let medial = collider.shape().as_shape::<MedialMesh>().is_some();
-            census.all += usize::from(medial);
-            census.medial += usize::from(medial && takes_part(bodies, collider));
-        }
         // What sleeps with a speed, or one that is no number, is rapier's to wake or to disable.
         let has_speed =
             |body: &RigidBody| body.linvel() != Vector::ZERO || body.angvel() != Vector::ZERO;
         let moves = |body: &RigidBody| {
             body.is_enabled() && (has_speed(body) || !(body.is_fixed() || body.is_sleeping()))
         };
-        census.still = if census.medial == 0 {
-            Some(0)
-        } else if !soft.is_empty() || bodies.iter().any(|(_, body)| moves(body)) {
-            None
-        } else {
-            Some(places(bodies, colliders, (joints, multibodies)))
+        let mut places = (soft.is_empty() && !bodies.iter().any(|(_, body)| moves(body)))
+            .then(FastHasher::default);
+        let mut census = Self::default();
+        for (handle, collider) in colliders.iter() {
+            let hooks = collider.active_hooks();
+            census.any_modified |= hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+            let medial = collider.shape().as_shape::<MedialMesh>().is_some();
+            census.all += usize::from(medial);
+            if !medial && places.is_none() || !takes_part(bodies, collider) {
+                continue;
+            }
+            census.medial += usize::from(medial);
+            if let Some(hash) = &mut places {
+                add(hash, handle, collider);
+            }
+        }
+        census.still = match places {
+            _ if census.medial == 0 => Some(0),
+            Some(mut hash) => {
+                add_bodies(&mut hash, bodies, (joints, multibodies));
+                Some(hash.finish())
+            }
+            None => None,
         };
         census
     }
 }
 
-/// Hash of the bodies' kinds, of the colliders that take part, their shapes and poses, and of what joints tie together:
-/// rapier itself may wake any of them within its step.
-fn places(
+/// Adds the bodies' kinds and what joints tie together: with the colliders that take part, their shapes and poses, all
+/// that rapier itself may wake within its step.
+fn add_bodies(
+    hash: &mut FastHasher,
     bodies: &RigidBodySet,
-    colliders: &ColliderSet,
     (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
-) -> u64 {
-    let mut hash = FastHasher::default();
+) {
     let mut tie = |a: RigidBodyHandle, b: RigidBodyHandle, joint: &GenericJoint| {
         hash.write_u64(whole(a.into_raw_parts()));
         hash.write_u64(whole(b.into_raw_parts()));
@@ -87,9 +95,6 @@ fn places(
         hash.write_u64(whole(handle.into_raw_parts()));
         hash.write_u32((body.body_type() as u32) << 8 | u32::from(locked));
     }
-    let all = colliders.iter().filter(|(_, c)| takes_part(bodies, c));
-    all.for_each(|(handle, collider)| add(&mut hash, handle, collider));
-    hash.finish()
 }
 
 fn add(hash: &mut FastHasher, handle: ColliderHandle, collider: &Collider) {
