@@ -32,6 +32,8 @@ const FRAME: f64 = 1000.0 / 60.0;
 enum Kind {
     /// A medial mesh with these effects.
     Medial(Effects),
+    /// A medial mesh with the options for games.
+    Games,
     /// A compound of as many capsules.
     Capsules,
     /// The same, which rapier sweeps.
@@ -46,6 +48,7 @@ fn kinds() -> Vec<(&'static str, Kind)> {
     let without = auto.continuous(Effect::Off);
     vec![
         ("medial", Kind::Medial(auto)),
+        ("`MedialOptions::games`", Kind::Games),
         ("without `continuous`", Kind::Medial(without)),
         ("all effects off", Kind::Medial(Effects::OFF)),
         ("compound of capsules", Kind::Capsules),
@@ -59,7 +62,7 @@ impl Kind {
     fn shape(self) -> SharedShape {
         let (points, triangles) = surface();
         match self {
-            Kind::Medial(_) => SharedShape::medial_mesh(ring(PARTS)),
+            Kind::Medial(_) | Kind::Games => SharedShape::medial_mesh(ring(PARTS)),
             Kind::Capsules | Kind::CapsulesSwept => {
                 let end = |k: u32| {
                     let (sin, cos) = (TAU * k as Real / PARTS as Real).sin_cos();
@@ -83,13 +86,16 @@ struct Run {
 impl Run {
     fn new(kind: Kind) -> Self {
         let world = PhysicsWorld::default();
-        let Kind::Medial(effects) = kind else {
-            return Self {
-                world,
-                pipeline: None,
-            };
+        let options = match kind {
+            Kind::Medial(effects) => MedialOptions::default().effects(effects),
+            Kind::Games => MedialOptions::games(),
+            _ => {
+                return Self {
+                    world,
+                    pipeline: None,
+                };
+            }
         };
-        let options = MedialOptions::default().effects(effects);
         let pipeline = Some(MedialPipeline::new(options));
         let mut run = Self { world, pipeline };
         run.attach();
@@ -323,6 +329,8 @@ fn main() {
         spawned(12),
         pen(30, 0.0, 240),
         pen(36, 5.0, 240),
+        pen(100, 0.0, 240),
+        pen(500, 0.0, 360),
     ];
     for scene in scenes.iter().filter(|scene| wanted(&scene.name)) {
         title(&scene.name, scene.steps);
