@@ -57,6 +57,7 @@ mod neighbours;
 mod odd_steps;
 mod oracle;
 mod partners;
+mod put_in_place;
 mod random;
 mod resting;
 mod restitution;

@@ -214,6 +214,15 @@ fn overlaps_by_pressing_do_not_count_as_spawned() {
             body.set_translation(at, true);
         }
     });
+    stays_linked(
+        "one gets a shape of nearly the same size",
+        |step, world, _| {
+            let radius = if step % 2 == 0 { 0.06 } else { 0.0601 };
+            for (_, collider) in world.colliders.iter_mut() {
+                collider.set_shape(SharedShape::medial_mesh(ring(PARTS, 0.5, radius)));
+            }
+        },
+    );
     stays_linked("one moved by a hair", |step, world, _| {
         let by = if step % 2 == 0 { 1.0e-4 } else { -1.0e-4 };
         for (_, body) in world.bodies.iter_mut().filter(|(_, b)| b.is_fixed()) {

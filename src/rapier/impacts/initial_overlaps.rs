@@ -8,26 +8,96 @@
 //! above it are edges that still cross.
 //!
 //! A pair counts as put into each other if one of the two is new and rapier had no contacts of the pair, or if it is below
-//! the floor and the two were moved against each other, between two steps, by so much that they may have been apart before. A pair that
+//! the floor and the two were moved against each other, between two steps, or got other shapes, so that they may have
+//! been apart before. One whose groups or type changed counts as new. A pair that
 //! forces pressed together is held, even if both are moved together.
 
 use crate::math::fast_hash::{FastMap, FastSet};
 use crate::math::{Pose, Real};
+use crate::medial::MedialMesh;
 use crate::rapier::impacts::deep_pairs::Deep;
-use crate::rapier::view::step_view::StepView;
-use rapier3d::geometry::{ColliderHandle, ColliderSet, NarrowPhase};
+use crate::rapier::view::step_view::{Part, StepView};
+use rapier3d::dynamics::{RigidBodySet, RigidBodyType};
+use rapier3d::geometry::{
+    Collider, ColliderHandle, ColliderSet, ContactManifold, InteractionGroups, NarrowPhase,
+    SolverFlags,
+};
 
 type Pair = [ColliderHandle; 2];
 
 /// Record from step to step of bodies put into each other.
 #[derive(Default)]
 pub struct InitialOverlaps {
-    /// Poses at which the last step left the colliders, in the order of their indices.
-    ends: Vec<(ColliderHandle, Pose)>,
-    /// Pairs of new colliders of which rapier has contacts from before this step: of a world that was loaded.
+    /// How the last step left the colliders, in the order of their indices.
+    ends: Vec<(ColliderHandle, End)>,
+    /// Pairs that rapier's solver held apart in the step before.
     met: FastSet<Pair>,
+    /// New colliders, and those whose groups changed since the last step, or the type of their body.
+    others: FastSet<ColliderHandle>,
     /// Pairs that are left to the solver.
     left: FastSet<Pair>,
+}
+
+/// How a step left a collider.
+struct End {
+    pose: Pose,
+    shape: Outline,
+    kind: Kind,
+}
+
+/// What decides whether a collider collides with others: its groups, and the type of its body.
+type Kind = ([InteractionGroups; 2], Option<RigidBodyType>);
+
+fn kind(collider: &Collider, bodies: &RigidBodySet) -> Kind {
+    let body = collider.parent().and_then(|h| bodies.get(h));
+    let groups = [collider.collision_groups(), collider.solver_groups()];
+    (groups, body.map(|b| b.body_type()))
+}
+
+/// Shape of a collider, as far as it is told whether it is another one a step later. Other shapes than medial meshes
+/// are not held, so that a game changes its own in place.
+enum Outline {
+    Medial(MedialMesh),
+    /// Where the shape is in memory.
+    Other(usize),
+}
+
+impl Outline {
+    fn of(part: &Part) -> Self {
+        match part.medial() {
+            Some(mesh) => Self::Medial(mesh.clone()),
+            None => Self::Other(std::ptr::from_ref(&*part.shape.0).addr()),
+        }
+    }
+
+    /// Bound on how far the surface of the collider was moved by the change from this shape to that of `part`, a length;
+    /// infinite if the two are not alike.
+    fn moved_to(&self, part: &Part) -> Real {
+        match (self, Self::of(part)) {
+            (Self::Medial(old), Self::Medial(new)) => moved_spheres(old, &new),
+            (Self::Other(old), Self::Other(new)) if *old == new => 0.0,
+            _ => Real::INFINITY,
+        }
+    }
+}
+
+/// How far the sphere that moved farthest did, radii included; infinite if the primitives are others.
+fn moved_spheres(old: &MedialMesh, new: &MedialMesh) -> Real {
+    if old.shares_data(new) {
+        return 0.0;
+    }
+    let (old_spheres, new_spheres) = (old.spheres(), new.spheres());
+    let is_alike = old_spheres.len() == new_spheres.len()
+        && old.edges() == new.edges()
+        && old.faces() == new.faces();
+    if !is_alike {
+        return Real::INFINITY;
+    }
+    let ways = old_spheres
+        .iter()
+        .zip(new_spheres)
+        .map(|(a, b)| a.center.distance(b.center) + (a.radius - b.radius).abs());
+    ways.fold(0.0, Real::max)
 }
 
 fn index(handle: ColliderHandle) -> u32 {
@@ -40,28 +110,51 @@ fn sorted([a, b]: Pair) -> Pair {
 }
 
 impl InitialOverlaps {
-    /// Looks at the contacts that rapier has of new colliders, at the start of a step.
-    pub fn begin(&mut self, view: &StepView, narrow_phase: &NarrowPhase) {
+    /// Looks at the contacts that rapier has at the start of a step, and whether its solver heeds them.
+    pub fn begin(
+        &mut self,
+        view: &StepView,
+        narrow_phase: &NarrowPhase,
+        (bodies, colliders): (&RigidBodySet, &ColliderSet),
+    ) {
         self.met.clear();
-        let is_new = |handle| self.end_of(handle).is_none();
-        if !view.parts.iter().any(|part| is_new(part.handle)) {
+        self.others.clear();
+        let kind_of = |h| colliders.get(h).map(|c| kind(c, bodies));
+        let is_other = |h: &ColliderHandle| {
+            let end = self.end_of(*h);
+            end.is_none_or(|end| kind_of(*h).is_none_or(|kind| kind != end.kind))
+        };
+        let handles = view.parts.iter().map(|part| part.handle);
+        let others: FastSet<_> = handles.filter(is_other).collect();
+        self.others = others;
+        if self.others.is_empty() {
             return;
         }
+        let bears = |m: &ContactManifold| {
+            let flags = m.data.solver_flags;
+            flags.contains(SolverFlags::COMPUTE_RIGID_IMPULSES)
+                && !m.data.solver_contacts.is_empty()
+        };
         let pairs = narrow_phase
             .contact_pairs()
-            .filter(|pair| pair.has_any_active_contact());
+            .filter(|pair| pair.solver_manifolds().iter().any(bears));
         let pairs = pairs.map(|pair| sorted([pair.collider1, pair.collider2]));
-        self.met = pairs
-            .filter(|pair| pair.iter().any(|h| is_new(*h)))
-            .collect();
+        self.met.extend(pairs);
     }
 
     /// Pairs with deep contacts in this step that are left to the solver.
     pub fn leave(&mut self, view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize; 2]> {
         let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
-        let was_put = |pair: [usize; 2], deep: &Deep| match self.moved(view, pair) {
-            Some(moved) => deep.way > 0.0 && moved >= deep.way,
-            None => deep.is_sunk && !self.met.contains(&handles(pair)),
+        let was_put = |pair: [usize; 2], deep: &Deep| {
+            let is_met = self.met.contains(&handles(pair));
+            let is_other = pair
+                .iter()
+                .any(|k| self.others.contains(&view.parts[*k].handle));
+            match self.moved(view, pair) {
+                Some(_) if is_other && deep.is_sunk && !is_met => true,
+                Some(moved) => deep.way > 0.0 && moved >= deep.way,
+                None => deep.is_sunk && !is_met,
+            }
         };
         let is_left = |pair: &[usize; 2], deep: &Deep| {
             self.left.contains(&handles(*pair)) || was_put(*pair, deep)
@@ -73,19 +166,23 @@ impl InitialOverlaps {
     }
 
     /// Remembers where the step leaves the colliders.
-    pub fn end(&mut self, view: &StepView, colliders: &ColliderSet) {
+    pub fn end(&mut self, view: &StepView, (bodies, colliders): (&RigidBodySet, &ColliderSet)) {
         self.ends.clear();
-        let parts = view.parts.iter().map(|part| part.handle);
-        let ends = parts.filter_map(|h| Some((h, *colliders.get(h)?.position())));
-        self.ends.extend(ends);
+        let end = |part: &Part| {
+            let collider = colliders.get(part.handle)?;
+            let (pose, kind) = (*collider.position(), kind(collider, bodies));
+            let shape = Outline::of(part);
+            Some((part.handle, End { pose, shape, kind }))
+        };
+        self.ends.extend(view.parts.iter().filter_map(end));
     }
 
-    fn end_of(&self, handle: ColliderHandle) -> Option<&Pose> {
+    fn end_of(&self, handle: ColliderHandle) -> Option<&End> {
         let place = self
             .ends
             .binary_search_by_key(&index(handle), |(h, _)| index(*h));
-        let (known, pose) = &self.ends[place.ok()?];
-        (*known == handle).then_some(pose)
+        let (known, end) = &self.ends[place.ok()?];
+        (*known == handle).then_some(end)
     }
 
     /// Bound on how far points of two colliders were moved against each other between the last step and this one, a
@@ -93,10 +190,12 @@ impl InitialOverlaps {
     fn moved(&self, view: &StepView, pair: [usize; 2]) -> Option<Real> {
         let [p, q] = pair.map(|k| &view.parts[k]);
         let start = |k: usize| view.start_pose(pair[k]);
-        let before = self.end_of(p.handle)?.inv_mul(self.end_of(q.handle)?);
+        let [end1, end2] = [self.end_of(p.handle)?, self.end_of(q.handle)?];
+        let before = end1.pose.inv_mul(&end2.pose);
         let now = start(0).inv_mul(&start(1));
         let turn = before.rotation.angle_between(now.rotation);
         let extent = q.bound.center().length() + q.bound.radius();
-        Some((now.translation - before.translation).length() + turn * extent)
+        let changed = end1.shape.moved_to(p) + end2.shape.moved_to(q);
+        Some((now.translation - before.translation).length() + turn * extent + changed)
     }
 }
