@@ -101,7 +101,8 @@ fn round_box(half_extents: Vector, border: Real) -> Result<MedialMesh, MeshError
             sheets.add(&[corner(s, t, 1.0), corner(s, t, -1.0), inner(s, t)]);
         }
     }
-    MedialMesh::new(sheets.spheres, sheets.edges, sheets.faces)
+    let mesh = MedialMesh::new(sheets.spheres, sheets.edges, sheets.faces)?;
+    Ok(mesh.of_convex_pieces(true))
 }
 
 /// Spheres, each once, and the polygons over them.

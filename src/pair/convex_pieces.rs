@@ -135,7 +135,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     }
 }
 
-fn thickness(body: &impl PrimitiveTree, node: u32) -> Real {
+/// The largest radius below a node that holds a convex piece or a primitive, or less; 0 of any other.
+pub(super) fn thickness(body: &impl PrimitiveTree, node: u32) -> Real {
     match (body.convex_piece(node), body.kind(node)) {
         (Some(piece), _) => piece.thickness,
         (None, NodeKind::Primitive(p)) => body.thickness(p),

@@ -77,20 +77,42 @@ pub(super) fn face_contacts(
             });
         }
     }
-    // Corners of the facing polygon need not be the deepest of their hull: that may be where other faces meet.
+    let hull = HullGap {
+        gap,
+        direction,
+        nearest,
+    };
+    add_nearest(hulls, (hull, primitives), place, &mut found);
+    found
+}
+
+/// Adds the nearest points of two pieces, where none of the contacts found is as deep as the pieces are. Corners of the
+/// facing polygon need not be the deepest of their hull: that may be where other faces meet.
+pub(super) fn add_nearest(
+    hulls: [&PlacedHull; 2],
+    (hull, primitives): (HullGap, [u32; 2]),
+    place: &Placement,
+    found: &mut Vec<SpherePair>,
+) {
+    let HullGap {
+        gap,
+        direction,
+        nearest,
+    } = hull;
     let deepest = found.iter().map(|c| f64::from(c.distance));
-    let is_deepest_missing = deepest.fold(f64::MAX, f64::min) > gap + least_missed(hulls, gap);
-    if is_deepest_missing && let Some(points) = nearest {
+    let is_missing = deepest.fold(f64::MAX, f64::min) > gap + least_missed(hulls, gap);
+    if is_missing && let Some(points) = nearest {
         let middle = (points[0] + points[1]) * 0.5;
         let half = direction * (0.5 * gap);
-        found.push(pair(
-            NEAREST,
-            gap,
-            direction,
-            [middle - half, middle + half],
-        ));
+        let second = place.inverse_point(middle + half);
+        found.push(SpherePair {
+            primitives,
+            feature: NEAREST,
+            distance: gap as Real,
+            normal: direction.to_vector(),
+            points: [(middle - half).to_vector(), second],
+        });
     }
-    found
 }
 
 /// By how much the deepest corner is less deep than the hulls, of this gap, if it is missing: more than rounding.

@@ -3,8 +3,11 @@
 //! for.
 
 use super::apart::{Balls, Plane, approached};
-use super::face_contacts::face_contacts;
-use super::hull_gap::{PlacedHull, hull_gap};
+use super::contacts::PrimitivePair;
+use super::convex_pieces::thickness;
+use super::face_contacts::{add_nearest, face_contacts};
+use super::first_contact::Counts;
+use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::placement::Placement;
 use super::primitive_tree::PrimitiveTree;
 use super::sphere_pair::SpherePair;
@@ -15,6 +18,27 @@ use crate::math::lane::Vec3;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
+
+/// How deep a convex piece and a primitive are in each other, in units of the thickness of the thinner, for contacts that point
+/// into the piece to be left out. Above it none does: the primitives of a piece are as thick as the piece.
+const DEEP: f64 = 0.25;
+
+/// How much deeper two hulls may be along a contact's normal than along the best direction. At 1 a capsule that lies on two
+/// faces of a box would have one contact; larger, and contacts through the whole of a piece count.
+const OUTWARD: f64 = 2.0;
+
+/// Primitives below a node.
+fn below(body: &impl PrimitiveTree, node: u32) -> Vec<u32> {
+    let mut found = Vec::new();
+    let mut stack = vec![node];
+    while let Some(node) = stack.pop() {
+        match body.kind(node) {
+            NodeKind::Primitive(p) => found.push(p),
+            NodeKind::Nodes(first, second) => stack.extend([second, first]),
+        }
+    }
+    found
+}
 
 /// The hull of a node at a fixed pose, with what each look at it would compute again.
 struct Resting {
@@ -136,9 +160,38 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
                 let primitives = [p.primitive, q.primitive];
                 Some(face_contacts(hulls, primitives, place, margin))
             }
-            _ if hull_gap(hulls, margin).gap > margin => Some(Vec::new()),
-            _ => None,
+            _ => {
+                let found = hull_gap(hulls, margin);
+                if found.gap > margin {
+                    return Some(Vec::new());
+                }
+                let thinner = thickness(first, i).min(thickness(second, j));
+                let is_deep = found.gap < -DEEP * f64::from(thinner);
+                is_deep.then(|| self.deep_contacts([i, j], found, margin))
+            }
         }
+    }
+
+    /// Contacts of a convex piece and a primitive that are deep in each other: those of the piece's own primitives along which
+    /// the two come apart about as soon as they can. Others point into the piece.
+    fn deep_contacts(&mut self, nodes: [u32; 2], hull: HullGap, margin: f64) -> Vec<SpherePair> {
+        let ((first, second), place) = (self.bodies, self.place);
+        let below = [below(first, nodes[0]), below(second, nodes[1])];
+        let mut found = Vec::new();
+        for &p in &below[0] {
+            for &q in &below[1] {
+                let pair = PrimitivePair::new(first, second, [p, q], place);
+                pair.contacts(margin, &mut found, &mut Counts::default());
+            }
+        }
+        let hulls = self.pieces(nodes);
+        found.retain(|contact| {
+            let n = Vec3::from_vector(contact.normal);
+            gap_along(&hulls[0].spheres, &hulls[1].spheres, n) >= OUTWARD * hull.gap
+        });
+        let primitives = [below[0][0], below[1][0]];
+        add_nearest(hulls, (hull, primitives), place, &mut found);
+        found
     }
 
     /// Two nodes' pieces, placed.

@@ -16,6 +16,7 @@ use crate::math::fast_hash::{FastMap, FastSet};
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::rapier::impacts::deep_pairs::Deep;
+use crate::rapier::view::motion;
 use crate::rapier::view::step_view::{Part, StepView};
 use rapier3d::dynamics::{RigidBodySet, RigidBodyType};
 use rapier3d::geometry::{
@@ -100,6 +101,12 @@ fn moved_spheres(old: &MedialMesh, new: &MedialMesh) -> Real {
     ways.fold(0.0, Real::max)
 }
 
+/// Whether one of two free bodies alone gives way, by rapier's dominance groups.
+fn one_gives_way(view: &StepView, pair: [usize; 2]) -> bool {
+    let [a, b] = pair.map(|k| &view.bodies[view.parts[k].body]);
+    [a, b].iter().all(|body| body.kind == motion::Kind::Free) && a.dominance != b.dominance
+}
+
 fn index(handle: ColliderHandle) -> u32 {
     handle.into_raw_parts().0
 }
@@ -157,7 +164,9 @@ impl InitialOverlaps {
             }
         };
         let is_left = |pair: &[usize; 2], deep: &Deep| {
-            self.left.contains(&handles(*pair)) || was_put(*pair, deep)
+            self.left.contains(&handles(*pair))
+                || was_put(*pair, deep)
+                || deep.way > 0.0 && one_gives_way(view, *pair)
         };
         let left = deep.iter().filter(|(pair, deep)| is_left(pair, deep));
         let pairs: Vec<_> = left.map(|(pair, _)| *pair).collect();
