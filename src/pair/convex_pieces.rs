@@ -10,15 +10,13 @@
 
 use super::apart::{end_along, ends_hold};
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
-use super::primitive_tree::PrimitiveTree;
+use super::primitive_tree::{PrimitiveTree, thickness};
 use super::search::Search;
 use super::swept::Side;
 use crate::elementary::InitialContact;
-use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::tolerance::ROUNDING_ULPS;
-use crate::medial::tree::NodeKind;
 
 /// How deep two pieces may get in units of their thickness, the largest radius in them or less, to be settled as a
 /// whole. At 1 the middle of one may touch the other.
@@ -132,15 +130,6 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     fn pieces_thickness(&self, [p, q]: [u32; 2]) -> f64 {
         let thinner = thickness(self.sides.0.body, p).min(thickness(self.sides.1.body, q));
         self.at_most(thinner)
-    }
-}
-
-/// The largest radius below a node that holds a convex piece or a primitive, or less; 0 of any other.
-pub(super) fn thickness(body: &impl PrimitiveTree, node: u32) -> Real {
-    match (body.convex_piece(node), body.kind(node)) {
-        (Some(piece), _) => piece.thickness,
-        (None, NodeKind::Primitive(p)) => body.thickness(p),
-        (None, NodeKind::Nodes(..)) => 0.0,
     }
 }
 

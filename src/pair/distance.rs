@@ -4,11 +4,11 @@
 //! For bodies that overlap it is the most negative distance of any two primitives: how deep the nearest spheres are in
 //! each other, not how far the bodies must move to be apart.
 
-use super::contacts::PrimitivePair;
 use super::first_contact::Counts;
 use super::hulls::Hulls;
 use super::outline;
 use super::placement::Placement;
+use super::primitive_pair::PrimitivePair;
 use super::primitive_tree::PrimitiveTree;
 use super::sphere_pair::SpherePair;
 use crate::math::lane::Vec3;

@@ -3,15 +3,14 @@
 //! for.
 
 use super::apart::{Balls, Plane, approached};
-use super::contacts::PrimitivePair;
-use super::convex_pieces::thickness;
 use super::face_contacts::{add_nearest, face_contacts};
 use super::first_contact::Counts;
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::placement::Placement;
-use super::primitive_tree::PrimitiveTree;
+use super::primitive_pair::PrimitivePair;
+use super::primitive_tree::{PrimitiveTree, thickness};
 use super::sphere_pair::SpherePair;
-use crate::elementary::penetration::{HYSTERESIS, gap_along};
+use crate::elementary::penetration::gap_along;
 use crate::math::Vector;
 use crate::math::fast_hash::FastMap;
 use crate::math::lane::Vec3;
@@ -146,6 +145,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
         &mut self,
         [i, j]: [u32; 2],
         margin: f64,
+        counts: &mut Counts,
     ) -> Option<Vec<SpherePair>> {
         let (first, second) = self.bodies;
         let pieces = [first.convex_piece(i), second.convex_piece(j)];
@@ -167,21 +167,27 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
                 }
                 let thinner = thickness(first, i).min(thickness(second, j));
                 let is_deep = found.gap < -DEEP * f64::from(thinner);
-                is_deep.then(|| self.deep_contacts([i, j], found, margin))
+                is_deep.then(|| self.deep_contacts([i, j], found, margin, counts))
             }
         }
     }
 
     /// Contacts of a convex piece and a primitive that are deep in each other: those of the piece's own primitives along which
     /// the two come apart about as soon as they can. Others point into the piece.
-    fn deep_contacts(&mut self, nodes: [u32; 2], hull: HullGap, margin: f64) -> Vec<SpherePair> {
+    fn deep_contacts(
+        &mut self,
+        nodes: [u32; 2],
+        hull: HullGap,
+        margin: f64,
+        counts: &mut Counts,
+    ) -> Vec<SpherePair> {
         let ((first, second), place) = (self.bodies, self.place);
         let below = [below(first, nodes[0]), below(second, nodes[1])];
         let mut found = Vec::new();
         for &p in &below[0] {
             for &q in &below[1] {
                 let pair = PrimitivePair::new(first, second, [p, q], place);
-                pair.contacts(margin, &mut found, &mut Counts::default());
+                pair.contacts(margin, &mut found, counts);
             }
         }
         let hulls = self.pieces(nodes);
@@ -204,25 +210,6 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
             PlacedHull::of_node(second, j, |p| place.point(p), |n| place.direction(n))
         });
         [a, b]
-    }
-
-    /// Gap and normal of the overlapping pieces of two nodes: along the normal `old` of the step before while that is hardly
-    /// deeper than their contact `at` ([`HYSTERESIS`]), else along that of the contact.
-    pub(super) fn along_old_normal(
-        &mut self,
-        nodes: [u32; 2],
-        old: Vector,
-        at: &SpherePair,
-    ) -> (f64, Vec3<f64>) {
-        let [a, b] = self.pieces(nodes);
-        let gap_along = |n| gap_along(&a.spheres, &b.spheres, n);
-        let [old, new] = [old, at.normal].map(Vec3::from_vector);
-        let (before, now) = (gap_along(old), gap_along(new));
-        if before >= now - HYSTERESIS * now.abs() {
-            (before, old)
-        } else {
-            (now, new)
-        }
     }
 
     /// A lower bound of the distance of what is below two nodes, as [`gap`]. Two cones are not looked at: their one

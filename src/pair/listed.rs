@@ -8,10 +8,11 @@
 //! holds: farther pairs add none.
 
 use super::SpherePair;
-use super::contacts::{PrimitivePair, contacts};
+use super::contacts::contacts;
 use super::descent::Step;
 use super::first_contact::Counts;
 use super::placement::Placement;
+use super::primitive_pair::PrimitivePair;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::medial::leaf_order::LeafOrder;
@@ -20,7 +21,7 @@ use crate::medial::leaf_order::LeafOrder;
 /// within `prediction` (a length) of each other. It may hold others, in any order and repeatedly; pairs that do not
 /// exist are ignored. It is left in disorder.
 ///
-/// Two meshes with convex pieces are searched as if there were no list: pieces meet as a whole. So is a negative
+/// A mesh with convex pieces is searched as if there were no list: pieces meet as a whole. So is a negative
 /// prediction: of primitives whose medial surfaces cross, only bounds decide then whether they are deep enough, and a list
 /// does not know the bounds of the search.
 pub fn contacts_of_listed(
@@ -31,7 +32,7 @@ pub fn contacts_of_listed(
     listed: &mut [[u32; 2]],
 ) -> (Vec<SpherePair>, Counts) {
     let has_pieces = |mesh: &MedialMesh| !mesh.convex_pieces().is_empty();
-    if prediction < 0.0 || has_pieces(mesh1) && has_pieces(mesh2) {
+    if prediction < 0.0 || has_pieces(mesh1) || has_pieces(mesh2) {
         return contacts(mesh1, mesh2, pos12, prediction);
     }
     let (mut found, mut counts) = (Vec::with_capacity(listed.len()), Counts::default());

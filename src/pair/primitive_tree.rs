@@ -63,6 +63,15 @@ pub trait PrimitiveTree {
     }
 }
 
+/// The largest radius below a node that holds a convex piece or a primitive, or less; 0 of any other.
+pub(super) fn thickness(body: &impl PrimitiveTree, node: u32) -> Real {
+    match (body.convex_piece(node), body.kind(node)) {
+        (Some(piece), _) => piece.thickness,
+        (None, NodeKind::Primitive(p)) => body.thickness(p),
+        (None, NodeKind::Nodes(..)) => 0.0,
+    }
+}
+
 impl PrimitiveTree for MedialMesh {
     fn roots(&self) -> u32 {
         1

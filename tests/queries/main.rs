@@ -20,6 +20,7 @@ mod batch;
 mod coherence;
 mod convex_contacts;
 mod convex_pieces;
+mod deep_in_pieces;
 mod deepening;
 mod detail;
 #[path = "../common/detailed.rs"]

@@ -1,99 +1,99 @@
-//! Bodies that are in each other because they did not collide, or were smaller, the step before: what two bodies are is
-//! changed between two steps, and from then on they come apart as rapier's own shapes do.
+//! Bodies that are in each other because they were something else the step before: from then on they come apart as rapier's
+//! own do.
 
 use crate::bodies::{attached, ring};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
-/// A ring of 24 capsules.
-fn ring_shape(medial: bool, scale: Real) -> SharedShape {
-    let mesh = ring(24, 0.5 * scale, 0.1 * scale);
+/// A ring of 12 capsules, and one capsule, medial or rapier's own.
+fn shapes(medial: bool) -> [SharedShape; 2] {
+    let mesh = ring(12, 0.4, 0.1);
+    let (end, radius) = (Vector::X * 0.3, 0.15);
     if medial {
-        return SharedShape::medial_mesh(mesh);
+        let capsule = MedialMesh::capsule(end, -end, radius).expect("a capsule");
+        return [mesh, capsule].map(SharedShape::medial_mesh);
     }
     let part = |e: &[u32; 2]| {
         let [a, b] = e.map(|k| mesh.spheres()[k as usize].center);
-        (Pose::IDENTITY, SharedShape::capsule(a, b, 0.1 * scale))
+        (Pose::IDENTITY, SharedShape::capsule(a, b, 0.1))
     };
-    SharedShape::compound(mesh.edges().iter().map(part).collect())
+    let parts = mesh.edges().iter().map(part).collect();
+    [
+        SharedShape::compound(parts),
+        SharedShape::capsule(end, -end, radius),
+    ]
 }
 
-/// What keeps two rings in each other, until it is taken away.
-#[derive(Clone, Copy, Debug)]
-enum Apart {
-    Shape,
-    Groups,
-    SolverGroups,
-    Type,
+/// What a heap did.
+struct Heap {
+    /// How deep the deepest two were in each other in the end, a length, by rapier's own shapes.
+    depth: Real,
+    /// How often a body was held within a step.
+    frozen: usize,
 }
 
-/// Two rings at nearly one place, one 3 cm above the other, are let go after ten steps without
-/// gravity. How far they are apart a second and a half later, along the axis across both.
-fn let_go(medial: bool, apart: Apart) -> (Real, usize) {
+/// Ten bodies in a narrow pen. For six seconds one of them becomes a ring, or a capsule, twelve times a second; then they
+/// have three seconds to come apart.
+fn heap(medial: bool, seed: u64) -> Heap {
     let mut world = PhysicsWorld::new();
-    world.gravity = Vector::ZERO;
     let mut pipeline = attached(&mut world);
-    let none = InteractionGroups::none();
-    let mut put = |y: Real, turn: Real| {
-        let pose = Pose::new(Vector::Y * y, Vector::Y * turn);
-        let kind = match apart {
-            Apart::Type => RigidBodyType::Fixed,
-            _ => RigidBodyType::Dynamic,
-        };
-        let body = RigidBodyBuilder::new(kind).pose(pose).can_sleep(false);
-        let size = if matches!(apart, Apart::Shape) {
-            0.3
-        } else {
-            1.0
-        };
-        let collider = ColliderBuilder::new(ring_shape(medial, size)).density(300.0);
-        let collider = match apart {
-            Apart::Groups => collider.collision_groups(none),
-            Apart::SolverGroups => collider.solver_groups(none),
-            _ => collider,
-        };
+    let mut wall = |half: Vector, at: Vector| {
+        let wall = ColliderBuilder::cuboid(half.x, half.y, half.z).translation(at);
+        world.insert_collider(wall, None);
+    };
+    wall(Vector::new(3.0, 0.5, 3.0), Vector::NEG_Y * 0.5);
+    for side in [-1.4, 1.4] {
+        wall(Vector::new(0.2, 4.0, 3.0), Vector::X * side);
+        wall(Vector::new(3.0, 4.0, 0.2), Vector::Z * side);
+    }
+    let [shapes, own] = [medial, false].map(shapes);
+    let mut random = crate::random::Random(seed);
+    let mut kinds = vec![1; 10];
+    let put = |k: usize| {
+        let at = Vector::new(0.0, 0.6 + 0.5 * k as Real, 0.0) + random.direction() * 0.3;
+        let body = RigidBodyBuilder::dynamic().pose(Pose::new(at, random.direction() * 3.0));
+        let collider = ColliderBuilder::new(shapes[1].clone()).density(300.0);
         world.insert(body, collider)
     };
-    let rings = [put(0.0, 0.0), put(0.03, 0.13)];
-    let [(lower, _), (upper, _)] = rings;
+    let bodies: Vec<_> = (0..10).map(put).collect();
     let mut frozen = 0;
-    for step in 0..100 {
-        if step == 10 {
-            for (body, collider) in rings {
-                let collider = &mut world.colliders[collider];
-                match apart {
-                    Apart::Shape => collider.set_shape(ring_shape(medial, 1.0)),
-                    Apart::Groups => collider.set_collision_groups(InteractionGroups::all()),
-                    Apart::SolverGroups => collider.set_solver_groups(InteractionGroups::all()),
-                    Apart::Type => world.bodies[body].set_body_type(RigidBodyType::Dynamic, true),
-                }
-            }
+    for step in 0..540 {
+        if (30..360).contains(&step) && step % 5 == 0 {
+            let k = (random.unit() * 10.0) as usize;
+            kinds[k] = usize::from(random.unit() < 0.5);
+            world.colliders[bodies[k].1].set_shape(shapes[kinds[k]].clone());
         }
         frozen += pipeline.step(&mut world).frozen;
     }
-    let [low, high] = [lower, upper].map(|h| world.bodies[h].translation().y);
-    (high - low, frozen)
+    let depth = |i: usize, j: usize| {
+        let [p, q] = [i, j].map(|k| *world.bodies[bodies[k].0].position());
+        let [a, b] = [i, j].map(|k| &*own[kinds[k]]);
+        let contact = rapier3d::parry::query::contact(&p, a, &q, b, 0.0);
+        contact.expect("rapier knows both").map_or(0.0, |c| -c.dist)
+    };
+    let pairs = (0..10).flat_map(|i| (0..i).map(move |j| (i, j)));
+    Heap {
+        depth: pairs.map(|(i, j)| depth(i, j)).fold(0.0, Real::max),
+        frozen,
+    }
 }
 
-/// They part by their thickness, and nothing holds them.
+/// Symptom: a pair that was deep because a body had got another shape was held by the event loop for ever, two or three bodies
+/// in each step.
 #[test]
-fn bodies_that_did_not_collide_before_come_apart() {
-    for apart in [
-        Apart::Shape,
-        Apart::Groups,
-        Apart::SolverGroups,
-        Apart::Type,
-    ] {
-        let [(ours, frozen), (rapiers, _)] = [true, false].map(|medial| let_go(medial, apart));
-        println!("{apart:?}: {ours} m apart, held {frozen} times; rapier's own {rapiers} m");
-        assert!(
-            rapiers > 0.18,
-            "{apart:?}: rapier's own are {rapiers} m apart"
+fn bodies_that_get_another_shape_in_each_other_come_apart() {
+    let mut sums = [0.0; 2];
+    let mut held = 0;
+    for seed in 0..6 {
+        let [ours, own] = [true, false].map(|medial| heap(medial, seed));
+        println!(
+            "seed {seed}: {} m deep, held {} times; rapier's own {} m",
+            ours.depth, ours.frozen, own.depth
         );
-        assert!(
-            ours > 0.18,
-            "{apart:?}: {ours} m apart, rapier's own {rapiers} m"
-        );
-        assert_eq!(frozen, 0, "{apart:?}");
+        sums = [sums[0] + ours.depth, sums[1] + own.depth];
+        held += ours.frozen;
     }
+    let [ours, rapiers] = sums.map(|sum| sum / 6.0);
+    assert!(ours <= rapiers, "{ours} m deep, rapier's own {rapiers} m");
+    assert!(held < 60, "held {held} times");
 }

@@ -1,4 +1,5 @@
-//! Pairs that are deep in each other because the user put them there: spawned at one place, or teleported.
+//! Pairs that are deep in each other because the user put them there: spawned at one place, teleported, or given another
+//! shape, group or type.
 //!
 //! The medial axes of such a pair are near each other or cross already, so there is nothing left to protect, and
 //! holding them apart would hold them as they are for ever: whatever parts them at one place takes them deeper at
@@ -7,10 +8,11 @@
 //! then on. A pair left to the solver until it is above the floor alone would be held there: next to the contact that is
 //! above it are edges that still cross.
 //!
-//! A pair counts as put into each other if one of the two is new and rapier had no contacts of the pair, or if it is below
-//! the floor and the two were moved against each other, between two steps, or got other shapes, so that they may have
-//! been apart before. One whose groups or type changed counts as new. A pair that
-//! forces pressed together is held, even if both are moved together.
+//! A pair counts as put into each other if one of the two is new, or its groups or type changed, and rapier's solver did
+//! not hold the pair apart before; or if it is below the floor and the two were moved against each other between two
+//! steps, or got other shapes, by so much that they may have been apart before. A pair that forces pressed together is
+//! held, even if both are moved together. A free body that gives way to another, by rapier's dominance groups, is
+//! left to the solver as soon as the two are below the floor.
 
 use crate::math::fast_hash::{FastMap, FastSet};
 use crate::math::{Pose, Real};
