@@ -5,23 +5,21 @@ use crate::bodies::{attached, ring};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
-/// A ring of 12 capsules, and one capsule, medial or rapier's own.
-fn shapes(medial: bool) -> [SharedShape; 2] {
+/// A ring of 12 cones, and a capsule; as rapier's own.
+fn shapes() -> ([MedialMesh; 2], [SharedShape; 2]) {
     let mesh = ring(12, 0.4, 0.1);
     let (end, radius) = (Vector::X * 0.3, 0.15);
-    if medial {
-        let capsule = MedialMesh::capsule(end, -end, radius).expect("a capsule");
-        return [mesh, capsule].map(SharedShape::medial_mesh);
-    }
     let part = |e: &[u32; 2]| {
         let [a, b] = e.map(|k| mesh.spheres()[k as usize].center);
         (Pose::IDENTITY, SharedShape::capsule(a, b, 0.1))
     };
     let parts = mesh.edges().iter().map(part).collect();
-    [
+    let own = [
         SharedShape::compound(parts),
         SharedShape::capsule(end, -end, radius),
-    ]
+    ];
+    let capsule = MedialMesh::capsule(end, -end, radius).expect("a capsule");
+    ([mesh, capsule], own)
 }
 
 /// What a heap did.
@@ -34,7 +32,7 @@ struct Heap {
 
 /// Ten bodies in a narrow pen. For six seconds one of them becomes a ring, or a capsule, twelve times a second; then they
 /// have three seconds to come apart.
-fn heap(medial: bool, seed: u64) -> Heap {
+fn heap(seed: u64) -> Heap {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
     let mut wall = |half: Vector, at: Vector| {
@@ -46,7 +44,8 @@ fn heap(medial: bool, seed: u64) -> Heap {
         wall(Vector::new(0.2, 4.0, 3.0), Vector::X * side);
         wall(Vector::new(3.0, 4.0, 0.2), Vector::Z * side);
     }
-    let [shapes, own] = [medial, false].map(shapes);
+    let (meshes, own) = shapes();
+    let shapes = meshes.map(SharedShape::medial_mesh);
     let mut random = crate::random::Random(seed);
     let mut kinds = vec![1; 10];
     let put = |k: usize| {
@@ -79,21 +78,14 @@ fn heap(medial: bool, seed: u64) -> Heap {
 }
 
 /// Symptom: a pair that was deep because a body had got another shape was held by the event loop for ever, two or three bodies
-/// in each step.
+/// in each step. In the same heaps rapier's own are 1 to 3 mm in each other in the end; they are not stepped here because
+/// rapier panics in debug builds when a compound in contact gets another shape (`tests/known_issues.rs`).
 #[test]
 fn bodies_that_get_another_shape_in_each_other_come_apart() {
-    let mut sums = [0.0; 2];
-    let mut held = 0;
     for seed in 0..6 {
-        let [ours, own] = [true, false].map(|medial| heap(medial, seed));
-        println!(
-            "seed {seed}: {} m deep, held {} times; rapier's own {} m",
-            ours.depth, ours.frozen, own.depth
-        );
-        sums = [sums[0] + ours.depth, sums[1] + own.depth];
-        held += ours.frozen;
+        let Heap { depth, frozen } = heap(seed);
+        println!("seed {seed}: {depth} m deep, held {frozen} times");
+        assert!(depth < 0.003, "seed {seed}: {depth} m deep");
+        assert!(frozen < 10, "seed {seed}: held {frozen} times");
     }
-    let [ours, rapiers] = sums.map(|sum| sum / 6.0);
-    assert!(ours <= rapiers, "{ours} m deep, rapier's own {rapiers} m");
-    assert!(held < 60, "held {held} times");
 }
