@@ -47,7 +47,7 @@ fn heap(seed: u64) -> Heap {
     let (meshes, own) = shapes();
     let shapes = meshes.map(SharedShape::medial_mesh);
     let mut random = crate::random::Random(seed);
-    let mut kinds = vec![1; 10];
+    let mut kinds = [1; 10];
     let put = |k: usize| {
         let at = Vector::new(0.0, 0.6 + 0.5 * k as Real, 0.0) + random.direction() * 0.3;
         let body = RigidBodyBuilder::dynamic().pose(Pose::new(at, random.direction() * 3.0));
