@@ -102,7 +102,7 @@ pub fn contacts(
 }
 
 /// The spheres of a convex piece, placed, or of the primitive where it is of none.
-fn hull_of(
+fn placed_spheres(
     body: &impl PrimitiveTree,
     piece: Option<u32>,
     primitive: &[Ball<f64>],
@@ -117,8 +117,8 @@ fn hull_of(
     }
 }
 
-/// The sphere pair of two overlapping primitives, or convex pieces that they are of, along the normal nearest to `old`, that of the step
-/// before, among those hardly deeper than the least ([`penetration::HYSTERESIS`]). `at`: their
+/// The sphere pair of two overlapping primitives, or of the convex pieces that they are of, along the normal nearest to
+/// `old`, that of the step before, among those hardly deeper than the least ([`penetration::HYSTERESIS`]). `at`: their
 /// deepest contact now; the points stay in the middle of its.
 pub(crate) fn along_old_normal(
     body1: &impl PrimitiveTree,
@@ -135,8 +135,8 @@ pub(crate) fn along_old_normal(
     let (gap, n) = match (body1.piece_of(p), body2.piece_of(q)) {
         (None, None) => penetration::deepest(a, b, old, penetration::HYSTERESIS),
         pieces => {
-            let a = hull_of(body1, pieces.0, a, Vec3::from_vector);
-            let b = hull_of(body2, pieces.1, b, |center| place.point(center));
+            let a = placed_spheres(body1, pieces.0, a, Vec3::from_vector);
+            let b = placed_spheres(body2, pieces.1, b, |center| place.point(center));
             let [before, now] = [old, new].map(|n| gap_along(&a, &b, n));
             match before >= now - penetration::HYSTERESIS * now.abs() {
                 true => (before, old),

@@ -19,7 +19,8 @@ use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 
 /// How deep a convex piece and a primitive are in each other, in units of the thickness of the thinner, for contacts that point
-/// into the piece to be left out. Above it none does: the primitives of a piece are as thick as the piece.
+/// into the piece to be left out. Larger, and a body may stay where such contacts hold it; smaller, and more pairs are
+/// computed without the tree.
 const DEEP: f64 = 0.25;
 
 /// How much deeper two hulls may be along a contact's normal than along the best direction. At 1 a capsule that lies on two
@@ -195,7 +196,14 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
             let n = Vec3::from_vector(contact.normal);
             gap_along(&hulls[0].spheres, &hulls[1].spheres, n) >= OUTWARD * hull.gap
         });
-        let primitives = [below[0][0], below[1][0]];
+        let primitives = [
+            first
+                .convex_piece(nodes[0])
+                .map_or(below[0][0], |p| p.primitive),
+            second
+                .convex_piece(nodes[1])
+                .map_or(below[1][0], |p| p.primitive),
+        ];
         add_nearest(hulls, (hull, primitives), place, &mut found);
         found
     }

@@ -44,7 +44,7 @@ pub struct InitialOverlaps {
 /// How a step left a collider.
 struct End {
     pose: Pose,
-    shape: Outline,
+    shape: KnownShape,
     kind: Kind,
 }
 
@@ -59,13 +59,13 @@ fn kind(collider: &Collider, bodies: &RigidBodySet) -> Kind {
 
 /// Shape of a collider, as far as it is told whether it is another one a step later. Other shapes than medial meshes
 /// are not held, so that a game changes its own in place.
-enum Outline {
+enum KnownShape {
     Medial(MedialMesh),
     /// Where the shape is in memory.
     Other(usize),
 }
 
-impl Outline {
+impl KnownShape {
     fn of(part: &Part) -> Self {
         match part.medial() {
             Some(mesh) => Self::Medial(mesh.clone()),
@@ -182,7 +182,7 @@ impl InitialOverlaps {
         let end = |part: &Part| {
             let collider = colliders.get(part.handle)?;
             let (pose, kind) = (*collider.position(), kind(collider, bodies));
-            let shape = Outline::of(part);
+            let shape = KnownShape::of(part);
             Some((part.handle, End { pose, shape, kind }))
         };
         self.ends.extend(view.parts.iter().filter_map(end));
