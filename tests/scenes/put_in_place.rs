@@ -30,7 +30,7 @@ struct Heap {
     frozen: usize,
 }
 
-/// Ten bodies in a narrow pen. For six seconds one of them becomes a ring, or a capsule, twelve times a second; then they
+/// Ten bodies in a narrow pen. For five and a half seconds one of them becomes a ring, or a capsule, twelve times a second; then they
 /// have three seconds to come apart.
 fn heap(seed: u64) -> Heap {
     let mut world = PhysicsWorld::new();
