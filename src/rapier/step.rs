@@ -138,7 +138,7 @@ impl State {
         let outcome = self.impacts(world, args, (&mut plan, tally.depth), &mut work);
         write_back(&plan.view, &outcome, world);
         if !is_kept || plan.view.followed {
-            self.placed.end(&plan.view, (world.bodies, world.colliders));
+            self.placed.end(&plan.view, &world.rules(args.filters));
         }
         let scene = Scene {
             dt: args.parameters.dt,
@@ -181,9 +181,8 @@ impl State {
             let joints = world.joints();
             StepView::take(world.gravity, parameters.dt, bodies, colliders, joints)
         };
-        let sets = (&*world.bodies, &*world.colliders);
-        self.placed.begin(&view, world.narrow_phase, sets);
         let rules = world.rules(args.filters);
+        self.placed.begin(&view, world.narrow_phase, &rules);
         let wild = WildMultibodies::find(&view, &rules, world.narrow_phase, parameters.dt);
         let prediction = parameters.prediction_distance();
         let policy = args.policy(&self.effects, (self.tuning, self.budget), false);

@@ -1,5 +1,5 @@
-//! Pairs that are deep in each other because the user put them there: spawned at one place, teleported, or given another
-//! shape, group or type.
+//! Pairs that are deep in each other because the user put them there: spawned at one place, teleported, given another
+//! shape, group or type, or let go of a joint that turned their contacts off.
 //!
 //! The medial axes of such a pair are near each other or cross already, so there is nothing left to protect, and
 //! holding them apart would hold them as they are for ever: whatever parts them at one place takes them deeper at
@@ -8,25 +8,29 @@
 //! then on. A pair left to the solver until it is above the floor alone would be held there: next to the contact that is
 //! above it are edges that still cross.
 //!
-//! A pair counts as put into each other if one of the two is new, or its groups or type changed, and rapier's solver did
-//! not hold the pair apart before; or if it is below the floor and the two were moved against each other between two
+//! A pair counts as put into each other if one of the two is new, or its groups or type changed, or no joint turns their
+//! contacts off any more, and rapier's solver did not hold the pair apart before; or if it is below the floor and the two were moved against each other between two
 //! steps, or got other shapes, by so much that they may have been apart before. A pair that forces pressed together is
 //! held, even if both are moved together. A free body that gives way to another, by rapier's dominance groups, is
-//! left to the solver as soon as the two are below the floor.
+//! left to the solver as soon as the two are below the floor, and so is one between two that do not give way
+//! ([`crate::rapier::impacts::pinched`]).
 
 use crate::math::fast_hash::{FastMap, FastSet};
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::rapier::impacts::deep_pairs::Deep;
-use crate::rapier::view::motion;
+use crate::rapier::impacts::pinched::{one_gives_way, pinched};
+use crate::rapier::view::all_joints::for_each_joint;
+use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::step_view::{Part, StepView};
-use rapier3d::dynamics::{RigidBodySet, RigidBodyType};
+use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, RigidBodyType};
 use rapier3d::geometry::{
-    Collider, ColliderHandle, ColliderSet, ContactManifold, InteractionGroups, NarrowPhase,
-    SolverFlags,
+    Collider, ColliderHandle, ContactManifold, InteractionGroups, NarrowPhase, SolverFlags,
 };
 
 type Pair = [ColliderHandle; 2];
+/// In the order of their indices.
+type BodyPair = [RigidBodyHandle; 2];
 
 /// Record from step to step of bodies put into each other.
 #[derive(Default)]
@@ -37,6 +41,10 @@ pub struct InitialOverlaps {
     met: FastSet<Pair>,
     /// New colliders, and those whose groups changed since the last step, or the type of their body.
     others: FastSet<ColliderHandle>,
+    /// Bodies whose contacts a joint turns off.
+    jointed: FastSet<BodyPair>,
+    /// Bodies whose contacts a joint turned off in the last step, and none does in this.
+    freed: FastSet<BodyPair>,
     /// Pairs that are left to the solver.
     left: FastSet<Pair>,
 }
@@ -103,14 +111,23 @@ fn moved_spheres(old: &MedialMesh, new: &MedialMesh) -> Real {
     ways.fold(0.0, Real::max)
 }
 
-/// Whether one of two free bodies alone gives way, by rapier's dominance groups.
-fn one_gives_way(view: &StepView, pair: [usize; 2]) -> bool {
-    let [a, b] = pair.map(|k| &view.bodies[view.parts[k].body]);
-    [a, b].iter().all(|body| body.kind == motion::Kind::Free) && a.dominance != b.dominance
-}
-
 fn index(handle: ColliderHandle) -> u32 {
     handle.into_raw_parts().0
+}
+
+fn body_pair([a, b]: BodyPair) -> BodyPair {
+    if a.into_raw_parts() <= b.into_raw_parts() { [a, b] } else { [b, a] }
+}
+
+/// Bodies whose contacts a joint turns off.
+fn without_contacts(rules: &Rules) -> FastSet<BodyPair> {
+    let mut pairs = FastSet::default();
+    for_each_joint(rules.impulse_joints, rules.multibody_joints, |bodies, joint| {
+        if !joint.contacts_enabled() {
+            pairs.insert(body_pair(bodies));
+        }
+    });
+    pairs
 }
 
 /// The two in the order of their indices.
@@ -120,15 +137,18 @@ fn sorted([a, b]: Pair) -> Pair {
 
 impl InitialOverlaps {
     /// Looks at the contacts that rapier has at the start of a step, and whether its solver heeds them.
-    pub fn begin(
-        &mut self,
-        view: &StepView,
-        narrow_phase: &NarrowPhase,
-        (bodies, colliders): (&RigidBodySet, &ColliderSet),
-    ) {
+    pub fn begin(&mut self, view: &StepView, narrow_phase: &NarrowPhase, rules: &Rules) {
         self.met.clear();
         self.others.clear();
-        let kind_of = |h| colliders.get(h).map(|c| kind(c, bodies));
+        self.freed.clear();
+        if view.parts.is_empty() {
+            self.jointed.clear();
+            return;
+        }
+        let jointed = without_contacts(rules);
+        self.freed.extend(self.jointed.difference(&jointed));
+        self.jointed = jointed;
+        let kind_of = |h| rules.colliders.get(h).map(|c| kind(c, rules.bodies));
         let is_other = |h: &ColliderHandle| {
             let end = self.end_of(*h);
             end.is_none_or(|end| kind_of(*h).is_none_or(|kind| kind != end.kind))
@@ -136,7 +156,7 @@ impl InitialOverlaps {
         let handles = view.parts.iter().map(|part| part.handle);
         let others: FastSet<_> = handles.filter(is_other).collect();
         self.others = others;
-        if self.others.is_empty() {
+        if self.others.is_empty() && self.freed.is_empty() {
             return;
         }
         let bears = |m: &ContactManifold| {
@@ -160,15 +180,17 @@ impl InitialOverlaps {
                 .iter()
                 .any(|k| self.others.contains(&view.parts[*k].handle));
             match self.moved(view, pair) {
-                Some(_) if is_other && deep.is_sunk && !is_met => true,
+                Some(_) if (is_other || self.is_freed(view, pair)) && deep.is_sunk && !is_met => true,
                 Some(moved) => deep.way > 0.0 && moved >= deep.way,
                 None => deep.is_sunk && !is_met,
             }
         };
+        let pinched = pinched(view, deep);
         let is_left = |pair: &[usize; 2], deep: &Deep| {
             self.left.contains(&handles(*pair))
                 || was_put(*pair, deep)
                 || deep.way > 0.0 && one_gives_way(view, *pair)
+                || pinched.contains(pair)
         };
         let left = deep.iter().filter(|(pair, deep)| is_left(pair, deep));
         let pairs: Vec<_> = left.map(|(pair, _)| *pair).collect();
@@ -176,12 +198,18 @@ impl InitialOverlaps {
         pairs
     }
 
+    /// Whether a joint turned the contacts of a pair's bodies off in the last step, and none does in this.
+    fn is_freed(&self, view: &StepView, pair: [usize; 2]) -> bool {
+        let bodies = pair.map(|k| view.bodies[view.parts[k].body].handle);
+        matches!(bodies, [Some(a), Some(b)] if self.freed.contains(&body_pair([a, b])))
+    }
+
     /// Remembers where the step leaves the colliders.
-    pub fn end(&mut self, view: &StepView, (bodies, colliders): (&RigidBodySet, &ColliderSet)) {
+    pub fn end(&mut self, view: &StepView, rules: &Rules) {
         self.ends.clear();
         let end = |part: &Part| {
-            let collider = colliders.get(part.handle)?;
-            let (pose, kind) = (*collider.position(), kind(collider, bodies));
+            let collider = rules.colliders.get(part.handle)?;
+            let (pose, kind) = (*collider.position(), kind(collider, rules.bodies));
             let shape = KnownShape::of(part);
             Some((part.handle, End { pose, shape, kind }))
         };

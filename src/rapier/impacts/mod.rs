@@ -26,6 +26,7 @@ mod lost_gains;
 mod near_lists;
 pub(crate) mod outcome;
 pub(crate) mod pair_culling;
+mod pinched;
 pub(crate) mod response;
 pub(crate) mod spent_budget;
 pub(crate) mod swept_boxes;

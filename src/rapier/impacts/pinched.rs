@@ -1,0 +1,83 @@
+//! Bodies that are pressed between two others of which neither gives way: a door and a wall, two fingers, a press and the
+//! ground.
+//!
+//! Where such a body is below the floor ([`crate::rapier::tuning::Tuning::floor`]) on both sides there is no way out, and
+//! each impact on one side only brings the next one on the other, until the body has had all that it may have in a step.
+//! So its deep pairs are left to rapier's solver, which divides the depth between the two sides.
+
+use crate::math::fast_hash::FastMap;
+use crate::rapier::impacts::deep_pairs::Deep;
+use crate::rapier::view::motion::Kind;
+use crate::rapier::view::step_view::StepView;
+
+/// The one of two bodies that gives way to the other, and the other: a free one to one that is not, or to one of a higher
+/// dominance group of rapier; `None` if each gives way.
+fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
+    let [a, b] = bodies;
+    let [free1, free2] = bodies.map(|k| view.bodies[k].kind == Kind::Free);
+    let [first, second] = bodies.map(|k| view.bodies[k].dominance);
+    match (free1, free2) {
+        (true, true) if first == second => None,
+        (true, true) if first < second => Some([a, b]),
+        (true, false) => Some([a, b]),
+        _ => Some([b, a]),
+    }
+}
+
+/// Whether one of two free bodies alone gives way.
+pub fn one_gives_way(view: &StepView, pair: [usize; 2]) -> bool {
+    let bodies = pair.map(|k| view.parts[k].body);
+    let free = |b: &usize| view.bodies[*b].kind == Kind::Free;
+    bodies.iter().all(free) && yielding(view, bodies).is_some()
+}
+
+/// Pairs below the floor that belong to bodies which are pressed, by themselves or through each other, against two bodies
+/// that do not give way to them, and of which one moves.
+pub fn pinched(view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize; 2]> {
+    let sunk = deep.iter().filter(|(_, deep)| deep.way > 0.0);
+    let sunk: Vec<([usize; 2], [usize; 2])> = sunk
+        .map(|(pair, _)| (*pair, pair.map(|k| view.parts[k].body)))
+        .collect();
+    let mut groups = Groups::default();
+    for (_, bodies) in &sunk {
+        if yielding(view, *bodies).is_none() {
+            groups.join(*bodies);
+        }
+    }
+    let mut jaws: FastMap<usize, Vec<usize>> = FastMap::default();
+    for (_, bodies) in &sunk {
+        if let Some([body, jaw]) = yielding(view, *bodies) {
+            let jaws = jaws.entry(groups.of(body)).or_default();
+            if !jaws.contains(&jaw) {
+                jaws.push(jaw);
+            }
+        }
+    }
+    let moves = |b: &usize| view.bodies[*b].kind != Kind::Fixed;
+    jaws.retain(|_, jaws| jaws.len() > 1 && jaws.iter().any(moves));
+    let is_pinched = |bodies: [usize; 2]| bodies.iter().any(|b| jaws.contains_key(&groups.of(*b)));
+    let pairs = sunk.iter().filter(|(_, bodies)| is_pinched(*bodies));
+    pairs.map(|(pair, _)| *pair).collect()
+}
+
+/// Bodies that touch, by one of them that stands for all.
+#[derive(Default)]
+struct Groups {
+    next: FastMap<usize, usize>,
+}
+
+impl Groups {
+    fn of(&self, mut body: usize) -> usize {
+        while let Some(next) = self.next.get(&body) {
+            body = *next;
+        }
+        body
+    }
+
+    fn join(&mut self, bodies: [usize; 2]) {
+        let [a, b] = bodies.map(|body| self.of(body));
+        if a != b {
+            self.next.insert(a, b);
+        }
+    }
+}
