@@ -31,33 +31,46 @@ pub fn one_gives_way(view: &StepView, pair: [usize; 2]) -> bool {
     bodies.iter().all(free) && yielding(view, bodies).is_some()
 }
 
-/// Pairs below the floor that belong to bodies which are pressed, by themselves or through each other, against two bodies
-/// that do not give way to them, and of which one moves.
+/// Deep pairs of bodies that are pressed, by themselves or through each other, against two that do not give way to them.
+/// One of these two moves, and with one of them the bodies are below the floor.
 pub fn pinched(view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize; 2]> {
-    let sunk = deep.iter().filter(|(_, deep)| deep.way > 0.0);
-    let sunk: Vec<([usize; 2], [usize; 2])> = sunk
-        .map(|(pair, _)| (*pair, pair.map(|k| view.parts[k].body)))
+    let sunk = deep.iter().filter(|(_, deep)| deep.is_sunk);
+    let sunk: Vec<([usize; 2], [usize; 2], bool)> = sunk
+        .map(|(pair, deep)| (*pair, pair.map(|k| view.parts[k].body), deep.way > 0.0))
         .collect();
     let mut groups = Groups::default();
-    for (_, bodies) in &sunk {
+    for (_, bodies, _) in &sunk {
         if yielding(view, *bodies).is_none() {
             groups.join(*bodies);
         }
     }
-    let mut jaws: FastMap<usize, Vec<usize>> = FastMap::default();
-    for (_, bodies) in &sunk {
+    let mut held: FastMap<usize, Held> = FastMap::default();
+    for (_, bodies, is_below) in &sunk {
         if let Some([body, jaw]) = yielding(view, *bodies) {
-            let jaws = jaws.entry(groups.of(body)).or_default();
-            if !jaws.contains(&jaw) {
-                jaws.push(jaw);
-            }
+            let held = held.entry(groups.of(body)).or_default();
+            held.is_below |= is_below;
+            held.moves |= view.bodies[jaw].kind != Kind::Fixed;
+            held.is_pinched |= held.jaw.is_some_and(|other| other != jaw);
+            held.jaw = Some(jaw);
         }
     }
-    let moves = |b: &usize| view.bodies[*b].kind != Kind::Fixed;
-    jaws.retain(|_, jaws| jaws.len() > 1 && jaws.iter().any(moves));
-    let is_pinched = |bodies: [usize; 2]| bodies.iter().any(|b| jaws.contains_key(&groups.of(*b)));
-    let pairs = sunk.iter().filter(|(_, bodies)| is_pinched(*bodies));
-    pairs.map(|(pair, _)| *pair).collect()
+    held.retain(|_, held| held.is_pinched && held.moves && held.is_below);
+    let is_pinched = |bodies: [usize; 2]| bodies.iter().any(|b| held.contains_key(&groups.of(*b)));
+    let pairs = sunk.iter().filter(|(_, bodies, _)| is_pinched(*bodies));
+    pairs.map(|(pair, ..)| *pair).collect()
+}
+
+/// What holds a group of bodies.
+#[derive(Default)]
+struct Held {
+    /// One of the bodies that do not give way.
+    jaw: Option<usize>,
+    /// Whether there is another.
+    is_pinched: bool,
+    /// Whether one of them moves.
+    moves: bool,
+    /// Whether one is below the floor with them.
+    is_below: bool,
 }
 
 /// Bodies that touch, by one of them that stands for all.
