@@ -57,6 +57,7 @@ mod neighbours;
 mod odd_steps;
 mod oracle;
 mod partners;
+mod pinched;
 mod put_in_place;
 mod random;
 mod resting;

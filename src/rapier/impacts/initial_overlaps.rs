@@ -116,17 +116,25 @@ fn index(handle: ColliderHandle) -> u32 {
 }
 
 fn body_pair([a, b]: BodyPair) -> BodyPair {
-    if a.into_raw_parts() <= b.into_raw_parts() { [a, b] } else { [b, a] }
+    if a.into_raw_parts() <= b.into_raw_parts() {
+        [a, b]
+    } else {
+        [b, a]
+    }
 }
 
 /// Bodies whose contacts a joint turns off.
 fn without_contacts(rules: &Rules) -> FastSet<BodyPair> {
     let mut pairs = FastSet::default();
-    for_each_joint(rules.impulse_joints, rules.multibody_joints, |bodies, joint| {
-        if !joint.contacts_enabled() {
-            pairs.insert(body_pair(bodies));
-        }
-    });
+    for_each_joint(
+        rules.impulse_joints,
+        rules.multibody_joints,
+        |bodies, joint| {
+            if !joint.contacts_enabled() {
+                pairs.insert(body_pair(bodies));
+            }
+        },
+    );
     pairs
 }
 
@@ -180,7 +188,9 @@ impl InitialOverlaps {
                 .iter()
                 .any(|k| self.others.contains(&view.parts[*k].handle));
             match self.moved(view, pair) {
-                Some(_) if (is_other || self.is_freed(view, pair)) && deep.is_sunk && !is_met => true,
+                Some(_) if (is_other || self.is_freed(view, pair)) && deep.is_sunk && !is_met => {
+                    true
+                }
                 Some(moved) => deep.way > 0.0 && moved >= deep.way,
                 None => deep.is_sunk && !is_met,
             }
