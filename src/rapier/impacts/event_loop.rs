@@ -214,6 +214,9 @@ impl Loop<'_> {
     /// The first queries of all pairs of medial meshes.
     fn first_queries(&self, pairs: &[[usize; 2]]) -> Vec<([usize; 2], ToiJob)> {
         let job = |pair: &[usize; 2]| {
+            if !self.rules.may_respond(self.view, *pair) {
+                return None;
+            }
             let job = self.policy.job(self.view, *pair, self.is_deep(*pair))?;
             Some((*pair, job))
         };
@@ -236,6 +239,10 @@ impl Loop<'_> {
         }
         let met = self.response.met(pair);
         let (policy, deep) = (self.policy, self.is_deep(pair));
+        if !self.rules.may_respond(self.view, pair) {
+            self.allowed.insert(pair, false);
+            return;
+        }
         let Some(mut query_options) = policy.query_options(self.view, pair, time, met, deep) else {
             return;
         };

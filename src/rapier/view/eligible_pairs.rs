@@ -30,6 +30,11 @@ impl Rules<'_> {
     /// Whether rapier would let them push each other. Pairs whose contacts the user modifies are left
     /// to rapier.
     pub fn respond(&self, view: &StepView, pair: [usize; 2]) -> bool {
+        self.may_respond(view, pair) && self.filters_let(view, pair)
+    }
+
+    /// Whether they push each other if the user's filters, which are not asked, let them.
+    pub fn may_respond(&self, view: &StepView, pair: [usize; 2]) -> bool {
         let [h1, h2] = pair.map(|k| view.parts[k].handle);
         let (Some(c1), Some(c2)) = (self.colliders.get(h1), self.colliders.get(h2)) else {
             return false;
@@ -59,14 +64,19 @@ impl Rules<'_> {
             }
         }
         let active = c1.active_hooks() | c2.active_hooks();
-        if active.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS) {
-            return false;
-        }
-        if !active.contains(ActiveHooks::FILTER_CONTACT_PAIRS) {
+        !active.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS)
+    }
+
+    /// Whether the user's filters, if any, let them push each other.
+    fn filters_let(&self, view: &StepView, pair: [usize; 2]) -> bool {
+        let handles = pair.map(|k| view.parts[k].handle);
+        let hooks = handles.map(|h| self.colliders.get(h).map(|c| c.active_hooks()));
+        let mut hooks = hooks.into_iter().flatten();
+        if !hooks.any(|h| h.contains(ActiveHooks::FILTER_CONTACT_PAIRS)) {
             return true;
         }
         let world = (self.bodies, self.colliders);
-        let flags = self.verdicts.of_pair(view, world, [h1, h2]);
+        let flags = self.verdicts.of_pair(view, world, handles);
         flags.is_some_and(|f| f.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
     }
 }
