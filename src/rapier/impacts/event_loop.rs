@@ -192,12 +192,16 @@ impl Loop<'_> {
         }
     }
 
-    /// Puts a hit in the queue, where the user's rules allow it.
+    /// Puts a hit in the queue, where the user's rules allow it. What a joint presses into each other is left to rapier's
+    /// solver: no impact can part it.
     fn expect(&mut self, pair: [usize; 2], hit: Hit) {
         self.waiting.remove(pair);
         let (view, rules) = (&*self.view, self.rules);
         let allowed = self.allowed.entry(pair);
-        if *allowed.or_insert_with(|| rules.respond(view, pair)) {
+        let allowed = allowed.or_insert_with(|| rules.respond(view, pair));
+        let is_pressed = hit.depth > 0.0 && self.response.met(pair) == 0;
+        *allowed &= !(is_pressed && rules.are_jointed(view, pair));
+        if *allowed {
             self.waiting.insert(pair, hit.time, Awaited::Hit(hit));
         }
     }

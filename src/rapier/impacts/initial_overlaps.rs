@@ -42,7 +42,7 @@ pub struct InitialOverlaps {
     /// New colliders, and those whose groups changed since the last step, or the type of their body.
     others: FastSet<ColliderHandle>,
     /// Bodies whose contacts a joint turns off.
-    jointed: FastSet<BodyPair>,
+    muted: FastSet<BodyPair>,
     /// Bodies whose contacts a joint turned off in the last step, and none does in this.
     freed: FastSet<BodyPair>,
     /// Pairs that are left to the solver.
@@ -123,21 +123,6 @@ fn body_pair([a, b]: BodyPair) -> BodyPair {
     }
 }
 
-/// Bodies whose contacts a joint turns off.
-fn without_contacts(rules: &Rules) -> FastSet<BodyPair> {
-    let mut pairs = FastSet::default();
-    for_each_joint(
-        rules.impulse_joints,
-        rules.multibody_joints,
-        |bodies, joint| {
-            if !joint.contacts_enabled() {
-                pairs.insert(body_pair(bodies));
-            }
-        },
-    );
-    pairs
-}
-
 /// The two in the order of their indices.
 fn sorted([a, b]: Pair) -> Pair {
     if index(a) <= index(b) { [a, b] } else { [b, a] }
@@ -149,13 +134,7 @@ impl InitialOverlaps {
         self.met.clear();
         self.others.clear();
         self.freed.clear();
-        if view.parts.is_empty() {
-            self.jointed.clear();
-            return;
-        }
-        let jointed = without_contacts(rules);
-        self.freed.extend(self.jointed.difference(&jointed));
-        self.jointed = jointed;
+        self.find_freed(view, rules);
         let kind_of = |h| rules.colliders.get(h).map(|c| kind(c, rules.bodies));
         let is_other = |h: &ColliderHandle| {
             let end = self.end_of(*h);
@@ -179,6 +158,24 @@ impl InitialOverlaps {
         self.met.extend(pairs);
     }
 
+    /// Finds whose contacts joints turn off, and what they let go of.
+    fn find_freed(&mut self, view: &StepView, rules: &Rules) {
+        let muted_before = std::mem::take(&mut self.muted);
+        if view.parts.is_empty() {
+            return;
+        }
+        for_each_joint(
+            rules.impulse_joints,
+            rules.multibody_joints,
+            |bodies, joint| {
+                if !joint.contacts_enabled() {
+                    self.muted.insert(body_pair(bodies));
+                }
+            },
+        );
+        self.freed.extend(muted_before.difference(&self.muted));
+    }
+
     /// Pairs with deep contacts in this step that are left to the solver.
     pub fn leave(&mut self, view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize; 2]> {
         let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
@@ -188,7 +185,11 @@ impl InitialOverlaps {
                 .iter()
                 .any(|k| self.others.contains(&view.parts[*k].handle));
             match self.moved(view, pair) {
-                Some(_) if (is_other || self.is_freed(view, pair)) && deep.is_sunk && !is_met => {
+                Some(_)
+                    if (is_other || Self::among(&self.freed, view, pair))
+                        && deep.is_sunk
+                        && !is_met =>
+                {
                     true
                 }
                 Some(moved) => deep.way > 0.0 && moved >= deep.way,
@@ -208,10 +209,10 @@ impl InitialOverlaps {
         pairs
     }
 
-    /// Whether a joint turned the contacts of a pair's bodies off in the last step, and none does in this.
-    fn is_freed(&self, view: &StepView, pair: [usize; 2]) -> bool {
-        let bodies = pair.map(|k| view.bodies[view.parts[k].body].handle);
-        matches!(bodies, [Some(a), Some(b)] if self.freed.contains(&body_pair([a, b])))
+    /// Whether the bodies of a pair are among some.
+    fn among(bodies: &FastSet<BodyPair>, view: &StepView, pair: [usize; 2]) -> bool {
+        let both = pair.map(|k| view.bodies[view.parts[k].body].handle);
+        matches!(both, [Some(a), Some(b)] if bodies.contains(&body_pair([a, b])))
     }
 
     /// Remembers where the step leaves the colliders.

@@ -67,6 +67,16 @@ impl Rules<'_> {
         !active.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS)
     }
 
+    /// Whether a joint holds their bodies together.
+    pub fn are_jointed(&self, view: &StepView, pair: [usize; 2]) -> bool {
+        let [first, second] = pair.map(|k| view.bodies[view.parts[k].body].handle);
+        let (Some(first), Some(second)) = (first, second) else {
+            return false;
+        };
+        let mut joints = self.impulse_joints.joints_between(first, second);
+        joints.next().is_some()
+    }
+
     /// Whether the user's filters, if any, let them push each other.
     fn filters_let(&self, view: &StepView, pair: [usize; 2]) -> bool {
         let handles = pair.map(|k| view.parts[k].handle);
