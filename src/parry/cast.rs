@@ -3,7 +3,7 @@
 
 use super::axisymmetric_toi;
 use super::distance;
-use super::initial_contacts::Touching;
+use super::initial_contacts::{Touching, approach_of_rounding};
 use super::inside;
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::elementary::first_contact::motion_is_finite;
@@ -18,6 +18,10 @@ use crate::pair::{PrimitiveTree, nearest_spheres};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
 use parry3d::shape::Shape;
+
+/// Largest part of its way by which a straight cast may seem to come nearer although it slides, so near the other shape that
+/// the normal says little.
+const MOST_SLANT: Real = 0.5;
 
 /// First contact of a medial mesh with another shape, both moving rigidly, from `start` to `end`
 /// seconds.
@@ -75,7 +79,7 @@ impl Cast<'_> {
         }
         let motion1 = started(self.motion1, start);
         let motion2 = started(self.motion2, start);
-        let options = ToiOptions {
+        let mut options = ToiOptions {
             target_distance: self.target_distance,
             ..ToiOptions::default()
         };
@@ -109,15 +113,37 @@ impl Cast<'_> {
                     counts,
                 ));
             };
-            let further = self.query(&motion1, &motion2, seconds, &further, None)?;
+            options = further;
+            let further = self.query(&motion1, &motion2, seconds, &options, None)?;
             toi = further.toi;
             counts += further.counts;
+        }
+        let way = (motion1.linvel - motion2.linvel) * seconds;
+        // What slides along at the target distance is within the tolerance of a hit wherever it is, with a normal that may
+        // be off by as much as the tolerance lets the nearest points be. A hit it is where it comes nearer by more:
+        // otherwise a character could not step up along a wall.
+        let slant = 2.0 * options.tolerance / self.target_distance.max(Real::MIN_POSITIVE);
+        let slant = slant.sqrt().min(MOST_SLANT);
+        let slides =
+            toi.status == ToiStatus::Contact && way.dot(toi.normal) <= slant * way.length();
+        if slides && self.stop_approach && !self.stop_at_penetration {
+            options.target_distance -= options.tolerance + self.grazing([&motion1, &motion2], way);
+            let nearer = self.query(&motion1, &motion2, seconds, &options, None)?;
+            toi = nearer.toi;
+            counts += nearer.counts;
         }
         if toi.status == ToiStatus::Separated {
             return Ok((None, counts));
         }
         let times = [start, toi.lower * seconds];
         Ok((Some(self.hit(&toi, [&motion1, &motion2], times)), counts))
+    }
+
+    /// Length by which a straight cast that slides along the other shape seems to come nearer, for all that rounding does.
+    fn grazing(&self, motions: [&NonlinearRigidMotion; 2], way: Vector) -> Real {
+        let places = motions.map(|m| m.start.translation.abs().max_element());
+        let extent = self.mesh.aabb().extents().max_element();
+        approach_of_rounding(places[0] + places[1] + extent + way.length())
     }
 
     /// The hit of an answer, from the start of the motions, in seconds, and the time since then.
@@ -156,13 +182,15 @@ impl Cast<'_> {
     ) -> Result<Touching, Unsweepable> {
         let [start1, start2] = motions.map(|m| m.start);
         let pos12 = start1.inverse() * start2;
-        let (nearest, _) = distance::nearest(self.mesh, self.other, &pos12, self.target_distance)?;
+        // What the query took for a contact may be farther off by its tolerance, with a normal that says less.
+        let reach = self.target_distance + ToiOptions::default().tolerance;
+        let (nearest, _) = distance::nearest(self.mesh, self.other, &pos12, reach)?;
         let (gap, normal, points, primitives) = match nearest {
             Some(c) => {
                 let points = [start1 * c.points[0], start2 * c.points[1]];
                 (c.distance, start1.rotation * c.normal, points, c.primitives)
             }
-            // Farther off, by no more than the tolerance.
+            // Farther off by rounding.
             None => (self.target_distance, toi.normal, toi.points, toi.primitives),
         };
         let velocity = |k: usize| {

@@ -27,6 +27,11 @@ const FURTHER: Real = 0.1;
 /// more in each cast.
 const SLIDE: Real = 4.0 * Real::EPSILON;
 
+/// Length by which what slides seems to come nearer, from the sum of the lengths in play: coordinates and the way.
+pub fn approach_of_rounding(lengths: Real) -> Real {
+    (SLIDE * lengths).clamp(Real::MIN_POSITIVE, Real::MAX)
+}
+
 /// The deepest contact at the start, world frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Touching {
@@ -52,8 +57,7 @@ impl Touching {
 
     /// Length by which sliding seems to come nearer in `seconds`.
     fn slide(&self, seconds: Real) -> Real {
-        let lengths = self.size + self.slip.length() * seconds;
-        (SLIDE * lengths).clamp(Real::MIN_POSITIVE, Real::MAX)
+        approach_of_rounding(self.size + self.slip.length() * seconds)
     }
 
     /// Whether the deepest contact comes nearer.

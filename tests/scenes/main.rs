@@ -74,6 +74,7 @@ mod sharp_blocks;
 #[path = "../../examples/factory/solid.rs"]
 mod solid;
 mod spawned;
+mod stairs;
 mod still;
 #[allow(dead_code)]
 #[path = "../../examples/factory/thread.rs"]
