@@ -7,7 +7,7 @@
 //!   those on a flat face from `flat_face.rs`, and leaves the ones that bear the load (`contact_reduction.rs`).
 //! - Casts: `cast.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
 //!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
-//!   `initial_contacts.rs` treat what touches at the start.
+//!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at.
 //! - Distance: `distance.rs`.
 //! - What a pipeline tells the dispatcher for a step, muted pairs among it: `narrow_phase_plan.rs`.
 
@@ -27,6 +27,7 @@ pub(crate) mod medial_part;
 pub(crate) mod narrow_phase_plan;
 pub(crate) mod rays;
 pub(crate) mod shape;
+mod swept_region;
 pub(crate) mod swept_sphere_parts;
 
 pub use dispatcher::MedialDispatcher;

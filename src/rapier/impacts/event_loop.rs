@@ -7,8 +7,10 @@
 //! motion of this step, so that the rest of it is right ([`crate::rapier::impacts::response`]; the law is in
 //! [`crate::rapier::impacts::impulse`]). Then all pairs of the bodies that changed are searched again. A body with
 //! more than [`Tuning::max_events`](crate::rapier::tuning::Tuning) impacts stays where it is for the rest of the
-//! step, or is carried along by what pushes it. No impact is ever dropped, not even at the current time; so no medial
-//! axis crosses another on the motion that is executed.
+//! step, or is carried along by what pushes it. No impact of a pair that the loop has is ever dropped, not even at the
+//! current time; so no medial axis of such a pair crosses another on the motion that is executed. Pairs that nothing
+//! could part are left to rapier's solver ([`crate::rapier::impacts::initial_overlaps`],
+//! [`crate::rapier::impacts::pinched`], [`Loop::expect`]).
 
 use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::Real;

@@ -3,7 +3,7 @@
 //!
 //! - The loop: `event_loop.rs`, in the order of times of `event_queue.rs`; its result: `outcome.rs`.
 //! - When a pair first touches: `toi_query.rs` (what counts as contact), `lazy_toi_query.rs` (a search that pauses).
-//! - Which pairs are searched at all: `fast_parts.rs`, `deep_pairs.rs`, `initial_overlaps.rs`; what spares a search:
+//! - Which pairs are searched at all: `fast_parts.rs`, `deep_pairs.rs`, `initial_overlaps.rs`, `pinched.rs`; what spares a search:
 //!   `swept_boxes.rs`, `pair_culling.rs`, `near_lists.rs`.
 //! - What an impact does: `impulse.rs` is the law (Newton's restitution, Coulomb's friction), `contact_impulses.rs`
 //!   gives the two impulses of one contact, `response.rs` passes them on to what touches already; `bounces.rs`,
