@@ -5,6 +5,7 @@
 use super::contact_reduction;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::flat_face;
+use super::inward_contacts;
 use super::manifolds::{self, ensure_workspace, write_one_point};
 use crate::batch::PairJob;
 use crate::math::{Pose, Real};
@@ -13,7 +14,7 @@ use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     Unsupported,
 };
-use parry3d::shape::Shape;
+use parry3d::shape::{Shape, TypedShape};
 
 impl MedialDispatcher {
     fn count_manifolds(&self, manifolds: usize) {
@@ -78,6 +79,10 @@ impl MedialDispatcher {
                 Some(_) => Ok(()),
                 None => write_by_parry(pair, prediction, manifolds, workspace),
             };
+            let other = [g2, g1][side].as_typed_shape();
+            if matches!(other, TypedShape::TriMesh(_) | TypedShape::HeightField(_)) {
+                inward_contacts::leave_out(manifolds, mesh, side);
+            }
             if goes_on != Some(true) {
                 contact_reduction::transfer_impulses(manifolds, &previous, prediction, side);
             }

@@ -267,7 +267,7 @@ fn square(at: [f64; 2]) -> f64 {
 }
 
 /// The two points of a contact, each in its body's frame.
-fn places<M, C>(manifold: &ContactManifold<M, C>, i: usize) -> [Vector; 2] {
+pub fn places<M, C>(manifold: &ContactManifold<M, C>, i: usize) -> [Vector; 2] {
     let point = &manifold.points[i];
     let in_body = |pose: Option<&Pose>, p: Vector| pose.map_or(p, |pose| pose * p);
     [

@@ -4,7 +4,8 @@
 //! # Files
 //! - The entry: `dispatcher.rs`; the shape: `shape.rs`, of convex parts: `medial_part.rs`; rays: `rays.rs`.
 //! - Contact manifolds: `contact_manifolds.rs` is what parry calls; it takes those of two meshes from `manifolds.rs`,
-//!   those on a flat face from `flat_face.rs`, and leaves the ones that bear the load (`contact_reduction.rs`).
+//!   those on a flat face from `flat_face.rs`, and leaves the ones that bear the load (`contact_reduction.rs`) and that
+//!   do not point into the body (`inward_contacts.rs`).
 //! - Casts: `cast.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
 //!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
 //!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at.
@@ -22,6 +23,7 @@ pub(crate) mod distance;
 pub(crate) mod flat_face;
 mod initial_contacts;
 pub(crate) mod inside;
+mod inward_contacts;
 pub(crate) mod manifolds;
 pub(crate) mod medial_part;
 pub(crate) mod narrow_phase_plan;

@@ -14,6 +14,7 @@ mod rotating;
 mod shapes;
 mod solid;
 mod table;
+mod terrain;
 mod touching;
 mod turns;
 mod way_out;
