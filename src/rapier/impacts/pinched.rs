@@ -1,8 +1,9 @@
 //! Bodies that are pressed between two others of which neither gives way: a door and a wall, two fingers, a press and the
 //! ground.
 //!
-//! Where such a body is below the floor ([`crate::rapier::tuning::Tuning::floor`]) on both sides there is no way out, and
-//! each impact on one side only brings the next one on the other, until the body has had all that it may have in a step.
+//! Where such a body is deep on both sides, below the floor ([`crate::rapier::tuning::Tuning::floor`]) on one, there is no
+//! way out, and each impact on one side only brings the next one on the other, until the body has had all that it may
+//! have in a step.
 //! So its deep pairs are left to rapier's solver, which divides the depth between the two sides.
 
 use crate::math::fast_hash::FastMap;
@@ -34,9 +35,11 @@ pub fn one_gives_way(view: &StepView, pair: [usize; 2]) -> bool {
 /// Deep pairs of bodies that are pressed, by themselves or through each other, against two that do not give way to them.
 /// One of these two moves, and with one of them the bodies are below the floor.
 pub fn pinched(view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize; 2]> {
+    let free = |b: &usize| view.bodies[*b].kind == Kind::Free;
     let sunk = deep.iter().filter(|(_, deep)| deep.is_sunk);
-    let sunk: Vec<([usize; 2], [usize; 2], bool)> = sunk
-        .map(|(pair, deep)| (*pair, pair.map(|k| view.parts[k].body), deep.way > 0.0))
+    let sunk = sunk.map(|(pair, deep)| (*pair, pair.map(|k| view.parts[k].body), deep.way > 0.0));
+    let sunk: Vec<_> = sunk
+        .filter(|(_, bodies, _)| bodies.iter().any(free))
         .collect();
     let mut groups = Groups::default();
     for (_, bodies, _) in &sunk {
