@@ -45,33 +45,20 @@ pub struct Ends {
     pub frames: [Pose; 2],
     /// Centres of mass.
     pub centers: [Vector; 2],
-    /// Which of the six axes of the first frame are locked, linear ones first.
-    pub locked: u8,
 }
 
 impl Ends {
-    fn is_locked(&self, i: u8) -> bool {
-        self.locked & (1 << i) != 0
-    }
-
-    /// An axis of the first frame, world frame.
-    fn axis(&self, i: u8) -> Vector {
-        self.frames[0].rotation * Vector::AXES[usize::from(i % 3)]
-    }
-
-    /// From the first frame to the second.
-    fn way(&self) -> Vector {
-        self.frames[1].translation - self.frames[0].translation
-    }
-
-    /// Rows of the locked axes.
-    pub fn locked(&self) -> Vec<Row> {
-        let way = self.way();
-        let turned = turned(self.frames.map(|f| f.rotation), self.locked >> 3);
-        let linear = (0..3).filter(|i| self.is_locked(*i));
-        let linear = linear.map(|i| self.slide(self.axis(i), way.dot(self.axis(i))));
-        let angular = (3..6).filter(|i| self.is_locked(*i));
-        let angular = angular.map(|i| self.turn(self.axis(i), turned.dot(self.axis(i))));
+    /// Rows of the locked ones of six axes.
+    pub fn locked(&self, axes: u8) -> Vec<Row> {
+        let [first, second] = self.frames;
+        let locked = |i: &u8| axes & (1 << i) != 0;
+        let axis = |i: u8| first.rotation * Vector::AXES[usize::from(i % 3)];
+        let way = second.translation - first.translation;
+        let turned = turned(self.frames.map(|f| f.rotation), axes >> 3);
+        let linear = (0..3).filter(locked);
+        let linear = linear.map(|i| self.slide(axis(i), way.dot(axis(i))));
+        let angular = (3..6).filter(locked);
+        let angular = angular.map(|i| self.turn(axis(i), turned.dot(axis(i))));
         linear.chain(angular).collect()
     }
 
@@ -85,21 +72,9 @@ impl Ends {
         }
     }
 
-    /// Where the joint acts on the first body: at the second frame, which may slide, less what a locked axis has opened.
-    /// As in rapier; else a joint that is torn open by metres would act on the first body with a lever as long.
-    fn anchor(&self) -> Vector {
-        let way = self.way();
-        let locked = (0..3).filter(|i| self.is_locked(*i));
-        let opened: Vector = locked.map(|i| self.axis(i) * way.dot(self.axis(i))).sum();
-        self.frames[1].translation - opened
-    }
-
     /// Moves the second body along an axis, against the first.
     fn slide(&self, n: Vector, opening: Real) -> Row {
-        let arms = [
-            self.anchor() - self.centers[0],
-            self.frames[1].translation - self.centers[1],
-        ];
+        let arms = self.centers.map(|c| self.frames[1].translation - c);
         Row {
             bodies: self.bodies,
             jacobian: [[-n, -arms[0].cross(n)], [n, arms[1].cross(n)]],

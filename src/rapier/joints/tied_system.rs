@@ -176,8 +176,8 @@ impl<'a> System<'a> {
     /// The rows of all joints that hold what moves at the poses now, those of stops last.
     fn rows_now(&self) -> Vec<Row> {
         let joints = self.joints.iter();
-        let ends = joints.filter_map(|j| self.ends(j, &self.poses));
-        let locked = ends.flat_map(|ends| ends.locked());
+        let ends = joints.filter_map(|j| Some((self.ends(j, &self.poses)?, j.locked)));
+        let locked = ends.flat_map(|(ends, locked)| ends.locked(locked));
         let stops = self.stops.iter();
         let stops = stops.filter_map(|(j, limit)| Some(self.ends(j, &self.poses)?.limited(limit)));
         let rows = locked.chain(stops);
@@ -192,7 +192,6 @@ impl<'a> System<'a> {
             bodies,
             frames: [0, 1].map(|k| poses[bodies[k]] * joint.frames[k]),
             centers: bodies.map(|k| poses[k] * self.centers[k]),
-            locked: joint.locked,
         })
     }
 
