@@ -126,10 +126,19 @@ impl Cast<'_> {
         let slides =
             toi.status == ToiStatus::Contact && way.dot(toi.normal) <= slant * way.length();
         if slides && self.stop_approach && !self.stop_at_penetration {
-            options.target_distance -= options.tolerance + self.grazing([&motion1, &motion2], way);
+            let by = options.tolerance + self.grazing([&motion1, &motion2], way);
+            options.target_distance -= by;
             let nearer = self.query(&motion1, &motion2, seconds, &options, None)?;
-            toi = nearer.toi;
             counts += nearer.counts;
+            // Two convex bodies on straight paths come nearer ever more slowly, so before the hit by this much at least.
+            let back = nearer.toi.lower - by / way.dot(nearer.toi.normal).max(Real::MIN_POSITIVE);
+            let lower = back.max(toi.lower);
+            toi = nearer.toi;
+            let early = (toi.lower - lower) * seconds;
+            for (point, motion) in toi.points.iter_mut().zip([&motion1, &motion2]) {
+                *point -= motion.linvel * early;
+            }
+            toi.lower = lower;
         }
         if toi.status == ToiStatus::Separated {
             return Ok((None, counts));

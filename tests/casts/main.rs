@@ -11,6 +11,7 @@ mod oracle;
 #[path = "../common/ccd/rng.rs"]
 mod rng;
 mod rotating;
+mod shallow;
 mod shapes;
 mod solid;
 mod table;
