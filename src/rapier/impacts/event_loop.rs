@@ -194,8 +194,8 @@ impl Loop<'_> {
         }
     }
 
-    /// Puts a hit in the queue, where the user's rules allow it. What a joint presses into each other is left to rapier's
-    /// solver: no impact can part it.
+    /// Puts a hit in the queue, where the user's rules allow it. Neighbours on a joint that overlap before they met
+    /// in this step are left to rapier's solver: the joint presses them there again whatever an impact does.
     fn expect(&mut self, pair: [usize; 2], hit: Hit) {
         self.waiting.remove(pair);
         let (view, rules) = (&*self.view, self.rules);
