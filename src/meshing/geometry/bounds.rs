@@ -135,6 +135,15 @@ impl Bounds {
         x * x + y * y + z * z
     }
 
+    /// Whether two boxes are within `distance` of each other along each axis.
+    pub fn is_near(&self, o: &Self, distance: f64) -> bool {
+        let gap = |lo: Point, hi: Point| {
+            let gap = lo - hi;
+            gap.x.max(gap.y).max(gap.z)
+        };
+        gap(self.lo, o.hi).max(gap(o.lo, self.hi)) <= distance
+    }
+
     /// Distance to the box's farthest corner.
     pub fn farthest(&self, p: Point) -> f64 {
         let (lo, hi) = (p - self.lo, self.hi - p);

@@ -97,32 +97,16 @@ impl Convex {
 
     /// The part where `sign` times the depth is positive.
     fn side(&self, plane: &Plane, (index, on): (u32, f64), sign: f64) -> Option<Self> {
-        let height = |p: Point| {
-            let height = sign * plane.depth(p);
-            if height.abs() <= on { 0.0 } else { height }
-        };
+        let height = |p: Point| off(sign * plane.depth(p), on);
         let mut faces = Vec::with_capacity(self.faces.len() + 1);
         let mut on_cut: Vec<Point> = Vec::new();
         for face in &self.faces {
-            let mut kept = Vec::with_capacity(face.corners.len() + 1);
-            let mut is_below = false;
-            for (i, &p) in face.corners.iter().enumerate() {
-                let q = face.corners[(i + 1) % face.corners.len()];
-                let (h, k) = (height(p), height(q));
-                is_below |= h > 0.0;
-                if h >= 0.0 {
-                    kept.push(p);
-                }
-                let crossing = (h * k < 0.0).then(|| p + (q - p) * (h / (h - k)));
-                kept.extend(crossing);
-                on_cut.extend(crossing.or((h == 0.0).then_some(p)));
-            }
-            if is_below && kept.len() >= 3 {
-                faces.push(Face {
-                    plane: face.plane,
-                    corners: kept,
-                });
-            }
+            let (kept, crossings) = above(&face.corners, height);
+            on_cut.extend(crossings);
+            faces.extend(kept.map(|corners| Face {
+                plane: face.plane,
+                corners,
+            }));
         }
         faces.push(Face {
             plane: index,
@@ -130,6 +114,46 @@ impl Convex {
         });
         Some(Self { faces })
     }
+}
+
+/// A height, or 0 where it is within `on`.
+fn off(height: f64, on: f64) -> f64 {
+    if height.abs() <= on { 0.0 } else { height }
+}
+
+/// The parts of a convex polygon below and above a plane; `None` for one that is a point or an edge. Points within `on` of
+/// the plane are on it. A polygon that lies on it is below.
+pub fn cut_polygon(corners: &[Point], plane: &Plane, on: f64) -> [Option<Vec<Point>>; 2] {
+    let height = |sign: f64| move |p: Point| off(sign * plane.depth(p), on);
+    let is_above = |sign: f64| corners.iter().any(|p| height(sign)(*p) > 0.0);
+    match [1.0, -1.0].map(is_above) {
+        [true, true] => [1.0, -1.0].map(|sign| above(corners, height(sign)).0),
+        [_, false] => [Some(corners.to_vec()), None],
+        [false, true] => [None, Some(corners.to_vec())],
+    }
+}
+
+/// The part of a convex polygon whose heights are not negative, if some are positive, and its corners of height 0.
+fn above(
+    corners: &[Point],
+    height: impl Fn(Point) -> f64,
+) -> (Option<Vec<Point>>, impl Iterator<Item = Point>) {
+    let mut kept = Vec::with_capacity(corners.len() + 1);
+    let mut level = Vec::new();
+    let mut is_above = false;
+    for (i, &p) in corners.iter().enumerate() {
+        let q = corners[(i + 1) % corners.len()];
+        let (h, k) = (height(p), height(q));
+        is_above |= h > 0.0;
+        if h >= 0.0 {
+            kept.push(p);
+        }
+        let crossing = (h * k < 0.0).then(|| p + (q - p) * (h / (h - k)));
+        kept.extend(crossing);
+        level.extend(crossing.or((h == 0.0).then_some(p)));
+    }
+    let is_polygon = is_above && kept.len() >= 3;
+    (is_polygon.then_some(kept), level.into_iter())
 }
 
 /// Points of a convex polygon across `normal`, each once, in order; `None` for fewer than three. Points within `on` of

@@ -10,13 +10,13 @@ use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::Variant;
 use crate::meshing::recipe::candidate::Candidate;
-use crate::meshing::recipe::polyhedron::{MOST, axis};
+use crate::meshing::recipe::polyhedron::{MOST, SAME_AREA, axis, faces_of};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::checked_surface::{Surface, cross};
-use crate::meshing::surface::flat_faces::{FLAT, FlatFaces, flat_faces};
+use crate::meshing::surface::flat_faces::{FlatFaces, convex_faces, flat_faces, rounding};
 use crate::meshing::watch::Watch;
 
-/// How flat the faces of a body are: at most so many times its rounding ([`Source::rounding`]), tried in order. With the
+/// How flat the faces of a body are: at most so many times its rounding ([`rounding`]), tried in order. With the
 /// second, vertices may be moved by a millionth of the size.
 const FLATNESS: [f64; 2] = [1.0, 4.0];
 
@@ -27,35 +27,71 @@ const ON: f64 = 2.0;
 /// quite flat count as exact.
 const CLOSE: f64 = 20.0;
 
+/// A convex piece as a surface, and its faces.
+type Part = (Surface, FlatFaces);
+
 impl Source {
-    /// The medial axes of convex pieces of the body, if these are within the limit on the count.
+    /// The medial axes of convex pieces of the body, if these are within the limit on the count: of the convex parts that
+    /// the source consists of, or of those that its faces make, whichever has fewer primitives.
     pub fn pieces(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+        if self.bounds().0.sheet.contains(&true) {
+            return Ok(None);
+        }
         for flatness in FLATNESS {
-            let pieces = self.pieces_of(flatness * self.rounding(), watch)?;
-            if pieces.is_some() {
-                return Ok(pieces);
+            let flat = flatness * rounding(&self.surface);
+            let own = self.own_parts(flat, watch)?;
+            let made = self.parts_by_faces(flat, watch)?;
+            let mut best: Option<Candidate> = None;
+            for (parts, beside) in [own, made].into_iter().flatten() {
+                let least = best.as_ref().map(|best| best.draft.faces.len() - 1);
+                let next = self.of_parts(&parts, beside, CLOSE * flat, least, watch)?;
+                best = next.or(best);
+            }
+            if best.is_some() {
+                return Ok(best);
             }
         }
         Ok(None)
     }
 
-    /// How far rounding to `f32` moves the source's vertices (longest side 1), some sizes from its origin or more.
-    fn rounding(&self) -> f64 {
-        let frame = &self.surface.frame;
-        let far = frame.center.length() / frame.scale;
-        FLAT.max(0.5 * f64::from(f32::EPSILON) * far)
-    }
-
-    /// The pieces, where corners of flat faces are off their planes by at most `flat`.
-    fn pieces_of(&self, flat: f64, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
-        let (on, close) = (ON * flat, CLOSE * flat);
-        let surface = &self.surface;
-        let Some(angle) = self.limits.creases.angle_of_flat() else {
-            return Ok(None);
-        };
-        if !surface.simple || surface.sheet.contains(&true) || !surface.lids.is_empty() {
+    /// The parts of a source of convex parts that overlap and are not hidden, and how far its corners may be beside them;
+    /// `None` where one of them is not convex.
+    fn own_parts(
+        &self,
+        flat: f64,
+        watch: &mut Watch,
+    ) -> Result<Option<(Vec<Part>, f64)>, BuildError> {
+        if self.surface.simple {
             return Ok(None);
         }
+        let mut is_seen = vec![false; self.surface.whole.len()];
+        for &patch in &self.bounds().0.patch_of {
+            is_seen[patch as usize] = true;
+        }
+        let mut parts = Vec::new();
+        for patch in (0..is_seen.len()).filter(|&patch| is_seen[patch]) {
+            let part = self
+                .surface
+                .part(|t| self.surface.patch_of[t] == patch as u32);
+            let body = (0..part.triangles.len()).collect();
+            let most = faces_of(self.limits.primitives.unwrap_or(MOST));
+            let Some(faces) = convex_faces(&part, body, flat, most, watch)? else {
+                return Ok(None);
+            };
+            parts.push((part, faces));
+        }
+        Ok(Some((parts, flat)))
+    }
+
+    /// The pieces that the planes of all faces make, where corners are off these by at most `flat`, and how far the source's
+    /// corners may be beside them; `None` where there are too many.
+    fn parts_by_faces(
+        &self,
+        flat: f64,
+        watch: &mut Watch,
+    ) -> Result<Option<(Vec<Part>, f64)>, BuildError> {
+        let on = ON * flat;
+        let (surface, _) = self.bounds();
         let body = (0..surface.triangles.len()).collect();
         let Some(faces) = flat_faces(surface, body, flat, 2 * MOST_PLANES, watch)? else {
             return Ok(None);
@@ -64,30 +100,49 @@ impl Source {
         if planes.len() > MOST_PLANES {
             return Ok(None);
         }
-        let Some(pieces) = convex_pieces(&planes, on, &self.tree, watch)? else {
+        let pieces = convex_pieces(&planes, on, &self.tree, watch)?;
+        // Corners this near to a plane are on it, in cells and in pieces, and source corners beside it.
+        let beside = 2.0 * on + beyond;
+        let parts = |pieces: Vec<Piece>| pieces.iter().map(|p| self.surface_of(p, on)).collect();
+        Ok(pieces.map(|pieces| (parts(pieces), beside)))
+    }
+
+    /// The medial axes of convex pieces whose union is the body, if they have at most `least` primitives, and are off by less
+    /// than `close`; the source's corners may be `beside` them.
+    fn of_parts(
+        &self,
+        parts: &[Part],
+        beside: f64,
+        close: f64,
+        least: Option<usize>,
+        watch: &mut Watch,
+    ) -> Result<Option<Candidate>, BuildError> {
+        let Some(angle) = self.limits.creases.angle_of_flat() else {
             return Ok(None);
         };
         let most = self.limits.primitives.unwrap_or(MOST).min(MOST);
+        let most = least.map_or(most, |least| most.min(least));
         let mut draft = Draft::default();
         let mut growth: f64 = 0.0;
-        for piece in &pieces {
+        for (surface, faces) in parts {
             let left = most.saturating_sub(draft.faces.len());
-            let (surface, faces) = self.surface_of(piece, on);
             let corners = |t: usize| surface.corners(t);
             let tree = TriangleTree::new(surface.triangles.len(), corners, watch)?;
             let limits = (angle.cos(), close);
-            let Some(axis) = axis(&surface, &tree, &faces, limits, left, watch)? else {
+            let Some(axis) = axis(surface, &tree, faces, limits, left, watch)? else {
                 return Ok(None);
             };
+            // Where not every edge is of two triangles, some of a face may be missing.
+            if (axis.area - surface.area).abs() > SAME_AREA * surface.area {
+                return Ok(None);
+            }
             growth = growth.max(axis.growth);
             draft = draft.and(axis.draft);
         }
         let count = draft.faces.len();
         let before = self.limits.enclose.then(|| draft.clone());
-        let beside = 2.0 * on + beyond;
         let grown = match self.limits.enclose {
-            // Corners this near to a plane are on it, in cells and in pieces, and source corners beside it.
-            true => (growth + beside + surface.welded - self.limits.allow_uncovered).max(0.0),
+            true => (growth + beside + self.surface.welded - self.limits.allow_uncovered).max(0.0),
             false => 0.0,
         };
         draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
@@ -102,13 +157,13 @@ impl Source {
         candidate.variant = Variant::Exact;
         candidate.notes.push(format!(
             "{} convex pieces that overlap: their medial axes have {count} primitives, and are exact",
-            pieces.len()
+            parts.len()
         ));
         Ok(Some(candidate))
     }
 
     /// The surface of a piece, with the source's own vertices where its corners are at these.
-    fn surface_of(&self, piece: &Piece, on: f64) -> (Surface, FlatFaces) {
+    fn surface_of(&self, piece: &Piece, on: f64) -> Part {
         let mut vertices: Vec<Point> = Vec::new();
         let mut index = |p: Point| {
             let near = |q: &Point| (p - *q).length() <= 2.0 * on;

@@ -26,10 +26,7 @@ impl Source {
     /// Makes the best candidate that the limits allow: balls inside where the surface bounds matter, slabs where it is
     /// a sheet.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let exact = match self.polyhedra(watch)? {
-            None => self.pieces(watch)?,
-            convex => convex,
-        };
+        let exact = self.exact(watch)?;
         if self.limits.max_error.is_none()
             && let Some(exact) = exact
         {
@@ -60,8 +57,6 @@ impl Source {
         };
         let mut findings = std::mem::take(&mut self.surface.findings);
         let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
-        watch.begin("surface")?;
-        self.boundary = solid_boundary(&self.surface, &self.tree, &mut findings, watch)?;
         self.surface.findings = findings;
         Ok((start, count))
     }
@@ -81,8 +76,20 @@ impl Source {
         Ok((Ladder::new(rounded, Vec::new()), creased))
     }
 
+    /// The medial axes of convex polyhedra or of convex pieces, where the body consists of these. Before, it finds the
+    /// boundary of the solid.
+    pub fn exact(&mut self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+        let mut findings = std::mem::take(&mut self.surface.findings);
+        self.boundary = solid_boundary(&self.surface, &self.tree, &mut findings, watch)?;
+        self.surface.findings = findings;
+        match self.polyhedra(watch)? {
+            None => self.pieces(watch),
+            convex => Ok(convex),
+        }
+    }
+
     /// The medial axis of convex polyhedra itself, if that is within the limit on the count.
-    pub fn polyhedra(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+    fn polyhedra(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
         let most = self.limits.primitives.unwrap_or(usize::MAX);
         let Some(angle) = self.limits.creases.angle_of_flat() else {
             return Ok(None);

@@ -15,7 +15,7 @@ use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::{Hausdorff, Limits, Variant};
 use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::flat_faces::{FlatFaces, convex_faces};
+use crate::meshing::surface::flat_faces::{FLAT, FlatFaces, convex_faces};
 use crate::meshing::watch::Watch;
 
 /// A medial mesh is exact when it is nowhere farther off than this (longest side 1), of which half is left to the
@@ -33,7 +33,7 @@ const SEEDS: u64 = 4;
 const CORNERS: usize = 8;
 
 /// The source's triangles and the faces have the same area but for this share, by rounding.
-const SAME_AREA: f64 = 1e-5;
+pub const SAME_AREA: f64 = 1e-5;
 
 /// Primitives at most, where no fewer are asked for: faces are compared each with each.
 pub const MOST: usize = 2_000;
@@ -74,6 +74,12 @@ impl Axis {
     }
 }
 
+/// Faces at most of a convex polyhedron whose axis has so many primitives: three edges or more bound a face, two faces share
+/// one, and each has a slab or more.
+pub fn faces_of(primitives: usize) -> usize {
+    primitives - primitives / 3
+}
+
 /// The medial axes of a surface's bodies, of at most `most` primitives together; `None` where one of them is no
 /// convex polyhedron, or where its axis has a sheet between faces whose normals differ by less than `angle` (rad).
 pub fn polyhedra(
@@ -104,8 +110,7 @@ pub fn polyhedra(
     let mut planes = Vec::new();
     for body in bodies {
         let left = most.saturating_sub(all.draft.faces.len());
-        // Three edges or more bound a face, two faces share one, and each has a slab or more.
-        let Some(faces) = convex_faces(surface, body, left - left / 3, watch)? else {
+        let Some(faces) = convex_faces(surface, body, FLAT, faces_of(left), watch)? else {
             return Ok(None);
         };
         let limits = (angle.cos(), EXACT_HERE);

@@ -1,10 +1,10 @@
 //! The boundary of the solid that a surface winds around, where its parts overlap or pass through themselves: all
 //! of its triangles but the pieces with matter on both sides, which are hidden.
 //!
-//! Source of the inside test: Jacobson et al., "Robust Inside-Outside Segmentation using Generalized Winding
-//! Numbers" (2013). A triangle that another part passes through is halved until its pieces lie on one side; of the
-//! smallest, those that are partly hidden stay. Small openings have lids there. Folds (`folds.rs`) that matter encloses are
-//! hidden too.
+//! A triangle that another part passes through is cut along the planes of all faces if these are flat and few
+//! (`flat_boundary.rs`). Otherwise it is halved until its pieces lie on one side; of the smallest, those that are partly
+//! hidden stay. What is hidden: `hidden.rs`. Small openings have lids there. Folds (`folds.rs`) that matter encloses are hidden
+//! too.
 
 use crate::error::BuildError;
 use crate::meshing::findings::Findings;
@@ -12,14 +12,13 @@ use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::subdivide::{halve, longest_edge_sq};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
+use crate::meshing::surface::flat_boundary::flat_pieces;
 use crate::meshing::surface::folds::Folds;
+use crate::meshing::surface::hidden::Hidden;
 use crate::meshing::watch::Watch;
 
 /// Distance before and behind the surface at which the winding number is asked for (longest side 1).
 const OFF: f64 = 2e-4;
-
-/// Winding number inside.
-const INSIDE: f64 = 0.5;
 
 /// Pieces with edges up to this are not halved (longest side 1); those with longer ones than the second are, for
 /// seven probes would miss what passes through them.
@@ -118,6 +117,9 @@ fn sort_out(
     watch: &mut Watch,
 ) -> Result<Option<(Vec<Piece>, f64)>, BuildError> {
     let folds = Folds::new(surface, tree, watch)?;
+    if let Some(pieces) = flat_pieces(surface, tree, &folds, watch)? {
+        return Ok(Some((pieces, FINEST)));
+    }
     let mut coarser = 1.0;
     loop {
         let mut cut = Cut::new(tree, &folds, surface.triangles.len(), coarser);
@@ -145,14 +147,11 @@ fn sort_out(
 
 /// The triangles of a surface, cut up to a size of pieces and a budget.
 struct Cut<'a> {
-    tree: &'a TriangleTree,
-    folds: &'a Folds<'a>,
+    hidden: Hidden<'a>,
     finest: f64,
     large: f64,
     pieces: Vec<Piece>,
     waiting: Vec<[Point; 3]>,
-    /// Points and triangles that winding numbers have looked at.
-    work: usize,
     /// The most of both.
     most_pieces: usize,
     most_work: usize,
@@ -162,20 +161,23 @@ impl<'a> Cut<'a> {
     fn new(tree: &'a TriangleTree, folds: &'a Folds<'a>, triangles: usize, coarser: f64) -> Self {
         let most = |[fixed, of_each]: [usize; 2]| fixed + of_each * triangles;
         Self {
-            tree,
-            folds,
+            hidden: Hidden {
+                tree,
+                folds,
+                off: OFF,
+                work: 0,
+            },
             finest: FINEST * coarser,
             large: LARGE * coarser,
             pieces: Vec::new(),
             waiting: Vec::new(),
-            work: 0,
             most_pieces: most(MOST_PIECES),
             most_work: most(MOST_WORK),
         }
     }
 
     fn is_exhausted(&self) -> bool {
-        self.work > self.most_work || self.pieces.len() > self.most_pieces
+        self.hidden.work > self.most_work || self.pieces.len() > self.most_pieces
     }
 
     /// Keeps what is not hidden of a triangle; `false` if the budget ends before.
@@ -200,10 +202,12 @@ impl<'a> Cut<'a> {
             let middle = middle(&piece);
             let points = || std::iter::once(middle).chain(probes(&piece, middle));
             let is_finest = longest_sq <= self.finest * self.finest;
-            let here = self.is_hidden(middle, normal);
+            let here = self.hidden.is_enclosed(middle, normal);
             let is_alike = match is_finest && !here {
                 true => false,
-                false => points().skip(1).all(|p| self.is_hidden(p, normal) == here),
+                false => points()
+                    .skip(1)
+                    .all(|p| self.hidden.is_enclosed(p, normal) == here),
             };
             if is_alike && here {
                 continue;
@@ -213,26 +217,16 @@ impl<'a> Cut<'a> {
                 continue;
             }
             // Most pieces that are seen are in no fold: one point tells.
-            match self.is_in_fold(middle, patch, normal) {
+            match self.hidden.is_in_fold(middle, patch, normal) {
                 false => self.pieces.push((piece, t)),
-                true if points().skip(1).all(|p| self.is_in_fold(p, patch, normal)) => {}
+                true if points()
+                    .skip(1)
+                    .all(|p| self.hidden.is_in_fold(p, patch, normal)) => {}
                 true if is_finest => self.pieces.push((piece, t)),
                 true => self.waiting.extend(halve(piece)),
             }
         }
         Ok(true)
-    }
-
-    /// Whether there is matter behind a point of the surface and before it.
-    fn is_hidden(&mut self, p: Point, normal: Point) -> bool {
-        let mut is_inside = |p: Point| self.tree.winding_counted(p, &mut self.work) > INSIDE;
-        is_inside(p + normal * OFF) && is_inside(p - normal * OFF)
-    }
-
-    /// The same where what looks like a void is a fold of the surface's own patch.
-    fn is_in_fold(&mut self, p: Point, patch: u32, normal: Point) -> bool {
-        let mut is_inside = |p: Point| self.folds.is_inside(p, patch, &mut self.work);
-        is_inside(p + normal * OFF) && is_inside(p - normal * OFF)
     }
 }
 

@@ -10,6 +10,12 @@ use crate::meshing::watch::Watch;
 /// sizes from the origin.
 pub const FLAT: f64 = 5e-7;
 
+/// How far rounding to `f32` moves the source's vertices (longest side 1), some sizes from its origin or more.
+pub fn rounding(surface: &Surface) -> f64 {
+    let far = surface.frame.center.length() / surface.frame.scale;
+    FLAT.max(0.5 * f64::from(f32::EPSILON) * far)
+}
+
 /// The faces of a body.
 pub struct FlatFaces {
     /// Planes of the faces.
@@ -30,21 +36,22 @@ struct Face {
     weight: f64,
 }
 
-/// The faces that the triangles `body` of a surface make; `None` where there are more than `most`, or where they
-/// bound no convex body.
+/// The faces that the triangles `body` of a surface make; `None` where there are more than `most`, where a triangle is off
+/// the plane of its face by more than `flat` (longest side 1), or where they bound no convex body.
 pub fn convex_faces(
     surface: &Surface,
     body: Vec<usize>,
+    flat: f64,
     most: usize,
     watch: &mut Watch,
 ) -> Result<Option<FlatFaces>, BuildError> {
-    let Some(faces) = flat_faces(surface, body, FLAT, most, watch)? else {
+    let Some(faces) = flat_faces(surface, body, flat, most, watch)? else {
         return Ok(None);
     };
     for (i, &(t, _)) in faces.face_of.iter().enumerate() {
         watch.every(i)?;
         for p in surface.corners(t) {
-            if faces.planes.iter().any(|plane| plane.depth(p) < -FLAT) {
+            if faces.planes.iter().any(|plane| plane.depth(p) < -flat) {
                 return Ok(None);
             }
         }
