@@ -12,7 +12,7 @@ use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::subdivide::{halve, longest_edge_sq};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::flat_boundary::flat_pieces;
+use crate::meshing::surface::flat_boundary::{Piece, flat_pieces};
 use crate::meshing::surface::folds::Folds;
 use crate::meshing::surface::hidden::Hidden;
 use crate::meshing::watch::Watch;
@@ -38,9 +38,6 @@ const SPAN: f64 = 2.0;
 
 /// Share of the area that is lost by rounding.
 const ROUNDING: f64 = 1e-9;
-
-/// A piece of a triangle, and the triangle.
-type Piece = ([Point; 3], usize);
 
 /// Part of a surface that is not hidden inside matter.
 pub struct Boundary {

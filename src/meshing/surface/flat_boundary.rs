@@ -27,14 +27,17 @@ const ON: f64 = 2.0;
 /// Winding numbers are asked for at so many times that from the surface.
 const OFF: f64 = 8.0;
 
-/// The pieces of triangles that are not hidden, in the order of the triangles, each with its triangle; `None` where faces are
+/// A piece of a triangle, and the triangle.
+pub type Piece = ([Point; 3], usize);
+
+/// The pieces of triangles that are not hidden, in the order of the triangles; `None` where faces are
 /// not flat, or too many.
 pub fn flat_pieces(
     surface: &Surface,
     tree: &TriangleTree,
     folds: &Folds,
     watch: &mut Watch,
-) -> Result<Option<Vec<([Point; 3], usize)>>, BuildError> {
+) -> Result<Option<Vec<Piece>>, BuildError> {
     let flat = FLATNESS * rounding(surface);
     let on = ON * flat;
     let body = (0..surface.triangles.len()).collect();
