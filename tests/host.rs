@@ -145,3 +145,25 @@ fn joints_of_what_turns_fast_open_the_less_the_more_sub_steps_there_are() {
     assert!(few > 2.0e-3, "opens by {few} m");
     assert!(many < 0.2 * few, "opens by {many} m, {few} in few");
 }
+
+#[test]
+fn bodies_whose_pose_is_set_in_each_step_never_fall_asleep() {
+    let sleeps = |is_set: bool| {
+        let mut world = PhysicsWorld::new();
+        let ground = ColliderBuilder::cuboid(1.0, 0.5, 1.0).translation(Vector::Y * -0.5);
+        world.insert_collider(ground, None);
+        let body = RigidBodyBuilder::dynamic().translation(Vector::Y * 0.5);
+        let (body, _) = world.insert(body, ColliderBuilder::cuboid(0.5, 0.5, 0.5));
+        for _ in 0..120 {
+            world.step();
+            if is_set {
+                let body = &mut world.bodies[body];
+                let mut pose = *body.position();
+                pose.translation.x = 1.0e-4 - pose.translation.x;
+                body.set_position(pose, false);
+            }
+        }
+        world.bodies[body].is_sleeping()
+    };
+    assert!(sleeps(false) && !sleeps(true));
+}

@@ -83,6 +83,7 @@ impl MedialPipeline {
             budget: options.budget,
             reported: ReportedStarts::default(),
             placed: InitialOverlaps::default(),
+            moved: None,
             kept: None,
         };
         Self {

@@ -8,6 +8,7 @@ use crate::rapier::host::recycling::RecyclingRecord;
 use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::tuning::Tuning;
+use rapier3d::dynamics::RigidBodyHandle;
 use std::sync::Arc;
 
 /// State that a [`MedialPipeline`](crate::MedialPipeline) keeps from step to step.
@@ -24,6 +25,8 @@ pub struct State {
     pub budget: u64,
     pub reported: ReportedStarts,
     pub placed: InitialOverlaps,
+    /// The bodies that impacts moved in the last step; `None` before the first.
+    pub moved: Option<Vec<RigidBodyHandle>>,
     /// The plan of the last step, if nothing moved in it.
     pub kept: Option<StepPlan>,
 }

@@ -9,6 +9,7 @@ use crate::rapier::contacts::predicted_contacts::predicted;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
 use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::sleep_timers::SleepTimers;
 use crate::rapier::host::speculative::Speculators;
 use crate::rapier::host::substeps::Substeps;
 use crate::rapier::host::{forced_updates, multibody_coordinates};
@@ -24,7 +25,7 @@ use crate::rapier::view::filter_answers::FilterAnswers;
 use crate::rapier::view::medial_colliders::{self, Sets};
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
-use rapier3d::dynamics::IntegrationParameters;
+use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks};
 use std::sync::Arc;
 use web_time::Instant;
@@ -136,7 +137,7 @@ impl State {
 
         let clock = Instant::now();
         let outcome = self.impacts(world, args, (&mut plan, tally.depth), &mut work);
-        write_back(&plan.view, &outcome, world);
+        self.moved = Some(write_back(&plan.view, &outcome, world));
         if !is_kept || plan.view.followed {
             self.placed.end(&plan.view, &world.rules(args.filters));
         }
@@ -262,11 +263,19 @@ impl State {
         plan.wild.bring_to_rest(world.multibody_joints);
         report.batch_seconds += clock.elapsed().as_secs_f64();
 
+        let contacts = (&*world.colliders, &*world.narrow_phase);
+        let timers = SleepTimers::shorten(
+            self.moved.as_deref(),
+            world.bodies,
+            contacts,
+            parameters.length_unit,
+        );
         self.exchange.begin_step(Arc::clone(&plan.narrow_phase));
         let clock = Instant::now();
         world.step(parameters, args.filters, events);
         report.step_seconds = clock.elapsed().as_secs_f64();
         let tally = self.exchange.end_step();
+        timers.restore(world.bodies);
         if let Some(loans) = loans {
             loans.give_back(world);
         }
@@ -322,16 +331,19 @@ impl State {
     }
 }
 
-/// Writes what impacts did to bodies and multibodies to rapier's sets.
-fn write_back(view: &StepView, outcome: &Outcome, world: &mut World) {
+/// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies.
+fn write_back(view: &StepView, outcome: &Outcome, world: &mut World) -> Vec<RigidBodyHandle> {
+    let mut moved = Vec::with_capacity(outcome.changed.len());
     for &(index, struck) in &outcome.changed {
         view.bodies[index].write_back(struck, world.bodies);
+        moved.extend(view.bodies[index].handle);
     }
-    if outcome.changed.is_empty() {
-        return;
+    if moved.is_empty() {
+        return moved;
     }
     multibody_coordinates::write_back(view, &outcome.changed, world.bodies, world.multibody_joints);
     world
         .bodies
         .propagate_modified_body_positions_to_colliders(world.colliders);
+    moved
 }

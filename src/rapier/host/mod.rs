@@ -8,5 +8,6 @@ pub(crate) mod multibody_coordinates;
 pub(crate) mod multibody_energy;
 pub(crate) mod recycling;
 pub(crate) mod reported_impulse;
+pub(crate) mod sleep_timers;
 pub(crate) mod speculative;
 pub(crate) mod substeps;

@@ -8,10 +8,9 @@
 
 use crate::medial::MedialMesh;
 use crate::medial::asset::checksum;
+use crate::rapier::host::sleep_timers::only_moved;
 use crate::rapier::{MedialPipeline, MedialSharedShape};
-use rapier3d::geometry::{
-    BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, NarrowPhase, SharedShape,
-};
+use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase, SharedShape};
 use rapier3d::pipeline::{CollisionPipeline, PhysicsWorld};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -211,12 +210,6 @@ impl SavedWorld {
         world.colliders = colliders;
         Ok(world)
     }
-}
-
-/// Whether nothing but its pose was changed since the last step. rapier keeps the marks to itself, but
-/// prints them.
-fn only_moved(collider: &Collider) -> bool {
-    format!("{collider:?}").contains("changes: ColliderChanges(IN_MODIFIED_SET | POSITION)")
 }
 
 /// Clears the marks of the listed colliders. Only a step does that: one of collision detection alone,

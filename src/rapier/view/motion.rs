@@ -357,15 +357,18 @@ impl Body {
         if !self.motion.start.is_finite() {
             return;
         }
+        // One that is awake keeps the time for which it has been slow, as with rapier's own contacts: pressed bodies that
+        // are struck in each step fall asleep.
+        let wakes = struck && body.is_sleeping();
         let end = *body.position();
-        body.set_position(self.motion.start, struck);
+        body.set_position(self.motion.start, wakes);
         if body.body_type() == RigidBodyType::KinematicPositionBased {
             // Where it was going, it still is.
             body.set_next_kinematic_position(end);
         }
         if struck {
-            body.set_linvel(self.velocity[0], true);
-            body.set_angvel(self.velocity[1], true);
+            body.set_linvel(self.velocity[0], wakes);
+            body.set_angvel(self.velocity[1], wakes);
         }
     }
 }
