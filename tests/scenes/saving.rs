@@ -49,6 +49,44 @@ fn bits(world: &PhysicsWorld) -> Vec<u32> {
     all
 }
 
+/// Heavy bricks on light ones, which impacts move in each step until they sleep.
+fn pressed_world() -> PhysicsWorld {
+    let mut world = world_with_ground();
+    let half = Vector::new(0.4, 0.1, 0.2);
+    let brick = MedialMesh::cuboid(half).expect("a brick");
+    let brick = ColliderBuilder::medial_mesh(brick);
+    for (k, y, density) in [
+        (0, 0.1, 1.0),
+        (0, 0.3, 100.0),
+        (1, 0.1, 1.0),
+        (1, 0.3, 100.0),
+    ] {
+        let at = Vector::new(2.0 * k as Real + 0.02 * y, y, 0.0);
+        let body = RigidBodyBuilder::dynamic().translation(at);
+        world.insert(body, brick.clone().density(density));
+    }
+    world
+}
+
+/// How long what impacts move has been slow is known after loading too.
+#[test]
+fn a_loaded_world_of_pressed_bodies_falls_asleep_at_the_same_time() {
+    for saved in [20, 61, 80, 100] {
+        let mut world = pressed_world();
+        let mut pipeline = attached(&mut world);
+        for _ in 0..saved {
+            pipeline.step(&mut world);
+        }
+        let bytes = save_world(&world).expect("a world that can be saved");
+        let mut loaded = load_world(&bytes).expect("what was saved");
+        let mut other = attached(&mut loaded);
+        let worlds = [&mut world, &mut loaded];
+        let difference = first_difference(worlds, [&mut pipeline, &mut other]);
+        assert_eq!(difference, None, "saved after {saved} steps");
+        assert!(world.bodies.iter().all(|(_, b)| b.is_sleeping()));
+    }
+}
+
 /// Steps both worlds; the first step at which they differ.
 fn first_difference(
     [a, b]: [&mut PhysicsWorld; 2],
