@@ -103,18 +103,22 @@ fn press(medial: bool, seed: u64, gap: Real) -> Pressed {
 fn pressed_bodies_come_out_as_rapiers() {
     for gap in [0.15, 0.08, 0.02] {
         let seeds = 0..6;
-        let mean = |all: &[Pressed]| all.iter().map(|p| p.thrown).sum::<Real>() / all.len() as Real;
+        // Some fall off the ground, rapier's too.
+        let median = |all: &[Pressed]| {
+            let mut thrown: Vec<Real> = all.iter().map(|p| p.thrown).collect();
+            thrown.sort_by(Real::total_cmp);
+            0.5 * (thrown[2] + thrown[3])
+        };
         let [ours, own] = [true, false].map(|medial| {
             let all = seeds.clone().map(|seed| press(medial, seed, gap));
             all.collect::<Vec<_>>()
         });
-        let thrown = [mean(&ours), mean(&own)];
+        let thrown = [median(&ours), median(&own)];
         println!("pressed to {gap} m: thrown by {thrown:?} m, ours and rapier's; {ours:.4?}");
         for (seed, p) in ours.iter().enumerate() {
             assert!(p.depth < 0.002, "to {gap} m, seed {seed}: {p:?}");
             assert!(p.queries < 2000, "to {gap} m, seed {seed}: {p:?}");
         }
-        // The mean of six scatters by a fifth.
         assert!(thrown[0] < 1.5 * thrown[1], "to {gap} m: {thrown:?}");
     }
 }
@@ -203,4 +207,95 @@ fn links_that_joints_press_into_each_other_hang_as_rapiers() {
     println!("opened by and speed: {ours:?}, rapier's {own:?}");
     assert!(ours[0] < own[0] + 0.05, "{ours:?}, rapier's {own:?}");
     assert!(ours[1] < own[1] + 1.0, "{ours:?}, rapier's {own:?}");
+}
+
+/// A frame of four bars, or an L of two; as rapier's own.
+fn bars(medial: bool, is_frame: bool) -> SharedShape {
+    let (flat, upright) = (Vector::new(0.5, 0.12, 0.12), Vector::new(0.12, 0.5, 0.12));
+    let bars = match is_frame {
+        true => vec![
+            (Vector::Y * 0.38, flat),
+            (Vector::NEG_Y * 0.38, flat),
+            (Vector::X * 0.38, upright),
+            (Vector::NEG_X * 0.38, upright),
+        ],
+        false => vec![
+            (Vector::NEG_Y * 0.275, Vector::new(0.4, 0.125, 0.15)),
+            (Vector::NEG_X * 0.275, Vector::new(0.125, 0.4, 0.15)),
+        ],
+    };
+    let own = |(at, half): &(Vector, Vector)| {
+        let bar = SharedShape::cuboid(half.x, half.y, half.z);
+        (Pose::from_translation(*at), bar)
+    };
+    if !medial {
+        return SharedShape::compound(bars.iter().map(own).collect());
+    }
+    let (mut vertices, mut indices) = (Vec::new(), Vec::new());
+    for (at, half) in bars {
+        let (points, triangles) = Cuboid::new(half).to_trimesh();
+        let first = vertices.len() as u32;
+        vertices.extend(points.into_iter().map(|p| p + at));
+        indices.extend(triangles.into_iter().map(|t| t.map(|v| v + first)));
+    }
+    let mesh = MedialMesh::from_trimesh(&vertices, &indices, &BuildOptions::default());
+    SharedShape::medial_mesh(mesh.expect("bars").0)
+}
+
+/// A kinematic L pushes a frame against a wall for a while, and stops. Continuous queries in the last second, and the speed of
+/// the frame then.
+fn against_a_wall(shapes: &[SharedShape; 2], medial: bool, seed: u64) -> (u64, Real) {
+    let mut world = PhysicsWorld::new();
+    let mut pipeline = attached(&mut world);
+    let mut wall = |half: Vector, at: Vector| {
+        let wall = ColliderBuilder::cuboid(half.x, half.y, half.z).translation(at);
+        world.insert_collider(wall, None);
+    };
+    wall(Vector::new(10.0, 0.5, 10.0), Vector::NEG_Y * 0.5);
+    wall(Vector::new(0.5, 3.0, 10.0), Vector::new(-1.5, 2.5, 0.0));
+    let mut random = crate::random::Random(seed);
+    let at = Vector::new(-0.4, 0.4, -0.4);
+    let way = Vector::new(-1.0, random.within(-0.2, 0.0), random.within(-0.1, 0.1)).normalize();
+    let mut turned = |at| Pose::new(at, random.direction() * 3.0);
+    let free = RigidBodyBuilder::dynamic().pose(turned(at));
+    let pusher = RigidBodyBuilder::kinematic_velocity_based()
+        .pose(turned(at - way * 1.3))
+        .linvel(way * 2.5);
+    let [first, second] = shapes.clone();
+    let (free, _) = world.insert(free, ColliderBuilder::new(first).density(300.0));
+    let (pusher, _) = world.insert(pusher, ColliderBuilder::new(second));
+    let mut queries = 0;
+    for step in 0..120 {
+        if step == 40 {
+            world.bodies[pusher].set_linvel(Vector::ZERO, true);
+        }
+        if !medial {
+            world.step();
+            continue;
+        }
+        let report = pipeline.step(&mut world);
+        queries += if step < 80 {
+            0
+        } else {
+            report.continuous_queries
+        };
+    }
+    (queries, world.bodies[free].linvel().length())
+}
+
+/// Symptom: 35 to 68 queries in each step for as long as the pusher stood there, at 70 to 130 ms a step. Cause: the body was deep
+/// in the pusher, and in the wall less deep than what is watched, so it was not taken for pinched.
+#[test]
+fn frames_pushed_against_a_wall_are_left_to_the_solver() {
+    let [ours, own] =
+        [true, false].map(|medial| [true, false].map(|is_frame| bars(medial, is_frame)));
+    let mut most = 0;
+    for seed in 0..16 {
+        let (queries, speed) = against_a_wall(&ours, true, seed);
+        let (_, rapiers) = against_a_wall(&own, false, seed);
+        println!("seed {seed}: {queries} queries, {speed} m/s, rapier's {rapiers} m/s");
+        assert!(speed < rapiers + 0.5, "seed {seed}: {speed}, {rapiers} m/s");
+        most = most.max(queries);
+    }
+    assert!(most < 300, "{most} queries in a second");
 }

@@ -2,7 +2,7 @@
 //! inequality is in `docs/effects.md`.
 
 use crate::math::Real;
-use crate::math::fast_hash::FastMap;
+use crate::math::fast_hash::{FastMap, FastSet};
 use crate::rapier::host::contact_depth::deepest;
 use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::view::eligible_pairs::in_order;
@@ -23,16 +23,21 @@ pub struct Deep {
     pub way: Real,
 }
 
-/// Pairs whose contacts in rapier are that deep.
-pub fn deep(
-    view: &StepView,
-    narrow_phase: &NarrowPhase,
-    policy: &CcdPolicy,
-) -> FastMap<[usize; 2], Deep> {
+/// Pairs whose contacts in rapier are deep.
+#[derive(Default)]
+pub struct DeepPairs {
+    /// Those that are watched.
+    pub watched: FastMap<[usize; 2], Deep>,
+    /// Those with a contact deeper than [`SUNK`], watched or not.
+    pub sunk: FastSet<[usize; 2]>,
+}
+
+/// Finds the deep pairs.
+pub fn deep(view: &StepView, narrow_phase: &NarrowPhase, policy: &CcdPolicy) -> DeepPairs {
     let tuning = &policy.tuning;
     let parts = view.parts.iter().enumerate();
     let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
-    let mut deep: FastMap<_, Deep> = FastMap::default();
+    let mut deep = DeepPairs::default();
     for found in narrow_phase.contact_pairs() {
         let places = [found.collider1, found.collider2].map(|h| parts.get(&h));
         let [Some(&i), Some(&j)] = places else {
@@ -47,9 +52,12 @@ pub fn deep(
             }
             let thickness = view.thickness_at([i, j], [m.subshape1, m.subshape2]);
             let guarded = tuning.guarded() * thickness;
+            let is_sunk = depth > SUNK * policy.unit;
+            if is_sunk {
+                deep.sunk.insert(pair);
+            }
             if depth > guarded {
-                let is_sunk = depth > SUNK * policy.unit;
-                let pair = deep.entry(pair).or_default();
+                let pair = deep.watched.entry(pair).or_default();
                 pair.is_sunk |= is_sunk;
                 if is_sunk && depth > tuning.floor * thickness {
                     pair.way = pair.way.max(depth - guarded);

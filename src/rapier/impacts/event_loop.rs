@@ -17,7 +17,7 @@ use crate::math::Real;
 use crate::math::fast_hash::FastMap;
 use crate::medial::MedialMesh;
 use crate::rapier::host::reported_impulse::Impulse;
-use crate::rapier::impacts::deep_pairs::{Deep, deep};
+use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs, deep};
 use crate::rapier::impacts::event_queue::EventQueue;
 use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
 use crate::rapier::impacts::lazy_toi_query::{LazyToiQuery, Meshes, QueryProgress};
@@ -99,9 +99,10 @@ pub fn resolve(
     let deep = if depth > guarded * thinnest {
         deep(view, narrow_phase, &policy)
     } else {
-        FastMap::default()
+        DeepPairs::default()
     };
     let left = placed.leave(view, &deep);
+    let deep = deep.watched;
     let all = view.bodies.iter().enumerate();
     let taken = all.filter(|(_, body)| body.is_taken_back);
     let taken: Vec<usize> = taken.map(|(b, _)| b).collect();

@@ -15,10 +15,10 @@
 //! left to the solver as soon as the two are below the floor, and so is one between two that do not give way
 //! ([`crate::rapier::impacts::pinched`]).
 
-use crate::math::fast_hash::{FastMap, FastSet};
+use crate::math::fast_hash::FastSet;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
-use crate::rapier::impacts::deep_pairs::Deep;
+use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
 use crate::rapier::impacts::pinched::{one_gives_way, pinched};
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
@@ -177,7 +177,7 @@ impl InitialOverlaps {
     }
 
     /// Pairs with deep contacts in this step that are left to the solver.
-    pub fn leave(&mut self, view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize; 2]> {
+    pub fn leave(&mut self, view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
         let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
         let was_put = |pair: [usize; 2], deep: &Deep| {
             let is_met = self.met.contains(&handles(pair));
@@ -203,7 +203,10 @@ impl InitialOverlaps {
                 || deep.way > 0.0 && one_gives_way(view, *pair)
                 || pinched.contains(pair)
         };
-        let left = deep.iter().filter(|(pair, deep)| is_left(pair, deep));
+        let left = deep
+            .watched
+            .iter()
+            .filter(|(pair, deep)| is_left(pair, deep));
         let pairs: Vec<_> = left.map(|(pair, _)| *pair).collect();
         self.left = pairs.iter().map(|pair| handles(*pair)).collect();
         pairs

@@ -7,7 +7,7 @@
 //! So its deep pairs are left to rapier's solver, which divides the depth between the two sides.
 
 use crate::math::fast_hash::FastMap;
-use crate::rapier::impacts::deep_pairs::Deep;
+use crate::rapier::impacts::deep_pairs::DeepPairs;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 
@@ -32,12 +32,14 @@ pub fn one_gives_way(view: &StepView, pair: [usize; 2]) -> bool {
     bodies.iter().all(free) && yielding(view, bodies).is_some()
 }
 
-/// Deep pairs of bodies that are pressed, by themselves or through each other, against two that do not give way to them.
-/// One of these two moves, and with one of them the bodies are below the floor.
-pub fn pinched(view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize; 2]> {
+/// Watched pairs of bodies that are pressed, by themselves or through each other, against two that do not give way to them.
+/// One of these two moves, and with one of them the bodies are below the floor; in the other they need not be as deep as to be
+/// watched.
+pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
     let free = |b: &usize| view.bodies[*b].kind == Kind::Free;
-    let sunk = deep.iter().filter(|(_, deep)| deep.is_sunk);
-    let sunk = sunk.map(|(pair, deep)| (*pair, pair.map(|k| view.parts[k].body), deep.way > 0.0));
+    let is_below = |pair: &[usize; 2]| deep.watched.get(pair).is_some_and(|deep| deep.way > 0.0);
+    let sunk = deep.sunk.iter();
+    let sunk = sunk.map(|pair| (*pair, pair.map(|k| view.parts[k].body), is_below(pair)));
     let sunk: Vec<_> = sunk
         .filter(|(_, bodies, _)| bodies.iter().any(free))
         .collect();
@@ -59,7 +61,10 @@ pub fn pinched(view: &StepView, deep: &FastMap<[usize; 2], Deep>) -> Vec<[usize;
     }
     held.retain(|_, held| held.is_pinched && held.moves && held.is_below);
     let is_pinched = |bodies: [usize; 2]| bodies.iter().any(|b| held.contains_key(&groups.of(*b)));
-    let pairs = sunk.iter().filter(|(_, bodies, _)| is_pinched(*bodies));
+    let watched = sunk
+        .iter()
+        .filter(|(pair, ..)| deep.watched.contains_key(pair));
+    let pairs = watched.filter(|(_, bodies, _)| is_pinched(*bodies));
     pairs.map(|(pair, ..)| *pair).collect()
 }
 
