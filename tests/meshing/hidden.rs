@@ -127,18 +127,18 @@ impl Turned {
 fn boxes_that_overlap_are_exact() {
     let mut random = Random(2211);
     let mut primitives = Vec::new();
-    for case in 0..16 {
-        let count = 2 + case % 4;
+    for case in 0..17 {
+        let count = if case == 16 { 20 } else { 2 + case % 4 };
         let far = |k: usize| if k == 0 { 0.0 } else { 0.5 };
         let boxes: Vec<Turned> = (0..count)
             .map(|k| Turned::random(&mut random, case % 3 == 0, far(k)))
             .collect();
         let mesh = boxes.iter().map(Turned::mesh).reduce(Mesh::and);
         let mesh = mesh.expect("boxes");
-        let (medial, report) = built(&mesh, 400, Quality::Fast);
+        let (medial, report) = built(&mesh, 1_000, Quality::Fast);
         assert_eq!(report.variant, Variant::Exact, "case {case}: {report:?}");
         assert!(error(&report) <= 1e-5, "case {case}: {report:?}");
-        primitives.push(report.primitives);
+        primitives.push(report.primitives / count);
         let mut judged = [0; 2];
         for _ in 0..3_000 {
             let p = random.vector(1.4);
@@ -153,8 +153,8 @@ fn boxes_that_overlap_are_exact() {
         }
         assert!(judged.iter().all(|n| *n > 20), "case {case}: {judged:?}");
     }
-    println!("primitives {primitives:?}");
-    assert!(primitives.iter().all(|n| *n <= 5 * 22), "{primitives:?}");
+    println!("primitives a box {primitives:?}");
+    assert!(primitives.iter().all(|n| *n <= 22), "{primitives:?}");
 }
 
 /// The same shape as one surface and as parts that overlap: a capsule of two that share half their length.
@@ -241,7 +241,7 @@ fn a_mesh_in_hundreds_of_pieces_is_fitted() {
 #[test]
 fn a_surface_of_noise_is_built() {
     let mut random = Random(7);
-    let mut noise = torus(0.5, 0.2, 14, 6);
+    let mut noise = torus(0.5, 0.2, 18, 8);
     noise.vertices.fill_with(|| random.vector(0.5));
     let (medial, report) = built(&noise, 100, Quality::Fast);
     assert!(report.findings.overlapping && report.findings.boundary_coarse);

@@ -13,22 +13,18 @@ use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::recipe::polyhedron::{MOST, SAME_AREA, axis, faces_of};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::checked_surface::{Surface, cross};
-use crate::meshing::surface::flat_faces::{FlatFaces, convex_faces, flat_faces, rounding};
+use crate::meshing::surface::flat_faces::{
+    FLATNESS, FlatFaces, ON, convex_faces, flat_faces, rounding,
+};
 use crate::meshing::watch::Watch;
-
-/// How flat the faces of a body are: at most so many times its rounding ([`rounding`]), tried in order. With the
-/// second, vertices may be moved by a millionth of the size.
-const FLATNESS: [f64; 2] = [1.0, 4.0];
-
-/// Points this many times as far from a plane as a corner of a flat face may be are on it.
-const ON: f64 = 2.0;
+use std::borrow::Cow;
 
 /// Pieces are used if the medial mesh is off by less than so many times that. More, and bodies whose faces are not
 /// quite flat count as exact.
 const CLOSE: f64 = 20.0;
 
-/// A convex piece as a surface, and its faces.
-type Part = (Surface, FlatFaces);
+/// A surface that holds a convex piece, and the piece's faces.
+type Part<'a> = (Cow<'a, Surface>, FlatFaces);
 
 impl Source {
     /// The medial axes of convex pieces of the body, if these are within the limit on the count: of the convex parts that
@@ -60,7 +56,7 @@ impl Source {
         &self,
         flat: f64,
         watch: &mut Watch,
-    ) -> Result<Option<(Vec<Part>, f64)>, BuildError> {
+    ) -> Result<Option<(Vec<Part<'_>>, f64)>, BuildError> {
         if self.surface.simple {
             return Ok(None);
         }
@@ -68,17 +64,18 @@ impl Source {
         for &patch in &self.bounds().0.patch_of {
             is_seen[patch as usize] = true;
         }
+        let mut bodies = vec![Vec::new(); is_seen.len()];
+        for (t, &patch) in self.surface.patch_of.iter().enumerate() {
+            bodies[patch as usize].push(t);
+        }
+        let seen = bodies.into_iter().zip(is_seen).filter(|(_, seen)| *seen);
+        let most = faces_of(self.limits.primitives.unwrap_or(MOST));
         let mut parts = Vec::new();
-        for patch in (0..is_seen.len()).filter(|&patch| is_seen[patch]) {
-            let part = self
-                .surface
-                .part(|t| self.surface.patch_of[t] == patch as u32);
-            let body = (0..part.triangles.len()).collect();
-            let most = faces_of(self.limits.primitives.unwrap_or(MOST));
-            let Some(faces) = convex_faces(&part, body, flat, most, watch)? else {
+        for (body, _) in seen {
+            let Some(faces) = convex_faces(&self.surface, body, flat, most, watch)? else {
                 return Ok(None);
             };
-            parts.push((part, faces));
+            parts.push((Cow::Borrowed(&self.surface), faces));
         }
         Ok(Some((parts, flat)))
     }
@@ -89,7 +86,7 @@ impl Source {
         &self,
         flat: f64,
         watch: &mut Watch,
-    ) -> Result<Option<(Vec<Part>, f64)>, BuildError> {
+    ) -> Result<Option<(Vec<Part<'_>>, f64)>, BuildError> {
         let on = ON * flat;
         let (surface, _) = self.bounds();
         let body = (0..surface.triangles.len()).collect();
@@ -126,14 +123,16 @@ impl Source {
         let mut growth: f64 = 0.0;
         for (surface, faces) in parts {
             let left = most.saturating_sub(draft.faces.len());
-            let corners = |t: usize| surface.corners(t);
-            let tree = TriangleTree::new(surface.triangles.len(), corners, watch)?;
+            let corners = |i: usize| surface.corners(faces.face_of[i].0);
+            let tree = TriangleTree::new(faces.face_of.len(), corners, watch)?;
             let limits = (angle.cos(), close);
             let Some(axis) = axis(surface, &tree, faces, limits, left, watch)? else {
                 return Ok(None);
             };
             // Where not every edge is of two triangles, some of a face may be missing.
-            if (axis.area - surface.area).abs() > SAME_AREA * surface.area {
+            let areas = (0..faces.face_of.len()).map(|i| 0.5 * cross(corners(i)).length());
+            let area: f64 = areas.sum();
+            if (axis.area - area).abs() > SAME_AREA * area {
                 return Ok(None);
             }
             growth = growth.max(axis.growth);
@@ -163,7 +162,7 @@ impl Source {
     }
 
     /// The surface of a piece, with the source's own vertices where its corners are at these.
-    fn surface_of(&self, piece: &Piece, on: f64) -> Part {
+    fn surface_of(&self, piece: &Piece, on: f64) -> Part<'_> {
         let mut vertices: Vec<Point> = Vec::new();
         let mut index = |p: Point| {
             let near = |q: &Point| (p - *q).length() <= 2.0 * on;
@@ -215,7 +214,7 @@ impl Source {
             simple: true,
             findings: Default::default(),
         };
-        (surface, FlatFaces { planes, face_of })
+        (Cow::Owned(surface), FlatFaces { planes, face_of })
     }
 }
 

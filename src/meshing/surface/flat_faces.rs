@@ -10,6 +10,13 @@ use crate::meshing::watch::Watch;
 /// sizes from the origin.
 pub const FLAT: f64 = 5e-7;
 
+/// How flat the faces of a body are: at most so many times its [`rounding`], tried in order. With the second, vertices may be
+/// moved by a millionth of the size.
+pub const FLATNESS: [f64; 2] = [1.0, 4.0];
+
+/// Points this many times as far from a plane as a corner of a flat face may be are on it.
+pub const ON: f64 = 2.0;
+
 /// How far rounding to `f32` moves the source's vertices (longest side 1), some sizes from its origin or more.
 pub fn rounding(surface: &Surface) -> f64 {
     let far = surface.frame.center.length() / surface.frame.scale;
