@@ -66,12 +66,14 @@ impl StepArgs<'_> {
 struct Loans {
     speculators: Speculators,
     substeps: Substeps,
+    timers: SleepTimers,
 }
 
 impl Loans {
     fn give_back(self, world: &mut World) {
         self.speculators.restore(world.bodies);
         self.substeps.restore(world.bodies);
+        self.timers.restore(world.bodies);
     }
 }
 
@@ -255,27 +257,23 @@ impl State {
             let joints = (&*world.impulse_joints, &*world.multibody_joints);
             let substeps = Substeps::set(&plan.view, joints, parameters, &plan.wild, world.bodies);
             report.speculative = speculators.count();
+            let contacts = (&*world.colliders, &*world.narrow_phase);
+            let moved = self.moved.as_deref();
+            let timers = SleepTimers::shorten(moved, world.bodies, contacts, unit);
             Loans {
                 speculators,
                 substeps,
+                timers,
             }
         });
         plan.wild.bring_to_rest(world.multibody_joints);
         report.batch_seconds += clock.elapsed().as_secs_f64();
 
-        let contacts = (&*world.colliders, &*world.narrow_phase);
-        let timers = SleepTimers::shorten(
-            self.moved.as_deref(),
-            world.bodies,
-            contacts,
-            parameters.length_unit,
-        );
         self.exchange.begin_step(Arc::clone(&plan.narrow_phase));
         let clock = Instant::now();
         world.step(parameters, args.filters, events);
         report.step_seconds = clock.elapsed().as_secs_f64();
         let tally = self.exchange.end_step();
-        timers.restore(world.bodies);
         if let Some(loans) = loans {
             loans.give_back(world);
         }

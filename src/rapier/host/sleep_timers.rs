@@ -9,6 +9,7 @@
 use crate::math::Real;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{Collider, ColliderSet, NarrowPhase};
+use std::borrow::Cow;
 
 /// Bodies whose time rapier restarts in this step, although no user moved them.
 pub struct SleepTimers(Vec<Timer>);
@@ -38,19 +39,19 @@ impl SleepTimers {
             let was_slow = may_sleep && activation.time_since_can_sleep > 0.0;
             body.is_dynamic() && was_slow && has_no_speed(body, length_unit)
         };
-        let moved: Vec<RigidBodyHandle> = match moved {
-            Some(moved) => moved.to_vec(),
+        let moved = match moved {
+            Some(moved) => Cow::Borrowed(moved),
             None => {
                 let is_moved = |body: &RigidBody| {
                     let mut own = body.colliders().iter();
                     own.any(|c| colliders.get(*c).is_some_and(only_moved))
                 };
                 let slow = bodies.iter().filter(|(_, b)| is_slow(b) && is_moved(b));
-                slow.map(|(handle, _)| handle).collect()
+                Cow::Owned(slow.map(|(handle, _)| handle).collect())
             }
         };
         let mut restarted: Vec<RigidBodyHandle> = Vec::new();
-        for body in moved {
+        for &body in moved.iter() {
             restarted.push(body);
             let own = bodies.get(body).map_or(&[][..], |b| b.colliders());
             let pairs = own.iter().flat_map(|c| narrow_phase.contact_pairs_with(*c));
