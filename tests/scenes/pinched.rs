@@ -103,22 +103,24 @@ fn press(medial: bool, seed: u64, gap: Real) -> Pressed {
 fn pressed_bodies_come_out_as_rapiers() {
     for gap in [0.15, 0.08, 0.02] {
         let seeds = 0..6;
-        // Some fall off the ground, rapier's too.
-        let median = |all: &[Pressed]| {
-            let mut thrown: Vec<Real> = all.iter().map(|p| p.thrown).collect();
-            thrown.sort_by(Real::total_cmp);
-            0.5 * (thrown[2] + thrown[3])
+        // One that leaves the ground, as some of rapier's do, falls for as long as the scene lasts: it counts as thrown to the
+        // ground's corner.
+        let corner = 5.0 * (2.0 as Real).sqrt();
+        let mean = |all: &[Pressed]| {
+            let thrown = all.iter().map(|p| p.thrown.min(corner));
+            thrown.sum::<Real>() / all.len() as Real
         };
         let [ours, own] = [true, false].map(|medial| {
             let all = seeds.clone().map(|seed| press(medial, seed, gap));
             all.collect::<Vec<_>>()
         });
-        let thrown = [median(&ours), median(&own)];
+        let thrown = [mean(&ours), mean(&own)];
         println!("pressed to {gap} m: thrown by {thrown:?} m, ours and rapier's; {ours:.4?}");
         for (seed, p) in ours.iter().enumerate() {
             assert!(p.depth < 0.002, "to {gap} m, seed {seed}: {p:?}");
             assert!(p.queries < 2000, "to {gap} m, seed {seed}: {p:?}");
         }
+        // The mean of six scatters by a fifth.
         assert!(thrown[0] < 1.5 * thrown[1], "to {gap} m: {thrown:?}");
     }
 }
@@ -242,8 +244,8 @@ fn bars(medial: bool, is_frame: bool) -> SharedShape {
     SharedShape::medial_mesh(mesh.expect("bars").0)
 }
 
-/// A kinematic L pushes a frame against a wall for a while, and stops. Continuous queries in the last second, and the speed of
-/// the frame then.
+/// A kinematic L pushes a frame against a wall for a while, and stops. Continuous queries in the last 40 steps, and the
+/// speed of the frame then.
 fn against_a_wall(shapes: &[SharedShape; 2], medial: bool, seed: u64) -> (u64, Real) {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
@@ -283,7 +285,7 @@ fn against_a_wall(shapes: &[SharedShape; 2], medial: bool, seed: u64) -> (u64, R
     (queries, world.bodies[free].linvel().length())
 }
 
-/// Symptom: 35 to 68 queries in each step for as long as the pusher stood there, at 70 to 130 ms a step. Cause: the body was deep
+/// Symptom: up to 68 queries in each step for as long as the pusher stood there. Cause: the body was deep
 /// in the pusher, and in the wall less deep than what is watched, so it was not taken for pinched.
 #[test]
 fn frames_pushed_against_a_wall_are_left_to_the_solver() {
@@ -297,5 +299,5 @@ fn frames_pushed_against_a_wall_are_left_to_the_solver() {
         assert!(speed < rapiers + 0.5, "seed {seed}: {speed}, {rapiers} m/s");
         most = most.max(queries);
     }
-    assert!(most < 300, "{most} queries in a second");
+    assert!(most < 100, "{most} queries in 40 steps");
 }

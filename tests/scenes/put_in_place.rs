@@ -78,8 +78,8 @@ fn heap(seed: u64) -> Heap {
 }
 
 /// Symptom: a pair that was deep because a body had got another shape was held by the event loop for ever, two or three bodies
-/// in each step. In the same heaps rapier's own are 1.0 to 6.9 mm in each other in the end, 1.9 in the mean of 24 seeds; they are not
-/// stepped here because rapier panics in debug builds when a compound in contact gets another shape (`tests/known_issues.rs`).
+/// in each step. In the same heaps rapier's own are 1.0 to 6.9 mm in each other in the end (24 seeds), 1.55 in the mean of these
+/// six; they are not stepped here because rapier panics in debug builds when a compound in contact gets another shape (`tests/known_issues.rs`).
 #[test]
 fn bodies_that_get_another_shape_in_each_other_come_apart() {
     let mut sum = 0.0;
@@ -90,7 +90,7 @@ fn bodies_that_get_another_shape_in_each_other_come_apart() {
         assert!(frozen < 10, "seed {seed}: held {frozen} times");
         sum += depth;
     }
-    assert!(sum / 6.0 < 0.0019, "{} m deep in the mean", sum / 6.0);
+    assert!(sum / 6.0 < 0.00155, "{} m deep in the mean", sum / 6.0);
 }
 
 /// How deep two rings are in each other, by rapier's own shapes: a joint without contacts held them so, and was removed two

@@ -1,8 +1,8 @@
 //! Bodies that are pressed between two others of which neither gives way: a door and a wall, two fingers, a press and the
 //! ground.
 //!
-//! Where such a body is deep on both sides, below the floor ([`crate::rapier::tuning::Tuning::floor`]) on one, there is no
-//! way out, and each impact on one side only brings the next one on the other, until the body has had all that it may
+//! Where such a body is 2 mm or more in both of them, and below the floor ([`crate::rapier::tuning::Tuning::floor`]) in one,
+//! there is no way out, and each impact on one side only brings the next one on the other, until the body has had all that it may
 //! have in a step.
 //! So its deep pairs are left to rapier's solver, which divides the depth between the two sides.
 
