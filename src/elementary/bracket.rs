@@ -94,6 +94,22 @@ impl<S: Scalar> Bracket<S> {
             iterations: 0,
         }
     }
+
+    /// The bracket of a contact that something else has found at a time, at this distance beyond the target.
+    pub(crate) fn met(limits: &Limits<S>, time: S, distance: S) -> Self {
+        let free = Self::free(limits);
+        Self {
+            lower: time,
+            upper: time,
+            contact: S::Mask::splat(true),
+            separated: S::Mask::splat(false),
+            nearest: Nearest {
+                distance,
+                ..free.nearest
+            },
+            ..free
+        }
+    }
 }
 
 #[inline(always)]

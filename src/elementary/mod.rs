@@ -126,6 +126,13 @@ impl Cores {
         shares.map(|share| Loss { share, most })
     }
 
+    /// How deep two bodies of these thicknesses may be in each other where their cores meet, a length.
+    pub(crate) fn depth(&self, thickness: [Real; 2]) -> f64 {
+        let (shares, most) = self.of_each(self.share, thickness);
+        let share = shares[0] + shares[1];
+        if share > 0.0 { share * most } else { 0.0 }
+    }
+
     /// Radii, lengths, down to which spheres of two primitives of these thicknesses are kept apart where they touch at
     /// the start: of blunt tips; what is slender has no thinner ones. Those of their cores.
     pub(crate) fn kept(&self, thickness: [Real; 2]) -> [f64; 2] {

@@ -1,147 +1,222 @@
 //! The part of the search for a first contact ([`super::search`]) that deals with convex pieces: parts of a body that
 //! are the hull of a few spheres, although many primitives make them up. One direction that keeps two pieces apart
-//! does so for all their primitives, so most pairs of pieces are settled without a look at these. Which pieces there
-//! are: `medial/convex_pieces.rs`; their contacts at fixed poses: [`super::face_contacts`].
+//! does so for all their primitives, and where none does, the pieces meet: only a few of their primitives are ever looked
+//! at. Which pieces there are: `medial/convex_pieces.rs`; their contacts at fixed poses: [`super::face_contacts`].
 //!
-//! **Pieces that touch at the start** and may sink in ([`InitialContact::Deepen`]) are settled too, where directions prove
-//! that in the rest of the step they get deeper by no more than that. Where no directions do, or the pieces are so deep in
-//! each other or so thin that the middle of one might get into the other, their primitives decide, each pair with a
-//! distance of its own at the start.
+//! Conservative advancement (Mirtich 1996) along the direction of the largest gap of the hulls at one time after the
+//! other. Along chords and along the paths themselves a direction keeps them apart for a while (module `apart`).
+//!
+//! **Pieces that touch at the start** and may sink in, or must come nearer to count
+//! ([`crate::elementary::InitialContact`]), have a gap of their own at which they meet. Where they are so deep in each
+//! other, or so thin, that the middle of one might get into the other, the gap of their hulls says little, and their
+//! primitives decide.
 
 use super::apart::{end_along, ends_hold};
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
+use super::path_ends::{held_on_paths, path_ends};
+use super::piece_contact::{Look, Pieces, PiecesMet, meeting, nearest_primitive, placed};
 use super::primitive_tree::{PrimitiveTree, thickness};
 use super::search::Search;
-use super::swept::Side;
 use crate::elementary::InitialContact;
-use crate::math::lane::Vec3;
-use crate::math::motion::RigidMotion;
+use crate::elementary::bracket::Bracket;
+use crate::elementary::penetration::gap_along;
+use crate::elementary::test_list::{OwnedFeatures, for_each_test};
 use crate::math::tolerance::ROUNDING_ULPS;
 
 /// How deep two pieces may get in units of their thickness, the largest radius in them or less, to be settled as a
 /// whole. At 1 the middle of one may touch the other.
-const DEEPEST: f64 = 0.5;
+const DEEPEST: f64 = 0.75;
+
+/// How much less than the gap at which pieces meet a step of the search aims at, in units of the tolerance. At 1 it would
+/// be the target distance itself, and what comes to it no nearer would not be found free.
+const PAST: f64 = 0.99;
 
 /// Work of one look at two pieces, in proofs by directions of two primitives.
-const LOOK: u64 = 4;
-
-/// Directions tried one after the other, each from where the last one failed, on pieces that touch at the start. With 4 a
-/// row of dominoes takes eight times as long: faces turn away under a direction while one slides down on the next.
-const TURNS: usize = 16;
+const LOOK: u64 = 16;
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
-    /// Time until which two nodes are proven free from `time` on, because they hold convex pieces; `None` if as long as
-    /// the search asks, `time` if nothing is proven.
-    pub(super) fn pieces_free_until(&mut self, [i, j]: [u32; 2], time: f64) -> Option<f64> {
-        let [p, q] = [self.sides.0.node(i).node, self.sides.1.node(j).node];
-        if !(self.sides.0.body.is_convex(p) && self.sides.1.body.is_convex(q)) {
-            return Some(time);
+    /// Looks at two nodes, proven free until a time, as convex pieces.
+    pub(super) fn look_at_pieces(&mut self, [i, j]: [u32; 2], time: f64) -> Look {
+        let nodes = [self.sides.0.node(i).node, self.sides.1.node(j).node];
+        if !(self.sides.0.body.is_convex(nodes[0]) && self.sides.1.body.is_convex(nodes[1])) {
+            return Look::Split;
         }
+        let pieces = match self.convex.get(&nodes) {
+            Some(pieces) => *pieces,
+            None => {
+                let pieces = self.begin_pieces(nodes, time);
+                self.convex.insert(nodes, pieces);
+                pieces
+            }
+        };
+        let Some(mut pieces) = pieces else {
+            return Look::Split;
+        };
         self.sides.0.sweep_piece(i);
         self.sides.1.sweep_piece(j);
-        let touching = self.reach + self.earliest.limits.tolerance;
-        let InitialContact::Deepen { by } = self.initial_contact else {
-            return self.apart_until([i, j], time, touching);
+        let look = self.advance_pieces([i, j], nodes, &mut pieces, time);
+        self.convex.insert(nodes, Some(pieces));
+        look
+    }
+
+    /// The gap at which two pieces meet; `None` if their primitives decide. Notes that they touch at the start, where they do
+    /// and may.
+    fn begin_pieces(&mut self, nodes: [u32; 2], time: f64) -> Option<Pieces> {
+        let (a, b) = (self.sides.0.body, self.sides.1.body);
+        let thicknesses = [thickness(a, nodes[0]), thickness(b, nodes[1])];
+        let thickness = self.at_most(thicknesses[0].min(thicknesses[1]));
+        let depth = self.cores.map_or(0.0, |cores| cores.depth(thicknesses));
+        let touching = self.reach - depth + self.earliest.limits.tolerance;
+        let apart = |direction| Pieces {
+            contact: touching,
+            touched: false,
+            direction,
         };
-        if self.is_known_apart(time) {
-            return self.apart_until([i, j], time, touching);
-        }
         self.proofs += LOOK;
-        let HullGap { gap, direction, .. } =
-            hull_gap(self.placed([p, q], 0.0).each_ref(), touching);
-        if gap > touching {
-            return self.apart_until([i, j], time, touching);
-        }
-        let thickness = self.pieces_thickness([p, q]);
-        let contact = gap - f64::from(by);
-        let is_core = self.cores.is_some_and(|cores| cores.share > 0.0);
-        if is_core || self.target - contact > DEEPEST * thickness {
-            return Some(time);
-        }
-        let (mut from, mut n) = (time, direction);
-        for turn in 0..TURNS {
-            if turn > 0 || time > 0.0 {
-                // Any direction with room for half of what they may sink in will do for a while.
-                let enough = contact + 0.5 * f64::from(by);
-                n = hull_gap(self.placed([p, q], from).each_ref(), enough).direction;
-            }
-            self.proofs += LOOK;
-            let Some(free) = self.pieces_held_until([i, j], n, contact, from) else {
-                self.touching
-                    .push(([p, q], (contact - touching) / thickness));
-                return None;
+        let is_known_apart = self.is_known_apart(time);
+        let at = if is_known_apart { time } else { 0.0 };
+        let HullGap { gap, direction, .. } = hull_gap(self.placed(nodes, at).each_ref(), touching);
+        let pieces = if is_known_apart || gap > touching {
+            apart(direction)
+        } else {
+            let by = match self.initial_contact {
+                InitialContact::Stop => return None,
+                InitialContact::Deepen { by } | InitialContact::Approach { by } => f64::from(by),
             };
-            if !self.soon(free, from) {
-                from = free;
-                continue;
+            Pieces {
+                contact: gap - by,
+                touched: true,
+                direction,
             }
-            break;
+        };
+        if -pieces.contact > DEEPEST * thickness {
+            return None;
         }
-        Some(time)
+        if pieces.touched {
+            let deepest = (pieces.contact - touching) / thickness;
+            self.touching.push((nodes, deepest));
+        }
+        Some(pieces)
     }
 
-    /// Time until which directions keep two pieces farther apart than `contact` from `time` on.
-    fn apart_until(&mut self, [i, j]: [u32; 2], time: f64, contact: f64) -> Option<f64> {
-        let [p, q] = [self.sides.0.node(i).node, self.sides.1.node(j).node];
-        let mut free = time;
+    /// Goes on from a time at which two pieces are not known to meet.
+    fn advance_pieces(
+        &mut self,
+        swept: [u32; 2],
+        nodes: [u32; 2],
+        pieces: &mut Pieces,
+        time: f64,
+    ) -> Look {
+        let mut free = self.pieces_held_until(swept, nodes, pieces, time);
         // First any direction that keeps them apart now, then that of the largest gap.
-        for enough in [contact, f64::MAX] {
+        for enough in [pieces.contact, f64::MAX] {
+            match free {
+                None => return Look::Free,
+                Some(free) if !self.soon(free, time) => return Look::FreeUntil(free),
+                Some(_) => {}
+            }
             self.proofs += LOOK;
-            let placed = self.placed([p, q], time);
-            let HullGap { gap, direction, .. } = hull_gap(placed.each_ref(), enough);
-            if gap <= contact {
-                break;
+            let placed = self.placed(nodes, time);
+            let hulls = placed.each_ref();
+            let mut found = hull_gap(hulls, enough);
+            let [a, b] = hulls.map(|hull| &hull.spheres[..]);
+            let before = gap_along(a, b, pieces.direction);
+            if before > found.gap {
+                (found.gap, found.direction) = (before, pieces.direction);
             }
-            free = free.max(self.pieces_held_until([i, j], direction, contact, time)?);
-            if !self.soon(free, time) {
-                break;
+            pieces.direction = found.direction;
+            if found.gap <= pieces.contact {
+                if enough < f64::MAX {
+                    continue;
+                }
+                let tolerance = self.earliest.limits.tolerance;
+                let met = meeting(hulls, found, tolerance);
+                return met.map_or(Look::Split, Look::Met);
             }
+            let held = self.pieces_held_until(swept, nodes, pieces, time);
+            free = free.zip(held).map(|(a, b)| a.max(b));
         }
-        Some(free)
+        match free {
+            None => Look::Free,
+            Some(free) if free > time => Look::FreeUntil(free),
+            // Rounding.
+            Some(_) => Look::Split,
+        }
     }
 
-    /// Time until which one direction keeps two pieces farther apart than `contact`; `None` if until the end.
+    /// Time until which the direction tried last keeps two pieces from meeting; `None` if until the end.
     fn pieces_held_until(
         &self,
         [i, j]: [u32; 2],
-        n: Vec3<f64>,
-        contact: f64,
+        nodes: [u32; 2],
+        pieces: &Pieces,
         time: f64,
     ) -> Option<f64> {
         let ((a, size_a), (b, size_b)) = (self.sides.0.piece(i), self.sides.1.piece(j));
-        let length = n.length();
-        let contact = contact + ROUNDING_ULPS * f64::EPSILON * (size_a + size_b);
-        let far: Vec<_> = a.iter().map(|s| end_along(s, n, length)).collect();
-        let near: Vec<_> = b.iter().map(|s| end_along(s, n, -length)).collect();
-        let least = contact * length;
-        self.in_piece(time, |span| ends_hold([&far, &near], span, least, least))
+        let n = pieces.direction;
+        // Less than the gap at which they meet, so that a step comes to where they do.
+        let least = pieces.contact - PAST * self.earliest.limits.tolerance
+            + ROUNDING_ULPS * f64::EPSILON * (size_a + size_b);
+        let far: Vec<_> = a.iter().map(|s| end_along(s, n, 1.0)).collect();
+        let near: Vec<_> = b.iter().map(|s| end_along(s, n, -1.0)).collect();
+        let on_chords = self.in_piece(time, |span| ends_hold([&far, &near], span, least, least))?;
+        if !self.soon(on_chords, time) {
+            return Some(on_chords);
+        }
+        let [first, second] = &self.motions;
+        let far = path_ends(self.sides.0.body, first, nodes[0], (n, 1.0), time);
+        let near = path_ends(self.sides.1.body, second, nodes[1], (n, -1.0), time);
+        let end = self.earliest.upper.min(self.times[1]);
+        let on_paths = held_on_paths([&far, &near], least, end - time)?;
+        Some(on_chords.max((time + on_paths).next_down().max(time)))
     }
 
     /// Two nodes' pieces at a time.
     fn placed(&self, [p, q]: [u32; 2], time: f64) -> [PlacedHull<'_>; 2] {
         let [first, second] = &self.motions;
         [
-            placed(&self.sides.0, first, p, time),
-            placed(&self.sides.1, second, q, time),
+            placed(self.sides.0.body, first, p, time),
+            placed(self.sides.1.body, second, q, time),
         ]
     }
 
-    /// Thickness of the thinner of two pieces, or the least number where it has none.
-    fn pieces_thickness(&self, [p, q]: [u32; 2]) -> f64 {
-        let thinner = thickness(self.sides.0.body, p).min(thickness(self.sides.1.body, q));
-        self.at_most(thinner)
+    /// Notes that two pieces meet; returns whether an earlier contact is still possible.
+    pub(super) fn take_pieces(&mut self, nodes: [u32; 2], met: PiecesMet, time: f64) -> bool {
+        let half = met.normal * (0.5 * met.gap);
+        let [p, q] = met.corners.map_or(met.nearest, |c| [c - half, c + half]);
+        let [first, second] = &self.motions;
+        let primitives = [
+            nearest_primitive(self.sides.0.body, first, nodes[0], p, time),
+            nearest_primitive(self.sides.1.body, second, nodes[1], q, time),
+        ];
+        let touched = self
+            .convex
+            .get(&nodes)
+            .is_some_and(|pieces| pieces.is_some_and(|p| p.touched));
+        let approaches = matches!(self.initial_contact, InitialContact::Approach { .. });
+        let time = if touched && approaches { 0.0 } else { time };
+        let shares = self
+            .spheres(primitives)
+            .map(|(_, share)| OwnedFeatures::whole(share.spheres));
+        let mut some_test = None;
+        for_each_test(shares[0], shares[1], |test| {
+            some_test = Some(test);
+            false
+        });
+        let Some(test) = some_test else {
+            return true;
+        };
+        let bracket = Bracket::met(&self.earliest.limits, time, met.gap - self.target);
+        let goes_on = self
+            .earliest
+            .take(test, bracket, self.earliest.limits.start, primitives);
+        let is_found = |(_, found, by): (_, Bracket<f64>, [u32; 2])| {
+            by == primitives && found.nearest.distance == bracket.nearest.distance
+        };
+        if self.earliest.found.is_some_and(is_found) {
+            self.found = None;
+            self.met = Some(met);
+        }
+        goes_on
     }
-}
-
-/// What a node holds at a time, as a hull.
-fn placed<'a, V: PrimitiveTree>(
-    side: &Side<'a, V>,
-    motion: &RigidMotion<f64>,
-    node: u32,
-    time: f64,
-) -> PlacedHull<'a> {
-    let turned = motion.sin_cos(time);
-    let point = |p| motion.point(Vec3::from_vector(p)).at(time, turned).position;
-    let direction = |n| motion.direction(Vec3::from_vector(n), turned);
-    PlacedHull::of_node(side.body, node, point, direction)
 }

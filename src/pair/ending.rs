@@ -39,6 +39,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             None => [0, 0],
         };
         self.found = None;
+        self.met = None;
         let limits = Limits {
             start: time,
             ..self.earliest.limits
@@ -160,6 +161,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             return;
         };
         if matches!(self.initial_contact, InitialContact::Approach { .. })
+            && self.met.is_none()
             && self.earliest.status == ToiStatus::Contact
             && self.distance_at_start(pair) <= self.target + self.earliest.limits.tolerance
         {

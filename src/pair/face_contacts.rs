@@ -37,14 +37,23 @@ pub(super) fn face_contacts(
     place: &Placement,
     margin: f64,
 ) -> Vec<SpherePair> {
-    let HullGap {
-        gap,
-        direction,
-        nearest,
-    } = hull_gap(hulls, f64::MAX);
-    if gap > margin {
+    let hull = hull_gap(hulls, f64::MAX);
+    if hull.gap > margin {
         return Vec::new();
     }
+    let mut found = face_corners(hulls, hull.direction, primitives, place, margin);
+    add_nearest(hulls, (hull, primitives), place, &mut found);
+    found
+}
+
+/// The contacts of faces alone, where one lies about flat on the other; `direction` is from the first to the second.
+pub(super) fn face_corners(
+    hulls: [&PlacedHull; 2],
+    direction: Vec3<f64>,
+    primitives: [u32; 2],
+    place: &Placement,
+    margin: f64,
+) -> Vec<SpherePair> {
     let pair =
         |feature: u32, distance: f64, normal: Vec3<f64>, points: [Vec3<f64>; 2]| SpherePair {
             primitives,
@@ -57,32 +66,26 @@ pub(super) fn face_contacts(
     let best = [(hulls[0], direction), (hulls[1], -direction)].map(|(hull, n)| flattest(hull, n));
     let cosines = best.map(|face| face.map_or(-1.0, |(_, cosine)| cosine));
     let from = usize::from(cosines[1] > cosines[0] + BETTER);
-    if let Some((face, _)) = best[from].filter(|_| cosines[from] >= ONE_DIRECTION) {
-        let (reference, other) = (hulls[from], hulls[1 - from]);
-        let normal = reference.normals[face];
-        let outline = polygon(reference, face, normal);
-        let Some((base, _)) = outline.first() else {
-            return found;
-        };
-        let facing = flattest(other, -normal).map(|(face, _)| polygon(other, face, -normal));
-        for (corner, number) in clipped(facing.unwrap_or_default(), &outline, normal) {
-            let height = normal.dot(corner - *base);
-            if height > margin {
-                continue;
-            }
-            let foot = corner - normal * height;
-            found.push(match from {
-                0 => pair(number, height, normal, [foot, corner]),
-                _ => pair(SECOND | number, height, -normal, [corner, foot]),
-            });
-        }
-    }
-    let hull = HullGap {
-        gap,
-        direction,
-        nearest,
+    let Some((face, _)) = best[from].filter(|_| cosines[from] >= ONE_DIRECTION) else {
+        return found;
     };
-    add_nearest(hulls, (hull, primitives), place, &mut found);
+    let (reference, other) = (hulls[from], hulls[1 - from]);
+    let normal = reference.normals[face];
+    let outline = polygon(reference, face, normal);
+    let facing = flattest(other, -normal).map(|(face, _)| polygon(other, face, -normal));
+    for (corner, number) in clipped(facing.unwrap_or_default(), &outline, normal) {
+        let height = outline
+            .first()
+            .map_or(f64::MAX, |(base, _)| normal.dot(corner - *base));
+        if height > margin {
+            continue;
+        }
+        let foot = corner - normal * height;
+        found.push(match from {
+            0 => pair(number, height, normal, [foot, corner]),
+            _ => pair(SECOND | number, height, -normal, [corner, foot]),
+        });
+    }
     found
 }
 

@@ -5,6 +5,7 @@
 use super::met::Met;
 use super::outline::ActivePrimitives;
 use super::pair_list::PairList;
+use super::piece_contact::PiecesMet;
 use super::primitive_tree::PrimitiveTree;
 use super::search::Search;
 use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
@@ -196,6 +197,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
             sides,
             earliest,
             found,
+            met,
             ..
         }) = &self.search
         else {
@@ -214,7 +216,23 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
             let at = self.motions[side].position_at_time(t * self.seconds);
             MedialSphere::new(at * s.center, s.radius)
         };
-        to_toi(earliest, &self.options, pose)
+        let toi = to_toi(earliest, &self.options, pose);
+        met.as_ref().map_or(toi, |met| self.of_pieces(toi, met))
+    }
+
+    /// The answer with what is known of two convex pieces that met.
+    fn of_pieces(&self, toi: Toi, met: &PiecesMet) -> Toi {
+        let [first, second] = &self.motions;
+        // The motions' frame begins at the first body's origin and goes along with the second.
+        let origin = first.start.translation + second.linvel * (toi.lower * self.seconds);
+        let nearest = (toi.points[0] + toi.points[1]) * 0.5;
+        let middle = met.corners.map_or(nearest, |c| origin + c.to_vector());
+        let half = (met.normal * (0.5 * met.gap)).to_vector();
+        Toi {
+            normal: met.normal.to_vector(),
+            points: [middle - half, middle + half],
+            ..toi
+        }
     }
 
     /// The spheres that met, once the query is settled and has found a contact.

@@ -373,6 +373,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             };
             if self.earliest.found.is_some_and(is_found) {
                 self.found = Some(self.tested[open.of as usize]);
+                self.met = None;
             }
             return goes_on;
         }

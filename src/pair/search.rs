@@ -20,12 +20,14 @@
 //! On a device `walk` in `shaders/cull.wgsl` splits nodes in the same way, but looks at all that meet.
 
 use super::outline::ActivePrimitives;
+use super::piece_contact::{Look, Pieces, PiecesMet};
 use super::primitive_tree::PrimitiveTree;
 use super::queue::{Candidate, Entry, Open, Tested};
 use super::swept::{Side, Touch, split};
 use crate::elementary::bracket::Limits;
 use crate::elementary::first_contact::{Earliest, options_limits};
 use crate::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
+use crate::math::fast_hash::FastMap;
 use crate::math::motion::RigidMotion;
 use crate::medial::tree::NodeKind;
 use std::collections::BinaryHeap;
@@ -80,6 +82,10 @@ pub(super) struct Search<'a, A, B> {
     /// Pairs of the bodies' nodes, primitives or convex pieces, that touch at the start and may sink in, and how deep they
     /// may get, in the units of [`super::first_contact::Query::deepest`].
     pub(super) touching: Vec<([u32; 2], f64)>,
+    /// Convex pieces looked at, by the bodies' nodes; `None` where their primitives decide.
+    pub(super) convex: FastMap<[u32; 2], Option<Pieces>>,
+    /// The convex pieces found, where the contact found is of such.
+    pub(super) met: Option<PiecesMet>,
 }
 
 /// How far a search came.
@@ -128,6 +134,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
             earliest: Earliest::new(options_limits(options)),
             found: None,
             touching: Vec::new(),
+            convex: FastMap::default(),
+            met: None,
         }
     }
 
@@ -302,11 +310,11 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
         if primitives.is_some() {
             return self.list_tests([i, j], free);
         }
-        let Some(free) = self.pieces_free_until([i, j], free) else {
-            return true;
-        };
-        if !self.soon(free, time) {
-            return self.wait([i, j], free);
+        match self.look_at_pieces([i, j], free) {
+            Look::Free => return true,
+            Look::FreeUntil(free) => return self.wait([i, j], free),
+            Look::Met(met) => return self.take_pieces([a.node, b.node], met, free),
+            Look::Split => {}
         }
         let [parts_of_a, parts_of_b] = split(&mut self.sides, [i, j]);
         for a in parts_of_a.clone() {

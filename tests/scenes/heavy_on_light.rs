@@ -95,8 +95,8 @@ fn a_heavy_brick_and_a_light_one_under_it_fall_asleep() {
         let (sleep, y) = brick_on_light_brick(&medial, skew);
         println!("{skew}: rapier's at {rapiers_y}, ours at {y}, asleep: {sleep}");
         assert!(rapiers_sleep && sleep, "{skew}: {rapiers_sleep} {sleep}");
-        // Rapier's sink in by 5 cm.
-        assert!(y > rapiers_y, "{skew}: {y}, rapier's {rapiers_y}");
+        // Rapier's sink in by 5 cm, as deep as ours may.
+        assert!(y > rapiers_y - 1.0e-3, "{skew}: {y}, rapier's {rapiers_y}");
     }
 }
 

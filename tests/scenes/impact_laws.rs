@@ -184,10 +184,12 @@ fn flat(
     [body.linvel(), body.angvel()]
 }
 
-/// A plate falls flat on a plane. Known: it leaves at `e` times its speed and does not turn. Ours turns
-/// (`known_issues::a_plate_that_falls_flat_turns`), but gains no energy, and loses none where it is elastic.
+/// A plate falls flat on a plane. Known: it leaves at `e` times its speed and does not turn. So does ours.
+///
+/// Symptom: it turned by 2.5 rad/s, or kept a quarter of its speed for half of it. Cause: its flat face met the ground at one of
+/// its corners, whichever came first; now at the middle of where the two faces lie on each other.
 #[test]
-fn an_elastic_plate_that_falls_flat_keeps_its_energy() {
+fn a_plate_that_falls_flat_bounces_flat() {
     let half = Vector::new(0.5, 0.05, 0.3);
     let plate = MedialMesh::cuboid(half).expect("a plate");
     let own = ColliderBuilder::cuboid(half.x, half.y, half.z);
@@ -204,14 +206,17 @@ fn an_elastic_plate_that_falls_flat_keeps_its_energy() {
             let off = ends.map(|[v, _]| (v.y - 2.0 * restitution).abs());
             let turn = ends.map(|[_, spin]| spin.length());
             println!(
-                "plate, e = {restitution}, {law:?}: off {off:.3?} m/s, turns {turn:.3?} rad/s"
+                "plate, e = {restitution}, {law:?}: off {off:.5?} m/s, turns {turn:.5?} rad/s"
             );
+            let is_flat = off.iter().chain(&turn).all(|off| *off < 1.0e-3);
+            assert!(law != Law::Ours || is_flat, "off {off:?}, turns {turn:?}");
         }
     }
 }
 
 /// A rod falls flat on two bars across it. Known: with the impact law at both it leaves at `e` times its speed and does
-/// not turn, wherever on both sides of its middle the bars are. Ours turns, and is up to 0.25 m/s slower.
+/// not turn, wherever on both sides of its middle the bars are. Ours turns
+/// (`known_issues::a_rod_that_falls_on_two_bars_turns`), and is up to 0.25 m/s slower.
 #[test]
 fn a_rod_that_falls_on_two_supports_bounces() {
     let (end, radius) = (Vector::X * 0.5, 0.05);

@@ -105,7 +105,7 @@ fn pressed_bodies_come_out_as_rapiers() {
         let seeds = 0..6;
         // One that leaves the ground, as some of rapier's do, falls for as long as the scene lasts: it counts as thrown to the
         // ground's corner.
-        let corner = 5.0 * (2.0 as Real).sqrt();
+        let corner = Real::hypot(5.0, 5.0);
         let mean = |all: &[Pressed]| {
             let thrown = all.iter().map(|p| p.thrown.min(corner));
             thrown.sum::<Real>() / all.len() as Real
