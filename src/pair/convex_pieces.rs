@@ -14,7 +14,7 @@
 use super::apart::{end_along, ends_hold};
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::path_ends::{held_on_paths, path_ends};
-use super::piece_contact::{Look, Pieces, PiecesMet, meeting, nearest_primitive, placed};
+use super::piece_contact::{Look, Pieces, PiecesMet, nearest_primitive, patch, placed};
 use super::primitive_tree::{PrimitiveTree, thickness};
 use super::search::Search;
 use crate::elementary::InitialContact;
@@ -129,9 +129,18 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 if enough < f64::MAX {
                     continue;
                 }
+                let HullGap { gap, direction, .. } = found;
                 let tolerance = self.earliest.limits.tolerance;
-                let met = meeting(hulls, found, tolerance);
-                return met.map_or(Look::Split, Look::Met);
+                let met = |nearest| {
+                    Look::Met(PiecesMet {
+                        nodes,
+                        gap,
+                        normal: direction,
+                        patch: patch(hulls, direction, gap, tolerance),
+                        nearest,
+                    })
+                };
+                return found.nearest.map_or(Look::Split, met);
             }
             let held = self.pieces_held_until(swept, nodes, pieces, time);
             free = free.zip(held).map(|(a, b)| a.max(b));
@@ -181,9 +190,11 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     }
 
     /// Notes that two pieces meet; returns whether an earlier contact is still possible.
-    pub(super) fn take_pieces(&mut self, nodes: [u32; 2], met: PiecesMet, time: f64) -> bool {
+    pub(super) fn take_pieces(&mut self, met: PiecesMet, time: f64) -> bool {
+        let nodes = met.nodes;
         let half = met.normal * (0.5 * met.gap);
-        let [p, q] = met.corners.map_or(met.nearest, |c| [c - half, c + half]);
+        let middle = met.patch.map(|patch| patch.middle());
+        let [p, q] = middle.map_or(met.nearest, |c| [c - half, c + half]);
         let [first, second] = &self.motions;
         let primitives = [
             nearest_primitive(self.sides.0.body, first, nodes[0], p, time),
@@ -218,5 +229,39 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             self.met = Some(met);
         }
         goes_on
+    }
+
+    /// Adds to the pieces that met all others that lie on each other in the same plane then: triangles of one ground, blocks of
+    /// one body.
+    pub(super) fn join_pieces(&mut self) {
+        let (Some(mut met), Some((_, found, _))) = (self.met, self.earliest.found) else {
+            return;
+        };
+        let Some(own) = met.patch else {
+            return;
+        };
+        let mut others: Vec<[u32; 2]> = self
+            .convex
+            .iter()
+            .filter(|(nodes, pieces)| pieces.is_some() && **nodes != met.nodes)
+            .map(|(nodes, _)| *nodes)
+            .collect();
+        // In an order that does not depend on how they were found.
+        others.sort_unstable();
+        let tolerance = self.earliest.limits.tolerance;
+        let mut joined = own;
+        for nodes in others {
+            let placed = self.placed(nodes, found.lower);
+            let hulls = placed.each_ref();
+            let [a, b] = hulls.map(|hull| &hull.spheres[..]);
+            if gap_along(a, b, met.normal) > met.gap + tolerance {
+                continue;
+            }
+            if let Some(patch) = patch(hulls, met.normal, met.gap, tolerance) {
+                joined = joined.and(&patch);
+            }
+        }
+        met.patch = Some(joined);
+        self.met = Some(met);
     }
 }

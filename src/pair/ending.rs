@@ -157,6 +157,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// them where they touched at the start: a test that is proven free until then may be nearer than the one that was
     /// found.
     pub(super) fn settle(&mut self) {
+        self.join_pieces();
         let Some((.., pair)) = self.earliest.found else {
             return;
         };

@@ -5,6 +5,7 @@
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::placement::Placement;
 use super::sphere_pair::SpherePair;
+use crate::elementary::distance::Ball;
 use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
@@ -72,8 +73,7 @@ pub(super) fn face_corners(
     let (reference, other) = (hulls[from], hulls[1 - from]);
     let normal = reference.normals[face];
     let outline = polygon(reference, face, normal);
-    let facing = flattest(other, -normal).map(|(face, _)| polygon(other, face, -normal));
-    for (corner, number) in clipped(facing.unwrap_or_default(), &outline, normal) {
+    for (corner, number) in clipped(facing(other, -normal), &outline, normal) {
         let height = outline
             .first()
             .map_or(f64::MAX, |(base, _)| normal.dot(corner - *base));
@@ -137,6 +137,19 @@ fn polygon(hull: &PlacedHull, face: usize, n: Vec3<f64>) -> Vec<Corner> {
         (center + n * radius, *k)
     };
     corners.map(end).collect()
+}
+
+/// The polygon of a hull that looks along a direction: of its flattest face, or of all corners of a hull that has no more than one
+/// face could have.
+fn facing(hull: &PlacedHull, n: Vec3<f64>) -> Vec<Corner> {
+    match flattest(hull, n) {
+        Some((face, _)) => polygon(hull, face, n),
+        None if hull.spheres.len() <= 3 => {
+            let end = |(k, s): (usize, &Ball<f64>)| (s.0 + n * s.1, k as u32);
+            hull.spheres.iter().enumerate().map(end).collect()
+        }
+        None => Vec::new(),
+    }
 }
 
 /// What of a polygon is inside the edges of another, seen along its normal.

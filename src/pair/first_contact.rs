@@ -5,6 +5,7 @@
 use super::met::Met;
 use super::outline::ActivePrimitives;
 use super::pair_list::PairList;
+use super::patch::Patch;
 use super::piece_contact::PiecesMet;
 use super::primitive_tree::PrimitiveTree;
 use super::search::Search;
@@ -226,7 +227,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         // The motions' frame begins at the first body's origin and goes along with the second.
         let origin = first.start.translation + second.linvel * (toi.lower * self.seconds);
         let nearest = (toi.points[0] + toi.points[1]) * 0.5;
-        let middle = met.corners.map_or(nearest, |c| origin + c.to_vector());
+        let on_faces = |patch: Patch| origin + patch.middle().to_vector();
+        let middle = met.patch.map_or(nearest, on_faces);
         let half = (met.normal * (0.5 * met.gap)).to_vector();
         Toi {
             normal: met.normal.to_vector(),

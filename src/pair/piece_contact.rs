@@ -2,14 +2,15 @@
 //! where faces of them lie on each other, so that what falls flat is struck evenly, or else at their nearest points.
 
 use super::face_contacts::face_corners;
-use super::hull_gap::{HullGap, PlacedHull};
+use super::hull_gap::PlacedHull;
+use super::patch::Patch;
 use super::placement::Placement;
 use super::primitive_tree::{PrimitiveTree, below};
 use super::sphere_pair::SpherePair;
 use crate::elementary::distance::signed_distance;
+use crate::math::Pose;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
-use crate::math::{Pose, Real};
 
 /// Two pieces that are looked at as a whole.
 #[derive(Clone, Copy)]
@@ -25,12 +26,14 @@ pub(super) struct Pieces {
 /// Where two pieces met, in the frame of the motions.
 #[derive(Clone, Copy)]
 pub(super) struct PiecesMet {
+    /// The bodies' nodes that hold them.
+    pub(super) nodes: [u32; 2],
     /// Gap of their hulls then, a length.
     pub(super) gap: f64,
     /// The direction of that gap, of length 1, from the first to the second.
     pub(super) normal: Vec3<f64>,
-    /// The middle of where faces of them lie on each other, if they do.
-    pub(super) corners: Option<Vec3<f64>>,
+    /// Where faces of them lie on each other, if they do.
+    pub(super) patch: Option<Patch>,
     /// Their nearest points, to single precision.
     pub(super) nearest: [Vec3<f64>; 2],
 }
@@ -60,23 +63,18 @@ pub(super) fn placed<'a>(
     PlacedHull::of_node(body, node, point, direction)
 }
 
-/// Where two hulls meet at a time; `None` where nothing says where they are nearest.
-pub(super) fn meeting(
+/// Where faces of two hulls lie on each other along a direction, as deep as a gap says.
+pub(super) fn patch(
     hulls: [&PlacedHull; 2],
-    found: HullGap,
+    n: Vec3<f64>,
+    gap: f64,
     tolerance: f64,
-) -> Option<PiecesMet> {
+) -> Option<Patch> {
     let place = Placement::new(&Pose::IDENTITY);
-    let (n, margin) = (found.direction, found.gap + tolerance);
-    let corners = face_corners(hulls, n, [0; 2], &place, margin);
-    let middle = |c: &SpherePair| (c.points[0] + c.points[1]) * 0.5;
-    let sum = corners.iter().map(middle).reduce(|a, b| a + b);
-    Some(PiecesMet {
-        gap: found.gap,
-        normal: found.direction,
-        corners: sum.map(|sum| Vec3::from_vector(sum / corners.len() as Real)),
-        nearest: found.nearest?,
-    })
+    let corners = face_corners(hulls, n, [0; 2], &place, gap + tolerance);
+    let middle = |c: &SpherePair| Vec3::from_vector((c.points[0] + c.points[1]) * 0.5);
+    let middles: Vec<Vec3<f64>> = corners.iter().map(middle).collect();
+    Patch::of(&middles)
 }
 
 /// The primitive below a node that is nearest to a point at a time.

@@ -313,7 +313,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
         match self.look_at_pieces([i, j], free) {
             Look::Free => return true,
             Look::FreeUntil(free) => return self.wait([i, j], free),
-            Look::Met(met) => return self.take_pieces([a.node, b.node], met, free),
+            Look::Met(met) => return self.take_pieces(met, free),
             Look::Split => {}
         }
         let [parts_of_a, parts_of_b] = split(&mut self.sides, [i, j]);
