@@ -63,9 +63,18 @@ impl ConvexPiece {
         let thinnest = thicknesses.min_by(|p, q| p.1.total_cmp(&q.1));
         let (primitive, thickness) = thinnest.unwrap_or((group[0], 0.0));
         let spheres: Vec<_> = vertices.iter().map(|v| spheres[*v as usize]).collect();
+        let mut faces: Vec<Face> = Vec::new();
+        for found in normals.iter().filter_map(|n| face(&spheres, *n)) {
+            // Of a face that many slabs touch, rounding makes several normals.
+            let holds = |a: &Face, b: &Face| b.corners.iter().all(|k| a.corners.contains(k));
+            if !faces.iter().any(|other| holds(other, &found)) {
+                faces.retain(|other| !holds(&found, other));
+                faces.push(found);
+            }
+        }
         Self {
             primitive,
-            faces: normals.iter().filter_map(|n| face(&spheres, *n)).collect(),
+            faces,
             thickness,
             spheres,
         }

@@ -37,7 +37,11 @@ const INDEX_LIMIT: f64 = 4_503_599_627_370_496.0;
 /// 0), or one whose volume does not fit an `f32`, has parry's zero properties (mass 0, which
 /// rapier treats as immovable).
 pub fn solid_mass_properties(primitives: &[[Ball; 3]]) -> MassProperties {
-    let moments = Moments::of(primitives);
+    mass_properties(&Moments::of(primitives))
+}
+
+/// Mass properties of a solid of these moments at density 1.
+pub(super) fn mass_properties(moments: &Moments) -> MassProperties {
     let volume = moments.volume;
     let mass = volume as Real;
     if !(mass.is_normal() && (1.0 / mass).is_normal()) {
@@ -74,7 +78,7 @@ pub fn solid_mass_properties(primitives: &[[Ball; 3]]) -> MassProperties {
 }
 
 /// Moments about `center` in the frame `axes` (the lines run along the third).
-struct Moments {
+pub(super) struct Moments {
     center: Vec3<f64>,
     axes: [Vec3<f64>; 3],
     volume: f64,
@@ -90,6 +94,38 @@ struct Outline {
 }
 
 impl Moments {
+    /// Of nothing, about a point, in the body's axes.
+    pub(super) fn zero(center: Vec3<f64>) -> Self {
+        let axis = |k: usize| {
+            let one = |i: usize| if i == k { 1.0 } else { 0.0 };
+            Vec3::new(one(0), one(1), one(2))
+        };
+        Self {
+            center,
+            axes: [0, 1, 2].map(axis),
+            volume: 0.0,
+            first: Vec3::zero(),
+            second: [[0.0; 3]; 3],
+        }
+    }
+
+    /// Adds the tetrahedron from the centre to a triangle, whose corners are given from there; less than nothing where these
+    /// go round clockwise, seen from outside.
+    pub(super) fn add_tetrahedron(&mut self, corners: [Vec3<f64>; 3]) {
+        let [a, b, c] = corners;
+        let volume = a.dot(b.cross(c)) / 6.0;
+        let sum = a + b + c;
+        self.volume += volume;
+        self.first = self.first + sum * (0.25 * volume);
+        let all = [a, b, c, sum].map(|p| [p.x, p.y, p.z]);
+        for (i, row) in self.second.iter_mut().enumerate() {
+            for (j, second) in row.iter_mut().enumerate() {
+                let products: f64 = all.iter().map(|p| p[i] * p[j]).sum();
+                *second += volume * products / 20.0;
+            }
+        }
+    }
+
     fn of(primitives: &[[Ball; 3]]) -> Self {
         let corner = |pick: fn(f64, f64) -> f64| {
             let centers = primitives.as_flattened().iter().map(|b| b.center);

@@ -23,6 +23,7 @@ pub(crate) mod ma_file;
 pub(crate) mod mass;
 pub(crate) mod mesh;
 pub(crate) mod polygon;
+mod polyhedron_mass;
 pub(crate) mod primitive;
 pub mod proxy_hull;
 pub(crate) mod rectangle;

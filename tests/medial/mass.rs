@@ -70,6 +70,46 @@ fn capsule_has_the_closed_form() {
     close(about_y, axial, 1e-3, "inertia about the capsule's axis");
 }
 
+/// Boxes, and a wedge that was built from triangles, in closed form.
+#[test]
+fn boxes_and_wedges_have_the_closed_form() {
+    for half in [[0.5f32, 0.2, 0.3], [1e-3, 2e-3, 1e-3], [40.0, 0.01, 3.0]] {
+        let mesh = MedialMesh::cuboid(Vector::from(half)).unwrap();
+        let m = mesh.mass_properties(3.0);
+        let [x, y, z] = half.map(f64::from);
+        let mass = 3.0 * 8.0 * x * y * z;
+        close(m.mass(), mass, 1e-6, "mass");
+        let mut inertia = [y * y + z * z, x * x + z * z, x * x + y * y].map(|s| mass * s / 3.0);
+        inertia.sort_by(f64::total_cmp);
+        for (i, known) in sorted_principal(&m).into_iter().zip(inertia) {
+            close(i, known, 1e-5, "inertia");
+        }
+        assert!(m.local_com.length() < 1e-6 * half[0]);
+    }
+    // Half a box, cut along the diagonal of its xy-face.
+    let at = Vector::new(5.0, -2.0, 1.0);
+    let outline = [[0.0, 0.0], [0.6, 0.0], [0.0, 0.4]];
+    let corners = [0.0, 0.5].map(|z| outline.map(|[x, y]| at + Vector::new(x, y, z)));
+    let triangles = [
+        [0, 2, 1],
+        [3, 4, 5],
+        [0, 1, 4],
+        [0, 4, 3],
+        [1, 2, 5],
+        [1, 5, 4],
+        [2, 0, 3],
+        [2, 3, 5],
+    ];
+    let built = MedialMesh::from_trimesh(&corners.concat(), &triangles, &Default::default());
+    let m = built.unwrap().0;
+    close(m.volume(), 0.06, 2e-5, "volume of the wedge");
+    let com = m.mass_properties(1.0).local_com - at;
+    assert!(
+        com.distance(Vector::new(0.2, 0.4 / 3.0, 0.25)) < 1e-5,
+        "{com:?}"
+    );
+}
+
 #[test]
 fn torus_has_the_closed_form() {
     let (major, minor, segments) = (1.0f64, 0.3f64, 256);
