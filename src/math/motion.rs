@@ -69,6 +69,17 @@ impl<S: Scalar> Frame<S> {
         self.center + self.arm(local)
     }
 
+    /// The point of the body's frame that is at a place, where the motion is rigid.
+    pub fn local(&self, place: Vec3<S>) -> Vec3<S> {
+        self.local_center + self.local_direction(place - self.center)
+    }
+
+    /// The direction of the body's frame that points along one, where the motion is rigid.
+    pub fn local_direction(&self, n: Vec3<S>) -> Vec3<S> {
+        let [x, y, z] = &self.columns;
+        Vec3::new(x.dot(n), y.dot(n), z.dot(n))
+    }
+
     /// Upper bound on the angle of the rotation between two poses, in radians: `2 tan(θ/2)`, infinite at a half turn.
     /// The difference of two rotations has the Frobenius norm `2√2 sin(θ/2)`.
     pub fn angle_at_most(&self, other: &Self) -> S {

@@ -132,11 +132,13 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 let HullGap { gap, direction, .. } = found;
                 let tolerance = self.earliest.limits.tolerance;
                 let met = |nearest| {
+                    let (patch, of) = patch(hulls, direction, gap, tolerance);
                     Look::Met(PiecesMet {
                         nodes,
                         gap,
                         normal: direction,
-                        patch: patch(hulls, direction, gap, tolerance),
+                        of,
+                        patch,
                         nearest,
                     })
                 };
@@ -257,7 +259,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             if gap_along(a, b, met.normal) > met.gap + tolerance {
                 continue;
             }
-            if let Some(patch) = patch(hulls, met.normal, met.gap, tolerance) {
+            if let (Some(patch), _) = patch(hulls, met.normal, met.gap, tolerance) {
                 joined = joined.and(&patch);
             }
         }

@@ -22,7 +22,7 @@ const MISSED: f64 = 0.05;
 const NEAREST: u32 = 1 << 18;
 
 /// Added to the features of contacts that are measured from a face of the second.
-const SECOND: u32 = 1 << 19;
+pub(super) const SECOND: u32 = 1 << 19;
 
 /// Corners of faces and polygons that have features of their own; of more, some share them.
 const NUMBERED: usize = 256;

@@ -86,7 +86,7 @@ pub struct ToiResult {
     pub counts: Counts,
     /// How deep primitives may get that touched at the start ([`Query::deepest`]).
     pub deepest: f64,
-    /// The spheres that met ([`Query::met`]).
+    /// What met ([`Query::met`]).
     pub met: Option<Met>,
 }
 
@@ -237,10 +237,23 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         }
     }
 
-    /// The spheres that met, once the query is settled and has found a contact.
+    /// What met, once the query is settled and has found a contact.
     pub fn met(&self) -> Option<Met> {
         let search = self.search.as_ref()?;
-        let (_, _, primitives) = search.earliest.found?;
+        let (_, found, primitives) = search.earliest.found?;
+        if let Some(met) = &search.met
+            && let Some(patch) = met.patch
+            && self.options.paths == Paths::Exact
+        {
+            let frames = [0, 1].map(|k| search.motions[k].frame(found.lower));
+            let (middle, half) = (patch.middle(), met.normal * (0.5 * met.gap));
+            let points = [
+                frames[0].local(middle - half),
+                frames[1].local(middle + half),
+            ];
+            let normal = frames[met.of].local_direction(met.normal);
+            return Some(Met::faces(points, normal, met.of));
+        }
         let (a, b) = (search.sides.0.body, search.sides.1.body);
         let whole = [a.primitive(primitives[0]), b.primitive(primitives[1])];
         let counted = |side: usize| {
@@ -255,10 +268,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
             (spheres, of.parts[side].spheres)
         };
         let [(a, m), (b, n)] = [counted(0), counted(1)];
-        Some(Met {
-            spheres: [a, b],
-            counts: [m, n],
-        })
+        Some(Met::primitives([a, b], [m, n]))
     }
 
     /// The work done so far.

@@ -1,4 +1,4 @@
-//! Primitives that met in the first contact of two bodies. With them the contact is computed again where the bodies
+//! Primitives or faces that met in the first contact of two bodies. With them the contact is computed again where the bodies
 //! have moved and turned a little since.
 
 use super::placement::Placement;
@@ -10,17 +10,21 @@ use crate::math::nearest::Nearest;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 
-/// The two primitives that met first, with the radii that counted, so that their contact can be computed at other
-/// poses.
+/// What met first: two primitives, with the radii that counted, or faces of two convex pieces. Its contact can be computed at
+/// other poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Met {
-    /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]).
-    pub(super) spheres: [[MedialSphere; 3]; 2],
-    /// Numbers of spheres.
-    pub(super) counts: [usize; 2],
+pub struct Met(Parts);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Parts {
+    /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]), and how many there are.
+    Primitives([[MedialSphere; 3]; 2], [usize; 2]),
+    /// The middle of where faces lie on each other, in each body's frame, and the normal from the first to the second in
+    /// the frame of the body that it is of.
+    Faces([Vec3<f64>; 2], Vec3<f64>, usize),
 }
 
-/// The contact of two primitives that met ([`Met`]), computed again at other poses.
+/// The contact of what met ([`Met`]), computed again at other poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
     /// Signed distance, a length.
@@ -32,43 +36,73 @@ pub struct Touch {
 }
 
 impl Met {
-    /// The primitives with the second body as the first.
-    pub fn flipped(&self) -> Self {
-        let ([a, b], [m, n]) = (self.spheres, self.counts);
-        Self {
-            spheres: [b, a],
-            counts: [n, m],
-        }
+    /// Two primitives: so many spheres of each, in its body's frame.
+    pub(super) fn primitives(spheres: [[MedialSphere; 3]; 2], counts: [usize; 2]) -> Self {
+        Self(Parts::Primitives(spheres, counts))
     }
 
-    /// Contact of the two at two poses; `None` where the nearest two have one centre, which leaves no normal.
+    /// Faces that lie on each other: nearest points of both, each in its body's frame, and the normal from the first to the
+    /// second, in the frame of the body `of`.
+    pub(super) fn faces(points: [Vec3<f64>; 2], normal: Vec3<f64>, of: usize) -> Self {
+        Self(Parts::Faces(points, normal, of))
+    }
+
+    /// The same with the second body as the first.
+    pub fn flipped(&self) -> Self {
+        Self(match self.0 {
+            Parts::Primitives([a, b], [m, n]) => Parts::Primitives([b, a], [n, m]),
+            Parts::Faces([p, q], normal, of) => Parts::Faces([q, p], -normal, 1 - of),
+        })
+    }
+
+    /// Contact of the two at two poses; `None` where the nearest two spheres have one centre, which leaves no normal.
     pub fn touch(&self, poses: [&Pose; 2]) -> Option<Touch> {
         let place = Placement::new(&poses[0].inv_mul(poses[1]));
-        let [a, b] = &self.spheres;
-        let a = a.map(|s| (Vec3::from_vector(s.center), f64::from(s.radius)));
-        let b = b.map(|s| (place.point(s.center), f64::from(s.radius)));
-        let shares = self.counts.map(OwnedFeatures::whole);
-        let mut found: Option<(ElementaryTest, Nearest<f64>)> = None;
-        for_each_test(shares[0], shares[1], |test| {
-            let (_, nearest) = nearest_in_test(&test, &a, &b);
-            if found.is_none_or(|(_, least)| nearest.distance < least.distance) {
-                found = Some((test, nearest));
+        let (distance, normal, middle) = match self.0 {
+            Parts::Primitives(spheres, counts) => of_primitives(spheres, counts, &place)?,
+            Parts::Faces([p, q], normal, of) => {
+                let normal = if of == 0 {
+                    normal
+                } else {
+                    place.turned(normal)
+                };
+                let q = place.placed(q);
+                (normal.dot(q - p), normal, (p + q) * 0.5)
             }
-            true
-        });
-        let (test, nearest) = found.filter(|(_, n)| n.length > 0.0 && n.length.is_finite())?;
-        let weights = corner_weights(test.domain, &nearest);
-        let of_first = test.corners.iter().zip(weights);
-        let (center, radius) = of_first.fold((Vec3::zero(), 0.0), |sum, ((i, _), weight)| {
-            let (center, radius) = a[usize::from(*i)];
-            (sum.0 + center * weight, sum.1 + radius * weight)
-        });
-        let normal = nearest.y * (1.0 / nearest.length);
-        let middle = center + normal * (radius + 0.5 * nearest.distance);
+        };
         Some(Touch {
-            distance: nearest.distance as Real,
+            distance: distance as Real,
             normal: poses[0].rotation * normal.to_vector(),
             point: poses[0] * middle.to_vector(),
         })
     }
+}
+
+/// Signed distance of two primitives, normal and middle of the nearest points, in the frame of the first.
+fn of_primitives(
+    [a, b]: [[MedialSphere; 3]; 2],
+    counts: [usize; 2],
+    place: &Placement,
+) -> Option<(f64, Vec3<f64>, Vec3<f64>)> {
+    let a = a.map(|s| (Vec3::from_vector(s.center), f64::from(s.radius)));
+    let b = b.map(|s| (place.point(s.center), f64::from(s.radius)));
+    let shares = counts.map(OwnedFeatures::whole);
+    let mut found: Option<(ElementaryTest, Nearest<f64>)> = None;
+    for_each_test(shares[0], shares[1], |test| {
+        let (_, nearest) = nearest_in_test(&test, &a, &b);
+        if found.is_none_or(|(_, least)| nearest.distance < least.distance) {
+            found = Some((test, nearest));
+        }
+        true
+    });
+    let (test, nearest) = found.filter(|(_, n)| n.length > 0.0 && n.length.is_finite())?;
+    let weights = corner_weights(test.domain, &nearest);
+    let of_first = test.corners.iter().zip(weights);
+    let (center, radius) = of_first.fold((Vec3::zero(), 0.0), |sum, ((i, _), weight)| {
+        let (center, radius) = a[usize::from(*i)];
+        (sum.0 + center * weight, sum.1 + radius * weight)
+    });
+    let normal = nearest.y * (1.0 / nearest.length);
+    let middle = center + normal * (radius + 0.5 * nearest.distance);
+    Some((nearest.distance, normal, middle))
 }

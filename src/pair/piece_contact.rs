@@ -1,7 +1,7 @@
 //! Where two convex pieces meet, as the search for a first contact finds it ([`super::convex_pieces`]): at the middle of
 //! where faces of them lie on each other, so that what falls flat is struck evenly, or else at their nearest points.
 
-use super::face_contacts::face_corners;
+use super::face_contacts::{SECOND, face_corners};
 use super::hull_gap::PlacedHull;
 use super::patch::Patch;
 use super::placement::Placement;
@@ -32,6 +32,8 @@ pub(super) struct PiecesMet {
     pub(super) gap: f64,
     /// The direction of that gap, of length 1, from the first to the second.
     pub(super) normal: Vec3<f64>,
+    /// The body with the flattest face, 0 or 1.
+    pub(super) of: usize,
     /// Where faces of them lie on each other, if they do.
     pub(super) patch: Option<Patch>,
     /// Their nearest points, to single precision.
@@ -63,18 +65,19 @@ pub(super) fn placed<'a>(
     PlacedHull::of_node(body, node, point, direction)
 }
 
-/// Where faces of two hulls lie on each other along a direction, as deep as a gap says.
+/// Where faces of two hulls lie on each other along a direction, as deep as a gap says, and which of the two has the flattest.
 pub(super) fn patch(
     hulls: [&PlacedHull; 2],
     n: Vec3<f64>,
     gap: f64,
     tolerance: f64,
-) -> Option<Patch> {
+) -> (Option<Patch>, usize) {
     let place = Placement::new(&Pose::IDENTITY);
     let corners = face_corners(hulls, n, [0; 2], &place, gap + tolerance);
     let middle = |c: &SpherePair| Vec3::from_vector((c.points[0] + c.points[1]) * 0.5);
     let middles: Vec<Vec3<f64>> = corners.iter().map(middle).collect();
-    Patch::of(&middles)
+    let of = corners.first().is_some_and(|c| c.feature & SECOND != 0);
+    (Patch::of(&middles), of.into())
 }
 
 /// The primitive below a node that is nearest to a point at a time.

@@ -19,13 +19,21 @@ impl Placement {
     }
     #[inline]
     pub(super) fn point(&self, local: Vector) -> Vec3<f64> {
-        let v = Vec3::<f64>::from_vector(local);
+        self.placed(Vec3::from_vector(local))
+    }
+    /// A point of the second body in double precision.
+    #[inline]
+    pub(super) fn placed(&self, v: Vec3<f64>) -> Vec3<f64> {
         let [x, y, z] = self.rotation;
         self.translation + x * v.x + y * v.y + z * v.z
     }
     /// A direction of the second body.
     pub(super) fn direction(&self, local: Vector) -> Vec3<f64> {
-        self.point(local) - self.translation
+        self.turned(Vec3::from_vector(local))
+    }
+    /// A direction of the second body in double precision.
+    pub(super) fn turned(&self, n: Vec3<f64>) -> Vec3<f64> {
+        self.placed(n) - self.translation
     }
     pub(super) fn inverse_point(&self, p: Vec3<f64>) -> Vector {
         let v = p - self.translation;

@@ -67,7 +67,7 @@ pub struct Hit {
     pub depth: Real,
     /// The primitives that meet; 0 of a shape that is not medial.
     pub primitives: [u32; 2],
-    /// The spheres of them that meet, where there are such.
+    /// What of them meets, where it is known.
     pub met: Option<Met>,
 }
 
