@@ -36,6 +36,8 @@ pub struct ConvexPiece {
     pub faces: Vec<Face>,
     /// The thickness of that, a length (`thickness.rs`).
     pub thickness: Real,
+    /// Whether each of its primitives is blunt ([`thickness::is_blunt`]).
+    pub is_blunt: bool,
 }
 
 impl ConvexPiece {
@@ -53,10 +55,18 @@ impl ConvexPiece {
                 }
             }
         }
-        let thickness = |p: &Simplex| {
+        let own = |p: &Simplex| {
             let own = p.vertices.map(|v| spheres[v as usize]);
-            thickness::of_primitive(&own[..usize::from(p.len).clamp(1, 3)])
+            (own, usize::from(p.len).clamp(1, 3))
         };
+        let thickness = |p: &Simplex| {
+            let (spheres, count) = own(p);
+            thickness::of_primitive(&spheres[..count])
+        };
+        let is_blunt = of_group().all(|p| {
+            let (spheres, count) = own(p);
+            thickness::is_blunt(&spheres[..count])
+        });
         let thicknesses = group
             .iter()
             .map(|p| (*p, thickness(&primitives[*p as usize])));
@@ -66,7 +76,10 @@ impl ConvexPiece {
         let mut faces: Vec<Face> = Vec::new();
         for found in normals.iter().filter_map(|n| face(&spheres, *n)) {
             // Of a face that many slabs touch, rounding makes several normals.
-            let holds = |a: &Face, b: &Face| b.corners.iter().all(|k| a.corners.contains(k));
+            let holds = |a: &Face, b: &Face| {
+                let all = b.corners.iter().all(|k| a.corners.contains(k));
+                all && a.normal.dot(b.normal) > 0.0
+            };
             if !faces.iter().any(|other| holds(other, &found)) {
                 faces.retain(|other| !holds(&found, other));
                 faces.push(found);
@@ -76,6 +89,7 @@ impl ConvexPiece {
             primitive,
             faces,
             thickness,
+            is_blunt,
             spheres,
         }
     }

@@ -12,16 +12,22 @@
 //! primitives decide.
 
 use super::apart::{end_along, ends_hold};
-use super::hull_gap::{HullGap, PlacedHull, hull_gap};
+use super::hull_gap::{PlacedHull, hull_gap};
 use super::path_ends::{held_on_paths, path_ends};
-use super::piece_contact::{Look, Pieces, PiecesMet, nearest_primitive, patch, placed};
+use super::piece_contact::{
+    Look, Nearest, Pieces, PiecesMet, farthest, is_blunt, nearest_primitive, patch, placed,
+};
 use super::primitive_tree::{PrimitiveTree, thickness};
 use super::search::Search;
 use crate::elementary::InitialContact;
 use crate::elementary::bracket::Bracket;
+use crate::elementary::distance::signed_distance_along;
 use crate::elementary::penetration::gap_along;
 use crate::elementary::test_list::{OwnedFeatures, for_each_test};
+use crate::math::lane::Vec3;
+use crate::math::motion::Frame;
 use crate::math::tolerance::ROUNDING_ULPS;
+use crate::medial::MedialSphere;
 
 /// How deep two pieces may get in units of their thickness, the largest radius in them or less, to be settled as a
 /// whole. At 1 the middle of one may touch the other.
@@ -30,6 +36,9 @@ const DEEPEST: f64 = 0.75;
 /// How much less than the gap at which pieces meet a step of the search aims at, in units of the tolerance. At 1 it would
 /// be the target distance itself, and what comes to it no nearer would not be found free.
 const PAST: f64 = 0.99;
+
+/// How often the nearest primitives are asked for a better direction at most.
+const ROUNDS: usize = 3;
 
 /// Work of one look at two pieces, in proofs by directions of two primitives.
 const LOOK: u64 = 16;
@@ -66,37 +75,45 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let thicknesses = [thickness(a, nodes[0]), thickness(b, nodes[1])];
         let thickness = self.at_most(thicknesses[0].min(thicknesses[1]));
         let depth = self.cores.map_or(0.0, |cores| cores.depth(thicknesses));
-        let touching = self.reach - depth + self.earliest.limits.tolerance;
-        let apart = |direction| Pieces {
-            contact: touching,
-            touched: false,
-            direction,
+        let touching = self.target + self.earliest.limits.tolerance;
+        let by = match self.initial_contact {
+            // Deeper, each pair of primitives has a target of its own.
+            InitialContact::Stop if self.target < 0.0 => return None,
+            InitialContact::Stop => None,
+            InitialContact::Deepen { by } | InitialContact::Approach { by } => Some(f64::from(by)),
         };
-        self.proofs += LOOK;
         let is_known_apart = self.is_known_apart(time);
         let at = if is_known_apart { time } else { 0.0 };
-        let HullGap { gap, direction, .. } = hull_gap(self.placed(nodes, at).each_ref(), touching);
-        let pieces = if is_known_apart || gap > touching {
-            apart(direction)
-        } else {
-            let by = match self.initial_contact {
-                InitialContact::Stop => return None,
-                InitialContact::Deepen { by } | InitialContact::Approach { by } => f64::from(by),
-            };
-            Pieces {
-                contact: gap - by,
-                touched: true,
-                direction,
-            }
-        };
-        if -pieces.contact > DEEPEST * thickness {
+        self.proofs += LOOK;
+        let hulls = self.placed(nodes, at);
+        let mut found = hull_gap(hulls.each_ref(), touching);
+        if !is_known_apart && found.gap <= touching {
+            by?;
+            found = self.nearest(nodes, hulls.each_ref(), at).hull;
+        }
+        let touches = !is_known_apart && found.gap <= touching;
+        // How deep cores are is not how deep pieces are, but for those that touch and have no sharp tips.
+        let is_blunt = || is_blunt(a, nodes[0]) && is_blunt(b, nodes[1]);
+        if depth > 0.0 && !(touches && is_blunt()) {
             return None;
         }
-        if pieces.touched {
-            let deepest = (pieces.contact - touching) / thickness;
+        let contact = match touches && found.gap <= touching - depth {
+            false => touching - depth,
+            true => found.gap - by?,
+        };
+        if -contact > DEEPEST * thickness {
+            return None;
+        }
+        let touched = contact < touching - depth;
+        if touched {
+            let deepest = (contact - (touching - depth)) / thickness;
             self.touching.push((nodes, deepest));
         }
-        Some(pieces)
+        Some(Pieces {
+            contact,
+            touched,
+            direction: found.direction,
+        })
     }
 
     /// Goes on from a time at which two pieces are not known to meet.
@@ -109,7 +126,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     ) -> Look {
         let mut free = self.pieces_held_until(swept, nodes, pieces, time);
         // First any direction that keeps them apart now, then that of the largest gap.
-        for enough in [pieces.contact, f64::MAX] {
+        for is_last in [false, true] {
             match free {
                 None => return Look::Free,
                 Some(free) if !self.soon(free, time) => return Look::FreeUntil(free),
@@ -117,35 +134,32 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             }
             self.proofs += LOOK;
             let placed = self.placed(nodes, time);
-            let hulls = placed.each_ref();
-            let mut found = hull_gap(hulls, enough);
-            let [a, b] = hulls.map(|hull| &hull.spheres[..]);
+            let [a, b] = placed.each_ref().map(|hull| &hull.spheres[..]);
             let before = gap_along(a, b, pieces.direction);
-            if before > found.gap {
-                (found.gap, found.direction) = (before, pieces.direction);
+            let mut near = match is_last {
+                false => Nearest::of(hull_gap(placed.each_ref(), pieces.contact)),
+                true => self.nearest(nodes, placed.each_ref(), time),
+            };
+            if before > near.hull.gap {
+                (near.hull.gap, near.hull.direction) = (before, pieces.direction);
             }
-            pieces.direction = found.direction;
-            if found.gap <= pieces.contact {
-                if enough < f64::MAX {
-                    continue;
-                }
-                let HullGap { gap, direction, .. } = found;
-                let tolerance = self.earliest.limits.tolerance;
-                let met = |nearest| {
-                    let (patch, of) = patch(hulls, direction, gap, tolerance);
-                    Look::Met(PiecesMet {
+            pieces.direction = near.hull.direction;
+            if near.hull.gap > pieces.contact {
+                let held = self.pieces_held_until(swept, nodes, pieces, time);
+                free = free.zip(held).map(|(a, b)| a.max(b));
+            } else if is_last {
+                // How deep they are, hulls say; how far apart, primitives.
+                let is_sure = pieces.contact < 0.0 || near.distance <= pieces.contact;
+                return match near.primitives.filter(|_| is_sure) {
+                    Some(primitives) => Look::Met(PiecesMet::of(
                         nodes,
-                        gap,
-                        normal: direction,
-                        of,
-                        patch,
-                        nearest,
-                    })
+                        placed.each_ref(),
+                        (primitives, &near.hull),
+                        self.earliest.limits.tolerance,
+                    )),
+                    None => Look::Split,
                 };
-                return found.nearest.map_or(Look::Split, met);
             }
-            let held = self.pieces_held_until(swept, nodes, pieces, time);
-            free = free.zip(held).map(|(a, b)| a.max(b));
         }
         match free {
             None => Look::Free,
@@ -153,6 +167,51 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             // Rounding.
             Some(_) => Look::Split,
         }
+    }
+
+    /// The largest gap of two pieces at a time that can be found, with a pair of primitives that are about nearest.
+    fn nearest(&self, nodes: [u32; 2], hulls: [&PlacedHull; 2], time: f64) -> Nearest {
+        let [a, b] = hulls.map(|hull| &hull.spheres[..]);
+        let mut near = Nearest::of(hull_gap(hulls, f64::MAX));
+        let Some(mut points) = near.hull.nearest else {
+            return near;
+        };
+        let [first, second] = [0, 1].map(|k| self.motions[k].frame(time));
+        for _ in 0..ROUNDS {
+            let [p, q] = [first.local(points[0]), second.local(points[1])];
+            let pair = [
+                nearest_primitive(self.sides.0.body, nodes[0], p),
+                nearest_primitive(self.sides.1.body, nodes[1], q),
+            ];
+            if near.primitives == Some(pair) {
+                break;
+            }
+            let (of_a, m) = self.sides.0.body.primitive(pair[0]);
+            let (of_b, n) = self.sides.1.body.primitive(pair[1]);
+            let place = |frame: &Frame<f64>, s: MedialSphere| {
+                (
+                    frame.point(Vec3::from_vector(s.center)),
+                    f64::from(s.radius),
+                )
+            };
+            let (of_a, of_b) = (
+                of_a.map(|s| place(&first, s)),
+                of_b.map(|s| place(&second, s)),
+            );
+            let (distance, direction) =
+                signed_distance_along(&of_a[..m.spheres], &of_b[..n.spheres]);
+            if distance < near.distance {
+                (near.distance, near.primitives) = (distance, Some(pair));
+            }
+            let Some(n) = direction else { break };
+            let gap = gap_along(a, b, n);
+            if gap <= near.hull.gap {
+                break;
+            }
+            (near.hull.gap, near.hull.direction) = (gap, n);
+            points = [farthest(a, n), farthest(b, -n)];
+        }
+        near
     }
 
     /// Time until which the direction tried last keeps two pieces from meeting; `None` if until the end.
@@ -194,20 +253,23 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Notes that two pieces meet; returns whether an earlier contact is still possible.
     pub(super) fn take_pieces(&mut self, met: PiecesMet, time: f64) -> bool {
         let nodes = met.nodes;
-        let half = met.normal * (0.5 * met.gap);
-        let middle = met.patch.map(|patch| patch.middle());
-        let [p, q] = middle.map_or(met.nearest, |c| [c - half, c + half]);
-        let [first, second] = &self.motions;
-        let primitives = [
-            nearest_primitive(self.sides.0.body, first, nodes[0], p, time),
-            nearest_primitive(self.sides.1.body, second, nodes[1], q, time),
-        ];
-        let touched = self
-            .convex
-            .get(&nodes)
-            .is_some_and(|pieces| pieces.is_some_and(|p| p.touched));
+        let touched = (self.convex.get(&nodes)).is_some_and(|p| p.is_some_and(|p| p.touched));
         let approaches = matches!(self.initial_contact, InitialContact::Approach { .. });
-        let time = if touched && approaches { 0.0 } else { time };
+        let (met, time) = match touched && approaches {
+            true => {
+                let placed = self.placed(nodes, 0.0);
+                let near = self.nearest(nodes, placed.each_ref(), 0.0);
+                let primitives = near.primitives.unwrap_or(met.primitives);
+                let tolerance = self.earliest.limits.tolerance;
+                let found = (primitives, &near.hull);
+                (
+                    PiecesMet::of(nodes, placed.each_ref(), found, tolerance),
+                    0.0,
+                )
+            }
+            false => (met, time),
+        };
+        let primitives = met.primitives;
         let shares = self
             .spheres(primitives)
             .map(|(_, share)| OwnedFeatures::whole(share.spheres));

@@ -22,7 +22,7 @@ const MISSED: f64 = 0.05;
 const NEAREST: u32 = 1 << 18;
 
 /// Added to the features of contacts that are measured from a face of the second.
-pub(super) const SECOND: u32 = 1 << 19;
+const SECOND: u32 = 1 << 19;
 
 /// Corners of faces and polygons that have features of their own; of more, some share them.
 const NUMBERED: usize = 256;
@@ -42,51 +42,73 @@ pub(super) fn face_contacts(
     if hull.gap > margin {
         return Vec::new();
     }
-    let mut found = face_corners(hulls, hull.direction, primitives, place, margin);
+    let faces = facing_faces(hulls, hull.direction, margin);
+    let contact = |normal: Vec3<f64>, c: &FacingCorner| SpherePair {
+        primitives,
+        feature: c.feature,
+        distance: c.height as Real,
+        normal: normal.to_vector(),
+        points: [c.points[0].to_vector(), place.inverse_point(c.points[1])],
+    };
+    let contacts = faces.map(|f| f.corners.iter().map(|c| contact(f.normal, c)).collect());
+    let mut found = contacts.unwrap_or_default();
     add_nearest(hulls, (hull, primitives), place, &mut found);
     found
 }
 
-/// The contacts of faces alone, where one lies about flat on the other; `direction` is from the first to the second.
-pub(super) fn face_corners(
+/// Two faces that look at each other.
+pub(super) struct FacingFaces {
+    /// The body with the face that lies flattest, 0 or 1.
+    pub(super) of: usize,
+    /// The normal of that face, or its opposite: from the first body to the second.
+    normal: Vec3<f64>,
+    /// The corners of the polygon in which the faces overlap, as far as they are near.
+    pub(super) corners: Vec<FacingCorner>,
+}
+
+/// A corner of the polygon in which two faces overlap.
+pub(super) struct FacingCorner {
+    feature: u32,
+    /// Height above the face that lies flattest, a length.
+    height: f64,
+    /// The corner on both bodies.
+    pub(super) points: [Vec3<f64>; 2],
+}
+
+/// The faces of two hulls that look at each other, if one is about flat to a direction from the first to the second, with the
+/// corners that are within `margin` of it.
+pub(super) fn facing_faces(
     hulls: [&PlacedHull; 2],
     direction: Vec3<f64>,
-    primitives: [u32; 2],
-    place: &Placement,
     margin: f64,
-) -> Vec<SpherePair> {
-    let pair =
-        |feature: u32, distance: f64, normal: Vec3<f64>, points: [Vec3<f64>; 2]| SpherePair {
-            primitives,
-            feature,
-            distance: distance as Real,
-            normal: normal.to_vector(),
-            points: [points[0].to_vector(), place.inverse_point(points[1])],
-        };
-    let mut found = Vec::new();
+) -> Option<FacingFaces> {
     let best = [(hulls[0], direction), (hulls[1], -direction)].map(|(hull, n)| flattest(hull, n));
     let cosines = best.map(|face| face.map_or(-1.0, |(_, cosine)| cosine));
-    let from = usize::from(cosines[1] > cosines[0] + BETTER);
-    let Some((face, _)) = best[from].filter(|_| cosines[from] >= ONE_DIRECTION) else {
-        return found;
-    };
-    let (reference, other) = (hulls[from], hulls[1 - from]);
+    let of = usize::from(cosines[1] > cosines[0] + BETTER);
+    let (face, _) = best[of].filter(|_| cosines[of] >= ONE_DIRECTION)?;
+    let (reference, other) = (hulls[of], hulls[1 - of]);
     let normal = reference.normals[face];
     let outline = polygon(reference, face, normal);
-    for (corner, number) in clipped(facing(other, -normal), &outline, normal) {
-        let height = outline
-            .first()
-            .map_or(f64::MAX, |(base, _)| normal.dot(corner - *base));
-        if height > margin {
-            continue;
-        }
+    let (base, _) = *outline.first()?;
+    let near = |(corner, number): Corner| {
+        let height = normal.dot(corner - base);
         let foot = corner - normal * height;
-        found.push(match from {
-            0 => pair(number, height, normal, [foot, corner]),
-            _ => pair(SECOND | number, height, -normal, [corner, foot]),
-        });
-    }
-    found
+        (height <= margin).then_some(FacingCorner {
+            feature: if of == 0 { number } else { SECOND | number },
+            height,
+            points: if of == 0 {
+                [foot, corner]
+            } else {
+                [corner, foot]
+            },
+        })
+    };
+    let corners = clipped(facing(other, -normal), &outline, normal).into_iter();
+    Some(FacingFaces {
+        of,
+        normal: if of == 0 { normal } else { -normal },
+        corners: corners.filter_map(near).collect(),
+    })
 }
 
 /// Adds the nearest points of two pieces, where none of the contacts found is as deep as the pieces are. Corners of the

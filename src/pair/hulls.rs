@@ -8,7 +8,7 @@ use super::first_contact::Counts;
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::placement::Placement;
 use super::primitive_pair::PrimitivePair;
-use super::primitive_tree::{PrimitiveTree, below, thickness};
+use super::primitive_tree::{PrimitiveTree, thickness};
 use super::sphere_pair::SpherePair;
 use crate::elementary::penetration::gap_along;
 use crate::math::Vector;
@@ -26,6 +26,19 @@ const DEEP: f64 = 0.25;
 /// How much deeper two hulls may be along a contact's normal than along the best direction. At 1 a capsule that lies on two
 /// faces of a box would have one contact; larger, and contacts through the whole of a piece count.
 const OUTWARD: f64 = 2.0;
+
+/// Primitives below a node.
+fn below(body: &impl PrimitiveTree, node: u32) -> Vec<u32> {
+    let mut found = Vec::new();
+    let mut stack = vec![node];
+    while let Some(node) = stack.pop() {
+        match body.kind(node) {
+            NodeKind::Primitive(p) => found.push(p),
+            NodeKind::Nodes(first, second) => stack.extend([second, first]),
+        }
+    }
+    found
+}
 
 /// The hull of a node at a fixed pose, with what each look at it would compute again.
 struct Resting {

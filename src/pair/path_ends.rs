@@ -25,12 +25,12 @@ pub(super) fn held_on_paths([far, near]: [&[PathEnd]; 2], least: f64, asked: f64
     for a in far {
         for b in near {
             let room = b.place - a.place - least;
+            if room <= 0.0 {
+                return Some(0.0);
+            }
             let closing = a.rate - b.rate;
             if (closing + 0.5 * acceleration * held) * held <= room {
                 continue;
-            }
-            if room <= 0.0 {
-                return Some(0.0);
             }
             let root = (closing * closing + 2.0 * acceleration * room).sqrt();
             held = 2.0 * room / (closing + root);

@@ -1,16 +1,15 @@
 //! Where two convex pieces meet, as the search for a first contact finds it ([`super::convex_pieces`]): at the middle of
 //! where faces of them lie on each other, so that what falls flat is struck evenly, or else at their nearest points.
 
-use super::face_contacts::{SECOND, face_corners};
-use super::hull_gap::PlacedHull;
+use super::face_contacts::{FacingCorner, facing_faces};
+use super::hull_gap::{HullGap, PlacedHull};
 use super::patch::Patch;
-use super::placement::Placement;
-use super::primitive_tree::{PrimitiveTree, below};
-use super::sphere_pair::SpherePair;
-use crate::elementary::distance::signed_distance;
-use crate::math::Pose;
+use super::primitive_tree::PrimitiveTree;
+use crate::elementary::distance::{Ball, signed_distance};
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
+use crate::medial::thickness;
+use crate::medial::tree::NodeKind;
 
 /// Two pieces that are looked at as a whole.
 #[derive(Clone, Copy)]
@@ -28,6 +27,8 @@ pub(super) struct Pieces {
 pub(super) struct PiecesMet {
     /// The bodies' nodes that hold them.
     pub(super) nodes: [u32; 2],
+    /// The primitives of them that are about nearest.
+    pub(super) primitives: [u32; 2],
     /// Gap of their hulls then, a length.
     pub(super) gap: f64,
     /// The direction of that gap, of length 1, from the first to the second.
@@ -36,8 +37,26 @@ pub(super) struct PiecesMet {
     pub(super) of: usize,
     /// Where faces of them lie on each other, if they do.
     pub(super) patch: Option<Patch>,
-    /// Their nearest points, to single precision.
-    pub(super) nearest: [Vec3<f64>; 2],
+}
+
+impl PiecesMet {
+    /// Two hulls of which the nearest primitives and the gap are known.
+    pub(super) fn of(
+        nodes: [u32; 2],
+        hulls: [&PlacedHull; 2],
+        (primitives, found): ([u32; 2], &HullGap),
+        tolerance: f64,
+    ) -> Self {
+        let (patch, of) = patch(hulls, found.direction, found.gap, tolerance);
+        Self {
+            nodes,
+            primitives,
+            gap: found.gap,
+            normal: found.direction,
+            of,
+            patch,
+        }
+    }
 }
 
 /// What a look at two nodes says of the convex pieces that they hold.
@@ -72,31 +91,79 @@ pub(super) fn patch(
     gap: f64,
     tolerance: f64,
 ) -> (Option<Patch>, usize) {
-    let place = Placement::new(&Pose::IDENTITY);
-    let corners = face_corners(hulls, n, [0; 2], &place, gap + tolerance);
-    let middle = |c: &SpherePair| Vec3::from_vector((c.points[0] + c.points[1]) * 0.5);
-    let middles: Vec<Vec3<f64>> = corners.iter().map(middle).collect();
-    let of = corners.first().is_some_and(|c| c.feature & SECOND != 0);
-    (Patch::of(&middles), of.into())
+    let Some(faces) = facing_faces(hulls, n, gap + tolerance) else {
+        return (None, 0);
+    };
+    let middle = |c: &FacingCorner| (c.points[0] + c.points[1]) * 0.5;
+    let middles: Vec<Vec3<f64>> = faces.corners.iter().map(middle).collect();
+    (Patch::of(&middles), faces.of)
 }
 
-/// The primitive below a node that is nearest to a point at a time.
-pub(super) fn nearest_primitive(
-    body: &impl PrimitiveTree,
-    motion: &RigidMotion<f64>,
-    node: u32,
-    point: Vec3<f64>,
-    time: f64,
-) -> u32 {
-    let turned = motion.sin_cos(time);
-    let distance = |p: &u32| {
-        let (spheres, share) = body.primitive(*p);
-        let spheres = spheres.map(|s| {
-            let center = motion.point(Vec3::from_vector(s.center));
-            (center.at(time, turned).position, f64::from(s.radius))
-        });
-        signed_distance(&spheres[..share.spheres], &[(point, 0.0)])
+/// How near two pieces are at a time.
+pub(super) struct Nearest {
+    /// The largest gap of their hulls found: never more than their distance.
+    pub(super) hull: HullGap,
+    /// Two of their primitives, and the signed distance of these: never less than theirs.
+    pub(super) primitives: Option<[u32; 2]>,
+    pub(super) distance: f64,
+}
+
+impl Nearest {
+    /// Of which no primitives are known.
+    pub(super) fn of(hull: HullGap) -> Self {
+        Self {
+            hull,
+            primitives: None,
+            distance: f64::MAX,
+        }
+    }
+}
+
+/// The primitive below a node that is nearest to a point of the body's frame.
+pub(super) fn nearest_primitive(body: &impl PrimitiveTree, node: u32, point: Vec3<f64>) -> u32 {
+    let bound = |node: u32| {
+        let (center, radius) = body.bound(node);
+        (point - Vec3::from_vector(center)).length() - f64::from(radius)
     };
-    let all = below(body, node).into_iter().map(|p| (distance(&p), p));
-    all.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, p)| p)
+    let (mut nearest, mut least) = (0, f64::MAX);
+    let mut stack = vec![node];
+    while let Some(node) = stack.pop() {
+        if bound(node) >= least {
+            continue;
+        }
+        match body.kind(node) {
+            NodeKind::Nodes(a, b) => {
+                let is_nearer = bound(a) <= bound(b);
+                stack.extend(if is_nearer { [b, a] } else { [a, b] });
+            }
+            NodeKind::Primitive(p) => {
+                let (spheres, share) = body.primitive(p);
+                let spheres = spheres.map(|s| (Vec3::from_vector(s.center), f64::from(s.radius)));
+                let distance = signed_distance(&spheres[..share.spheres], &[(point, 0.0)]);
+                if distance < least {
+                    (nearest, least) = (p, distance);
+                }
+            }
+        }
+    }
+    nearest
+}
+
+/// Where spheres reach farthest along a unit direction.
+pub(super) fn farthest(spheres: &[Ball<f64>], n: Vec3<f64>) -> Vec3<f64> {
+    let end = |s: &Ball<f64>| n.dot(s.0) + s.1;
+    let most = spheres.iter().max_by(|a, b| end(a).total_cmp(&end(b)));
+    most.map_or(Vec3::zero(), |(center, radius)| *center + n * *radius)
+}
+
+/// Whether what a node holds is blunt ([`thickness::is_blunt`]), or a surface.
+pub(super) fn is_blunt(body: &impl PrimitiveTree, node: u32) -> bool {
+    match (body.convex_piece(node), body.kind(node)) {
+        (Some(piece), _) => piece.is_blunt,
+        (None, NodeKind::Primitive(p)) => {
+            let (spheres, share) = body.primitive(p);
+            !body.thickness(p).is_finite() || thickness::is_blunt(&spheres[..share.spheres])
+        }
+        (None, NodeKind::Nodes(..)) => false,
+    }
 }

@@ -72,19 +72,6 @@ pub(super) fn thickness(body: &impl PrimitiveTree, node: u32) -> Real {
     }
 }
 
-/// Primitives below a node.
-pub(super) fn below(body: &impl PrimitiveTree, node: u32) -> Vec<u32> {
-    let mut found = Vec::new();
-    let mut stack = vec![node];
-    while let Some(node) = stack.pop() {
-        match body.kind(node) {
-            NodeKind::Primitive(p) => found.push(p),
-            NodeKind::Nodes(first, second) => stack.extend([second, first]),
-        }
-    }
-    found
-}
-
 impl PrimitiveTree for MedialMesh {
     fn roots(&self) -> u32 {
         1

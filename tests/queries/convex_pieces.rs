@@ -30,13 +30,13 @@ pub fn mesh_of(triangles: &Mesh) -> MedialMesh {
     mesh
 }
 
-fn cuboid(half: [Real; 3]) -> Mesh {
+pub fn cuboid(half: [Real; 3]) -> Mesh {
     let (vertices, indices) = Cuboid::new(Vector::from_array(half)).to_trimesh();
     Mesh { vertices, indices }
 }
 
 /// Motion of a second by exact numbers of single precision, for the triangles and for the medial mesh.
-fn motion(start: V, velocity: V, turn: V) -> (Motion, NonlinearRigidMotion) {
+pub fn motion(start: V, velocity: V, turn: V) -> (Motion, NonlinearRigidMotion) {
     let single = |v: V| Vector::new(v.x as Real, v.y as Real, v.z as Real);
     let exact = |v: V| v.map(|x| f64::from(x as Real));
     let medial = NonlinearRigidMotion::new(
@@ -60,43 +60,46 @@ fn tumbling_blocks_meet_when_their_triangles_do() {
     let sources = [l, t, cuboid([0.3, 0.2, 0.5])];
     let blocks = sources.each_ref().map(mesh_of);
     let mut rng = Rng::new(2201);
-    let (mut hits, mut misses) = (0, 0);
-    let options = ToiOptions::default();
+    let mut count = [0; 2];
     for case in 0..240 {
         let (i, j) = (case % 3, case / 3 % 3);
         let from = V::new(-1.6, rng.range(-0.9, 0.9), rng.range(-0.9, 0.9));
-        let (first, first_moves) = motion(
-            from,
-            V::new(rng.range(1.0, 3.0), 0.0, 0.0),
-            rng.in_ball() * 6.0,
-        );
-        let (second, second_moves) = motion(V::zeros(), rng.in_ball() * 0.3, rng.in_ball() * 6.0);
-        let bodies = [&sources[i], &sources[j]].map(TriangleBody::new);
-        let truth = of_triangles([&bodies[0], &bodies[1]], [&first, &second], 1.0, 1.0e-9);
-        let found = first_contact(
-            &blocks[i],
-            &first_moves,
-            &blocks[j],
-            &second_moves,
-            1.0,
-            &options,
-        );
-        match (truth, found.status) {
-            (None, ToiStatus::Separated) => misses += 1,
-            (_, ToiStatus::Contact) => {
-                let time = truth.unwrap_or(1.0);
-                assert!(f64::from(found.lower) <= time + 1.0e-6, "{case}: late");
-                // The tolerance, and what blocks are thicker than their triangles.
-                let upper = f64::from(found.upper);
-                let apart = distance_at([&bodies[0], &bodies[1]], [&first, &second], upper);
-                let most = f64::from(options.tolerance) + 6.0e-6;
-                assert!(apart < most, "{case}: told to touch when {apart} apart");
-                hits += u32::from(truth.is_some());
-            }
-            other => panic!("{case}: {other:?}"),
-        }
+        let speed = V::new(rng.range(1.0, 3.0), 0.0, 0.0);
+        let first = motion(from, speed, rng.in_ball() * 6.0);
+        let second = motion(V::zeros(), rng.in_ball() * 0.3, rng.in_ball() * 6.0);
+        let bodies = [(&sources[i], &blocks[i]), (&sources[j], &blocks[j])];
+        let meets = meets_as_its_triangles(bodies, [&first, &second], case);
+        count[usize::from(meets)] += 1;
     }
-    assert!(hits > 60 && misses > 40, "{hits} hits, {misses} misses");
+    assert!(count[1] > 60 && count[0] > 40, "{count:?}");
+}
+
+/// Whether two bodies meet in the step; they must do so when their triangles do.
+pub fn meets_as_its_triangles(
+    bodies: [(&Mesh, &MedialMesh); 2],
+    motions: [&(Motion, NonlinearRigidMotion); 2],
+    case: usize,
+) -> bool {
+    let triangles = bodies.map(|(source, _)| TriangleBody::new(source));
+    let triangles = [&triangles[0], &triangles[1]];
+    let [(first, first_moves), (second, second_moves)] = motions;
+    let truth = of_triangles(triangles, [first, second], 1.0, 1.0e-9);
+    let options = ToiOptions::default();
+    let [(_, a), (_, b)] = bodies;
+    let found = first_contact(a, first_moves, b, second_moves, 1.0, &options);
+    match (truth, found.status) {
+        (None, ToiStatus::Separated) => false,
+        (_, ToiStatus::Contact) => {
+            let time = truth.unwrap_or(1.0);
+            assert!(f64::from(found.lower) <= time + 1.0e-6, "{case}: late");
+            // The tolerance, and what blocks are thicker than their triangles.
+            let apart = distance_at(triangles, [first, second], f64::from(found.upper));
+            let most = f64::from(options.tolerance) + 6.0e-6;
+            assert!(apart < most, "{case}: told to touch when {apart} apart");
+            true
+        }
+        other => panic!("{case}: {other:?}"),
+    }
 }
 
 /// A box as a frame of three axes, its half sides, and its middle.

@@ -41,6 +41,7 @@ mod oracle;
 mod outlines;
 mod penetration;
 mod regressions;
+mod spinning_pieces;
 mod tips;
 mod truth;
 mod witness;
