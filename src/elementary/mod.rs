@@ -103,9 +103,9 @@ pub struct ToiOptions {
 /// `share` is at most 1, each core contains its medial axis, so no axis has crossed another, or a surface, however
 /// thin the part is.
 ///
-/// Two convex pieces (the parts of a body with flat faces) that are no more than three quarters of their thickness deep in each
-/// other are looked at as a whole: they count as touching at their cores when they are `share × t` deep, if `t` is the
-/// thickness of the thinner one.
+/// Two convex pieces (the parts of a body with flat faces) that touch at the start, and have no edges sharper than 60 degrees, are
+/// looked at as a whole: they count as touching at their cores when they are `share × t` deep, if `t` is the thickness of
+/// the thinner one, wherever that is.
 ///
 /// [`ToiOptions::target_distance`] counts from the cores. Cores that touch at the start may sink into each other with
 /// [`InitialContact::Deepen`], but never as far as the axes.

@@ -36,7 +36,7 @@ pub struct ConvexPiece {
     pub faces: Vec<Face>,
     /// The thickness of that, a length (`thickness.rs`).
     pub thickness: Real,
-    /// Whether each of its primitives is blunt ([`thickness::is_blunt`]).
+    /// Whether each of its primitives is blunt (`thickness.rs`).
     pub is_blunt: bool,
 }
 

@@ -29,9 +29,12 @@ use crate::math::motion::Frame;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::medial::MedialSphere;
 
-/// How deep two pieces may get in units of their thickness, the largest radius in them or less, to be settled as a
-/// whole. At 1 the middle of one may touch the other.
-const DEEPEST: f64 = 0.75;
+/// How deep two solid pieces may get in units of the thickness of the thinner, to be settled as a whole. At 2 the middles of two
+/// alike may pass each other, and the shortest way apart leads on through.
+const DEEPEST: f64 = 1.5;
+
+/// The same of a piece in a surface, out of which the shortest way leads on from 1.
+const DEEPEST_IN_SURFACE: f64 = 0.75;
 
 /// How much less than the gap at which pieces meet a step of the search aims at, in units of the tolerance. At 1 it would
 /// be the target distance itself, and what comes to it no nearer would not be found free.
@@ -101,7 +104,13 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             false => touching - depth,
             true => found.gap - by?,
         };
-        if -contact > DEEPEST * thickness {
+        let is_solid = thicknesses.iter().all(|t| t.is_finite());
+        let deepest = if is_solid {
+            DEEPEST
+        } else {
+            DEEPEST_IN_SURFACE
+        };
+        if -contact > deepest * thickness {
             return None;
         }
         let touched = contact < touching - depth;

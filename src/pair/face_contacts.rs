@@ -61,7 +61,7 @@ pub(super) struct FacingFaces {
     /// The body with the face that lies flattest, 0 or 1.
     pub(super) of: usize,
     /// The normal of that face, or its opposite: from the first body to the second.
-    normal: Vec3<f64>,
+    pub(super) normal: Vec3<f64>,
     /// The corners of the polygon in which the faces overlap, as far as they are near.
     pub(super) corners: Vec<FacingCorner>,
 }

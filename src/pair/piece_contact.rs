@@ -1,7 +1,7 @@
 //! Where two convex pieces meet, as the search for a first contact finds it ([`super::convex_pieces`]): at the middle of
 //! where faces of them lie on each other, so that what falls flat is struck evenly, or else at their nearest points.
 
-use super::face_contacts::{FacingCorner, facing_faces};
+use super::face_contacts::{FacingCorner, FacingFaces, facing_faces};
 use super::hull_gap::{HullGap, PlacedHull};
 use super::patch::Patch;
 use super::primitive_tree::PrimitiveTree;
@@ -91,7 +91,10 @@ pub(super) fn patch(
     gap: f64,
     tolerance: f64,
 ) -> (Option<Patch>, usize) {
-    let Some(faces) = facing_faces(hulls, n, gap + tolerance) else {
+    // Far apart along a direction that is not quite across the faces, the nearest points are not opposite each other.
+    let is_opposite = |f: &FacingFaces| gap * n.cross(f.normal).length() <= tolerance;
+    let faces = facing_faces(hulls, n, gap + tolerance).filter(is_opposite);
+    let Some(faces) = faces else {
         return (None, 0);
     };
     let middle = |c: &FacingCorner| (c.points[0] + c.points[1]) * 0.5;

@@ -85,7 +85,7 @@ fn pieces_that_may_overlap_meet_as_deep_as_they_may() {
         ),
         Vector::ZERO,
     );
-    let height = (2.0 as Real).sqrt() + 0.1;
+    let height = Real::hypot(1.0, 1.0) + 0.1;
     let edge_down = Pose::from_parts(
         Vector::Y * height,
         Rotation::from_scaled_axis(Vector::X * quarter),
