@@ -4,12 +4,12 @@
 //! at. Which pieces there are: `medial/convex_pieces.rs`; their contacts at fixed poses: [`super::face_contacts`].
 //!
 //! Conservative advancement (Mirtich 1996) along the direction of the largest gap of the hulls at one time after the
-//! other. Along chords and along the paths themselves a direction keeps them apart for a while (module `apart`).
+//! other. Along chords ([`super::apart`]) and along the paths themselves ([`super::path_ends`]) a direction keeps them apart for a
+//! while.
 //!
 //! **Pieces that touch at the start** and may sink in, or must come nearer to count
 //! ([`crate::elementary::InitialContact`]), have a gap of their own at which they meet. Where they are so deep in each
-//! other, or so thin, that the middle of one might get into the other, the gap of their hulls says little, and their
-//! primitives decide.
+//! other that the shortest way apart might lead on through, their primitives decide.
 
 use super::apart::{end_along, ends_hold};
 use super::hull_gap::{PlacedHull, hull_gap};
