@@ -6,8 +6,9 @@ use crate::truth_of_examples::triangle_toi::{TriangleBody, distance_at};
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d::prelude::{Pose, Real, Rotation, Vector};
 use rapier3d_medial::elementary::Cores;
+use rapier3d_medial::meshing::Variant;
 use rapier3d_medial::pair::first_contact;
-use rapier3d_medial::{MedialMesh, ToiOptions};
+use rapier3d_medial::{InitialContact, MedialMesh, ToiOptions, ToiStatus};
 
 /// Symptom: one of some thousand rods and plates that spin by several radians went through another unseen, and others met it
 /// early. Causes: a direction from an earlier part of the turn, along which corners overlap and come apart again, was taken to
@@ -93,4 +94,52 @@ fn pieces_that_may_overlap_meet_as_deep_as_they_may() {
     let falls = moving(edge_down, -Vector::Y);
     let found = first_contact(&cube, &rests, &cube, &falls, 1.0, &cores);
     assert!((found.upper - 0.1).abs() < 1.0e-3, "{found:?}");
+}
+
+/// A spike of six sides, 1 m high, .2 m wide at its base, with its tip at the origin.
+fn spike(up: bool) -> MedialMesh {
+    let sign = if up { 1.0 } else { -1.0 };
+    let around = (0..6).map(|k| std::f64::consts::TAU * f64::from(k) / 6.0);
+    let base = around.map(|a| Vector::new((0.1 * a.cos()) as Real, -sign, (0.1 * a.sin()) as Real));
+    let corners: Vec<Vector> = std::iter::once(Vector::ZERO).chain(base).collect();
+    let sides = (1..7).map(|k| [0, k % 6 + 1, k]);
+    let bottom = (2..6).map(|k| [1, k, k + 1]);
+    let turned = |t: [u32; 3]| if up { t } else { [t[0], t[2], t[1]] };
+    let triangles: Vec<[u32; 3]> = sides.chain(bottom).map(turned).collect();
+    let built = MedialMesh::from_trimesh(&corners, &triangles, &Default::default());
+    let (mesh, report) = built.expect("a spike");
+    assert_eq!(report.variant, Variant::Exact);
+    mesh
+}
+
+/// Two spikes, tip to tip, whose tips touch, slide sideways: their axes cross, so their cores meet. How deep their hulls are in
+/// each other says nothing of that, because they are thin there.
+#[test]
+fn spikes_that_touch_do_not_pass_each_other() {
+    let (up, down) = (spike(true), spike(false));
+    let still = NonlinearRigidMotion::constant_position(Pose::IDENTITY);
+    for overlap in [0.05, 0.1, 0.3] {
+        let slides = |x: Real, way: Real| {
+            let start = Pose::from_translation(Vector::new(x, -overlap, 0.0));
+            NonlinearRigidMotion::new(start, Vector::ZERO, Vector::X * way, Vector::ZERO)
+        };
+        let options = ToiOptions::default();
+        let found = first_contact(&up, &still, &down, &slides(-1.0, 2.0), 1.0, &options);
+        assert_eq!(found.status, ToiStatus::Contact, "{overlap}: {found:?}");
+        let touching = -1.0 + 2.0 * found.upper;
+        let floor = ToiOptions {
+            initial_contact: InitialContact::Deepen { by: 1.0e-4 },
+            cores: Some(Cores {
+                share: 0.5,
+                at_most: Real::INFINITY,
+                tips: 0.0,
+            }),
+            ..options
+        };
+        let on = slides(touching, 2.0);
+        let found = first_contact(&up, &still, &down, &on, 1.0, &floor);
+        let crossing = -0.5 * touching;
+        assert_eq!(found.status, ToiStatus::Contact, "{overlap}: {found:?}");
+        assert!(found.lower < crossing, "{overlap}: {found:?}, {crossing}");
+    }
 }
