@@ -31,7 +31,7 @@ pub fn of_primitive(spheres: &[MedialSphere]) -> Real {
 }
 
 /// How fast the radius of a tip has to grow for what it ends to be kept apart by its thickness alone: that of an edge of 60
-/// degrees. What of such a tip is thinner than `ρ` reaches `2 ρ` at most.
+/// degrees, across which what is thinner than `ρ` reaches `2 ρ`.
 const TIP: Real = 0.49;
 
 /// Whether a primitive has no tips, or none that are sharper than an edge of 60 degrees: nowhere less than half as thick as

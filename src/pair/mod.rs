@@ -6,8 +6,9 @@
 //!
 //! # Files
 //! - First contact in motion: `first_contact.rs` is the call and `search.rs` the search. Parts of the search:
-//!   `swept.rs` (one body in motion), `queue.rs`, `waiting.rs`, `leaves.rs` (two primitives), `convex_pieces.rs` (two convex pieces) with
-//!   `piece_contact.rs` and `patch.rs`, `deepening.rs`, `tips.rs`, `ending.rs`. Proofs that two are apart: `apart.rs`, `path_ends.rs`.
+//!   `swept.rs` (one body in motion), `queue.rs`, `waiting.rs`, `leaves.rs` (two primitives), `convex_pieces.rs` (two
+//!   convex pieces) with `piece_contact.rs` and `patch.rs`, `deepening.rs`, `tips.rs`, `ending.rs`. Proofs that two are
+//!   apart: `apart.rs`, `path_ends.rs`.
 //! - Contacts at fixed poses: `contacts.rs`, in the order of `descent.rs`; of two primitives `primitive_pair.rs`, of two convex pieces (the blocks of a body
 //!   with flat faces) `face_contacts.rs`; from a list of primitive pairs `listed.rs`; `held_back.rs` leaves some out.
 //! - Distance at fixed poses: `distance.rs`. Proofs at fixed poses: `hulls.rs`, `hull_gap.rs`.
