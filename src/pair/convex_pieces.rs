@@ -12,6 +12,7 @@
 //! other that the shortest way apart might lead on through, their primitives decide.
 
 use super::apart::{end_along, ends_hold};
+use super::deepening::given;
 use super::hull_gap::{PlacedHull, hull_gap};
 use super::path_ends::{held_on_paths, path_ends};
 use super::piece_contact::{
@@ -29,11 +30,18 @@ use crate::math::motion::Frame;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::medial::MedialSphere;
 
-/// How deep two solid pieces may get in units of the thickness of the thinner, to be settled as a whole. At 2 the middles of two
-/// alike may pass each other, and the shortest way apart leads on through.
-const DEEPEST: f64 = 1.5;
+/// Depth of two solid pieces in units of the thickness of the thinner, from which the shortest way apart may lead on through:
+/// there the middles of two alike pass each other.
+const THROUGH: f64 = 2.0;
 
-/// The same of a piece in a surface, out of which the shortest way leads on from 1.
+/// The same of a piece in a surface.
+const THROUGH_SURFACE: f64 = 1.0;
+
+/// How deep two solid pieces may get in the same units, to be settled as a whole. Their primitives, which decide beyond it,
+/// point out of thin pieces on both sides: at 1.5, thirty cards that are dropped on each other never come to rest.
+const DEEPEST: f64 = 1.95;
+
+/// The same of a piece in a surface.
 const DEEPEST_IN_SURFACE: f64 = 0.75;
 
 /// How much less than the gap at which pieces meet a step of the search aims at, in units of the tolerance. At 1 it would
@@ -42,9 +50,6 @@ const PAST: f64 = 0.99;
 
 /// How often the nearest primitives are asked for a better direction at most.
 const ROUNDS: usize = 3;
-
-/// Work of one look at two pieces, in proofs by directions of two primitives.
-const LOOK: u64 = 16;
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Looks at two nodes, proven free until a time, as convex pieces.
@@ -87,7 +92,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         };
         let is_known_apart = self.is_known_apart(time);
         let at = if is_known_apart { time } else { 0.0 };
-        self.proofs += LOOK;
+        self.looks += 1;
         let hulls = self.placed(nodes, at);
         let mut found = hull_gap(hulls.each_ref(), touching);
         if !is_known_apart && found.gap <= touching {
@@ -100,15 +105,18 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         if depth > 0.0 && !(touches && is_blunt()) {
             return None;
         }
+        let is_solid = thicknesses.iter().all(|t| t.is_finite());
+        let (deepest, through) = if is_solid {
+            (DEEPEST, THROUGH)
+        } else {
+            (DEEPEST_IN_SURFACE, THROUGH_SURFACE)
+        };
         let contact = match touches && found.gap <= touching - depth {
             false => touching - depth,
-            true => found.gap - by?,
-        };
-        let is_solid = thicknesses.iter().all(|t| t.is_finite());
-        let deepest = if is_solid {
-            DEEPEST
-        } else {
-            DEEPEST_IN_SURFACE
+            true => {
+                let left = through * thickness + found.gap;
+                found.gap - given(by?, left.max(0.0), self.earliest.limits.tolerance)
+            }
         };
         if -contact > deepest * thickness {
             return None;
@@ -141,7 +149,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 Some(free) if !self.soon(free, time) => return Look::FreeUntil(free),
                 Some(_) => {}
             }
-            self.proofs += LOOK;
+            self.looks += 1;
             let placed = self.placed(nodes, time);
             let [a, b] = placed.each_ref().map(|hull| &hull.spheres[..]);
             let before = gap_along(a, b, pieces.direction);

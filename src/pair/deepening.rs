@@ -87,7 +87,7 @@ impl Threshold {
 }
 
 /// How much deeper one query may let two primitives get, whose axes are that far from each other.
-fn given(by: f64, axes: f64, tolerance: f64) -> f64 {
+pub(super) fn given(by: f64, axes: f64, tolerance: f64) -> f64 {
     let share = GIVEN * (axes - CLOSEST * tolerance);
     by.min(share.max(PRESSED * axes))
 }

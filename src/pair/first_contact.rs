@@ -8,7 +8,7 @@ use super::pair_list::PairList;
 use super::patch::Patch;
 use super::piece_contact::PiecesMet;
 use super::primitive_tree::PrimitiveTree;
-use super::search::Search;
+use super::search::{LOOK, Search};
 use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
 use crate::elementary::{Paths, Toi, ToiOptions};
 use crate::math::Real;
@@ -26,6 +26,15 @@ counters! {
         pub nodes: u64,
         /// Elementary tests that were computed, each counted once.
         pub tests: u64,
+        /// Looks at two convex pieces as a whole, each of which takes about as long as 16 tests.
+        pub looks: u64,
+    }
+}
+
+impl Counts {
+    /// The work in tests, of pairs of tree nodes and of primitives.
+    pub fn work(&self) -> u64 {
+        self.nodes + self.tests + LOOK * self.looks
     }
 }
 
@@ -276,6 +285,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         let of = |s: &Search<A, B>| Counts {
             nodes: s.nodes.into(),
             tests: s.earliest.tests.into(),
+            looks: s.looks,
         };
         self.search.as_ref().map(of).unwrap_or_default()
     }

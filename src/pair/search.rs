@@ -32,11 +32,14 @@ use crate::math::motion::RigidMotion;
 use crate::medial::tree::NodeKind;
 use std::collections::BinaryHeap;
 
-/// Node pairs, proofs by directions, iterations of elementary tests (twice) and pieces of one search,
-/// together, after which it ends unresolved. Interleaved combs of 1,236 primitives take a seventh of it,
+/// Node pairs, proofs by directions, iterations of elementary tests (twice), looks at convex pieces ([`LOOK`] times) and
+/// pieces of one search, together, after which it ends unresolved. Interleaved combs of 1,236 primitives take a seventh of it,
 /// fast flights of such meshes a thirty-sixth. A query of endless turns ends after two tenths of a second.
 /// Larger, and it takes longer; smaller, and it knows less.
 const WORK: u64 = 1 << 19;
+
+/// Work of one look at two convex pieces, in elementary tests.
+pub(super) const LOOK: u64 = 16;
 
 /// Pieces whose pairs of roots do not count as work. As above.
 const ROOT_PIECES: u64 = 64;
@@ -70,6 +73,8 @@ pub(super) struct Search<'a, A, B> {
     all_pieces: f64,
     /// Times that directions were tried on two primitives.
     pub(super) proofs: u64,
+    /// Looks at two convex pieces as a whole.
+    pub(super) looks: u64,
     /// Limit of [`Self::worked`].
     pub(super) budget: u64,
     /// Work after which the search pauses, as far as it can.
@@ -128,6 +133,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
             pieces: 0,
             all_pieces: 1.0,
             proofs: 0,
+            looks: 0,
             budget: WORK,
             pause: WORK,
             nodes: 0,
@@ -236,7 +242,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
     pub(super) fn worked(&self) -> u64 {
         // Each takes about 0.3 µs, an iteration twice that.
         let iterations = 2 * u64::from(self.earliest.iterations);
-        u64::from(self.nodes) + iterations + self.pieces + self.proofs
+        u64::from(self.nodes) + iterations + self.pieces + self.proofs + LOOK * self.looks
     }
 
     /// The first candidate. Of two nodes just split one is often the first again: it waits in

@@ -22,6 +22,11 @@ use parry3d::shape::Shape;
 /// the normal says little.
 const MOST_SLANT: Real = 0.5;
 
+/// Tolerance of a straight cast in units of the length by which one that slides seems to come nearer ([`approach_of_rounding`]).
+/// Larger, and rapier's character controller, which leaves gaps of a few micrometres more than it asks for, is stopped by
+/// what it only passes; smaller, and rounding of the poses decides.
+const PRECISION: Real = 2.0;
+
 /// First contact of a medial mesh with another shape, both moving rigidly, from `start` to `end`
 /// seconds.
 #[derive(Clone, Copy)]
@@ -78,10 +83,15 @@ impl Cast<'_> {
         }
         let motion1 = started(self.motion1, start);
         let motion2 = started(self.motion2, start);
+        let way = (motion1.linvel - motion2.linvel) * seconds;
+        let grazing = self.grazing([&motion1, &motion2], way);
         let mut options = ToiOptions {
             target_distance: self.target_distance,
             ..ToiOptions::default()
         };
+        if self.stop_approach {
+            options.tolerance = options.tolerance.min(PRECISION * grazing);
+        }
         let found = self.query(&motion1, &motion2, seconds, &options, None)?;
         let ToiResult {
             mut toi,
@@ -89,7 +99,7 @@ impl Cast<'_> {
             ..
         } = found;
         if toi.upper <= 0.0 && !self.stop_at_penetration {
-            let touching = self.touching([&motion1, &motion2], &toi)?;
+            let touching = self.touching([&motion1, &motion2], &toi, options.tolerance)?;
             let further = if !self.stop_approach {
                 touching.sinking(self.foreign_thickness(), seconds, &options)
             } else if !touching.approaches(seconds) {
@@ -117,7 +127,6 @@ impl Cast<'_> {
             toi = further.toi;
             counts += further.counts;
         }
-        let way = (motion1.linvel - motion2.linvel) * seconds;
         // What slides along at the target distance is within the tolerance of a hit wherever it is, with a normal that may
         // be off by as much as the tolerance lets the nearest points be. A hit it is where it comes nearer by more:
         // otherwise a character could not step up along a wall.
@@ -126,7 +135,7 @@ impl Cast<'_> {
         let slides =
             toi.status == ToiStatus::Contact && way.dot(toi.normal) <= slant * way.length();
         if slides && self.stop_approach && !self.stop_at_penetration {
-            let by = options.tolerance + self.grazing([&motion1, &motion2], way);
+            let by = options.tolerance + grazing;
             options.target_distance -= by;
             let nearer = self.query(&motion1, &motion2, seconds, &options, None)?;
             counts += nearer.counts;
@@ -187,11 +196,12 @@ impl Cast<'_> {
         &self,
         motions: [&NonlinearRigidMotion; 2],
         toi: &Toi,
+        tolerance: Real,
     ) -> Result<Touching, Unsweepable> {
         let [start1, start2] = motions.map(|m| m.start);
         let pos12 = start1.inverse() * start2;
         // What the query took for a contact may be farther off by its tolerance, with a normal that says less.
-        let reach = self.target_distance + ToiOptions::default().tolerance;
+        let reach = self.target_distance + tolerance;
         let (nearest, _) = distance::nearest(self.mesh, self.other, &pos12, reach)?;
         let (gap, normal, points, primitives) = match nearest {
             Some(c) => {

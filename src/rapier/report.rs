@@ -59,8 +59,8 @@ counters! {
         /// Bodies that stopped before the step's end, or were carried along by what pushed them, after too many impacts
         /// (more than 16).
         pub frozen: usize,
-        /// How much of [`crate::MedialOptions::budget`] was spent: node pairs and elementary tests for first
-        /// contacts.
+        /// How much of [`crate::MedialOptions::budget`] was spent: node pairs and elementary tests for first contacts, and
+        /// looks at two convex pieces as a whole, each of which counts as 16.
         pub spent: u64,
         /// Bodies that stopped before the step's end because the budget was spent: it is not known whether their path
         /// is free beyond that point. They go on in the next step, at the speed they had.

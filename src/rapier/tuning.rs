@@ -46,8 +46,13 @@ pub struct Tuning {
     pub stopping: Real,
     /// How much deeper a touching fast pair may get in one go, in units of the thickness.
     pub sink: Real,
-    /// How much deeper a pair below the floor may get in one go, in units of the gap. At 0 it would
-    /// never leave its first contact.
+    /// How much deeper a pair of bodies with flat faces that is below the floor may get in one go, in units of the
+    /// thickness; the nearer their axes are, the less (`pair/deepening.rs`). Two walls of bricks of which some are 10,000
+    /// times as heavy as others make 406 and 2,322 impacts in 400 steps at 0.02, and about 9,800 without. At 0.04 a frame
+    /// that is pressed against a wall still moves when the press has stopped. Rings have none of this: a heavy one would
+    /// drive a light one into the ground.
+    pub press: Real,
+    /// The least that a pair may get deeper in one go, in units of the gap. At 0 it would never leave its first contact.
     pub hair: Real,
     /// Impacts of a body in one step after which it stays where it is. Halved and doubled, 1.7 times and
     /// half as many bodies do at 150 m/s, for 0.75 and 1.33 times the queries.
@@ -77,6 +82,7 @@ impl Default for Tuning {
             touching: 0.45,
             stopping: 0.25,
             sink: 0.1,
+            press: 0.02,
             hair: 0.1,
             max_events: 16,
             max_stops: 8,

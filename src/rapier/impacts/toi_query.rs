@@ -2,7 +2,7 @@
 //! the certified query that finds when.
 //!
 //! - A fast pair stops a small gap before it touches. If it touches already, it may sink in by a tenth of the thickness
-//!   more, but not deeper than [`Tuning::floor`]; if it is deeper than that already, by a hair.
+//!   more, but not deeper than [`Tuning::floor`]; if it is deeper than that already, by [`Tuning::press`].
 //! - A slow pair is left to rapier's solver down to that floor. At the floor the cores of the bodies meet
 //!   ([`crate::elementary::Cores`]), at every place half way to the medial axes, so that no axis crosses another.
 //!
@@ -41,9 +41,9 @@ counters! {
 }
 
 impl Work {
-    /// Node pairs and elementary tests, of [`CcdPolicy::budget`].
+    /// What was spent of [`CcdPolicy::budget`].
     pub fn spent(&self) -> u64 {
-        self.counts.nodes + self.counts.tests
+        self.counts.work()
     }
 
     /// Counts a query.
@@ -110,7 +110,7 @@ pub struct CcdPolicy<'a> {
     pub tuning: Tuning,
     /// Whether the world may stop once more in this step.
     pub may_stop: bool,
-    /// Node pairs and elementary tests that first contacts may take.
+    /// Work that first contacts may take ([`Counts::work`]).
     pub budget: u64,
     /// Whether pairs may bounce in this step ([`Effects::restitution`]), which rapier's solver does not have then.
     pub bouncing: bool,
@@ -249,7 +249,11 @@ impl CcdPolicy<'_> {
             ..ToiOptions::default()
         };
         let hair = tuning.hair * gap;
-        let floor = options(0.5 * self.least_gap(), hair, tuning.floor);
+        let pressed = match view.are_of_pieces(pair) {
+            true => (tuning.press * thickness).max(hair),
+            false => hair,
+        };
+        let floor = options(0.5 * self.least_gap(), pressed, tuning.floor);
         // Where a meeting was, the gap is that of the target to within the tolerance: a larger target
         // makes it count as touching.
         let target = if self.stops(view, pair) {

@@ -263,6 +263,14 @@ impl StepView {
         foreign.map(|p| p.thickness).fold(Real::INFINITY, Real::min)
     }
 
+    /// Whether both are medial meshes of convex pieces (`medial/convex_pieces.rs`), as bodies with flat faces are.
+    pub fn are_of_pieces(&self, pair: [usize; 2]) -> bool {
+        let medial = pair.map(|k| self.parts[k].medial());
+        medial
+            .iter()
+            .all(|mesh| mesh.is_some_and(|mesh| !mesh.convex_pieces().is_empty()))
+    }
+
     /// How thin the thinnest collider is as a whole, a length; surfaces do not count.
     pub fn least_thickness(&self) -> Real {
         self.parts
