@@ -13,7 +13,7 @@
 
 use super::apart::{end_along, ends_hold};
 use super::deepening::given;
-use super::hull_gap::{PlacedHull, hull_gap};
+use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::path_ends::{held_on_paths, path_ends};
 use super::piece_contact::{
     Look, Nearest, Pieces, PiecesMet, farthest, is_blunt, nearest_primitive, patch, placed,
@@ -97,7 +97,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let mut found = hull_gap(hulls.each_ref(), touching);
         if !is_known_apart && found.gap <= touching {
             by?;
-            found = self.nearest(nodes, hulls.each_ref(), at).hull;
+            found = self.nearest(nodes, hulls.each_ref(), found, at).hull;
         }
         let touches = !is_known_apart && found.gap <= touching;
         // How deep cores are is not how deep pieces are, but for those that touch and have no sharp tips.
@@ -142,6 +142,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         time: f64,
     ) -> Look {
         let mut free = self.pieces_held_until(swept, nodes, pieces, time);
+        let mut found = None;
         // First any direction that keeps them apart now, then that of the largest gap.
         for is_last in [false, true] {
             match free {
@@ -153,9 +154,16 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             let placed = self.placed(nodes, time);
             let [a, b] = placed.each_ref().map(|hull| &hull.spheres[..]);
             let before = gap_along(a, b, pieces.direction);
+            let enough = if is_last { f64::MAX } else { pieces.contact };
+            // What was not enough is the largest that can be found.
+            let hull = match found {
+                Some(hull) => hull,
+                None => hull_gap(placed.each_ref(), enough),
+            };
+            found = (hull.gap <= enough).then_some(hull);
             let mut near = match is_last {
-                false => Nearest::of(hull_gap(placed.each_ref(), pieces.contact)),
-                true => self.nearest(nodes, placed.each_ref(), time),
+                false => Nearest::of(hull),
+                true => self.nearest(nodes, placed.each_ref(), hull, time),
             };
             if before > near.hull.gap {
                 (near.hull.gap, near.hull.direction) = (before, pieces.direction);
@@ -186,10 +194,17 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         }
     }
 
-    /// The largest gap of two pieces at a time that can be found, with a pair of primitives that are about nearest.
-    fn nearest(&self, nodes: [u32; 2], hulls: [&PlacedHull; 2], time: f64) -> Nearest {
+    /// The largest gap of two pieces at a time that can be found, from that of their hulls on, with a pair of primitives
+    /// that are about nearest.
+    fn nearest(
+        &self,
+        nodes: [u32; 2],
+        hulls: [&PlacedHull; 2],
+        hull: HullGap,
+        time: f64,
+    ) -> Nearest {
         let [a, b] = hulls.map(|hull| &hull.spheres[..]);
-        let mut near = Nearest::of(hull_gap(hulls, f64::MAX));
+        let mut near = Nearest::of(hull);
         let Some(mut points) = near.hull.nearest else {
             return near;
         };
@@ -275,7 +290,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let (met, time) = match touched && approaches {
             true => {
                 let placed = self.placed(nodes, 0.0);
-                let near = self.nearest(nodes, placed.each_ref(), 0.0);
+                let hull = hull_gap(placed.each_ref(), f64::MAX);
+                let near = self.nearest(nodes, placed.each_ref(), hull, 0.0);
                 let primitives = near.primitives.unwrap_or(met.primitives);
                 let tolerance = self.earliest.limits.tolerance;
                 let found = (primitives, &near.hull);

@@ -13,7 +13,8 @@ const GROUND: Vector = Vector::new(5.0, 0.5, 5.0);
 const OFF: f64 = 4.0e-6;
 
 /// Symptom: hits at less than 30 degrees were 0.1 mm nearer than the target distance. Cause: what may only slide along is
-/// searched again that much nearer, and the hit was told there.
+/// searched again that much nearer, and the hit was told there. Symptom: what began less than .1 mm farther off than the target
+/// distance was hit at time 0, so that characters stood still on flat ground. Cause: that was the tolerance.
 #[test]
 fn shallow_casts_hit_at_their_target_distance() {
     let half = Vector::new(0.3, 0.2, 0.25);
@@ -24,10 +25,15 @@ fn shallow_casts_hit_at_their_target_distance() {
     let mut rng = Rng::new(5);
     let mut random = |low: f64, high: f64| rng.range(low, high) as Real;
     let (mut hits, mut worst) = (0, [0.0_f64; 2]);
-    for _ in 0..3000 {
+    for k in 0..3000 {
         let turn = Vector::Y * random(-3.0, 3.0);
         let target_distance = [0.0, 0.01, 0.1][(random(0.0, 3.0) as usize).min(2)];
-        let gap = target_distance + random(1.0e-3, 0.02);
+        let farther = if k % 2 == 0 {
+            random(1.0e-3, 0.02)
+        } else {
+            random(1.0e-5, 1.0e-4)
+        };
+        let gap = target_distance + farther;
         let at = Vector::new(random(-2.0, 0.0), half.y + gap, random(-1.0, 1.0));
         let pose = Pose::new(at, turn);
         let angle = random(0.02, 0.7);

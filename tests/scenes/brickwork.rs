@@ -68,7 +68,7 @@ fn pyramids_stand_as_those_of_cuboids_do() {
     }
 }
 
-/// The step in which the last of a row of dominoes lies flat or leans, and node pairs, tests and proofs of the searches.
+/// The step in which the last of a row of dominoes lies flat or leans, and the work of the searches, in tests.
 fn dominoes(collider: &ColliderBuilder, spacing: Real, is_medial: bool) -> (Option<usize>, u64) {
     let mut world = world_with_ground();
     let mut row = Vec::new();
@@ -115,6 +115,6 @@ fn dominoes_fall_as_those_of_cuboids_do() {
             fallen.abs_diff(own_fallen) <= own_fallen / 8,
             "{spacing}: step {fallen}, cuboids {own_fallen}"
         );
-        assert!(spent < 45_000, "{spacing}: {spent} spent");
+        assert!(spent < 75_000, "{spacing}: {spent} spent");
     }
 }

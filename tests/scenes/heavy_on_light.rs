@@ -168,3 +168,88 @@ fn dropped_plates_fall_asleep_as_rapiers() {
         "{ours} {rapiers} {aside}"
     );
 }
+
+/// Twenty cards 4 mm thick that are dropped on each other a little tilted: steps until all sleep, how high the pile is then, and
+/// how often a body was frozen.
+fn dropped_cards(collider: &ColliderBuilder, seed: u64) -> (Option<usize>, Real, usize) {
+    let mut random = Random(seed);
+    let mut world = PhysicsWorld::new();
+    let ground = ColliderBuilder::cuboid(10.0, 0.5, 10.0).translation(Vector::Y * -0.5);
+    world.insert_collider(ground, None);
+    for k in 0..20 {
+        let [x, z] = [0, 1].map(|_| random.within(-0.2, 0.2));
+        let [a, b] = [0, 1].map(|_| random.within(-0.12, 0.12));
+        let at = Vector::new(x, 0.5 + 0.15 * k as Real, z);
+        let turned = Pose::new(at, Vector::new(a, random.within(-3.0, 3.0), b));
+        let body = RigidBodyBuilder::dynamic().pose(turned);
+        world.insert(body, collider.clone().density(800.0));
+    }
+    let mut pipeline = MedialPipeline::default();
+    let mut frozen = 0;
+    let asleep = (0..300).find(|_| {
+        frozen += pipeline.step(&mut world).frozen;
+        world.bodies.iter().all(|(_, b)| b.is_sleeping())
+    });
+    let heights = world.bodies.iter().map(|(_, b)| b.translation().y);
+    (asleep, heights.fold(0.0, Real::max), frozen)
+}
+
+/// Symptom: thirty such cards never came to rest, 27 of them were frozen in each step, and steps took up to 4 s. Cause: rapier's
+/// contacts give way by up to 3.5 mm under such a pile; what was deeper than three quarters of a card was resolved slab by
+/// slab, and slabs of one card pointed up while others pointed down.
+#[test]
+fn dropped_cards_fall_asleep_as_rapiers() {
+    let half = Vector::new(0.4, 0.002, 0.3);
+    let own = ColliderBuilder::cuboid(half.x, half.y, half.z);
+    let medial = ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a card"));
+    for seed in [1, 2] {
+        let (rapiers, own_height, _) = dropped_cards(&own, seed);
+        let (ours, height, frozen) = dropped_cards(&medial, seed);
+        println!(
+            "asleep after {ours:?} steps, rapier's {rapiers:?}; {height} m, {own_height} m high; {frozen} frozen"
+        );
+        assert!(
+            ours.is_some() && rapiers.is_some(),
+            "seed {seed}: {ours:?} {rapiers:?}"
+        );
+        assert!(height >= own_height - 0.002, "{height} {own_height}");
+        assert!(frozen < 60, "seed {seed}: {frozen} frozen");
+    }
+}
+
+/// Impacts of a wall of 24 bricks in 400 steps, and how often one was frozen; of some the density is up to 10,000 times that
+/// of others.
+fn wall_of_unlike_bricks(brick: &ColliderBuilder, seed: u64) -> [usize; 2] {
+    let mut random = Random(seed);
+    let mut world = PhysicsWorld::new();
+    let ground = ColliderBuilder::cuboid(20.0, 0.5, 20.0).translation(Vector::Y * -0.5);
+    world.insert_collider(ground, None);
+    for k in 0..24 {
+        let (row, place) = (k / 4, k % 4);
+        let x = 0.82 * place as Real + 0.41 * (row % 2) as Real;
+        let at = Vector::new(x, 0.1 + 0.201 * row as Real, 0.0);
+        let density = Real::powf(1.0e4, random.within(0.0, 1.0));
+        let body = RigidBodyBuilder::dynamic().translation(at);
+        world.insert(body, brick.clone().density(density));
+    }
+    let mut pipeline = MedialPipeline::default();
+    let reports = (0..400).map(|_| pipeline.step(&mut world));
+    reports.fold([0, 0], |[events, frozen], r| {
+        [events + r.events, frozen + r.frozen]
+    })
+}
+
+/// Symptom: such walls were held by impacts for ever, at 10 ms a step: these four took 43,229 and froze bricks 831 times. Cause:
+/// bricks that heavier ones press deeper than the floor were allowed a tenth of a millimetre more by each search, less than
+/// rapier's contacts give way.
+#[test]
+fn walls_of_very_unlike_bricks_need_few_impacts() {
+    let half = Vector::new(0.4, 0.1, 0.2);
+    let brick = ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a brick"));
+    let walls: Vec<_> = (1..=4)
+        .map(|seed| wall_of_unlike_bricks(&brick, seed))
+        .collect();
+    println!("impacts, frozen: {walls:?}");
+    let sum = |k: usize| walls.iter().map(|wall| wall[k]).sum::<usize>();
+    assert!(sum(0) < 15_000 && sum(1) < 200, "{walls:?}");
+}
