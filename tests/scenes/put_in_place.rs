@@ -93,9 +93,9 @@ fn bodies_that_get_another_shape_in_each_other_come_apart() {
     assert!(sum / 6.0 < 0.00155, "{} m deep in the mean", sum / 6.0);
 }
 
-/// How deep two rings are in each other, by rapier's own shapes: a joint without contacts held them so, and was removed two
-/// seconds ago.
-fn let_go(medial: bool, seed: u64) -> Real {
+/// How deep two rings are in each other, by rapier's own shapes: a joint with or without contacts held them so, and was
+/// removed two seconds ago.
+fn let_go(medial: bool, contacts: bool, seed: u64) -> Real {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;
     let mut pipeline = attached(&mut world);
@@ -114,7 +114,7 @@ fn let_go(medial: bool, seed: u64) -> Real {
     });
     let joint = FixedJointBuilder::new()
         .local_frame1(poses[0].inv_mul(&poses[1]))
-        .contacts_enabled(false);
+        .contacts_enabled(contacts);
     let joint = world.insert_impulse_joint(bodies[0], bodies[1], joint);
     for step in 0..180 {
         if step == 60 {
@@ -134,8 +134,21 @@ fn let_go(medial: bool, seed: u64) -> Real {
 #[test]
 fn bodies_that_a_joint_lets_go_of_in_each_other_come_apart() {
     for seed in 0..8 {
-        let [ours, own] = [true, false].map(|medial| let_go(medial, seed));
+        let [ours, own] = [true, false].map(|medial| let_go(medial, false, seed));
         println!("seed {seed}: {ours} m deep, rapier's own {own}");
         assert!(ours < own.max(0.0) + 0.002, "seed {seed}: {ours} m, {own}");
     }
+}
+
+/// Symptom: the same of a joint with contacts: 3.2 cm deep in the mean, where rapier's own are 1.8. Nothing parts rings that are
+/// caught in each other quite, neither ours nor rapier's.
+#[test]
+fn rings_that_a_joint_with_contacts_lets_go_of_come_apart_as_far_as_rapiers() {
+    let mean = |medial: bool| {
+        let depths = (0..8).map(|seed| let_go(medial, true, seed).max(0.0));
+        depths.sum::<Real>() / 8.0
+    };
+    let [ours, own] = [true, false].map(mean);
+    println!("{ours} m deep in the mean, rapier's own {own}");
+    assert!(ours < own + 0.005, "{ours} {own}");
 }

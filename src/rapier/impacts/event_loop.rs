@@ -101,7 +101,7 @@ pub fn resolve(
     } else {
         DeepPairs::default()
     };
-    let left = placed.leave(view, &deep);
+    let left = placed.leave(view, &deep, &rules);
     let deep = deep.watched;
     let all = view.bodies.iter().enumerate();
     let taken = all.filter(|(_, body)| body.is_taken_back);

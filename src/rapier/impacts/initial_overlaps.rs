@@ -13,7 +13,8 @@
 //! steps, or got other shapes, by so much that they may have been apart before. A pair that forces pressed together is
 //! held, even if both are moved together. A free body that gives way to another, by rapier's dominance groups, is
 //! left to the solver as soon as the two are below the floor, and so is one between two that do not give way
-//! ([`crate::rapier::impacts::pinched`]).
+//! ([`crate::rapier::impacts::pinched`]). A pair that a joint holds is left where it is watched and 2 mm deep, and stays left when
+//! the joint is gone.
 
 use crate::math::fast_hash::FastSet;
 use crate::math::{Pose, Real};
@@ -177,7 +178,7 @@ impl InitialOverlaps {
     }
 
     /// Pairs with deep contacts in this step that are left to the solver.
-    pub fn leave(&mut self, view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
+    pub fn leave(&mut self, view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
         let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
         let was_put = |pair: [usize; 2], deep: &Deep| {
             let is_met = self.met.contains(&handles(pair));
@@ -201,6 +202,7 @@ impl InitialOverlaps {
             self.left.contains(&handles(*pair))
                 || was_put(*pair, deep)
                 || deep.way > 0.0 && one_gives_way(view, *pair)
+                || deep.is_sunk && rules.are_jointed(view, *pair)
                 || pinched.contains(pair)
         };
         let left = deep
