@@ -264,3 +264,29 @@ fn ball_driven_along_a_locked_axis_spins_in_rapiers_solver() {
     assert!(rapiers < 1.0, "rapier's ball turns by {rapiers} rad/s");
     assert!(ours > 1.0e3, "only {ours} rad/s now");
 }
+
+/// Needles that lie across each other press deeper into each other in rapier's solver than the floor
+/// (`docs/effects.md`), so impacts hold them up in every step, and they never sleep. rapier's cuboids do.
+#[test]
+fn crossed_needles_never_sleep() {
+    let half = Vector::new(0.4, 0.004, 0.004);
+    let needle = MedialMesh::cuboid(half).expect("a needle");
+    let asleep = |collider: ColliderBuilder| {
+        let mut world = PhysicsWorld::new();
+        let ground = ColliderBuilder::cuboid(20.0, 0.5, 20.0).translation(Vector::Y * -0.5);
+        world.insert_collider(ground, None);
+        for k in 0..20 {
+            let turn = Vector::new(0.1, 2.4 * k as Real, 0.2);
+            let at = Vector::new(0.02 * (k % 3) as Real, 0.1 + 0.1 * k as Real, 0.0);
+            let body = RigidBodyBuilder::dynamic().pose(Pose::new(at, turn));
+            world.insert(body, collider.clone().density(2000.0));
+        }
+        let mut pipeline = MedialPipeline::default();
+        (0..300).for_each(|_| _ = pipeline.step(&mut world));
+        world.bodies.iter().filter(|(_, b)| b.is_sleeping()).count()
+    };
+    let ours = asleep(ColliderBuilder::medial_mesh(needle));
+    let own = asleep(ColliderBuilder::cuboid(half.x, half.y, half.z));
+    println!("{ours} of 20 sleep, {own} of rapier's");
+    assert!(own == 20 && ours < 20, "{ours}, {own}");
+}
