@@ -38,7 +38,8 @@ const THROUGH: f64 = 2.0;
 const THROUGH_SURFACE: f64 = 1.0;
 
 /// How deep two solid pieces may get in the same units, to be settled as a whole. Their primitives, which decide beyond it,
-/// point out of thin pieces on both sides: at 1.5, thirty cards that are dropped on each other never come to rest.
+/// point out of thin pieces on both sides: at 1.5, thirty cards that are dropped on each other are not at rest after 150 steps,
+/// at 1.95 they sleep after 106.
 const DEEPEST: f64 = 1.95;
 
 /// The same of a piece in a surface.

@@ -85,10 +85,11 @@ pub struct MedialOptions {
     pub effects: Effects,
     /// The CPU or a GPU, for contacts and first contacts of many pairs. The results are the same, bit by bit.
     pub backend: Backend,
-    /// How much work the search for first contacts may do in a step, counted in tests (of pairs of tree nodes, and of
-    /// pairs of primitives; two convex pieces count as 16), each of which takes half a microsecond to one. Once the budget is spent, a body whose
-    /// path is not searched to the end stops where it is proven free, and goes on in the next step at the speed it
-    /// had ([`crate::StepReport::waiting`] counts such bodies). So these bodies lose time, but pass through nothing.
+    /// How much work the search for first contacts may do in a step, counted in tests of pairs of tree nodes and of pairs
+    /// of primitives, each of which takes half a microsecond to one. A look at two convex pieces, parts of bodies with flat
+    /// faces, counts as 16. Once the budget is spent, a body whose path is not searched to the end stops where it is proven
+    /// free, and goes on in the next step at the speed it had ([`crate::StepReport::waiting`] counts such bodies). So these
+    /// bodies lose time, but pass through nothing.
     pub budget: u64,
 }
 
