@@ -27,6 +27,9 @@ const SAME_PLACE: f64 = 0.25;
 /// deeper than that slope from the edge it tips over are not left in. With 1 a knot slept 60 mm deep.
 const STEEPEST: f64 = 0.02;
 
+/// Area from which a contact makes the support wider, in units of the square of the largest distance from the centre.
+const WIDER: f64 = 1.0e-3;
+
 /// Pivots after which the facet found so far has to do.
 const PIVOTS: usize = 64;
 
@@ -187,21 +190,46 @@ fn without_doubles(seen: &mut Vec<Seen>, radius: f64) -> Vec<[usize; 2]> {
     doubles
 }
 
-/// Four of the contacts: the facet above the origin, and those furthest from it, where the body may
-/// come down next.
+/// Four of the contacts: the facet above the origin, and those that make the area over which the body stands largest,
+/// or are farthest from the others where none makes it larger.
 fn bearing(seen: &[Seen]) -> Vec<usize> {
     let mut bear: Vec<usize> = facet(seen).into_iter().flatten().collect();
+    let least = WIDER * seen.iter().map(|s| square(s.at)).fold(0.0, f64::max);
     while bear.len() < SOLVED {
-        let apart = |s: &Seen| {
-            let to = |b: &usize| square([0, 1].map(|k| s.at[k] - seen[*b].at[k]));
-            bear.iter().map(to).fold(f64::MAX, f64::min)
+        let chosen: Vec<[f64; 2]> = bear.iter().map(|b| seen[*b].at).collect();
+        let worth = |i: usize| {
+            let at = seen[i].at;
+            let gain = gained(&chosen, at);
+            let to = |c: &[f64; 2]| square([at[0] - c[0], at[1] - c[1]]);
+            let apart = chosen.iter().map(to).fold(f64::MAX, f64::min);
+            (if gain > least { gain } else { 0.0 }, apart)
         };
         let rest = (0..seen.len()).filter(|i| !bear.contains(i));
-        let next = rest.max_by(|i, j| apart(&seen[*i]).total_cmp(&apart(&seen[*j])));
-        let Some(next) = next else { break };
+        let rest = rest.map(|i| (i, worth(i)));
+        let next = rest.max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let Some((next, _)) = next else { break };
         bear.push(next);
     }
     bear
+}
+
+/// Area that a point adds to a triangle, twice; the triangle's own of two points and this one.
+fn gained(of: &[[f64; 2]], p: [f64; 2]) -> f64 {
+    let twice =
+        |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+    match *of {
+        [a, b] => twice(a, b).abs(),
+        [a, b, c] => {
+            let parts = [twice(a, b), twice(b, c), twice(c, a)];
+            let whole: f64 = parts.iter().sum();
+            // What is on the other side of an edge.
+            parts
+                .iter()
+                .map(|part| (-part * whole.signum()).max(0.0))
+                .sum()
+        }
+        _ => 0.0,
+    }
 }
 
 /// The corners of the facet above the origin. One is missing where the origin is not above the contacts:

@@ -100,3 +100,15 @@ pub fn attached(world: &mut PhysicsWorld) -> MedialPipeline {
     pipeline.attach(world);
     pipeline
 }
+
+/// Boxes that overlap, by their centres and half sides.
+pub fn boxes(all: &[(Vector, Vector)]) -> (Vec<Vector>, Vec<[u32; 3]>) {
+    let (mut vertices, mut indices) = (Vec::new(), Vec::new());
+    for (at, half) in all {
+        let (points, triangles) = Cuboid::new(*half).to_trimesh();
+        let first = vertices.len() as u32;
+        vertices.extend(points.into_iter().map(|p| p + *at));
+        indices.extend(triangles.into_iter().map(|t| t.map(|v| v + first)));
+    }
+    (vertices, indices)
+}

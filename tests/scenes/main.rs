@@ -25,6 +25,7 @@ mod energy;
 mod eulers_disc;
 mod fast_pairs;
 mod features;
+mod feet;
 mod filters;
 mod fixed_partners;
 mod fixtures;

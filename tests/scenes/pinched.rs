@@ -1,7 +1,7 @@
 //! Bodies that a press squeezes against the ground to less than their thickness, and links that joints press into each
 //! other, beside rapier's own shapes.
 
-use crate::bodies::{attached, ring};
+use crate::bodies::{attached, boxes, ring};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
@@ -233,13 +233,7 @@ fn bars(medial: bool, is_frame: bool) -> SharedShape {
     if !medial {
         return SharedShape::compound(bars.iter().map(own).collect());
     }
-    let (mut vertices, mut indices) = (Vec::new(), Vec::new());
-    for (at, half) in bars {
-        let (points, triangles) = Cuboid::new(half).to_trimesh();
-        let first = vertices.len() as u32;
-        vertices.extend(points.into_iter().map(|p| p + at));
-        indices.extend(triangles.into_iter().map(|t| t.map(|v| v + first)));
-    }
+    let (vertices, indices) = boxes(&bars);
     let mesh = MedialMesh::from_trimesh(&vertices, &indices, &BuildOptions::default());
     SharedShape::medial_mesh(mesh.expect("bars").0)
 }
@@ -291,13 +285,14 @@ fn against_a_wall(shapes: &[SharedShape; 2], medial: bool, seed: u64) -> (u64, R
 fn frames_pushed_against_a_wall_are_left_to_the_solver() {
     let [ours, own] =
         [true, false].map(|medial| [true, false].map(|is_frame| bars(medial, is_frame)));
-    let mut most = 0;
-    for seed in 0..16 {
-        let (queries, speed) = against_a_wall(&ours, true, seed);
-        let (_, rapiers) = against_a_wall(&own, false, seed);
-        println!("seed {seed}: {queries} queries, {speed} m/s, rapier's {rapiers} m/s");
-        assert!(speed < rapiers + 0.5, "seed {seed}: {speed}, {rapiers} m/s");
-        most = most.max(queries);
-    }
+    let queries = (0..16).map(|seed| against_a_wall(&ours, true, seed).0);
+    let most = queries.max().expect("some seeds");
     assert!(most < 100, "{most} queries in 40 steps");
+    // What is thrown out of where it is pinched is chance; how often, is not.
+    let thrown = [(&ours, true), (&own, false)].map(|(shapes, medial)| {
+        let speeds = (0..240).map(|seed| against_a_wall(shapes, medial, seed).1);
+        speeds.filter(|speed| *speed > 0.5).count()
+    });
+    println!("{most} queries, thrown {thrown:?}");
+    assert!(thrown[0] <= thrown[1] + 3, "thrown, rapier's: {thrown:?}");
 }
