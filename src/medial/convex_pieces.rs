@@ -6,6 +6,7 @@ use super::simplex::{Simplex, primitive_of};
 use super::sphere::MedialSphere;
 use super::thickness;
 use super::tree::{NodeKind, SphereTree};
+use crate::math::fast_hash::FastSet;
 use crate::math::lane::Vec3;
 use crate::math::{Real, Vector};
 
@@ -25,6 +26,15 @@ pub struct Face {
     pub corners: Vec<u32>,
 }
 
+/// The edges of a polyhedron, grown by a radius.
+#[derive(Clone, Debug)]
+pub struct Edges {
+    /// An edge of each direction, the longest: its ends by their places in [`ConvexPiece::spheres`].
+    pub ends: Vec<[u32; 2]>,
+    /// The radius of all corners, a length.
+    pub radius: Real,
+}
+
 /// A connected part of a mesh that is the convex hull of its spheres, in the body's frame.
 #[derive(Clone, Debug)]
 pub struct ConvexPiece {
@@ -34,6 +44,8 @@ pub struct ConvexPiece {
     pub spheres: Vec<MedialSphere>,
     /// Its flat faces.
     pub faces: Vec<Face>,
+    /// Its edges, where the faces are all of its surface but for the radius of the corners, which is one.
+    pub edges: Option<Edges>,
     /// The thickness of that, a length (`thickness.rs`).
     pub thickness: Real,
     /// Whether each of its primitives is blunt (`thickness.rs`).
@@ -87,12 +99,55 @@ impl ConvexPiece {
         }
         Self {
             primitive,
+            edges: edges(&spheres, &faces),
             faces,
             thickness,
             is_blunt,
             spheres,
         }
     }
+}
+
+/// The edges of the hull of spheres that has these faces, if they close and their corners have one radius.
+fn edges(spheres: &[MedialSphere], faces: &[Face]) -> Option<Edges> {
+    let radius = spheres[*faces.first()?.corners.first()? as usize].radius;
+    // Of a closed surface each edge is passed once in each direction.
+    let mut passed = FastSet::default();
+    let mut all = Vec::new();
+    for face in faces {
+        let next = face.corners.iter().cycle().skip(1);
+        for (a, b) in face.corners.iter().zip(next) {
+            if spheres[*a as usize].radius != radius || !passed.insert([*a, *b]) {
+                return None;
+            }
+            all.extend((a < b).then_some([*a, *b]));
+        }
+    }
+    if !passed.iter().all(|[a, b]| passed.contains(&[*b, *a])) {
+        return None;
+    }
+    let way = |[a, b]: [u32; 2]| {
+        let [a, b] = [a, b].map(|k| Vec3::<f64>::from_vector(spheres[k as usize].center));
+        b - a
+    };
+    all.sort_by(|a, b| {
+        way(*b)
+            .length_sq()
+            .total_cmp(&way(*a).length_sq())
+            .then(a.cmp(b))
+    });
+    let mut ends: Vec<[u32; 2]> = Vec::new();
+    for edge in all {
+        let e = way(edge);
+        let is_along = |other: &[u32; 2]| {
+            let other = way(*other);
+            other.dot(e).abs() >= SAME_NORMAL * other.length() * e.length()
+        };
+        if !ends.iter().any(is_along) {
+            ends.push(edge);
+        }
+    }
+    Some(Edges { ends, radius })
 }
 
 /// The face of the hull of spheres that looks along a unit normal, if it is one.

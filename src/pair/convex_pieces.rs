@@ -13,7 +13,7 @@
 
 use super::apart::{end_along, ends_hold};
 use super::deepening::given;
-use super::hull_gap::{HullGap, PlacedHull, hull_gap};
+use super::hull_gap::{HullGap, PlacedHull, hull_gap, nearest_points};
 use super::path_ends::{held_on_paths, path_ends};
 use super::piece_contact::{
     Look, Nearest, Pieces, PiecesMet, farthest, is_blunt, nearest_primitive, patch, placed,
@@ -98,7 +98,10 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let mut found = hull_gap(hulls.each_ref(), touching);
         if !is_known_apart && found.gap <= touching {
             by?;
-            found = self.nearest(nodes, hulls.each_ref(), found, at).hull;
+            // Where parry was not asked, no direction has more.
+            if found.nearest.is_some() {
+                found = self.nearest(nodes, hulls.each_ref(), found, at).hull;
+            }
         }
         let touches = !is_known_apart && found.gap <= touching;
         // How deep cores are is not how deep pieces are, but for those that touch and have no sharp tips.
@@ -205,7 +208,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         time: f64,
     ) -> Nearest {
         let [a, b] = hulls.map(|hull| &hull.spheres[..]);
-        let mut near = Nearest::of(hull);
+        let mut near = Nearest::of(nearest_points(hulls, hull));
         let Some(mut points) = near.hull.nearest else {
             return near;
         };

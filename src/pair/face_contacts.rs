@@ -2,7 +2,7 @@
 //! the polygon in which the two faces overlap, as in other engines (Sutherland and Hodgman, "Reentrant polygon clipping",
 //! 1974); else their nearest points. Each contact is a pair of spheres, as those of two primitives are.
 
-use super::hull_gap::{HullGap, PlacedHull, hull_gap};
+use super::hull_gap::{HullGap, PlacedHull, hull_gap, nearest_points};
 use super::placement::Placement;
 use super::sphere_pair::SpherePair;
 use crate::elementary::distance::Ball;
@@ -38,7 +38,7 @@ pub(super) fn face_contacts(
     place: &Placement,
     margin: f64,
 ) -> Vec<SpherePair> {
-    let hull = hull_gap(hulls, f64::MAX);
+    let hull = hull_gap(hulls, margin);
     if hull.gap > margin {
         return Vec::new();
     }
@@ -119,14 +119,16 @@ pub(super) fn add_nearest(
     place: &Placement,
     found: &mut Vec<SpherePair>,
 ) {
+    let deepest = found.iter().map(|c| f64::from(c.distance));
+    if deepest.fold(f64::MAX, f64::min) <= hull.gap + least_missed(hulls, hull.gap) {
+        return;
+    }
     let HullGap {
         gap,
         direction,
         nearest,
-    } = hull;
-    let deepest = found.iter().map(|c| f64::from(c.distance));
-    let is_missing = deepest.fold(f64::MAX, f64::min) > gap + least_missed(hulls, gap);
-    if is_missing && let Some(points) = nearest {
+    } = nearest_points(hulls, hull);
+    if let Some(points) = nearest {
         let middle = (points[0] + points[1]) * 0.5;
         let half = direction * (0.5 * gap);
         let second = place.inverse_point(middle + half);
