@@ -131,12 +131,18 @@ impl MedialMesh {
         }
         notes.extend(findings.undone_in_words());
         notes.extend(candidate.notes);
+        if let Some(count) = candidate.exact_with {
+            notes.push(format!(
+                "with {count} primitives it would be exact and build faster, at about the same time per step or less"
+            ));
+        }
         let frame = surface.frame;
         let report = BuildReport {
             hausdorff: in_unit(candidate.hausdorff, frame.scale),
             hausdorff_before_enclosure: candidate.before.map(|h| in_unit(h, frame.scale)),
             longest_side: frame.scale as Real,
             primitives: mesh.primitive_count(),
+            exact_with: candidate.exact_with,
             variant: candidate.variant,
             euler: mesh.spheres().len() as i64 - mesh.edges().len() as i64
                 + mesh.faces().len() as i64,

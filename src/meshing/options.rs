@@ -141,7 +141,7 @@ pub struct Hausdorff {
     /// Uncertainty of [`Self::error`], since only some points were measured: no point of either surface is farther from
     /// the other than `error() + sampling`. It is a quarter of the error (half with [`Quality::Fast`] and no
     /// [`BuildOptions::max_error`]), or more if the error is below two thousandths of the size or the
-    /// search ran out of its budget.
+    /// search ran out of its budget. For [`Variant::Exact`] it is known from how the result is made.
     pub sampling: Real,
 }
 
@@ -172,8 +172,9 @@ pub enum Variant {
     },
     /// The medial mesh is exact: it consists of the medial axes of convex bodies with flat faces, or of overlapping
     /// convex pieces that together are the body. For such pieces [`Hausdorff::error`] is measured. It is some
-    /// millionths of the size, or more if vertices lie off the planes of their faces, or are rounded because the mesh
-    /// is far from the origin. [`Hausdorff::sampling`] may be a hundredth of the size.
+    /// millionths of the size, or more if vertices lie off the planes of their faces (by up to two hundred-thousandths
+    /// of the size), or are rounded because the mesh is far from the origin. [`Hausdorff::sampling`] follows from how
+    /// the pieces are made: ten millionths of the size, or four ten-thousandths where vertices are off.
     Exact,
 }
 
@@ -193,6 +194,9 @@ pub struct BuildReport {
     pub longest_side: Real,
     /// Number of primitives of the result.
     pub primitives: usize,
+    /// Number of primitives with which the result would be exact, where it is not, and that number is at most the
+    /// default of [`BuildOptions::primitives`] or what you allow. Bodies of flat faces often are with few.
+    pub exact_with: Option<usize>,
     /// Whether sharp edges were kept.
     pub variant: Variant,
     /// Euler number of the result: spheres − edges + faces. It is 1 for a ball, 0 for a ring. If the result consists of
@@ -273,6 +277,12 @@ impl Limits {
             allow_uncovered,
             creases: options.creases,
         })
+    }
+
+    /// Primitives of an exact result that is worth to be told of: as many as are allowed, or by default.
+    pub fn worth_saying(&self) -> usize {
+        let default = BuildOptions::default().primitives.unwrap_or(0);
+        self.primitives.map_or(usize::MAX, |n| n.max(default))
     }
 
     /// Samples of the surface that the medial mesh starts from: two for each primitive wanted, or

@@ -187,6 +187,42 @@ pub fn built(mesh: &Mesh, quality: Quality) -> (MedialMesh, rapier3d_medial::Bui
     MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options).expect("a block")
 }
 
+/// A frame of four bars with fewer primitives than it takes to be exact: the report says how many.
+#[test]
+fn with_too_few_primitives_the_exact_number_is_told() {
+    let lines = [
+        &[0.0, 1.0, 5.0, 6.0][..],
+        &[0.0, 1.0, 5.0, 6.0],
+        &[0.0, 1.0],
+    ];
+    let ring = (0..9).filter(|k| *k != 4).map(|k| [k / 3, k % 3, 0]);
+    let grid = Grid {
+        lines: lines.map(<[f64]>::to_vec),
+        cells: ring.collect(),
+    };
+    let mesh = grid.mesh(|p| p.map(|x| x as f32).into());
+    let with = |primitives: usize| {
+        let options = BuildOptions {
+            primitives: Some(primitives),
+            quality: Quality::Fast,
+            ..Default::default()
+        };
+        let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
+        built.expect("a frame").1
+    };
+    let few = with(40);
+    let count = few.exact_with.expect("a number");
+    assert!(
+        few.primitives <= 40 && few.variant != Variant::Exact,
+        "{few:?}"
+    );
+    let note = format!("with {count} primitives it would be exact");
+    assert!(few.notes.iter().any(|n| n.starts_with(&note)), "{few:?}");
+    let enough = with(count);
+    assert_eq!((enough.variant, enough.exact_with), (Variant::Exact, None));
+    assert_eq!(with(count - 1).exact_with, Some(count));
+}
+
 /// Sets of boxes are exact, however they lie: what sticks out, what is left out and the holes are known from the grid.
 #[test]
 fn blocks_of_boxes_are_exact() {

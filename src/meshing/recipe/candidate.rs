@@ -21,6 +21,8 @@ pub struct Candidate {
     pub before: Option<Hausdorff>,
     pub notes: Vec<String>,
     pub variant: Variant,
+    /// With how many primitives it would be exact, where it is not.
+    pub exact_with: Option<usize>,
 }
 
 impl Candidate {
@@ -196,6 +198,7 @@ impl Source {
             before,
             notes: Vec::new(),
             variant: Variant::Rounded,
+            exact_with: None,
         })
     }
 }

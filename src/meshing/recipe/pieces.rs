@@ -2,15 +2,16 @@
 //! (`convex_pieces.rs`), each of which is exact (`polyhedron.rs`).
 
 use crate::error::BuildError;
+use crate::math::Real;
 use crate::meshing::axis::convex_pieces::{MOST_PLANES, Piece, convex_pieces};
 use crate::meshing::certify::largest::Effort;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::options::Variant;
+use crate::meshing::options::{Hausdorff, Variant};
 use crate::meshing::recipe::candidate::Candidate;
-use crate::meshing::recipe::polyhedron::{MOST, SAME_AREA, axis, faces_of};
+use crate::meshing::recipe::polyhedron::{MOST, SAME_AREA, axis, faces_of, known};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::checked_surface::{Surface, cross};
 use crate::meshing::surface::flat_faces::{
@@ -23,24 +24,30 @@ use std::borrow::Cow;
 /// quite flat count as exact.
 const CLOSE: f64 = 20.0;
 
+/// An error up to this (longest side 1) is rounding.
+const ROUNDED: f64 = 2e-5;
+
 /// A surface that holds a convex piece, and the piece's faces.
 type Part<'a> = (Cow<'a, Surface>, FlatFaces);
 
 impl Source {
-    /// The medial axes of convex pieces of the body, if these are within the limit on the count: of the convex parts that
+    /// The medial axes of convex pieces of the body, if these have at most `most` primitives: of the convex parts that
     /// the source consists of, or of those that its faces make, whichever has fewer primitives.
-    pub fn pieces(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+    pub fn pieces(&self, most: usize, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+        let most = most.min(MOST);
         if self.bounds().0.sheet.contains(&true) {
             return Ok(None);
         }
         for flatness in FLATNESS {
             let flat = flatness * rounding(&self.surface);
-            let own = self.own_parts(flat, watch)?;
+            let own = self.own_parts(flat, most, watch)?;
             let made = self.parts_by_faces(flat, watch)?;
             let mut best: Option<Candidate> = None;
             for (parts, beside) in [own, made].into_iter().flatten() {
-                let least = best.as_ref().map(|best| best.draft.faces.len() - 1);
-                let next = self.of_parts(&parts, beside, CLOSE * flat, least, watch)?;
+                let most = best
+                    .as_ref()
+                    .map_or(most, |best| best.draft.faces.len() - 1);
+                let next = self.of_parts(&parts, beside, CLOSE * flat, most, watch)?;
                 best = next.or(best);
             }
             if best.is_some() {
@@ -55,6 +62,7 @@ impl Source {
     fn own_parts(
         &self,
         flat: f64,
+        most: usize,
         watch: &mut Watch,
     ) -> Result<Option<(Vec<Part<'_>>, f64)>, BuildError> {
         if self.surface.simple {
@@ -69,7 +77,7 @@ impl Source {
             bodies[patch as usize].push(t);
         }
         let seen = bodies.into_iter().zip(is_seen).filter(|(_, seen)| *seen);
-        let most = faces_of(self.limits.primitives.unwrap_or(MOST));
+        let most = faces_of(most);
         let mut parts = Vec::new();
         for (body, _) in seen {
             let Some(faces) = convex_faces(&self.surface, body, flat, most, watch)? else {
@@ -104,23 +112,21 @@ impl Source {
         Ok(pieces.map(|pieces| (parts(pieces), beside)))
     }
 
-    /// The medial axes of convex pieces whose union is the body, if they have at most `least` primitives, and are off by less
+    /// The medial axes of convex pieces whose union is the body, if they have at most `most` primitives, and are off by less
     /// than `close`; the source's corners may be `beside` them.
     fn of_parts(
         &self,
         parts: &[Part],
         beside: f64,
         close: f64,
-        least: Option<usize>,
+        most: usize,
         watch: &mut Watch,
     ) -> Result<Option<Candidate>, BuildError> {
         let Some(angle) = self.limits.creases.angle_of_flat() else {
             return Ok(None);
         };
-        let most = self.limits.primitives.unwrap_or(MOST).min(MOST);
-        let most = least.map_or(most, |least| most.min(least));
         let mut draft = Draft::default();
-        let mut growth: f64 = 0.0;
+        let (mut growth, mut bulge): (f64, f64) = (0.0, 0.0);
         for (surface, faces) in parts {
             let left = most.saturating_sub(draft.faces.len());
             let corners = |i: usize| surface.corners(faces.face_of[i].0);
@@ -136,26 +142,37 @@ impl Source {
                 return Ok(None);
             }
             growth = growth.max(axis.growth);
+            bulge = bulge.max(axis.bulge);
             draft = draft.and(axis.draft);
         }
         let count = draft.faces.len();
-        let before = self.limits.enclose.then(|| draft.clone());
         let grown = match self.limits.enclose {
             true => (growth + beside + self.surface.welded - self.limits.allow_uncovered).max(0.0),
             false => 0.0,
         };
         draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
-        let enclosed = self.measured(draft, before, Effort::CLOSE, watch)?;
+        let mut enclosed = self.measured(draft, None, Effort::QUICK, watch)?;
         // Triangles without area may stick out of the pieces, which are of the others alone.
         let uncovered = f64::from(enclosed.hausdorff.uncovered);
         let is_short = self.limits.enclose && uncovered > self.limits.allow_uncovered;
         if is_short || enclosed.error() > close {
             return Ok(None);
         }
+        // Between the points measured too: each piece is, and together they are the body.
+        enclosed.hausdorff.sampling = enclosed.hausdorff.sampling.min(close as Real);
         let mut candidate = self.reported(enclosed, watch)?;
         candidate.variant = Variant::Exact;
+        let before = Hausdorff {
+            sampling: beside as Real,
+            ..known(growth, bulge)
+        };
+        candidate.before = self.limits.enclose.then_some(before);
+        let off = match candidate.error() {
+            off if off > ROUNDED => format!(" but for {off:.6}, by which faces are not flat"),
+            _ => String::new(),
+        };
         candidate.notes.push(format!(
-            "{} convex pieces that overlap: their medial axes have {count} primitives, and are exact",
+            "{} convex pieces that overlap: their medial axes have {count} primitives, and are exact{off}",
             parts.len()
         ));
         Ok(Some(candidate))

@@ -3,6 +3,7 @@
 use crate::error::BuildError;
 use crate::math::Real;
 use crate::meshing::axis::start::{Start, start};
+use crate::meshing::options::Variant;
 use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::recipe::counts::{Collapses, LARGEST_GAIN};
 use crate::meshing::recipe::extruded::NEAR;
@@ -24,9 +25,23 @@ const FEW_SAMPLES: usize = 2_000;
 
 impl Source {
     /// Makes the best candidate that the limits allow: balls inside where the surface bounds matter, slabs where it is
-    /// a sheet.
+    /// a sheet. Where it is not exact but could be, it says with how many primitives.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let exact = self.exact(watch)?;
+        let exact = self.exact(self.limits.worth_saying(), watch)?;
+        let count = exact.as_ref().map(|exact| exact.draft.primitives().len());
+        let asked = self.limits.primitives.unwrap_or(usize::MAX);
+        let exact = exact.filter(|_| count <= Some(asked));
+        let mut candidate = self.best_beside(exact, watch)?;
+        candidate.exact_with = count.filter(|_| candidate.variant != Variant::Exact);
+        Ok(candidate)
+    }
+
+    /// The best candidate, where `exact` is one that is exact, if there is any.
+    fn best_beside(
+        &mut self,
+        exact: Option<Candidate>,
+        watch: &mut Watch,
+    ) -> Result<Candidate, BuildError> {
         if self.limits.max_error.is_none()
             && let Some(exact) = exact
         {
@@ -77,20 +92,23 @@ impl Source {
     }
 
     /// The medial axes of convex polyhedra or of convex pieces, where the body consists of these. Before, it finds the
-    /// boundary of the solid.
-    pub fn exact(&mut self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
+    /// boundary of the solid. They have at most `most` primitives.
+    pub fn exact(
+        &mut self,
+        most: usize,
+        watch: &mut Watch,
+    ) -> Result<Option<Candidate>, BuildError> {
         let mut findings = std::mem::take(&mut self.surface.findings);
         self.boundary = solid_boundary(&self.surface, &self.tree, &mut findings, watch)?;
         self.surface.findings = findings;
-        match self.polyhedra(watch)? {
-            None => self.pieces(watch),
+        match self.polyhedra(most, watch)? {
+            None => self.pieces(most, watch),
             convex => Ok(convex),
         }
     }
 
-    /// The medial axis of convex polyhedra itself, if that is within the limit on the count.
-    fn polyhedra(&self, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
-        let most = self.limits.primitives.unwrap_or(usize::MAX);
+    /// The medial axis of convex polyhedra itself, if it has at most `most` primitives.
+    fn polyhedra(&self, most: usize, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
         let Some(angle) = self.limits.creases.angle_of_flat() else {
             return Ok(None);
         };

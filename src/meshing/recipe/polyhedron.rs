@@ -47,14 +47,7 @@ impl Axis {
             bulge,
             ..
         } = self;
-        let error = |uncovered: f64, bloat: f64| Hausdorff {
-            surface_to_envelope: uncovered.max(bloat) as Real,
-            envelope_to_surface: uncovered.max(bloat) as Real,
-            uncovered: uncovered as Real,
-            bloat: bloat as Real,
-            sampling: 0.0,
-        };
-        let before = error(growth, bulge);
+        let before = known(growth, bulge);
         let count = draft.faces.len();
         let note = format!(
             "a convex polyhedron: its own medial axis has {count} primitives, and is exact"
@@ -66,11 +59,23 @@ impl Axis {
         draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
         Candidate {
             draft,
-            hausdorff: error(growth - grown, bulge + grown),
+            hausdorff: known(growth - grown, bulge + grown),
             before: limits.enclose.then_some(before),
             notes: vec![note],
             variant: Variant::Exact,
+            exact_with: None,
         }
+    }
+}
+
+/// The error of what is known to stick out, and to be stuck out of, by no more than this anywhere.
+pub fn known(uncovered: f64, bloat: f64) -> Hausdorff {
+    Hausdorff {
+        surface_to_envelope: uncovered.max(bloat) as Real,
+        envelope_to_surface: uncovered.max(bloat) as Real,
+        uncovered: uncovered as Real,
+        bloat: bloat as Real,
+        sampling: 0.0,
     }
 }
 

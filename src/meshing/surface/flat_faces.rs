@@ -11,8 +11,9 @@ use crate::meshing::watch::Watch;
 pub const FLAT: f64 = 5e-7;
 
 /// How flat the faces of a body are: at most so many times its [`rounding`], tried in order. With the second, vertices may be
-/// moved by a millionth of the size.
-pub const FLATNESS: [f64; 2] = [1.0, 4.0];
+/// moved by a millionth of the size; with the third by a hundred-thousandth, as a part of 5 cm is that is written in metres
+/// with six decimals.
+pub const FLATNESS: [f64; 3] = [1.0, 4.0, 40.0];
 
 /// Points this many times as far from a plane as a corner of a flat face may be are on it.
 pub const ON: f64 = 2.0;
