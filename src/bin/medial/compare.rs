@@ -76,6 +76,8 @@ struct Comparison {
     heaps: u64,
     steps: usize,
     colliders: Vec<Row>,
+    /// What the build of the medial mesh says.
+    notes: Vec<String>,
 }
 
 /// One kind of collider.
@@ -100,6 +102,7 @@ struct StepTimes {
 /// The colliders, and the seconds that each took to make.
 struct Made {
     medial: (MedialMesh, f64),
+    notes: Vec<String>,
     parts: (SharedShape, f64),
     hull: (SharedShape, f64),
     /// Seconds alone of rapier's own triangle mesh.
@@ -194,6 +197,7 @@ fn measure(
         heaps: HEAPS,
         steps: arguments.steps,
         colliders,
+        notes: made.notes,
     })
 }
 
@@ -213,7 +217,7 @@ fn make(arguments: &CompareArguments, mesh: &Mesh, bar: &ProgressBar) -> Result<
             }
         })
     });
-    let (medial, _) = medial?;
+    let (medial, report) = medial?;
     let (hull, hull_seconds) = timed(|| SharedShape::convex_hull(vertices));
     let hull = hull.ok_or(Failure::NoHull)?;
     go_on(bar, "convex decomposition", BUILT)?;
@@ -222,6 +226,7 @@ fn make(arguments: &CompareArguments, mesh: &Mesh, bar: &ProgressBar) -> Result<
     Ok(Made {
         triangles,
         medial: (medial, medial_seconds),
+        notes: report.notes,
         parts: (parts, parts_seconds),
         hull: (hull, hull_seconds),
     })
@@ -313,6 +318,9 @@ impl Comparison {
                 "ms a step: mean of {} steps of each of {} heaps, into which {} bodies fall\n",
                 self.steps, self.heaps, self.bodies
             );
+        }
+        for note in &self.notes {
+            text += &format!("note: {note}\n");
         }
         text
     }
