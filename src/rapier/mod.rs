@@ -25,6 +25,8 @@ mod world;
 
 pub use effects::{Effect, Effects, MedialOptions};
 pub use host::recycling::RECYCLE_DISTANCE;
+#[cfg(feature = "serde-serialize")]
+pub use impacts::initial_overlaps::OverlapsRecord;
 pub use integration::collider::{MedialColliderBuilder, MedialSharedShape};
 #[cfg(feature = "debug-render")]
 pub use integration::debug_draw::MedialDebugRender;

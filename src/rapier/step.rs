@@ -1,7 +1,7 @@
 //! One step, in order: the plan (who may meet whom, and the contacts that rapier will ask for), rapier's own step, the
 //! impacts within it, and the report. The work itself is in the rooms of this folder.
 
-use crate::math::Real;
+use crate::math::{Pose, Real};
 use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Tally};
 use crate::rapier::contacts::candidates;
 use crate::rapier::contacts::muting::{self, Muted};
@@ -9,7 +9,7 @@ use crate::rapier::contacts::predicted_contacts::predicted;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
 use crate::rapier::host::multibody_energy::WildMultibodies;
-use crate::rapier::host::sleep_timers::SleepTimers;
+use crate::rapier::host::sleep_timers::{SleepTimers, moved_before};
 use crate::rapier::host::speculative::Speculators;
 use crate::rapier::host::substeps::Substeps;
 use crate::rapier::host::{forced_updates, multibody_coordinates};
@@ -114,6 +114,10 @@ impl State {
     /// A step, or what of it comes before the world stops; the second result is when, in seconds.
     fn part(&mut self, world: &mut World, args: StepArgs) -> (StepReport, Option<Real>) {
         let before = self.batch.report().counts;
+        if self.moved.is_none() {
+            let unit = args.parameters.length_unit;
+            self.moved = Some(moved_before(world.bodies, world.colliders, unit));
+        }
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         world
             .bodies
@@ -258,7 +262,7 @@ impl State {
             let substeps = Substeps::set(&plan.view, joints, parameters, &plan.wild, world.bodies);
             report.speculative = speculators.count();
             let contacts = (&*world.colliders, &*world.narrow_phase);
-            let moved = self.moved.as_deref();
+            let moved = self.moved.as_deref().unwrap_or_default();
             let timers = SleepTimers::shorten(moved, world.bodies, contacts, unit);
             Loans {
                 speculators,
@@ -329,19 +333,26 @@ impl State {
     }
 }
 
-/// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies.
+/// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies that are elsewhere now. Colliders
+/// of these and no others are marked as moved, from which a loaded world knows them ([`moved_before`]).
 fn write_back(view: &StepView, outcome: &Outcome, world: &mut World) -> Vec<RigidBodyHandle> {
-    let mut moved = Vec::with_capacity(outcome.changed.len());
+    if outcome.changed.is_empty() {
+        return Vec::new();
+    }
+    let handles = view.bodies.iter().filter_map(|body| body.handle);
+    let poses = handles.filter_map(|h| Some((h, *world.bodies.get(h)?.position())));
+    let poses: Vec<_> = poses.collect();
     for &(index, struck) in &outcome.changed {
         view.bodies[index].write_back(struck, world.bodies);
-        moved.extend(view.bodies[index].handle);
-    }
-    if moved.is_empty() {
-        return moved;
     }
     multibody_coordinates::write_back(view, &outcome.changed, world.bodies, world.multibody_joints);
     world
         .bodies
         .propagate_modified_body_positions_to_colliders(world.colliders);
-    moved
+    let is_elsewhere = |(h, pose): &(RigidBodyHandle, Pose)| {
+        let body = world.bodies.get(*h);
+        body.is_some_and(|body| body.position() != pose)
+    };
+    let moved = poses.into_iter().filter(is_elsewhere);
+    moved.map(|(handle, _)| handle).collect()
 }

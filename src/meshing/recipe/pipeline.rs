@@ -28,6 +28,8 @@ impl Source {
     /// a sheet. Where it is not exact but could be, it says with how many primitives.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
         let exact = self.exact(self.limits.worth_saying(), watch)?;
+        // With faces that are not quite flat it may be off by more than is allowed.
+        let exact = exact.filter(|exact| exact.keeps(self.limits.max_error));
         let count = exact.as_ref().map(|exact| exact.draft.primitives().len());
         let asked = self.limits.primitives.unwrap_or(usize::MAX);
         let exact = exact.filter(|_| count <= Some(asked));

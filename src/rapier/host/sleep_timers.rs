@@ -9,7 +9,6 @@
 use crate::math::Real;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{Collider, ColliderSet, NarrowPhase};
-use std::borrow::Cow;
 
 /// Bodies whose time rapier restarts in this step, although no user moved them.
 pub struct SleepTimers(Vec<Timer>);
@@ -23,35 +22,35 @@ struct Timer {
     needed: Real,
 }
 
+/// The bodies that impacts moved in the last step, in a world that this pipeline has not stepped before and that may have
+/// been loaded: those of the colliders that have moved. The fast ones are among them, for the sake of the slow ones that
+/// they touch. Known before the step brings colliders to where the user put their bodies.
+pub fn moved_before(
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+    length_unit: Real,
+) -> Vec<RigidBodyHandle> {
+    // A new world has none that is slow, and its colliders need not be looked at.
+    if bodies.iter().all(|(_, b)| !is_slow(b, length_unit)) {
+        return Vec::new();
+    }
+    let modified = colliders.clone().take_modified();
+    let moved = modified.iter().filter_map(|h| colliders.get(*h));
+    let moved = moved.filter(|c| only_moved(c));
+    moved.filter_map(Collider::parent).collect()
+}
+
 impl SleepTimers {
     /// Shortens the time that is needed of bodies that impacts `moved` in the last step, and of those in contact with them.
-    /// `None`: the pipeline has not stepped this world before, which may have been loaded after such a step.
     pub fn shorten(
-        moved: Option<&[RigidBodyHandle]>,
+        moved: &[RigidBodyHandle],
         bodies: &mut RigidBodySet,
         (colliders, narrow_phase): (&ColliderSet, &NarrowPhase),
         length_unit: Real,
     ) -> Self {
         let of_collider = |handle| colliders.get(handle).and_then(|c| c.parent());
-        let is_slow = |body: &RigidBody| {
-            let activation = body.activation();
-            let may_sleep = activation.time_until_sleep > 0.0 && !body.is_sleeping();
-            let was_slow = may_sleep && activation.time_since_can_sleep > 0.0;
-            body.is_dynamic() && was_slow && has_no_speed(body, length_unit)
-        };
-        let moved = match moved {
-            Some(moved) => Cow::Borrowed(moved),
-            None => {
-                let is_moved = |body: &RigidBody| {
-                    let mut own = body.colliders().iter();
-                    own.any(|c| colliders.get(*c).is_some_and(only_moved))
-                };
-                let slow = bodies.iter().filter(|(_, b)| is_slow(b) && is_moved(b));
-                Cow::Owned(slow.map(|(handle, _)| handle).collect())
-            }
-        };
         let mut restarted: Vec<RigidBodyHandle> = Vec::new();
-        for &body in moved.iter() {
+        for &body in moved {
             restarted.push(body);
             let own = bodies.get(body).map_or(&[][..], |b| b.colliders());
             let pairs = own.iter().flat_map(|c| narrow_phase.contact_pairs_with(*c));
@@ -62,7 +61,7 @@ impl SleepTimers {
         restarted.dedup();
         let mut timers = Vec::new();
         for body in restarted {
-            let Some(b) = bodies.get(body).filter(|b| is_slow(b)) else {
+            let Some(b) = bodies.get(body).filter(|b| is_slow(b, length_unit)) else {
                 continue;
             };
             let slow = b.activation().time_since_can_sleep;
@@ -91,6 +90,14 @@ impl SleepTimers {
             }
         }
     }
+}
+
+/// Whether a body was slow in the last step, and has no speed with which it would go on.
+fn is_slow(body: &RigidBody, length_unit: Real) -> bool {
+    let activation = body.activation();
+    let may_sleep = activation.time_until_sleep > 0.0 && !body.is_sleeping();
+    let was_slow = may_sleep && activation.time_since_can_sleep > 0.0;
+    body.is_dynamic() && was_slow && has_no_speed(body, length_unit)
 }
 
 /// Whether no point of a body is faster by its velocities than a body may move that falls asleep.

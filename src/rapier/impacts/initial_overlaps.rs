@@ -26,7 +26,8 @@ use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::step_view::{Part, StepView};
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, RigidBodyType};
 use rapier3d::geometry::{
-    Collider, ColliderHandle, ContactManifold, InteractionGroups, NarrowPhase, SolverFlags,
+    Collider, ColliderHandle, ContactManifold, InteractionGroups, NarrowPhase, SharedShape,
+    SolverFlags,
 };
 
 type Pair = [ColliderHandle; 2];
@@ -48,6 +49,16 @@ pub struct InitialOverlaps {
     freed: FastSet<BodyPair>,
     /// Pairs that are left to the solver.
     left: FastSet<Pair>,
+}
+
+/// What a step leaves to the next about bodies that were put into each other, to be saved beside a world: where colliders
+/// were, and which pairs are left to rapier's solver.
+#[cfg(feature = "serde-serialize")]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct OverlapsRecord {
+    ends: Vec<(ColliderHandle, Pose, Kind)>,
+    muted: Vec<BodyPair>,
+    left: Vec<Pair>,
 }
 
 /// How a step left a collider.
@@ -75,17 +86,17 @@ enum KnownShape {
 }
 
 impl KnownShape {
-    fn of(part: &Part) -> Self {
-        match part.medial() {
+    fn of(shape: &SharedShape) -> Self {
+        match shape.as_shape::<MedialMesh>() {
             Some(mesh) => Self::Medial(mesh.clone()),
-            None => Self::Other(std::ptr::from_ref(&*part.shape.0).addr()),
+            None => Self::Other(std::ptr::from_ref(&*shape.0).addr()),
         }
     }
 
     /// Bound on how far the surface of the collider was moved by the change from this shape to that of `part`, a length;
     /// infinite if the two are not alike.
     fn moved_to(&self, part: &Part) -> Real {
-        match (self, Self::of(part)) {
+        match (self, Self::of(&part.shape)) {
             (Self::Medial(old), Self::Medial(new)) => moved_spheres(old, &new),
             (Self::Other(old), Self::Other(new)) if *old == new => 0.0,
             _ => Real::INFINITY,
@@ -127,6 +138,38 @@ fn body_pair([a, b]: BodyPair) -> BodyPair {
 /// The two in the order of their indices.
 fn sorted([a, b]: Pair) -> Pair {
     if index(a) <= index(b) { [a, b] } else { [b, a] }
+}
+
+#[cfg(feature = "serde-serialize")]
+impl InitialOverlaps {
+    /// What a world is saved with.
+    pub fn record(&self) -> OverlapsRecord {
+        let ends = self.ends.iter();
+        let mut record = OverlapsRecord {
+            ends: ends.map(|(h, end)| (*h, end.pose, end.kind)).collect(),
+            muted: self.muted.iter().copied().collect(),
+            left: self.left.iter().copied().collect(),
+        };
+        record
+            .muted
+            .sort_unstable_by_key(|pair| pair.map(RigidBodyHandle::into_raw_parts));
+        record
+            .left
+            .sort_unstable_by_key(|pair| pair.map(ColliderHandle::into_raw_parts));
+        record
+    }
+
+    /// Goes on as when a world with these colliders was saved.
+    pub fn resume(&mut self, record: OverlapsRecord, colliders: &rapier3d::geometry::ColliderSet) {
+        let end = |(handle, pose, kind)| {
+            let shape = KnownShape::of(colliders.get(handle)?.shared_shape());
+            Some((handle, End { pose, shape, kind }))
+        };
+        self.ends = record.ends.into_iter().filter_map(end).collect();
+        self.ends.sort_by_key(|(handle, _)| index(*handle));
+        self.muted = record.muted.into_iter().collect();
+        self.left = record.left.into_iter().collect();
+    }
 }
 
 impl InitialOverlaps {
@@ -226,7 +269,7 @@ impl InitialOverlaps {
         let end = |part: &Part| {
             let collider = rules.colliders.get(part.handle)?;
             let (pose, kind) = (*collider.position(), kind(collider, rules.bodies));
-            let shape = KnownShape::of(part);
+            let shape = KnownShape::of(&part.shape);
             Some((part.handle, End { pose, shape, kind }))
         };
         self.ends.extend(view.parts.iter().filter_map(end));

@@ -9,6 +9,7 @@
 use crate::medial::MedialMesh;
 use crate::medial::asset::checksum;
 use crate::rapier::host::sleep_timers::only_moved;
+use crate::rapier::impacts::initial_overlaps::OverlapsRecord;
 use crate::rapier::{MedialPipeline, MedialSharedShape};
 use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase, SharedShape};
 use rapier3d::pipeline::{CollisionPipeline, PhysicsWorld};
@@ -19,7 +20,7 @@ use std::collections::HashMap;
 pub const MAGIC: [u8; 8] = *b"\x89worlds\n";
 
 /// Version of the format that is written and read. It stands for the layout of this crate and of rapier 0.36.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Bytes before the content: magic, version, checksum of the content.
 const HEADER: usize = 20;
@@ -98,6 +99,18 @@ impl MedialPipeline {
     pub fn resume_told_starts(&mut self, starts: Vec<[ColliderHandle; 2]>) {
         self.state.reported.started = starts;
     }
+
+    /// What the next step has to know of bodies that were put into each other (spawned, teleported) and have not come
+    /// apart. It is not part of the world: if your game does that, save it beside the world.
+    pub fn overlaps(&self) -> OverlapsRecord {
+        self.state.placed.record()
+    }
+
+    /// Restores what [`Self::overlaps`] was when the world was saved, so that bodies that were put into each other come
+    /// apart as they would have.
+    pub fn resume_overlaps(&mut self, record: OverlapsRecord, world: &PhysicsWorld) {
+        self.state.placed.resume(record, &world.colliders);
+    }
 }
 
 /// Which colliders the next step has to look at anew.
@@ -106,8 +119,8 @@ enum Changes {
     /// These colliders have moved, as a first contact within a step leaves them; none was changed otherwise.
     Moved(Vec<ColliderHandle>),
     /// Some were changed by hand. Their own marks say how; those of medial colliders say besides that
-    /// the shape is new, for which rapier begins their contacts afresh.
-    Marked,
+    /// the shape is new, for which rapier begins their contacts afresh. These others have only moved.
+    Marked(Vec<ColliderHandle>),
 }
 
 impl SavedWorld {
@@ -124,13 +137,21 @@ impl SavedWorld {
         }
         let modified: Vec<ColliderHandle> = colliders.clone().take_modified().to_vec();
         let moved = |h: &ColliderHandle| colliders.get(*h).is_some_and(only_moved);
+        let mut unmarked = colliders.clone();
+        forget_changes(world, &mut unmarked);
         let changes = if modified.iter().all(moved) {
-            forget_changes(world, &mut colliders);
+            colliders = unmarked;
             Changes::Moved(modified)
         } else {
+            let moved: Vec<ColliderHandle> = modified.into_iter().filter(moved).collect();
             // What is left in this list are then the colliders that get a ball, and no others.
             colliders.take_modified();
-            Changes::Marked
+            for &h in &moved {
+                if let (Some(collider), Some(unmarked)) = (colliders.get_mut(h), unmarked.get(h)) {
+                    *collider = unmarked.clone();
+                }
+            }
+            Changes::Marked(moved)
         };
         let mut meshes: Vec<MedialMesh> = Vec::new();
         let mut known: HashMap<usize, u32> = HashMap::new();
@@ -197,15 +218,19 @@ impl SavedWorld {
         }
         let mut colliders = std::mem::take(&mut world.colliders);
         forget_changes(&world, &mut colliders);
-        match changes {
-            // Setting where it is already marks it as moved.
-            Changes::Moved(moved) => moved.into_iter().for_each(|h| {
-                if let Some(collider) = colliders.get_mut(h) {
-                    collider.set_position(*collider.position());
-                }
-            }),
+        let moved = match changes {
+            Changes::Moved(moved) => moved,
             // Lists all colliders as possibly changed; each one's own marks say whether it is.
-            Changes::Marked => colliders.iter_mut().for_each(drop),
+            Changes::Marked(moved) => {
+                colliders.iter_mut().for_each(drop);
+                moved
+            }
+        };
+        // Setting where it is already marks it as moved.
+        for h in moved {
+            if let Some(collider) = colliders.get_mut(h) {
+                collider.set_position(*collider.position());
+            }
         }
         world.colliders = colliders;
         Ok(world)
