@@ -173,8 +173,9 @@ pub enum Variant {
     /// The medial mesh is exact: it consists of the medial axes of convex bodies with flat faces, or of overlapping
     /// convex pieces that together are the body. For such pieces [`Hausdorff::error`] is measured. It is some
     /// millionths of the size, or more if vertices lie off the planes of their faces (by up to two hundred-thousandths
-    /// of the size), or are rounded because the mesh is far from the origin. [`Hausdorff::sampling`] follows from how
-    /// the pieces are made: ten millionths of the size, or four ten-thousandths where vertices are off.
+    /// of the size, for errors of one to two ten-thousandths), or are rounded because the mesh is far from the origin.
+    /// [`Hausdorff::sampling`] follows from how the pieces are made: ten millionths of the size, or four
+    /// ten-thousandths where vertices are off.
     Exact,
 }
 

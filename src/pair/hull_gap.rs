@@ -211,7 +211,8 @@ impl<'a> Best<'a> {
     }
 
     /// Tries the directions across edges, if both are polyhedra with few. True if no other direction can have a larger gap
-    /// than the best tried, because they overlap; directions across faces were tried before.
+    /// than the best tried, because they overlap; directions across faces were tried before. Two flat ones may lie in one
+    /// plane, in which others keep them apart.
     fn attempt_edges(&mut self) -> bool {
         let [a, b] = self.hulls;
         let (Some((of_a, first)), Some((of_b, second))) = (a.edges(), b.edges()) else {
@@ -228,7 +229,8 @@ impl<'a> Best<'a> {
             self.attempt(-n);
         }
         self.attempt_about(self.direction);
-        self.gap + first + second < 0.0
+        let is_solid = |hull: &PlacedHull| hull.faces.len() > 2;
+        (is_solid(a) || is_solid(b)) && self.gap + first + second < 0.0
     }
 
     /// Moves the hulls apart along the best direction, and tries those along which they are nearest then; no more as soon as the

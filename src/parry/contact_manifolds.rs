@@ -79,9 +79,13 @@ impl MedialDispatcher {
                 Some(_) => Ok(()),
                 None => write_by_parry(pair, prediction, manifolds, workspace),
             };
-            let other = [g2, g1][side].as_typed_shape();
-            if matches!(other, TypedShape::TriMesh(_) | TypedShape::HeightField(_)) {
-                inward_contacts::leave_out(manifolds, mesh, side);
+            let other = [g2, g1][side];
+            if matches!(
+                other.as_typed_shape(),
+                TypedShape::TriMesh(_) | TypedShape::HeightField(_)
+            ) {
+                let pose = [*pos12, pos12.inverse()][side];
+                inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
             }
             if goes_on != Some(true) {
                 contact_reduction::transfer_impulses(manifolds, &previous, prediction, side);

@@ -1,18 +1,28 @@
-//! Contacts that point into a convex piece of a medial mesh, which are left out.
+//! Contacts of convex pieces of a medial mesh with triangles that point into the piece or are too deep, which are left out.
 //!
 //! Of a mesh and triangles parry finds the contacts of each primitive for itself. The slab along an edge of a box is thin: where a triangle cuts
 //! through it, its shortest way out of the triangle may be deeper into the ground, with all of the box behind it. The box
-//! as a whole has no contact there; what holds it up are other contacts.
+//! as a whole has no contact there; what holds it up are other contacts. And where a primitive just touches the border of a triangle, parry's
+//! EPA algorithm may find it far below.
 
 use super::contact_reduction::places;
-use crate::math::Real;
 use crate::math::fast_hash::FastSet;
+use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
+use crate::medial::convex_pieces::ConvexPiece;
 use parry3d::query::ContactManifold;
+use parry3d::shape::Shape;
 
 /// Leaves out deep contacts of a mesh's convex pieces along which the piece reaches beyond the contact by more than the
-/// contact's depth, as long as it has another deep one. The mesh is body `side` (0 or 1) of the manifolds.
-pub fn leave_out<M, C>(manifolds: &mut [ContactManifold<M, C>], mesh: &MedialMesh, side: usize) {
+/// contact's depth, as long as it has another deep one, and those deeper than the piece is in the triangle by more than the
+/// prediction distance, where it is no deeper than that itself. The mesh is body `side` (0 or 1) of the manifolds; `ground` are the
+/// triangles, and where they are in the mesh's frame.
+pub fn leave_out<M, C>(
+    manifolds: &mut [ContactManifold<M, C>],
+    (mesh, side): (&MedialMesh, usize),
+    ground: (&dyn Shape, &Pose),
+    prediction: Real,
+) {
     let pieces = mesh.convex_pieces();
     if pieces.is_empty() {
         return;
@@ -37,12 +47,51 @@ pub fn leave_out<M, C>(manifolds: &mut [ContactManifold<M, C>], mesh: &MedialMes
         }
     }
     for m in manifolds {
-        if held.contains(&piece_of(m)) {
-            let left: Vec<bool> = (0..m.points.len())
-                .map(|i| is_deep(m, i) && is_inward(m, i))
-                .collect();
-            let mut left = left.into_iter();
-            m.points.retain(|_| left.next() != Some(true));
-        }
+        let piece = piece_of(m);
+        let is_held = held.contains(&piece);
+        let id = [m.subshape2, m.subshape1][side];
+        // How deep the piece is, asked for contacts that are deeper than could be.
+        let gap = (m.points.iter().any(|point| point.dist < -prediction))
+            .then(|| piece.and_then(|node| pieces.of_node(node)))
+            .flatten()
+            .zip(triangle(ground, id))
+            .map(|(piece, corners)| gap(piece, corners));
+        let is_wrong = |m: &ContactManifold<M, C>, i: usize| {
+            let is_near = |gap: &Real| *gap >= -prediction;
+            let is_deeper = |gap: Real| m.points[i].dist < gap - prediction;
+            gap.filter(is_near).is_some_and(is_deeper)
+        };
+        let left: Vec<bool> = (0..m.points.len())
+            .map(|i| is_deep(m, i) && (is_held && is_inward(m, i) || is_wrong(m, i)))
+            .collect();
+        let mut left = left.into_iter();
+        m.points.retain(|_| left.next() != Some(true));
     }
+}
+
+/// The corners of a triangle of the ground in the mesh's frame.
+fn triangle((ground, pose): (&dyn Shape, &Pose), id: u32) -> Option<[Vector; 3]> {
+    let mut found = None;
+    let parts = ground.as_composite_shape()?;
+    parts.map_part_at(id, &mut |_, part, _| {
+        found = part.as_triangle().map(|t| t.vertices().map(|p| pose * p));
+    });
+    found
+}
+
+/// The largest gap of a piece and a triangle along the directions across their faces, a length; negative where they overlap
+/// along all of these.
+fn gap(piece: &ConvexPiece, [a, b, c]: [Vector; 3]) -> Real {
+    let across = (b - a).cross(c - a).normalize_or_zero();
+    let lowest = |n: Vector| {
+        let ends = piece.spheres.iter().map(|s| n.dot(s.center - a) - s.radius);
+        ends.fold(Real::MAX, Real::min)
+    };
+    let beyond = |n: Vector| {
+        let ends = piece.spheres.iter().map(|s| n.dot(s.center) + s.radius);
+        let nearest = [a, b, c].map(|p| n.dot(p)).into_iter();
+        nearest.fold(Real::MAX, Real::min) - ends.fold(Real::MIN, Real::max)
+    };
+    let faces = piece.faces.iter().map(|face| beyond(face.normal));
+    faces.fold(lowest(across).max(lowest(-across)), Real::max)
 }

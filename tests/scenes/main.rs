@@ -82,6 +82,7 @@ mod still;
 mod thread;
 mod threads;
 mod told;
+mod triangles;
 mod walls;
 mod whirls;
 mod wire_heaps;
