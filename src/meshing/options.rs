@@ -195,8 +195,8 @@ pub struct BuildReport {
     pub longest_side: Real,
     /// Number of primitives of the result.
     pub primitives: usize,
-    /// Number of primitives with which the result would be exact, where it is not, and that number is at most the
-    /// default of [`BuildOptions::primitives`] or what you allow. Bodies of flat faces often are with few.
+    /// Number of primitives with which the result would be exact; `None` if it is, or if that takes more than you allow
+    /// and than the default of [`BuildOptions::primitives`]. Bodies of flat faces are often exact with few.
     pub exact_with: Option<usize>,
     /// Whether sharp edges were kept.
     pub variant: Variant,
@@ -280,8 +280,9 @@ impl Limits {
         })
     }
 
-    /// Primitives of an exact result that is worth to be told of: as many as are allowed, or by default.
-    pub fn worth_saying(&self) -> usize {
+    /// Primitives up to which an exact result is looked for, be it only to tell of it: as many as are allowed, or the default
+    /// if that is more.
+    pub fn exact_up_to(&self) -> usize {
         let default = BuildOptions::default().primitives.unwrap_or(0);
         self.primitives.map_or(usize::MAX, |n| n.max(default))
     }

@@ -1,9 +1,10 @@
-//! Contacts of convex pieces of a medial mesh with triangles that point into the piece or are too deep, which are left out.
+//! Contacts of convex pieces of a medial mesh with triangles that point into the piece or are too deep, which are left
+//! out.
 //!
-//! Of a mesh and triangles parry finds the contacts of each primitive for itself. The slab along an edge of a box is thin: where a triangle cuts
-//! through it, its shortest way out of the triangle may be deeper into the ground, with all of the box behind it. The box
-//! as a whole has no contact there; what holds it up are other contacts. And where a primitive just touches the border of a triangle, parry's
-//! EPA algorithm may find it far below.
+//! Of a mesh and triangles parry finds the contacts of each primitive for itself. The slab along an edge of a box is
+//! thin: where a triangle cuts through it, its shortest way out of the triangle may be deeper into the ground, with all
+//! of the box behind it. The box as a whole has no contact there; what holds it up are other contacts. And where a
+//! primitive just touches the border of a triangle, parry's EPA algorithm may find it far below.
 
 use super::contact_reduction::places;
 use crate::math::fast_hash::FastSet;
@@ -14,9 +15,9 @@ use parry3d::query::ContactManifold;
 use parry3d::shape::Shape;
 
 /// Leaves out deep contacts of a mesh's convex pieces along which the piece reaches beyond the contact by more than the
-/// contact's depth, as long as it has another deep one, and those deeper than the piece is in the triangle by more than the
-/// prediction distance, where it is no deeper than that itself. The mesh is body `side` (0 or 1) of the manifolds; `ground` are the
-/// triangles, and where they are in the mesh's frame.
+/// contact's depth, as long as it has another deep one. Leaves out as well those that are deeper than the piece is in the
+/// triangle by more than the prediction distance, where the piece is no deeper than that. The mesh is body `side` (0 or
+/// 1) of the manifolds; `ground` are the triangles, and where they are in the mesh's frame.
 pub fn leave_out<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
@@ -50,12 +51,10 @@ pub fn leave_out<M, C>(
         let piece = piece_of(m);
         let is_held = held.contains(&piece);
         let id = [m.subshape2, m.subshape1][side];
-        // How deep the piece is, asked for contacts that are deeper than could be.
-        let gap = (m.points.iter().any(|point| point.dist < -prediction))
-            .then(|| piece.and_then(|node| pieces.of_node(node)))
-            .flatten()
-            .zip(triangle(ground, id))
-            .map(|(piece, corners)| gap(piece, corners));
+        // The piece's own, asked for contacts that are deeper than it could be.
+        let of_piece = || Some(gap(pieces.of_node(piece?)?, triangle(ground, id)?));
+        let is_asked = m.points.iter().any(|point| point.dist < -prediction);
+        let gap = is_asked.then(of_piece).flatten();
         let is_wrong = |m: &ContactManifold<M, C>, i: usize| {
             let is_near = |gap: &Real| *gap >= -prediction;
             let is_deeper = |gap: Real| m.points[i].dist < gap - prediction;

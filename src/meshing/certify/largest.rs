@@ -87,7 +87,7 @@ impl Effort {
         ..Self::CLOSE
     };
 
-    /// Effort for what is known to be right between points: a quarter of the budget.
+    /// Effort for what is known to be right also between the points measured: a quarter of the budget.
     pub const QUICK: Self = Self {
         share: 0.25,
         ..Self::CLOSE

@@ -27,7 +27,7 @@ impl Source {
     /// Makes the best candidate that the limits allow: balls inside where the surface bounds matter, slabs where it is
     /// a sheet. Where it is not exact but could be, it says with how many primitives.
     pub fn best_candidate(&mut self, watch: &mut Watch) -> Result<Candidate, BuildError> {
-        let exact = self.exact(self.limits.worth_saying(), watch)?;
+        let exact = self.exact(self.limits.exact_up_to(), watch)?;
         // With faces that are not quite flat it may be off by more than is allowed.
         let exact = exact.filter(|exact| exact.keeps(self.limits.max_error));
         let count = exact.as_ref().map(|exact| exact.draft.primitives().len());
