@@ -89,6 +89,16 @@ fn blocks_with_vertices_off_by_a_millionth_are_exact() {
     });
 }
 
+/// Blocks of 5 cm, their places in metres rounded to six decimals, as files have them.
+#[test]
+fn blocks_rounded_by_their_file_are_exact() {
+    stay_exact(17, 2e-5, |_, _, mesh| {
+        let scale = 0.05 / mesh.longest_side();
+        let rounded = |x: f32| ((f64::from(x * scale) * 1e6).round() * 1e-6) as f32 / scale;
+        mesh.map(|v| Vector::new(rounded(v.x), rounded(v.y), rounded(v.z)))
+    });
+}
+
 /// A hundred sizes away coordinates are rounded to some millionths of the size.
 #[test]
 fn blocks_far_from_the_origin_are_exact() {
