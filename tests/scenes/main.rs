@@ -69,6 +69,8 @@ mod rng;
 mod rolling;
 mod ropes;
 #[cfg(feature = "serde-serialize")]
+mod saved_impacts;
+#[cfg(feature = "serde-serialize")]
 mod saving;
 mod sharp_blocks;
 #[allow(dead_code)]

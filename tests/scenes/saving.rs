@@ -37,7 +37,7 @@ fn mixed_world() -> (PhysicsWorld, MedialMesh) {
     (world, mesh)
 }
 
-fn bits(world: &PhysicsWorld) -> Vec<u32> {
+pub fn bits(world: &PhysicsWorld) -> Vec<u32> {
     let mut all = Vec::new();
     for (handle, b) in world.bodies.iter() {
         let (t, r, v, w) = (b.translation(), b.rotation(), b.linvel(), b.angvel());
@@ -91,86 +91,6 @@ fn a_loaded_world_of_pressed_bodies_falls_asleep_at_the_same_time() {
             bits(&loaded) != trace[*step]
         });
         assert_eq!(difference, None, "saved after {at} steps");
-    }
-}
-
-/// A brick at rest beside which a tilted plate is thrown on the ground: the boxes of the two overlap.
-fn world_with_a_blow_beside_a_brick() -> (PhysicsWorld, RigidBodyHandle) {
-    let mut world = world_with_ground();
-    let cuboid = |x, y, z| {
-        let mesh = MedialMesh::cuboid(Vector::new(x, y, z)).expect("a cuboid");
-        ColliderBuilder::medial_mesh(mesh).density(1000.0)
-    };
-    let at = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 0.1, 0.0));
-    let brick = world.insert(at, cuboid(0.4, 0.1, 0.2)).0;
-    let pose = Pose::new(Vector::new(0.55, 1.5, 0.0), Vector::Z * -0.8);
-    let thrown = RigidBodyBuilder::dynamic()
-        .pose(pose)
-        .linvel(Vector::NEG_Y * 6.0);
-    world.insert(thrown, cuboid(0.3, 0.01, 0.3));
-    (world, brick)
-}
-
-/// rapier restarts the time of what is beside a body that an impact moved, however fast that one is.
-#[test]
-fn a_loaded_world_knows_how_long_neighbours_of_fast_bodies_have_been_slow() {
-    let (mut world, brick) = world_with_a_blow_beside_a_brick();
-    let slow = |world: &PhysicsWorld| world.bodies[brick].activation().time_since_can_sleep;
-    let mut pipeline = attached(&mut world);
-    let mut events = 0;
-    for step in 0..28 {
-        let bytes = save_world(&world).expect("a world that can be saved");
-        let mut loaded = load_world(&bytes).expect("what was saved");
-        attached(&mut loaded).step(&mut loaded);
-        events += pipeline.step(&mut world).events;
-        assert_eq!(slow(&loaded), slow(&world), "saved after {step} steps");
-        assert_eq!(bits(&loaded), bits(&world), "saved after {step} steps");
-    }
-    assert!(events > 0);
-    assert!(slow(&world) > 0.0);
-}
-
-/// A ball that is added before the world is saved takes nothing from what is known of the bodies that impacts moved.
-#[test]
-fn what_impacts_moved_is_known_beside_a_new_collider() {
-    for saved in 8..28 {
-        let (mut world, brick) = world_with_a_blow_beside_a_brick();
-        let mut pipeline = attached(&mut world);
-        for _ in 0..saved {
-            pipeline.step(&mut world);
-        }
-        let far = RigidBodyBuilder::dynamic().translation(Vector::new(9.0, 3.0, 0.0));
-        world.insert(far, ColliderBuilder::ball(0.1));
-        let bytes = save_world(&world).expect("a world that can be saved");
-        let mut loaded = load_world(&bytes).expect("what was saved");
-        attached(&mut loaded).step(&mut loaded);
-        pipeline.step(&mut world);
-        let slow = |world: &PhysicsWorld| world.bodies[brick].activation().time_since_can_sleep;
-        assert_eq!(slow(&loaded), slow(&world), "saved after {saved} steps");
-        assert_eq!(bits(&loaded), bits(&world), "saved after {saved} steps");
-    }
-}
-
-/// Two slabs spawned in each other are left to the solver after loading too.
-#[test]
-fn bodies_spawned_in_each_other_part_the_same_way_after_loading() {
-    let mut world = world_with_ground();
-    let slab = MedialMesh::cuboid(Vector::new(0.4, 0.03, 0.3)).expect("a slab");
-    for (y, turn) in [(0.8, 0.0), (0.81, 0.6), (0.83, 1.2)] {
-        let pose = Pose::new(Vector::new(0.0, y, 0.0), Vector::X * turn);
-        let slab = ColliderBuilder::medial_mesh(slab.clone()).density(500.0);
-        world.insert(RigidBodyBuilder::dynamic().pose(pose), slab);
-    }
-    let mut pipeline = attached(&mut world);
-    for step in 0..40 {
-        let bytes = save_world(&world).expect("a world that can be saved");
-        let record = pipeline.overlaps();
-        let mut loaded = load_world(&bytes).expect("what was saved");
-        let mut other = attached(&mut loaded);
-        other.resume_overlaps(record, &loaded);
-        other.step(&mut loaded);
-        pipeline.step(&mut world);
-        assert_eq!(bits(&loaded), bits(&world), "saved after {step} steps");
     }
 }
 
