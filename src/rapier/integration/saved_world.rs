@@ -252,7 +252,8 @@ fn forget_changes(world: &PhysicsWorld, colliders: &mut ColliderSet) {
     );
 }
 
-/// Saves a world as bytes with a checksum. Call it between steps.
+/// Saves a world as bytes with a checksum. Call it between steps. What is no part of the world is saved beside it:
+/// [`MedialPipeline::told_starts`], [`MedialPipeline::overlaps`].
 ///
 /// # Errors
 /// [`SavedWorldError::Removed`] if colliders were removed since the last step, [`SavedWorldError::Unwritable`] if
