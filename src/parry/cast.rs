@@ -5,6 +5,7 @@ use super::axisymmetric_toi;
 use super::distance;
 use super::initial_contacts::{Touching, approach_of_rounding};
 use super::inside;
+use super::sliding::Sliding;
 use super::swept_region::{started, swept_region};
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::elementary::first_contact::motion_is_finite;
@@ -16,7 +17,7 @@ use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::ActivePrimitives;
 use crate::pair::{PrimitiveTree, nearest_spheres};
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
-use parry3d::shape::Shape;
+use parry3d::shape::{Shape, TypedShape};
 
 /// Largest part of its way by which a straight cast may seem to come nearer although it slides, so near the other shape that
 /// the normal says little.
@@ -53,7 +54,8 @@ pub struct Cast<'a> {
 impl Cast<'_> {
     /// The first contact as a bracket, with the mesh as first body; times are fractions of the duration of the
     /// cast. `options` replace the cast's own target and treatment of contacts at the start. If it is known which
-    /// primitives of both are `left` (the mesh first), no others of the mesh are searched.
+    /// primitives of both are `left` (the mesh first), no others of the mesh are searched. Triangles along which the mesh
+    /// only slides are left out ([`Sliding`]).
     pub fn toi(
         &self,
         options: &ToiOptions,
@@ -70,7 +72,13 @@ impl Cast<'_> {
                 met: None,
             });
         }
-        self.query(&motions[0], &motions[1], end - start, options, left)
+        let seconds = end - start;
+        let is_ground =
+            |s: &TypedShape| matches!(s, TypedShape::TriMesh(_) | TypedShape::HeightField(_));
+        let sliding = is_ground(&self.other.as_typed_shape())
+            .then(|| Sliding::new(self.mesh, motions.each_ref(), seconds, options));
+        let parts = Parts::without(sliding.flatten());
+        self.query(&motions[0], &motions[1], seconds, options, left, parts)
     }
 
     /// The hit, with the mesh as first shape, or `None` if there is none.
@@ -92,7 +100,14 @@ impl Cast<'_> {
         if self.stop_approach {
             options.tolerance = options.tolerance.min(PRECISION * grazing);
         }
-        let found = self.query(&motion1, &motion2, seconds, &options, None)?;
+        let found = self.query(
+            &motion1,
+            &motion2,
+            seconds,
+            &options,
+            None,
+            Parts::default(),
+        )?;
         let ToiResult {
             mut toi,
             mut counts,
@@ -123,7 +138,14 @@ impl Cast<'_> {
                 ));
             };
             options = further;
-            let further = self.query(&motion1, &motion2, seconds, &options, None)?;
+            let further = self.query(
+                &motion1,
+                &motion2,
+                seconds,
+                &options,
+                None,
+                Parts::default(),
+            )?;
             toi = further.toi;
             counts += further.counts;
         }
@@ -137,7 +159,14 @@ impl Cast<'_> {
         if slides && self.stop_approach && !self.stop_at_penetration {
             let by = options.tolerance + grazing;
             options.target_distance -= by;
-            let nearer = self.query(&motion1, &motion2, seconds, &options, None)?;
+            let nearer = self.query(
+                &motion1,
+                &motion2,
+                seconds,
+                &options,
+                None,
+                Parts::default(),
+            )?;
             counts += nearer.counts;
             // Two convex bodies on straight paths come nearer ever more slowly, so before the hit by this much at least.
             let back = nearer.toi.lower - by / way.dot(nearer.toi.normal).max(Real::MIN_POSITIVE);
@@ -226,7 +255,7 @@ impl Cast<'_> {
         })
     }
 
-    /// First contact in `seconds` of motions that start now; times are fractions of it.
+    /// First contact in `seconds` of motions that start now; times are fractions of it. `parts` are none yet.
     fn query(
         &self,
         motion1: &NonlinearRigidMotion,
@@ -234,6 +263,7 @@ impl Cast<'_> {
         seconds: Real,
         options: &ToiOptions,
         left: Option<[ActivePrimitives; 2]>,
+        mut parts: Parts,
     ) -> Result<ToiResult, Unsweepable> {
         if let Some(other) = self.other.as_shape::<MedialMesh>() {
             return Ok(self.search(other, motion1, motion2, seconds, options, left));
@@ -245,7 +275,6 @@ impl Cast<'_> {
             seconds,
             options.target_distance,
         );
-        let mut parts = Parts::default();
         if !swept_sphere_parts::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {
             return Err(Unsweepable);
         }

@@ -8,15 +8,22 @@
 
 use super::contact_reduction::places;
 use crate::math::fast_hash::FastSet;
+use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::convex_pieces::ConvexPiece;
 use parry3d::query::ContactManifold;
-use parry3d::shape::Shape;
+use parry3d::shape::{Shape, TypedShape};
+
+/// How much deeper than a piece its contacts may be told to be, in units of its thickness.
+const DEEPER: Real = 0.01;
+
+/// Rounding error of a piece's depth, in units of the triangle's coordinates in the mesh's frame.
+const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// Leaves out deep contacts of a mesh's convex pieces along which the piece reaches beyond the contact by more than the
 /// contact's depth, as long as it has another deep one. Leaves out as well those that are deeper than the piece is in the
-/// triangle by more than the prediction distance, where the piece is no deeper than that. The mesh is body `side` (0 or
+/// triangle, as no contact of a part of it can be. The mesh is body `side` (0 or
 /// 1) of the manifolds; `ground` are the triangles, and where they are in the mesh's frame.
 pub fn leave_out<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
@@ -51,14 +58,18 @@ pub fn leave_out<M, C>(
         let piece = piece_of(m);
         let is_held = held.contains(&piece);
         let id = [m.subshape2, m.subshape1][side];
-        // The piece's own, asked for contacts that are deeper than it could be.
-        let of_piece = || Some(gap(pieces.of_node(piece?)?, triangle(ground, id)?));
-        let is_asked = m.points.iter().any(|point| point.dist < -prediction);
-        let gap = is_asked.then(of_piece).flatten();
+        // The least distance of a contact that the piece may have there, asked for where any contact is deeper than rounding.
+        let least = || {
+            let piece = pieces.of_node(piece?)?;
+            let triangle = triangle(ground, id)?;
+            let size = triangle.iter().map(|p| p.length()).fold(0.0, Real::max);
+            let more = prediction.min(DEEPER * piece.thickness) + ROUNDING * size;
+            Some(gap(piece, triangle) - more)
+        };
+        let is_asked = m.points.iter().any(|point| point.dist < 0.0);
+        let least = is_asked.then(least).flatten();
         let is_wrong = |m: &ContactManifold<M, C>, i: usize| {
-            let is_near = |gap: &Real| *gap >= -prediction;
-            let is_deeper = |gap: Real| m.points[i].dist < gap - prediction;
-            gap.filter(is_near).is_some_and(is_deeper)
+            least.is_some_and(|least| m.points[i].dist < least)
         };
         let left: Vec<bool> = (0..m.points.len())
             .map(|i| is_deep(m, i) && (is_held && is_inward(m, i) || is_wrong(m, i)))
@@ -70,12 +81,12 @@ pub fn leave_out<M, C>(
 
 /// The corners of a triangle of the ground in the mesh's frame.
 fn triangle((ground, pose): (&dyn Shape, &Pose), id: u32) -> Option<[Vector; 3]> {
-    let mut found = None;
-    let parts = ground.as_composite_shape()?;
-    parts.map_part_at(id, &mut |_, part, _| {
-        found = part.as_triangle().map(|t| t.vertices().map(|p| pose * p));
-    });
-    found
+    let triangle = match ground.as_typed_shape() {
+        TypedShape::TriMesh(mesh) => mesh.triangle(id),
+        TypedShape::HeightField(field) => field.triangle_at_id(id)?,
+        _ => return None,
+    };
+    Some(triangle.vertices().map(|p| pose * p))
 }
 
 /// The largest gap of a piece and a triangle along the directions across their faces, a length; negative where they overlap

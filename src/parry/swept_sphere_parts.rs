@@ -6,12 +6,13 @@
 //! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::axisymmetric_toi`].
 
 use super::axisymmetric::Axisymmetric;
+use super::sliding::Sliding;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::PrimitiveList;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
+use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, Triangle, TypedShape};
 
 /// Inner radius of a half-space's stand-in, in units of the reach of the motion: a slab of radius 0 in the
 /// half-space's plane, larger than anything the body can reach.
@@ -34,9 +35,19 @@ pub struct Parts {
     /// parry's subshape of each primitive: child, triangle, segment, cell or voxel.
     primitive_subshapes: Vec<u32>,
     axisymmetric_subshapes: Vec<u32>,
+    /// What leaves triangles out.
+    sliding: Option<Sliding>,
 }
 
 impl Parts {
+    /// No parts yet; no triangles become parts along which the mesh that is searched only slides.
+    pub fn without(sliding: Option<Sliding>) -> Self {
+        Self {
+            sliding,
+            ..Self::default()
+        }
+    }
+
     /// parry's subshape of a primitive.
     pub fn primitive_subshape(&self, primitive: u32) -> u32 {
         let of = self.primitive_subshapes.get(primitive as usize);
@@ -47,6 +58,16 @@ impl Parts {
     pub fn axisymmetric_subshape(&self, index: u32) -> u32 {
         let of = self.axisymmetric_subshapes.get(index as usize);
         of.copied().unwrap_or(0)
+    }
+
+    /// Adds a triangle of a mesh or height field.
+    fn add_triangle(&mut self, triangle: &Triangle, pose: &Pose, subshape: u32) {
+        let corners = triangle.vertices().map(|p| pose * p);
+        if self.sliding.as_ref().is_none_or(|s| !s.is_along(corners)) {
+            self.primitives
+                .push(&corners.map(|p| MedialSphere::new(p, 0.0)));
+            self.name(subshape);
+        }
     }
 
     /// Names the subshape of what was added since the last call: one convex part.
@@ -129,9 +150,7 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
     match shape.as_typed_shape() {
         TypedShape::TriMesh(m) => {
             for i in m.bvh().intersect_aabb(&local) {
-                let t = m.triangle(i);
-                parts.primitives.push(&[t.a, t.b, t.c].map(flat));
-                parts.name(i);
+                parts.add_triangle(&m.triangle(i), pose, i);
             }
         }
         TypedShape::Polyline(l) => {
@@ -142,10 +161,7 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
             }
         }
         TypedShape::HeightField(h) => {
-            h.map_elements_in_local_aabb(&local, &mut |i, t| {
-                parts.primitives.push(&[t.a, t.b, t.c].map(flat));
-                parts.name(i);
-            });
+            h.map_elements_in_local_aabb(&local, &mut |i, t| parts.add_triangle(t, pose, i));
         }
         TypedShape::Voxels(v) => {
             let cube = Cuboid::new(v.voxel_size() * 0.5);
