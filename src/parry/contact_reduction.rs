@@ -5,7 +5,8 @@
 //! Seen along the normal, contact `i` is at `u_i` with a gap `d_i`. A body that is pressed down with its centre of mass
 //! over `c` comes to lie on the facet above `c` of the lower convex hull of all `(u_i, d_i)`. That facet attains the
 //! smallest `Σ λ_i d_i` with `Σ λ_i u_i = c`, `Σ λ_i = 1`, `λ ≥ 0`, which the simplex method finds: it has three
-//! rows, and a pivot is a change of one corner. A fourth contact makes the facet wider.
+//! rows, and a pivot is a change of one corner. A fourth contact makes the facet wider; it counts the less, the higher
+//! it is above the facet, since the body stands on the others before it comes down there.
 
 use crate::math::{Pose, Real, Vector};
 use parry3d::query::ContactManifold;
@@ -30,6 +31,13 @@ const STEEPEST: f64 = 0.02;
 /// Area from which a contact makes the support wider, in units of the square of the largest distance from the centre.
 const WIDER: f64 = 1.0e-3;
 
+/// Part for which a contact counts that is the prediction distance above the facet, or higher. Lower ones count for more,
+/// in proportion, and those in the facet as a whole.
+const HIGH: f64 = 0.3;
+
+/// Factor for contacts that bore before, which keeps the choice from flickering between contacts that are worth the same.
+const BORE: f64 = 1.1;
+
 /// Pivots after which the facet found so far has to do.
 const PIVOTS: usize = 64;
 
@@ -42,6 +50,8 @@ struct Seen {
     at: [f64; 2],
     /// Gap, less what preference is worth.
     gap: f64,
+    /// Whether it bore in the step before.
+    bore: bool,
 }
 
 /// A contact of the step before that carried a load.
@@ -142,6 +152,7 @@ pub fn choose<M, C: Copy>(
                 contact: [m, i],
                 at: [from.dot(x).into(), from.dot(y).into()],
                 gap: f64::from(point.dist) - if bore { equal } else { 0.0 },
+                bore,
             });
         }
     }
@@ -162,7 +173,7 @@ pub fn choose<M, C: Copy>(
         for s in seen.iter_mut() {
             s.gap -= equal * square(s.at) / size;
         }
-        let bear = bearing(seen);
+        let bear = bearing(seen, prediction);
         let others = (0..seen.len()).filter(|i| !bear.contains(i));
         left_out.extend(others.map(|i| seen[i].contact));
     }
@@ -192,25 +203,32 @@ fn without_doubles(seen: &mut Vec<Seen>, radius: f64) -> Vec<[usize; 2]> {
 
 /// Four of the contacts: the facet above the origin, and those that make the area over which the body stands largest,
 /// or are farthest from the others where none makes it larger.
-fn bearing(seen: &[Seen]) -> Vec<usize> {
-    let mut bear: Vec<usize> = facet(seen).into_iter().flatten().collect();
+fn bearing(seen: &[Seen], prediction: f64) -> Vec<usize> {
+    let (corners, plane) = facet(seen);
+    let mut bear: Vec<usize> = corners.into_iter().flatten().collect();
     let least = WIDER * seen.iter().map(|s| square(s.at)).fold(0.0, f64::max);
     while bear.len() < SOLVED {
         let chosen: Vec<[f64; 2]> = bear.iter().map(|b| seen[*b].at).collect();
-        let worth = |i: usize| {
-            let at = seen[i].at;
-            let gain = gained(&chosen, at);
-            let to = |c: &[f64; 2]| square([at[0] - c[0], at[1] - c[1]]);
-            let apart = chosen.iter().map(to).fold(f64::MAX, f64::min);
+        let worth = |s: &Seen| {
+            let low = (1.0 - above(&plane, s).min(s.gap) / prediction).clamp(HIGH, 1.0);
+            let counts = if s.bore { BORE * low } else { low };
+            let gain = counts * gained(&chosen, s.at);
+            let to = |c: &[f64; 2]| square([s.at[0] - c[0], s.at[1] - c[1]]);
+            let apart = counts * counts * chosen.iter().map(to).fold(f64::MAX, f64::min);
             (if gain > least { gain } else { 0.0 }, apart)
         };
         let rest = (0..seen.len()).filter(|i| !bear.contains(i));
-        let rest = rest.map(|i| (i, worth(i)));
+        let rest = rest.map(|i| (i, worth(&seen[i])));
         let next = rest.max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let Some((next, _)) = next else { break };
         bear.push(next);
     }
     bear
+}
+
+/// Height of a contact above a plane, which is its height at the origin and its gradient.
+fn above(plane: &[f64; 3], s: &Seen) -> f64 {
+    s.gap - (plane[0] + plane[1] * s.at[0] + plane[2] * s.at[1])
 }
 
 /// Area that a point adds to a triangle, twice; the triangle's own of two points and this one.
@@ -232,22 +250,21 @@ fn gained(of: &[[f64; 2]], p: [f64; 2]) -> f64 {
     }
 }
 
-/// The corners of the facet above the origin. One is missing where the origin is not above the contacts:
+/// The corners of the facet above the origin, and its plane. One is missing where the origin is not above the contacts:
 /// the body then lies on an edge or on one contact.
-fn facet(seen: &[Seen]) -> [Option<usize>; 3] {
+fn facet(seen: &[Seen]) -> ([Option<usize>; 3], [f64; 3]) {
     // Three corners that are not there, so far out and so high that any real facet is below them.
     let reach = 2.0 * seen.iter().map(|s| square(s.at)).fold(0.0, f64::max).sqrt();
     let highest = seen.iter().map(|s| s.gap).fold(f64::MIN, f64::max);
     let around = [[2.0, 0.0], [-1.0, 2.0], [-1.0, -2.0]];
     let far = around.map(|at| at.map(|x: f64| x * reach));
     let mut corners = far.map(|at| (None, at, highest + STEEPEST * reach));
-    // `a + b x + c y`.
     let mut plane = through(&corners.map(|(_, at, gap)| (at, gap)));
     for _ in 0..PIVOTS {
-        let above = |s: &Seen| s.gap - (plane[0] + plane[1] * s.at[0] + plane[2] * s.at[1]);
-        let by_height = |i: &usize, j: &usize| above(&seen[*i]).total_cmp(&above(&seen[*j]));
+        let above = |i: &usize| above(&plane, &seen[*i]);
+        let by_height = |i: &usize, j: &usize| above(i).total_cmp(&above(j));
         let lowest = (0..seen.len()).min_by(by_height);
-        let Some(enters) = lowest.filter(|i| above(&seen[*i]) < -1.0e-12 * reach) else {
+        let Some(enters) = lowest.filter(|i| above(i) < -1.0e-12 * reach) else {
             break;
         };
         // The corner that the origin is left of when the new one takes its place cannot stay.
@@ -266,7 +283,7 @@ fn facet(seen: &[Seen]) -> [Option<usize>; 3] {
         }
         (corners, plane) = (changed, next);
     }
-    corners.map(|(i, _, _)| i)
+    (corners.map(|(i, _, _)| i), plane)
 }
 
 /// Shares of three corners in a point: barycentric coordinates.
