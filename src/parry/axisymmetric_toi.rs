@@ -367,3 +367,19 @@ impl Search<'_> {
         }
     }
 }
+
+/// First contact with two bodies together, by the first contact with each.
+pub(super) fn earlier(a: Toi, b: Toi) -> Toi {
+    let overlap = |t: &Toi| t.status == ToiStatus::Overlapping;
+    let (first, second) = if overlap(&b) || (!overlap(&a) && b.lower < a.lower) {
+        (b, a)
+    } else {
+        (a, b)
+    };
+    Toi {
+        upper: first.upper.min(second.upper),
+        tolerance: first.tolerance.max(second.tolerance),
+        iterations: first.iterations.saturating_add(second.iterations),
+        ..first
+    }
+}

@@ -5,7 +5,7 @@ use super::axisymmetric_toi;
 use super::distance;
 use super::initial_contacts::{Touching, approach_of_rounding};
 use super::inside;
-use super::sliding::Sliding;
+use super::sliding::{Sinks, Sliding};
 use super::swept_region::{started, swept_region};
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::elementary::first_contact::motion_is_finite;
@@ -17,7 +17,7 @@ use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::ActivePrimitives;
 use crate::pair::{PrimitiveTree, nearest_spheres};
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
-use parry3d::shape::{Shape, TypedShape};
+use parry3d::shape::Shape;
 
 /// Largest part of its way by which a straight cast may seem to come nearer although it slides, so near the other shape that
 /// the normal says little.
@@ -54,12 +54,13 @@ pub struct Cast<'a> {
 impl Cast<'_> {
     /// The first contact as a bracket, with the mesh as first body; times are fractions of the duration of the
     /// cast. `options` replace the cast's own target and treatment of contacts at the start. If it is known which
-    /// primitives of both are `left` (the mesh first), no others of the mesh are searched. Triangles along which the mesh
-    /// only slides are left out ([`Sliding`]).
+    /// primitives of both are `left` (the mesh first), no others of the mesh are searched. Triangles on whose plane the mesh
+    /// lies are left out, or met along their normals ([`Sliding`]).
     pub fn toi(
         &self,
         options: &ToiOptions,
         left: Option<[ActivePrimitives; 2]>,
+        sinks: Sinks,
     ) -> Result<ToiResult, Unsweepable> {
         let [start, end] = self.times;
         let motions = [self.motion1, self.motion2].map(|m| started(m, start));
@@ -73,12 +74,10 @@ impl Cast<'_> {
             });
         }
         let seconds = end - start;
-        let is_ground =
-            |s: &TypedShape| matches!(s, TypedShape::TriMesh(_) | TypedShape::HeightField(_));
-        let sliding = is_ground(&self.other.as_typed_shape())
-            .then(|| Sliding::new(self.mesh, motions.each_ref(), seconds, options));
-        let parts = Parts::without(sliding.flatten());
-        self.query(&motions[0], &motions[1], seconds, options, left, parts)
+        let motions = motions.each_ref();
+        let target = options.target_distance;
+        let sliding = Sliding::new((self.mesh, self.other), motions, seconds, target, sinks);
+        self.query(motions, seconds, options, left, Parts::without(sliding))
     }
 
     /// The hit, with the mesh as first shape, or `None` if there is none.
@@ -100,14 +99,11 @@ impl Cast<'_> {
         if self.stop_approach {
             options.tolerance = options.tolerance.min(PRECISION * grazing);
         }
-        let found = self.query(
-            &motion1,
-            &motion2,
-            seconds,
-            &options,
-            None,
-            Parts::default(),
-        )?;
+        let query = |options: &ToiOptions| {
+            let motions = [&motion1, &motion2];
+            self.query(motions, seconds, options, None, Parts::default())
+        };
+        let found = query(&options)?;
         let ToiResult {
             mut toi,
             mut counts,
@@ -138,14 +134,7 @@ impl Cast<'_> {
                 ));
             };
             options = further;
-            let further = self.query(
-                &motion1,
-                &motion2,
-                seconds,
-                &options,
-                None,
-                Parts::default(),
-            )?;
+            let further = query(&options)?;
             toi = further.toi;
             counts += further.counts;
         }
@@ -159,14 +148,7 @@ impl Cast<'_> {
         if slides && self.stop_approach && !self.stop_at_penetration {
             let by = options.tolerance + grazing;
             options.target_distance -= by;
-            let nearer = self.query(
-                &motion1,
-                &motion2,
-                seconds,
-                &options,
-                None,
-                Parts::default(),
-            )?;
+            let nearer = query(&options)?;
             counts += nearer.counts;
             // Two convex bodies on straight paths come nearer ever more slowly, so before the hit by this much at least.
             let back = nearer.toi.lower - by / way.dot(nearer.toi.normal).max(Real::MIN_POSITIVE);
@@ -258,8 +240,7 @@ impl Cast<'_> {
     /// First contact in `seconds` of motions that start now; times are fractions of it. `parts` are none yet.
     fn query(
         &self,
-        motion1: &NonlinearRigidMotion,
-        motion2: &NonlinearRigidMotion,
+        [motion1, motion2]: [&NonlinearRigidMotion; 2],
         seconds: Real,
         options: &ToiOptions,
         left: Option<[ActivePrimitives; 2]>,
@@ -284,7 +265,15 @@ impl Cast<'_> {
             ..
         } = &parts;
         let mut found = self.search(primitives, motion1, motion2, seconds, options, left);
-        found.toi.primitives[1] = parts.primitive_subshape(found.toi.primitives[1]);
+        let primitive = found.toi.primitives[1];
+        if let Some(n) = parts.only_normal(primitive)
+            && found.toi.status != ToiStatus::Separated
+        {
+            let at = motion2.position_at_time(found.toi.lower * seconds);
+            found.toi.normal = at.rotation * -n;
+            found.met = None;
+        }
+        found.toi.primitives[1] = parts.primitive_subshape(primitive);
         if !axisymmetric.is_empty() {
             let mut other = axisymmetric_toi::first_contact(
                 self.mesh,
@@ -296,7 +285,7 @@ impl Cast<'_> {
             );
             other.toi.primitives[1] = parts.axisymmetric_subshape(other.toi.primitives[1]);
             found.counts += other.counts;
-            found.toi = earlier(found.toi, other.toi);
+            found.toi = axisymmetric_toi::earlier(found.toi, other.toi);
             // Of what met a cylinder or a cone the spheres alone do not tell the contact.
             if found.toi.lower == other.toi.lower {
                 found.met = None;
@@ -391,22 +380,6 @@ impl Cast<'_> {
             toi.primitives = c.primitives;
         }
         toi
-    }
-}
-
-/// First contact with two bodies together, by the first contact with each.
-fn earlier(a: Toi, b: Toi) -> Toi {
-    let overlap = |t: &Toi| t.status == ToiStatus::Overlapping;
-    let (first, second) = if overlap(&b) || (!overlap(&a) && b.lower < a.lower) {
-        (b, a)
-    } else {
-        (a, b)
-    };
-    Toi {
-        upper: first.upper.min(second.upper),
-        tolerance: first.tolerance.max(second.tolerance),
-        iterations: first.iterations.saturating_add(second.iterations),
-        ..first
     }
 }
 

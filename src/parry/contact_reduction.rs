@@ -36,7 +36,7 @@ const WIDER: f64 = 1.0e-3;
 const HIGH: f64 = 0.3;
 
 /// Factor for contacts that bore before, which keeps the choice from flickering between contacts that are worth the same.
-const BORE: f64 = 1.1;
+const BORE: f64 = 1.15;
 
 /// Pivots after which the facet found so far has to do.
 const PIVOTS: usize = 64;

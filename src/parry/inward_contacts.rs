@@ -62,9 +62,10 @@ pub fn leave_out<M, C>(
         let least = || {
             let piece = pieces.of_node(piece?)?;
             let triangle = triangle(ground, id)?;
-            let size = triangle.iter().map(|p| p.length()).fold(0.0, Real::max);
+            let size = triangle.0.iter().map(|p| p.length()).fold(0.0, Real::max);
             let more = prediction.min(DEEPER * piece.thickness) + ROUNDING * size;
-            Some(gap(piece, triangle) - more)
+            let half = prediction.min(0.5 * piece.thickness);
+            Some(gap(piece, triangle, half) - more)
         };
         let is_asked = m.points.iter().any(|point| point.dist < 0.0);
         let least = is_asked.then(least).flatten();
@@ -79,19 +80,23 @@ pub fn leave_out<M, C>(
     }
 }
 
-/// The corners of a triangle of the ground in the mesh's frame.
-fn triangle((ground, pose): (&dyn Shape, &Pose), id: u32) -> Option<[Vector; 3]> {
-    let triangle = match ground.as_typed_shape() {
-        TypedShape::TriMesh(mesh) => mesh.triangle(id),
-        TypedShape::HeightField(field) => field.triangle_at_id(id)?,
+/// The corners of a triangle of the ground in the mesh's frame, and whether what is in it is pushed out at its front only.
+fn triangle((ground, pose): (&dyn Shape, &Pose), id: u32) -> Option<([Vector; 3], bool)> {
+    let (triangle, normals) = match ground.as_typed_shape() {
+        TypedShape::TriMesh(mesh) => (mesh.triangle(id), mesh.triangle_normal_constraints(id)),
+        TypedShape::HeightField(field) => {
+            let normals = field.triangle_normal_constraints(id);
+            (field.triangle_at_id(id)?, normals)
+        }
         _ => return None,
     };
-    Some(triangle.vertices().map(|p| pose * p))
+    let is_one_sided = normals.is_some_and(|n| !n.two_sided);
+    Some((triangle.vertices().map(|p| pose * p), is_one_sided))
 }
 
 /// The largest gap of a piece and a triangle along the directions across their faces, a length; negative where they overlap
-/// along all of these.
-fn gap(piece: &ConvexPiece, [a, b, c]: [Vector; 3]) -> Real {
+/// along all of these. Where the piece is more than `half` in a triangle that pushes to its front only, the one along that.
+fn gap(piece: &ConvexPiece, ([a, b, c], is_one_sided): ([Vector; 3], bool), half: Real) -> Real {
     let across = (b - a).cross(c - a).normalize_or_zero();
     let lowest = |n: Vector| {
         let ends = piece.spheres.iter().map(|s| n.dot(s.center - a) - s.radius);
@@ -103,5 +108,9 @@ fn gap(piece: &ConvexPiece, [a, b, c]: [Vector; 3]) -> Real {
         nearest.fold(Real::MAX, Real::min) - ends.fold(Real::MIN, Real::max)
     };
     let faces = piece.faces.iter().map(|face| beyond(face.normal));
-    faces.fold(lowest(across).max(lowest(-across)), Real::max)
+    let gap = faces.fold(lowest(across).max(lowest(-across)), Real::max);
+    match is_one_sided && gap < -half {
+        true => gap.min(lowest(across)),
+        false => gap,
+    }
 }

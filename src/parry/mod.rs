@@ -29,7 +29,7 @@ pub(crate) mod medial_part;
 pub(crate) mod narrow_phase_plan;
 pub(crate) mod rays;
 pub(crate) mod shape;
-mod sliding;
+pub(crate) mod sliding;
 mod swept_region;
 pub(crate) mod swept_sphere_parts;
 

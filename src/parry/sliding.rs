@@ -1,17 +1,32 @@
-//! Triangles of a ground along whose plane a mesh only slides in a step, which are no obstacle.
+//! Triangles of a ground on whose plane a mesh lies, which it can meet from above only.
 //!
 //! A flat ground is cut into triangles, and a body that lies on it is within the contact distance of each that it comes
 //! over. Its nearest point is then on an edge in front of the body, with a normal against the motion, and a body stopped
-//! there would trip over nothing. But what stays above a triangle's plane crosses the triangle nowhere. Along a chord a
-//! height is linear in time, and an arc of the angle `φ` is off its chord by `r φ² / 8` at most.
+//! there would trip over nothing. But what stays above a triangle's plane crosses the triangle nowhere: such a triangle is no
+//! obstacle. And what sinks in there is thrown back along the triangle's normal.
+//!
+//! Along a chord a height is linear in time, and a path of an acceleration up to `a` is off its chord by `a t² / 8` at most.
+//! A point that turns with the mesh by `ω₁` at `r`, seen from a ground that turns by `ω₂`, `d` from its axis, has up to
+//! `ω₁² r + ω₂² d + 2 ω₂ v`.
 
-use crate::elementary::{InitialContact, ToiOptions};
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 use parry3d::query::NonlinearRigidMotion;
+use parry3d::shape::{Shape, TypedShape};
 
-/// The spheres of a mesh at the start and at the end of a step, in the frame of a ground that does not turn.
+/// How deep a mesh may be in the plane that it slides along, lengths.
+#[derive(Clone, Copy, Debug)]
+pub struct Sinks {
+    /// Deepest at the start, if it is to count as lying on the plane.
+    pub lies: Real,
+    /// Deepest in the step, if the triangle is to be no obstacle.
+    pub to: Real,
+    /// The same, from the depth at the start on.
+    pub by: Real,
+}
+
+/// The spheres of a mesh at the start and at the end of a step, in the frame of the ground.
 #[derive(Clone, Debug)]
 pub struct Sliding {
     spheres: [Vec<MedialSphere>; 2],
@@ -19,24 +34,22 @@ pub struct Sliding {
     bend: Real,
     /// Height up to which the mesh counts as lying on a plane, a length.
     target: Real,
-    /// Depth to which it may sink in there, a length.
-    by: Real,
+    sinks: Sinks,
 }
 
 impl Sliding {
-    /// `None` where a first contact is asked for although the two touch, and where the ground turns.
+    /// For a mesh over a ground of triangles. It counts as lying on a plane up to the distance `target`. `None` for other
+    /// shapes.
     pub fn new(
-        mesh: &MedialMesh,
+        (mesh, ground): (&MedialMesh, &dyn Shape),
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
         seconds: Real,
-        options: &ToiOptions,
+        target: Real,
+        sinks: Sinks,
     ) -> Option<Self> {
-        let InitialContact::Deepen { by } = options.initial_contact else {
+        let (TypedShape::TriMesh(_) | TypedShape::HeightField(_)) = ground.as_typed_shape() else {
             return None;
         };
-        if motion2.angvel != Vector::ZERO {
-            return None;
-        }
         let poses = [0.0, seconds].map(|t| {
             let [pose1, pose2] = [motion1, motion2].map(|m| m.position_at_time(t));
             pose2.inverse() * pose1
@@ -45,32 +58,43 @@ impl Sliding {
             let place = |s: &MedialSphere| MedialSphere::new(pose * s.center, s.radius);
             mesh.spheres().iter().map(place).collect::<Vec<_>>()
         };
-        let arm = |s: &MedialSphere| s.center.distance(motion1.local_center);
-        let arm = mesh.spheres().iter().map(arm).fold(0.0, Real::max);
-        let angle = motion1.angvel.length() * seconds;
+        let spheres = poses.map(placed);
+        let farthest = |spheres: &[MedialSphere], from: Vector| {
+            let distances = spheres.iter().map(|s| s.center.distance(from));
+            distances.fold(0.0, Real::max)
+        };
+        let arm = farthest(mesh.spheres(), motion1.local_center);
+        let [w1, w2] = [motion1, motion2].map(|m| m.angvel.length());
+        let v = (motion1.linvel - motion2.linvel).length() + w1 * arm;
+        let from_axis = farthest(&spheres[0], motion2.local_center) + v * seconds;
+        let acceleration = w1 * w1 * arm + w2 * w2 * from_axis + 2.0 * w2 * v;
         let sizes = poses.map(|p| p.translation.abs().max_element());
         let rounding = ROUNDING_ULPS as Real * Real::EPSILON * (sizes[0] + sizes[1] + arm);
         Some(Self {
-            spheres: poses.map(placed),
-            bend: 0.125 * angle * angle * arm + rounding,
-            target: options.target_distance,
-            by,
+            spheres,
+            bend: 0.125 * acceleration * seconds * seconds + rounding,
+            target,
+            sinks,
         })
     }
 
-    /// Whether the mesh lies on the plane of a triangle, on either side, and nowhere sinks in deeper than it may.
-    pub fn is_along(&self, [a, b, c]: [Vector; 3]) -> bool {
+    /// The normal of a triangle on whose plane the mesh lies, on that side, and whether the triangle is no obstacle.
+    pub fn lies_on(&self, [a, b, c]: [Vector; 3]) -> Option<(Vector, bool)> {
         let across = (b - a).cross(c - a).normalize_or_zero();
         let lowest = |spheres: &[MedialSphere], n: Vector| {
             let heights = spheres.iter().map(|s| n.dot(s.center - a) - s.radius);
             heights.fold(Real::MAX, Real::min)
         };
-        across != Vector::ZERO
-            && [across, -across].into_iter().any(|n| {
-                let start = lowest(&self.spheres[0], n);
-                start <= self.target
-                    && start >= self.bend - self.by
-                    && lowest(&self.spheres[1], n) >= self.bend - self.by
-            })
+        let sides = [across, -across].into_iter().filter(|n| *n != Vector::ZERO);
+        let Sinks { lies, to, by } = self.sinks;
+        let on = |n: Vector| {
+            let start = lowest(&self.spheres[0], n);
+            let least = (start.min(0.0) - by).max(-to) + self.bend;
+            let slides = || start.min(lowest(&self.spheres[1], n)) >= least;
+            (-lies..=self.target)
+                .contains(&start)
+                .then(|| (n, slides()))
+        };
+        sides.filter_map(on).next()
     }
 }

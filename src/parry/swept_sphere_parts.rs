@@ -37,6 +37,8 @@ pub struct Parts {
     axisymmetric_subshapes: Vec<u32>,
     /// What leaves triangles out.
     sliding: Option<Sliding>,
+    /// Primitives that can be met along one normal only, which is unit and points out of them.
+    normals: Vec<(u32, Vector)>,
 }
 
 impl Parts {
@@ -54,6 +56,12 @@ impl Parts {
         of.copied().unwrap_or(0)
     }
 
+    /// The one normal along which a primitive can be met, if there is but one.
+    pub fn only_normal(&self, primitive: u32) -> Option<Vector> {
+        let mut normals = self.normals.iter();
+        normals.find(|(p, _)| *p == primitive).map(|(_, n)| *n)
+    }
+
     /// parry's subshape of one of the axisymmetric bodies.
     pub fn axisymmetric_subshape(&self, index: u32) -> u32 {
         let of = self.axisymmetric_subshapes.get(index as usize);
@@ -63,11 +71,15 @@ impl Parts {
     /// Adds a triangle of a mesh or height field.
     fn add_triangle(&mut self, triangle: &Triangle, pose: &Pose, subshape: u32) {
         let corners = triangle.vertices().map(|p| pose * p);
-        if self.sliding.as_ref().is_none_or(|s| !s.is_along(corners)) {
-            self.primitives
-                .push(&corners.map(|p| MedialSphere::new(p, 0.0)));
-            self.name(subshape);
+        let lies = self.sliding.as_ref().and_then(|s| s.lies_on(corners));
+        if lies.is_some_and(|(_, slides)| slides) {
+            return;
         }
+        let primitive = self.primitives.len() as u32;
+        self.normals.extend(lies.map(|(n, _)| (primitive, n)));
+        self.primitives
+            .push(&corners.map(|p| MedialSphere::new(p, 0.0)));
+        self.name(subshape);
     }
 
     /// Names the subshape of what was added since the last call: one convex part.

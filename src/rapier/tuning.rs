@@ -63,6 +63,9 @@ pub struct Tuning {
     /// Speed up to which nothing bounces where no force pulls, in units of rapier's length unit per second. Far below what
     /// can be seen; ten times as large, and boxes of elastic bodies lose a hundredth of their energy.
     pub least_bounce: Real,
+    /// Depth up to which a body lies on the plane of a triangle, in units of rapier's length unit: bodies that slide are not that
+    /// deep, and what is deeper beside a triangle may strike its edge.
+    pub lies: Real,
     /// Depth from which bodies in an impact are pushed apart, in units of the thickness.
     pub push_from: Real,
     /// Share of the depth below it that is pushed out in a step.
@@ -87,6 +90,7 @@ impl Default for Tuning {
             max_events: 16,
             max_stops: 8,
             least_bounce: 1.0e-3,
+            lies: 6.0e-3,
             push_from: 0.1,
             push: 0.2,
         }

@@ -15,7 +15,7 @@ fn comb() -> Vec<(Vector, Vector)> {
 }
 
 /// A table with four legs: 1 m by 0.6 m by 0.5 m.
-fn table() -> Vec<(Vector, Vector)> {
+pub fn table() -> Vec<(Vector, Vector)> {
     let leg = |k: i32| {
         let [x, z] = [
             (k % 2 * 2 - 1) as Real * 0.42,

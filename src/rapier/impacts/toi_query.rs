@@ -17,6 +17,7 @@ use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::met::Met;
 use crate::pair::outline::ActivePrimitives;
 use crate::parry::cast::Cast;
+use crate::parry::sliding::Sinks;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::impacts::fast_parts::FastParts;
 use crate::rapier::tuning::Tuning;
@@ -93,6 +94,8 @@ pub struct QueryOptions {
     pub floor: Option<ToiOptions>,
     /// All of both that may come as near as is asked, where that is known.
     pub left: Option<[ActivePrimitives; 2]>,
+    /// Of a body that slides over triangles.
+    pub sinks: Sinks,
 }
 
 /// Asks for first contacts in a step of `dt` seconds.
@@ -266,17 +269,26 @@ impl CcdPolicy<'_> {
             true => hair,
             false => (tuning.sink * thickness).max(hair),
         };
+        let least = pair.map(|k| view.parts[k].least);
+        let least = least[0].min(least[1]);
+        let sinks = Sinks {
+            lies: least.min(tuning.lies * self.unit),
+            to: tuning.floor * least,
+            by: by.min(tuning.sink * least),
+        };
         Some(if fast {
             QueryOptions {
                 first: options(target, by, 0.0),
                 floor: Some(floor),
                 left: None,
+                sinks,
             }
         } else {
             QueryOptions {
                 first: floor,
                 floor: None,
                 left: None,
+                sinks,
             }
         })
     }
@@ -312,8 +324,7 @@ impl CcdPolicy<'_> {
         let motions = pair.map(|k| view.motion(k, time));
         let seconds = self.dt - time;
         let mut query = |options: &ToiOptions, known: Option<ToiResult>| {
-            let left = query_options.left.as_ref();
-            let asked = || ask(view, pair, &motions, seconds, options, left);
+            let asked = || ask(view, pair, &motions, seconds, options, query_options);
             let found = known.or_else(asked)?;
             work.begin(&motions, options);
             work.counts += found.counts;
@@ -350,11 +361,11 @@ fn ask(
     motions: &[NonlinearRigidMotion; 2],
     seconds: Real,
     options: &ToiOptions,
-    left: Option<&[ActivePrimitives; 2]>,
+    QueryOptions { left, sinks, .. }: &QueryOptions,
 ) -> Option<ToiResult> {
     let [p, q] = pair.map(|k| &view.parts[k]);
     if let (Some(a), Some(b)) = (p.medial(), q.medial()) {
-        let query = Query::new(motions.each_ref(), (a, b), seconds, options, left.cloned());
+        let query = Query::new(motions.each_ref(), (a, b), seconds, options, left.clone());
         return Some(query.settle());
     }
     let flipped = p.medial().is_none();
@@ -371,8 +382,8 @@ fn ask(
         stop_at_penetration: true,
         stop_approach: false,
     };
-    let left = left.map(|left| order.map(|k| left[k].clone()));
-    let mut found = cast.toi(options, left).ok()?;
+    let left = left.as_ref().map(|left| order.map(|k| left[k].clone()));
+    let mut found = cast.toi(options, left, *sinks).ok()?;
     if flipped {
         let toi = &mut found.toi;
         toi.normal = -toi.normal;
