@@ -54,18 +54,27 @@ pub struct Cast<'a> {
 impl Cast<'_> {
     /// The first contact as a bracket, with the mesh as first body; times are fractions of the duration of the
     /// cast. `options` replace the cast's own target and treatment of contacts at the start. If it is known which
-    /// primitives of both are `left` (the mesh first), no others of the mesh are searched. Triangles on whose plane the mesh
-    /// lies are left out, or met along their normals ([`Sliding`]).
+    /// primitives of both are `left` (the mesh first), no others of the mesh are searched.
     pub fn toi(
         &self,
         options: &ToiOptions,
         left: Option<[ActivePrimitives; 2]>,
-        sinks: Sinks,
+    ) -> Result<ToiResult, Unsweepable> {
+        self.toi_sliding(options, left, None)
+    }
+
+    /// The same; triangles on whose plane the mesh lies, with so much room to sink, are treated by `sliding.rs`.
+    pub(crate) fn toi_sliding(
+        &self,
+        options: &ToiOptions,
+        left: Option<[ActivePrimitives; 2]>,
+        sinks: Option<Sinks>,
     ) -> Result<ToiResult, Unsweepable> {
         let [start, end] = self.times;
         let motions = [self.motion1, self.motion2].map(|m| started(m, start));
+        let seconds = end - start;
         let finite = motions.iter().all(motion_is_finite);
-        if !(finite && end >= start && (end - start).is_finite()) {
+        if !(finite && seconds >= 0.0 && seconds.is_finite()) {
             return Ok(ToiResult {
                 toi: Toi::bad_input(options),
                 counts: Counts::default(),
@@ -73,11 +82,10 @@ impl Cast<'_> {
                 met: None,
             });
         }
-        let seconds = end - start;
-        let motions = motions.each_ref();
-        let target = options.target_distance;
-        let sliding = Sliding::new((self.mesh, self.other), motions, seconds, target, sinks);
-        self.query(motions, seconds, options, left, Parts::without(sliding))
+        let (motions, target) = (motions.each_ref(), options.target_distance);
+        let slides = |s| Sliding::new((self.mesh, self.other), motions, seconds, target, s);
+        let parts = Parts::without(sinks.and_then(slides));
+        self.query(motions, seconds, options, left, parts)
     }
 
     /// The hit, with the mesh as first shape, or `None` if there is none.
@@ -210,9 +218,8 @@ impl Cast<'_> {
         tolerance: Real,
     ) -> Result<Touching, Unsweepable> {
         let [start1, start2] = motions.map(|m| m.start);
-        let pos12 = start1.inverse() * start2;
         // What the query took for a contact may be farther off by its tolerance, with a normal that says less.
-        let reach = self.target_distance + tolerance;
+        let (pos12, reach) = (start1.inverse() * start2, self.target_distance + tolerance);
         let (nearest, _) = distance::nearest(self.mesh, self.other, &pos12, reach)?;
         let (gap, normal, points, primitives) = match nearest {
             Some(c) => {

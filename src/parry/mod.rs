@@ -8,7 +8,8 @@
 //!   do not point into the body (`inward_contacts.rs`).
 //! - Casts: `cast.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
 //!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
-//!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at.
+//!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at. Triangles
+//!   on whose plane a body lies are treated by `sliding.rs`.
 //! - Distance: `distance.rs`.
 //! - What a pipeline tells the dispatcher for a step, muted pairs among it: `narrow_phase_plan.rs`.
 

@@ -73,6 +73,7 @@ mod saved_impacts;
 #[cfg(feature = "serde-serialize")]
 mod saving;
 mod sharp_blocks;
+mod sliding;
 #[allow(dead_code)]
 #[path = "../../examples/factory/solid.rs"]
 mod solid;

@@ -31,24 +31,31 @@ fn ring() -> MedialMesh {
 }
 
 /// A flat ground of triangles in cells of a metre.
-fn ground() -> ColliderBuilder {
+pub fn ground() -> ColliderBuilder {
     flagged_ground(TriMeshFlags::empty())
 }
 
-fn flagged_ground(flags: TriMeshFlags) -> ColliderBuilder {
-    let line = |k: i32| (0..31).map(move |j| Vector::new((k - 15) as Real, 0.0, (j - 15) as Real));
+/// The same with flags.
+pub fn flagged_ground(flags: TriMeshFlags) -> ColliderBuilder {
+    ground_of(1.0, flags)
+}
+
+/// A flat ground of triangles in cells of this size.
+fn ground_of(cell: Real, flags: TriMeshFlags) -> ColliderBuilder {
+    let at = move |k: i32| cell * (k - 15) as Real;
+    let line = |k: i32| (0..31).map(move |j| Vector::new(at(k), 0.0, at(j)));
     let vertices = (0..31).flat_map(line).collect();
-    let cell = |i: u32, j: u32| {
+    let pair = |i: u32, j: u32| {
         let [a, b] = [i * 31 + j, (i + 1) * 31 + j];
         [[a, a + 1, b + 1], [a, b + 1, b]]
     };
-    let cells = (0..30).flat_map(|i| (0..30).flat_map(move |j| cell(i, j)));
+    let cells = (0..30).flat_map(|i| (0..30).flat_map(move |j| pair(i, j)));
     let ground = ColliderBuilder::trimesh_with_flags(vertices, cells.collect(), flags);
     ground.expect("a ground")
 }
 
 /// A box: its centre and half its sides.
-type Part = (Vector, Vector);
+pub type Part = (Vector, Vector);
 
 /// An L of 1 m, 0.2 m thick.
 fn l() -> Vec<Part> {
@@ -66,7 +73,7 @@ fn e() -> Vec<Part> {
 }
 
 /// A body as a medial mesh, and as rapier's compound.
-fn both(parts: &[Part]) -> [ColliderBuilder; 2] {
+pub fn both(parts: &[Part]) -> [ColliderBuilder; 2] {
     let (vertices, indices) = boxes(parts);
     let built = MedialMesh::from_trimesh(&vertices, &indices, &BuildOptions::default());
     let part = |(at, half): &Part| {
@@ -82,14 +89,14 @@ fn both(parts: &[Part]) -> [ColliderBuilder; 2] {
 
 /// The most energy for a mass that a body gains from one step to a later one, and its deepest contact.
 #[derive(Default)]
-struct Watched {
-    gain: Real,
-    depth: Real,
+pub struct Watched {
+    pub gain: Real,
+    pub depth: Real,
     least: Option<Real>,
 }
 
 impl Watched {
-    fn look(&mut self, world: &PhysicsWorld, body: RigidBodyHandle) {
+    pub fn look(&mut self, world: &PhysicsWorld, body: RigidBodyHandle) {
         let body = &world.bodies[body];
         let now = body.kinetic_energy() / body.mass() + 9.81 * body.center_of_mass().y;
         let least = self.least.unwrap_or(now).min(now);
@@ -132,7 +139,12 @@ fn rings_of_blocks_that_roll_over_triangles_feel_no_ghosts() {
 }
 
 /// A body that slides over a ground, at rest on it but for 4 m/s: its speed after a second, and what was seen of it.
-fn slide(ground: ColliderBuilder, body: &ColliderBuilder, low: Real, yaw: Real) -> (Real, Watched) {
+pub fn slide(
+    ground: ColliderBuilder,
+    body: &ColliderBuilder,
+    low: Real,
+    yaw: Real,
+) -> (Real, Watched) {
     let is_medial = body.shape.as_shape::<MedialMesh>().is_some();
     let mut world = PhysicsWorld::new();
     world.insert_collider(ground, None);
@@ -158,12 +170,7 @@ fn slide(ground: ColliderBuilder, body: &ColliderBuilder, low: Real, yaw: Real) 
 /// up to nine tenths of their speed.
 #[test]
 fn bodies_slide_over_internal_edges_as_rapiers_do() {
-    let plate = vec![(Vector::ZERO, Vector::new(0.4, 0.02, 0.3))];
-    for (name, parts, low) in [
-        ("L", l(), 0.5),
-        ("table", table(), 0.25),
-        ("plate", plate, 0.02),
-    ] {
+    for (name, parts, low) in [("L", l(), 0.5), ("table", table(), 0.25)] {
         let [ours, own] = both(&parts);
         for friction in [0.0, 0.1] {
             for yaw in [0.3, 1.1, 2.6] {
@@ -201,7 +208,7 @@ fn bodies_that_slide_over_height_fields_feel_no_ghosts() {
     }
 }
 
-/// Bodies of a centimetre fall on triangles of a metre: contacts are far less deep than rapier's prediction distance, and still
+/// Bodies of a centimetre fall on triangles of a centimetre: contacts are far less deep than rapier's prediction distance, and still
 /// too deep for such bodies, which rattled.
 #[test]
 fn small_bodies_come_to_rest_on_triangles() {
@@ -212,10 +219,10 @@ fn small_bodies_come_to_rest_on_triangles() {
             let is_medial = body.shape.as_shape::<MedialMesh>().is_some();
             let mut random = Random(seed);
             let mut world = PhysicsWorld::new();
-            world.insert_collider(ground(), None);
+            world.insert_collider(ground_of(0.01, TriMeshFlags::empty()), None);
             let turn = Vector::new(0.0, 0.0, 0.0).map(|_| random.within(-3.0, 3.0));
             let falls = RigidBodyBuilder::dynamic()
-                .translation(Vector::new(0.03, 0.02, 0.02))
+                .translation(Vector::new(0.003, 0.012, 0.002))
                 .rotation(turn)
                 .linvel(Vector::Y * -1.0);
             let (body, _) = world.insert(falls, body.clone().density(1000.0));

@@ -383,7 +383,7 @@ fn ask(
         stop_approach: false,
     };
     let left = left.as_ref().map(|left| order.map(|k| left[k].clone()));
-    let mut found = cast.toi(options, left, *sinks).ok()?;
+    let mut found = cast.toi_sliding(options, left, Some(*sinks)).ok()?;
     if flipped {
         let toi = &mut found.toi;
         toi.normal = -toi.normal;
