@@ -5,8 +5,8 @@
 //! Seen along the normal, contact `i` is at `u_i` with a gap `d_i`. A body that is pressed down with its centre of mass
 //! over `c` comes to lie on the facet above `c` of the lower convex hull of all `(u_i, d_i)`. That facet attains the
 //! smallest `Σ λ_i d_i` with `Σ λ_i u_i = c`, `Σ λ_i = 1`, `λ ≥ 0`, which the simplex method finds: it has three
-//! rows, and a pivot is a change of one corner. A fourth contact makes the facet wider; it counts the less, the higher
-//! it is above the facet, since the body stands on the others before it comes down there.
+//! rows, and a pivot is a change of one corner. A fourth contact makes the facet wider; one that does not touch counts
+//! the less, the higher it is above the facet, since the body stands on the others before it comes down there.
 
 use crate::math::{Pose, Real, Vector};
 use parry3d::query::ContactManifold;
@@ -31,8 +31,8 @@ const STEEPEST: f64 = 0.02;
 /// Area from which a contact makes the support wider, in units of the square of the largest distance from the centre.
 const WIDER: f64 = 1.0e-3;
 
-/// Part for which a contact counts that is the prediction distance above the facet, or higher. Lower ones count for more,
-/// in proportion, and those in the facet as a whole.
+/// Part for which a contact counts that does not touch and is the prediction distance above the facet, or higher. Lower ones
+/// count for more, in proportion, and those that touch or are in the facet as a whole.
 const HIGH: f64 = 0.3;
 
 /// Factor for contacts that bore before, which keeps the choice from flickering between contacts that are worth the same.

@@ -1,4 +1,4 @@
-//! Triangles of a ground on whose plane a mesh lies, which it can meet from above only.
+//! Triangles of a ground, and faces of voxels, on whose plane a mesh lies: it can meet them from above only.
 //!
 //! A flat ground is cut into triangles, and a body that lies on it is within the contact distance of each that it comes
 //! over. Its nearest point is then on an edge in front of the body, with a normal against the motion, and a body stopped
@@ -38,7 +38,7 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// For a mesh over a ground of triangles. It counts as lying on a plane up to the distance `target`. `None` for other
+    /// For a mesh over a ground of triangles or voxels. It counts as lying on a plane up to the distance `target`. `None` for other
     /// shapes.
     pub fn new(
         (mesh, ground): (&MedialMesh, &dyn Shape),
@@ -47,9 +47,12 @@ impl Sliding {
         target: Real,
         sinks: Sinks,
     ) -> Option<Self> {
-        let (TypedShape::TriMesh(_) | TypedShape::HeightField(_)) = ground.as_typed_shape() else {
+        if !matches!(
+            ground.as_typed_shape(),
+            TypedShape::TriMesh(_) | TypedShape::HeightField(_) | TypedShape::Voxels(_)
+        ) {
             return None;
-        };
+        }
         let poses = [0.0, seconds].map(|t| {
             let [pose1, pose2] = [motion1, motion2].map(|m| m.position_at_time(t));
             pose2.inverse() * pose1

@@ -12,7 +12,7 @@ use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::PrimitiveList;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, Triangle, TypedShape};
+use parry3d::shape::{AxisMask, ConvexPolyhedron, Cuboid, HalfSpace, Shape, Triangle, TypedShape};
 
 /// Inner radius of a half-space's stand-in, in units of the reach of the motion: a slab of radius 0 in the
 /// half-space's plane, larger than anything the body can reach.
@@ -35,14 +35,14 @@ pub struct Parts {
     /// parry's subshape of each primitive: child, triangle, segment, cell or voxel.
     primitive_subshapes: Vec<u32>,
     axisymmetric_subshapes: Vec<u32>,
-    /// What leaves triangles out.
+    /// What leaves triangles and faces of voxels out.
     sliding: Option<Sliding>,
     /// Primitives that can be met along one normal only, which is unit and points out of them.
     normals: Vec<(u32, Vector)>,
 }
 
 impl Parts {
-    /// No parts yet; no triangles become parts along which the mesh that is searched only slides.
+    /// No parts yet; triangles, and faces of voxels, along which the mesh that is searched only slides, will be left out.
     pub fn without(sliding: Option<Sliding>) -> Self {
         Self {
             sliding,
@@ -80,6 +80,31 @@ impl Parts {
         self.primitives
             .push(&corners.map(|p| MedialSphere::new(p, 0.0)));
         self.name(subshape);
+    }
+
+    /// Adds the faces of a voxel that are not inside the solid.
+    fn add_voxel(&mut self, cube: &Cuboid, free: AxisMask, pose: &Pose, region: &Aabb) {
+        let region = seen_from(pose, region);
+        for k in (0..6).filter(|k| free.bits() & (1 << k) != 0) {
+            let (axis, sign) = (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 });
+            let corner = |x: Real, y: Real| {
+                let mut local = Vector::splat(sign);
+                (local[(axis + 1) % 3], local[(axis + 2) % 3]) = (x, y);
+                pose * (local * cube.half_extents)
+            };
+            let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(0.0, 1.0)];
+            let lies = self.sliding.as_ref().and_then(|s| s.lies_on(corners));
+            if lies.is_none_or(|(_, slides)| !slides) {
+                let first = self.primitives.len() as u32;
+                let face = (axis, sign * cube.half_extents[axis]);
+                add_face(&mut self.primitives, cube, face, pose, 0.0, &region);
+                let added = first..self.primitives.len() as u32;
+                self.normals.extend(
+                    lies.iter()
+                        .flat_map(|(n, _)| added.clone().map(|p| (p, *n))),
+                );
+            }
+        }
     }
 
     /// Names the subshape of what was added since the last call: one convex part.
@@ -180,13 +205,7 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
             for voxel in v.voxels_intersecting_local_aabb(&local) {
                 if !voxel.state.is_empty() {
                     let at = pose * Pose::from_translation(voxel.center);
-                    add_cuboid(
-                        &mut parts.primitives,
-                        &cube,
-                        &at,
-                        0.0,
-                        &seen_from(&at, region),
-                    );
+                    parts.add_voxel(&cube, voxel.state.free_faces(), &at, region);
                     parts.name(voxel.linear_id.flat_id() as u32);
                 }
             }
@@ -216,19 +235,31 @@ fn add_cuboid(
     let h = cuboid.half_extents;
     for axis in 0..3 {
         for side in [-h[axis], h[axis]] {
-            if side + border < region.mins[axis] || side - border > region.maxs[axis] {
-                continue;
-            }
-            let other = [(axis + 1) % 3, (axis + 2) % 3];
-            let at = |[x, y]: [Real; 2]| {
-                let mut local = Vector::splat(side);
-                (local[other[0]], local[other[1]]) = (x, y);
-                MedialSphere::new(pose * local, border)
-            };
-            let spans = other.map(|k| [region.mins[k] - border, region.maxs[k] + border]);
-            add_rectangle(primitives, other.map(|k| h[k]), spans, at);
+            add_face(primitives, cuboid, (axis, side), pose, border, region);
         }
     }
+}
+
+/// The face of a cuboid at `side` along an axis, as far as `region` (in its frame) meets it.
+fn add_face(
+    primitives: &mut PrimitiveList,
+    cuboid: &Cuboid,
+    (axis, side): (usize, Real),
+    pose: &Pose,
+    border: Real,
+    region: &Aabb,
+) {
+    if side + border < region.mins[axis] || side - border > region.maxs[axis] {
+        return;
+    }
+    let other = [(axis + 1) % 3, (axis + 2) % 3];
+    let at = |[x, y]: [Real; 2]| {
+        let mut local = Vector::splat(side);
+        (local[other[0]], local[other[1]]) = (x, y);
+        MedialSphere::new(pose * local, border)
+    };
+    let spans = other.map(|k| [region.mins[k] - border, region.maxs[k] + border]);
+    add_rectangle(primitives, other.map(|k| cuboid.half_extents[k]), spans, at);
 }
 
 /// One side of a rectangle about the origin of a plane.

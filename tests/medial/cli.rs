@@ -255,7 +255,7 @@ fn several_meshes_are_built_into_a_folder() {
         names
     };
 
-    let run = ["build", "in", "-o", "out", "-p", "20", "--json"];
+    let run = ["build", "in", "-o", "out", "-p", "40", "--json"];
     let output = medial(&directory, &run);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let built: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -264,7 +264,7 @@ fn several_meshes_are_built_into_a_folder() {
 
     let output = medial(
         &directory,
-        &["build", "broken.obj", "in", "-o", "out", "-p", "20"],
+        &["build", "broken.obj", "in", "-o", "out", "-p", "40"],
     );
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{message}");
@@ -272,7 +272,7 @@ fn several_meshes_are_built_into_a_folder() {
     assert!(message.contains("1 of 3 meshes failed"), "{message}");
     // A mesh without triangles is refused without its name by what builds it.
     fs::write(directory.join("flat.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\n").unwrap();
-    let run = ["build", "flat.obj", "in", "-o", "out", "-p", "20", "--json"];
+    let run = ["build", "flat.obj", "in", "-o", "out", "-p", "40", "--json"];
     let output = medial(&directory, &run);
     assert!(
         text(&output.stderr).contains("medial: flat.obj: "),

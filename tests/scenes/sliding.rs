@@ -148,3 +148,31 @@ fn turntables_of_triangles_carry_bodies_as_rapiers() {
     );
     assert!(ours.1 < 1.1 * own.1, "{ours:?}, rapier's {own:?}");
 }
+
+/// Voxels have no faces between them.
+#[test]
+fn bodies_slide_over_voxels_as_rapiers_do() {
+    let side = |x: i32| (-24..24).map(move |z| IVector::new(x, -1, z));
+    let cells: Vec<_> = (-24..24).flat_map(side).collect();
+    for (parts, low) in [
+        (table(), 0.25),
+        (vec![(Vector::ZERO, Vector::new(0.4, 0.02, 0.3))], 0.02),
+    ] {
+        let [ours, own] = both(&parts);
+        for friction in [0.0, 0.1] {
+            for yaw in [0.3, 1.1, 2.6] {
+                let slide = |body: &ColliderBuilder| {
+                    let ground = ColliderBuilder::voxels(Vector::splat(0.5), &cells);
+                    let body = body.clone().friction(friction);
+                    slide(ground.friction(friction), &body, low, yaw).0
+                };
+                let [ours, own] = [slide(&ours), slide(&own)];
+                assert!(
+                    (ours - own).abs() < 0.05,
+                    "{}, friction {friction}: {ours} m/s, rapier's {own}",
+                    parts.len()
+                );
+            }
+        }
+    }
+}
