@@ -84,19 +84,18 @@ impl Sliding {
     /// The normal of a triangle on whose plane the mesh lies, on that side, and whether the triangle is no obstacle.
     pub fn lies_on(&self, [a, b, c]: [Vector; 3]) -> Option<(Vector, bool)> {
         let across = (b - a).cross(c - a).normalize_or_zero();
-        let lowest = |spheres: &[MedialSphere], n: Vector| {
-            let heights = spheres.iter().map(|s| n.dot(s.center - a) - s.radius);
-            heights.fold(Real::MAX, Real::min)
+        // The lowest point of the mesh, unless one is below `least`; of most triangles one of the first spheres is.
+        let lowest = |spheres: &[MedialSphere], n: Vector, least: Real| {
+            let mut heights = spheres.iter().map(|s| n.dot(s.center - a) - s.radius);
+            heights.try_fold(Real::MAX, |low, h| (h >= least).then_some(low.min(h)))
         };
         let sides = [across, -across].into_iter().filter(|n| *n != Vector::ZERO);
         let Sinks { lies, to, by } = self.sinks;
         let on = |n: Vector| {
-            let start = lowest(&self.spheres[0], n);
+            let start = lowest(&self.spheres[0], n, -lies).filter(|h| *h <= self.target)?;
             let least = (start.min(0.0) - by).max(-to) + self.bend;
-            let slides = || start.min(lowest(&self.spheres[1], n)) >= least;
-            (-lies..=self.target)
-                .contains(&start)
-                .then(|| (n, slides()))
+            let slides = start >= least && lowest(&self.spheres[1], n, least).is_some();
+            Some((n, slides))
         };
         sides.filter_map(on).next()
     }
