@@ -84,7 +84,7 @@ impl Cast<'_> {
         }
         let (motions, target) = (motions.each_ref(), options.target_distance);
         let slides = |s| Sliding::new((self.mesh, self.other), motions, seconds, target, s);
-        let parts = Parts::without(sinks.and_then(slides));
+        let parts = Parts::under(sinks.and_then(slides));
         self.query(motions, seconds, options, left, parts)
     }
 
@@ -244,7 +244,7 @@ impl Cast<'_> {
         })
     }
 
-    /// First contact in `seconds` of motions that start now; times are fractions of it. `parts` are none yet.
+    /// First contact in `seconds` of motions that start now; times are fractions of it. `parts` are empty, and say what is left out.
     fn query(
         &self,
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
@@ -273,7 +273,7 @@ impl Cast<'_> {
         } = &parts;
         let mut found = self.search(primitives, motion1, motion2, seconds, options, left);
         let primitive = found.toi.primitives[1];
-        if let Some(n) = parts.only_normal(primitive)
+        if let Some(n) = parts.normal_below(primitive)
             && found.toi.status != ToiStatus::Separated
         {
             let at = motion2.position_at_time(found.toi.lower * seconds);

@@ -31,8 +31,8 @@ const STEEPEST: f64 = 0.02;
 /// Area from which a contact makes the support wider, in units of the square of the largest distance from the centre.
 const WIDER: f64 = 1.0e-3;
 
-/// Part for which a contact counts that does not touch and is the prediction distance above the facet, or higher. Lower ones
-/// count for more, in proportion, and those that touch or are in the facet as a whole.
+/// A contact that does not touch counts for less, in proportion to the smaller of its gap and its height above the facet, in
+/// units of the prediction distance, but for no less than this part.
 const HIGH: f64 = 0.3;
 
 /// Factor for contacts that bore before, which keeps the choice from flickering between contacts that are worth the same.
@@ -210,7 +210,8 @@ fn bearing(seen: &[Seen], prediction: f64) -> Vec<usize> {
     while bear.len() < SOLVED {
         let chosen: Vec<[f64; 2]> = bear.iter().map(|b| seen[*b].at).collect();
         let worth = |s: &Seen| {
-            let low = (1.0 - above(&plane, s).min(s.gap) / prediction).clamp(HIGH, 1.0);
+            let low = (1.0 - above(&plane, s).min(s.gap) / prediction.max(f64::MIN_POSITIVE))
+                .clamp(HIGH, 1.0);
             let counts = if s.bore { BORE * low } else { low };
             let gain = counts * gained(&chosen, s.at);
             let to = |c: &[f64; 2]| square([s.at[0] - c[0], s.at[1] - c[1]]);

@@ -1,14 +1,17 @@
-//! Triangles of a ground, and faces of voxels, on whose plane a mesh lies: it can meet them from above only.
+//! Triangles of a ground, and faces of voxels, over which a mesh slides.
 //!
 //! A flat ground is cut into triangles, and a body that lies on it is within the contact distance of each that it comes
 //! over. Its nearest point is then on an edge in front of the body, with a normal against the motion, and a body stopped
-//! there would trip over nothing. But what stays above a triangle's plane crosses the triangle nowhere: such a triangle is no
-//! obstacle. And what sinks in there is thrown back along the triangle's normal.
+//! there would trip over nothing. But what stays above a plane crosses no triangle in it, nor below it, as that of a cliff:
+//! such triangles are no obstacle. And what sinks in there is thrown back along the plane's normal. For another triangle on
+//! whose own plane the body lies this holds where it faces about the same way as the ground: beside a ledge, with nothing
+//! below, a body may meet an edge from any side.
 //!
 //! Along a chord a height is linear in time, and a path of an acceleration up to `a` is off its chord by `a t² / 8` at most.
 //! A point that turns with the mesh by `ω₁` at `r`, seen from a ground that turns by `ω₂`, `d` from its axis, has up to
 //! `ω₁² r + ω₂² d + 2 ω₂ v`.
 
+use crate::math::lane::Vec3;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
@@ -29,17 +32,39 @@ pub struct Sinks {
 /// The spheres of a mesh at the start and at the end of a step, in the frame of the ground.
 #[derive(Clone, Debug)]
 pub struct Sliding {
-    spheres: [Vec<MedialSphere>; 2],
+    spheres: [Vec<(Vec3<f64>, f64)>; 2],
+    /// A ball that holds the spheres at the start.
+    bound: (Vec3<f64>, f64),
     /// How far paths are off their chords, rounding included, a length.
-    bend: Real,
-    /// Height up to which the mesh counts as lying on a plane, a length.
-    target: Real,
+    bend: f64,
+    /// Rounding of places, a length.
+    rounding: f64,
+    /// Height up to which the mesh counts as lying on a plane, a length: the query's target distance.
+    target: f64,
     sinks: Sinks,
+    /// Planes of the faces below the mesh on which it lies.
+    grounds: Vec<Lying>,
 }
 
+/// How a mesh lies on the plane of a face.
+#[derive(Clone, Copy, Debug)]
+pub struct Lying {
+    /// Unit normal, to the side of the mesh.
+    pub normal: Vec3<f64>,
+    /// A point of the plane.
+    place: Vec3<f64>,
+    /// Whether what is in the plane or below it is no obstacle.
+    pub slides: bool,
+    /// Whether the mesh is near the plane over the face itself, not only beside it.
+    is_over: bool,
+}
+
+/// Cosine from which two faces face about the same way (60°).
+const ALIKE: f64 = 0.5;
+
 impl Sliding {
-    /// For a mesh over a ground of triangles or voxels. It counts as lying on a plane up to the distance `target`. `None` for other
-    /// shapes.
+    /// For a mesh over a ground of triangles or voxels. It counts as lying on a plane up to the distance `target`. `None` for
+    /// other shapes.
     pub fn new(
         (mesh, ground): (&MedialMesh, &dyn Shape),
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
@@ -57,46 +82,105 @@ impl Sliding {
             let [pose1, pose2] = [motion1, motion2].map(|m| m.position_at_time(t));
             pose2.inverse() * pose1
         });
-        let placed = |pose: Pose| {
-            let place = |s: &MedialSphere| MedialSphere::new(pose * s.center, s.radius);
-            mesh.spheres().iter().map(place).collect::<Vec<_>>()
-        };
-        let spheres = poses.map(placed);
-        let farthest = |spheres: &[MedialSphere], from: Vector| {
-            let distances = spheres.iter().map(|s| s.center.distance(from));
+        let farthest = |pose: &Pose, from: Vector| {
+            let distances = mesh.spheres().iter();
+            let distances = distances.map(|s| (pose * s.center).distance(from) + s.radius);
             distances.fold(0.0, Real::max)
         };
-        let arm = farthest(mesh.spheres(), motion1.local_center);
+        let arm = farthest(&Pose::IDENTITY, motion1.local_center);
         let [w1, w2] = [motion1, motion2].map(|m| m.angvel.length());
         let v = (motion1.linvel - motion2.linvel).length() + w1 * arm;
-        let from_axis = farthest(&spheres[0], motion2.local_center) + v * seconds;
+        let from_axis = farthest(&poses[0], motion2.local_center) + v * seconds;
         let acceleration = w1 * w1 * arm + w2 * w2 * from_axis + 2.0 * w2 * v;
         let sizes = poses.map(|p| p.translation.abs().max_element());
         let rounding = ROUNDING_ULPS as Real * Real::EPSILON * (sizes[0] + sizes[1] + arm);
+        let middle = poses[0] * mesh.aabb().center();
+        let bound = (
+            Vec3::from_vector(middle),
+            farthest(&poses[0], middle).into(),
+        );
+        let placed = |pose: Pose| {
+            let place = |s: &MedialSphere| (Vec3::from_vector(pose * s.center), s.radius.into());
+            mesh.spheres().iter().map(place).collect::<Vec<_>>()
+        };
         Some(Self {
-            spheres,
-            bend: 0.125 * acceleration * seconds * seconds + rounding,
-            target,
+            spheres: poses.map(placed),
+            bound,
+            bend: (0.125 * acceleration * seconds * seconds + rounding).into(),
+            rounding: rounding.into(),
+            target: target.into(),
             sinks,
+            grounds: Vec::new(),
         })
     }
 
-    /// The normal of a triangle on whose plane the mesh lies, on that side, and whether the triangle is no obstacle.
-    pub fn lies_on(&self, [a, b, c]: [Vector; 3]) -> Option<(Vector, bool)> {
-        let across = (b - a).cross(c - a).normalize_or_zero();
+    /// Remembers a face if it is a ground of the mesh. All faces have to be looked at before [`Self::treats`].
+    pub fn look(&mut self, face: &[Vector]) {
+        if self.ground_above(face).is_none() {
+            self.grounds
+                .extend(self.lies_on(face).filter(|l| l.is_over));
+        }
+    }
+
+    /// How the mesh lies on the plane of a face, or on that of a ground above it, where it can meet the face along the plane's
+    /// normal only, or not at all.
+    pub fn treats(&self, face: &[Vector]) -> Option<Lying> {
+        let own = || {
+            let is_alike = |l: &Lying| self.grounds.iter().any(|g| g.normal.dot(l.normal) > ALIKE);
+            self.lies_on(face).filter(|l| l.slides || is_alike(l))
+        };
+        self.ground_above(face).copied().or_else(own)
+    }
+
+    /// A ground in or below whose plane a face is.
+    fn ground_above(&self, face: &[Vector]) -> Option<&Lying> {
+        let height = |g: &Lying, p: Vector| g.normal.dot(Vec3::from_vector(p) - g.place);
+        let is_below = |g: &&Lying| face.iter().all(|p| height(g, *p) <= self.rounding);
+        self.grounds.iter().find(is_below)
+    }
+
+    /// How the mesh lies on the plane of a face, if it does. The face is convex; its first three corners make the plane.
+    fn lies_on(&self, face: &[Vector]) -> Option<Lying> {
+        let corner = |k: usize| Vec3::<f64>::from_vector(face[k]);
+        let across = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+        let length = across.length();
+        if length <= 0.0 {
+            return None;
+        }
+        let across = across * (1.0 / length);
+        let mut sides = [1.0, -1.0].into_iter();
+        sides.find_map(|side| self.lies_on_side(face, across, side))
+    }
+
+    /// The same on one side: that of the normal (1), about which the corners turn to the left, or the other (-1).
+    fn lies_on_side(&self, face: &[Vector], across: Vec3<f64>, side: f64) -> Option<Lying> {
+        let corner = |k: usize| Vec3::<f64>::from_vector(face[k % face.len()]);
+        let (n, a) = (across * side, corner(0));
+        let height = |(center, radius): &(Vec3<f64>, f64)| n.dot(*center - a) - radius;
         // The lowest point of the mesh, unless one is below `least`; of most triangles one of the first spheres is.
-        let lowest = |spheres: &[MedialSphere], n: Vector, least: Real| {
-            let mut heights = spheres.iter().map(|s| n.dot(s.center - a) - s.radius);
-            heights.try_fold(Real::MAX, |low, h| (h >= least).then_some(low.min(h)))
+        let lowest = |k: usize, least: f64| {
+            let mut heights = self.spheres[k].iter().map(height);
+            heights.try_fold(f64::MAX, |low, h| (h >= least).then_some(low.min(h)))
         };
-        let sides = [across, -across].into_iter().filter(|n| *n != Vector::ZERO);
-        let Sinks { lies, to, by } = self.sinks;
-        let on = |n: Vector| {
-            let start = lowest(&self.spheres[0], n, -lies).filter(|h| *h <= self.target)?;
-            let least = (start.min(0.0) - by).max(-to) + self.bend;
-            let slides = start >= least && lowest(&self.spheres[1], n, least).is_some();
-            Some((n, slides))
-        };
-        sides.filter_map(on).next()
+        let [lies, to, by] = [self.sinks.lies, self.sinks.to, self.sinks.by].map(f64::from);
+        if height(&self.bound) > self.target {
+            return None;
+        }
+        let start = lowest(0, -lies).filter(|h| *h <= self.target)?;
+        let least = (start.min(0.0) - by).max(-to) + self.bend;
+        let is_over = self.spheres[0].iter().any(|sphere| {
+            let is_left_of = |k: usize| {
+                let along = corner(k + 1) - corner(k);
+                let beyond = across.dot(along.cross(sphere.0 - corner(k)));
+                beyond >= -sphere.1 * along.length()
+            };
+            height(sphere) <= self.target && (0..face.len()).all(is_left_of)
+        });
+        Some(Lying {
+            normal: n,
+            place: a,
+            slides: start >= least && lowest(1, least).is_some(),
+            is_over,
+        })
     }
 }

@@ -6,13 +6,15 @@
 //! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::axisymmetric_toi`].
 
 use super::axisymmetric::Axisymmetric;
-use super::sliding::Sliding;
+use super::sliding::{Lying, Sliding};
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::PrimitiveList;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::shape::{AxisMask, ConvexPolyhedron, Cuboid, HalfSpace, Shape, Triangle, TypedShape};
+use parry3d::shape::{
+    ConvexPolyhedron, Cuboid, HalfSpace, Shape, Triangle, TypedShape, VoxelState,
+};
 
 /// Inner radius of a half-space's stand-in, in units of the reach of the motion: a slab of radius 0 in the
 /// half-space's plane, larger than anything the body can reach.
@@ -37,13 +39,13 @@ pub struct Parts {
     axisymmetric_subshapes: Vec<u32>,
     /// What leaves triangles and faces of voxels out.
     sliding: Option<Sliding>,
-    /// Primitives that can be met along one normal only, which is unit and points out of them.
+    /// Primitives in or below a plane on which that mesh lies, and its unit normal, to the side of the mesh.
     normals: Vec<(u32, Vector)>,
 }
 
 impl Parts {
     /// No parts yet; triangles, and faces of voxels, along which the mesh that is searched only slides, will be left out.
-    pub fn without(sliding: Option<Sliding>) -> Self {
+    pub fn under(sliding: Option<Sliding>) -> Self {
         Self {
             sliding,
             ..Self::default()
@@ -56,8 +58,8 @@ impl Parts {
         of.copied().unwrap_or(0)
     }
 
-    /// The one normal along which a primitive can be met, if there is but one.
-    pub fn only_normal(&self, primitive: u32) -> Option<Vector> {
+    /// The normal along which a primitive is met because the mesh lies on it, if it does.
+    pub fn normal_below(&self, primitive: u32) -> Option<Vector> {
         let mut normals = self.normals.iter();
         normals.find(|(p, _)| *p == primitive).map(|(_, n)| *n)
     }
@@ -69,41 +71,24 @@ impl Parts {
     }
 
     /// Adds a triangle of a mesh or height field.
-    fn add_triangle(&mut self, triangle: &Triangle, pose: &Pose, subshape: u32) {
-        let corners = triangle.vertices().map(|p| pose * p);
-        let lies = self.sliding.as_ref().and_then(|s| s.lies_on(corners));
-        if lies.is_some_and(|(_, slides)| slides) {
-            return;
-        }
-        let primitive = self.primitives.len() as u32;
-        self.normals.extend(lies.map(|(n, _)| (primitive, n)));
-        self.primitives
-            .push(&corners.map(|p| MedialSphere::new(p, 0.0)));
+    fn add_triangle(&mut self, corners: [Vector; 3], subshape: u32) {
+        self.add_unless_slid(&corners, |primitives| {
+            primitives.push(&corners.map(|p| MedialSphere::new(p, 0.0)));
+        });
         self.name(subshape);
     }
 
-    /// Adds the faces of a voxel that are not inside the solid.
-    fn add_voxel(&mut self, cube: &Cuboid, free: AxisMask, pose: &Pose, region: &Aabb) {
-        let region = seen_from(pose, region);
-        for k in (0..6).filter(|k| free.bits() & (1 << k) != 0) {
-            let (axis, sign) = (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 });
-            let corner = |x: Real, y: Real| {
-                let mut local = Vector::splat(sign);
-                (local[(axis + 1) % 3], local[(axis + 2) % 3]) = (x, y);
-                pose * (local * cube.half_extents)
-            };
-            let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(0.0, 1.0)];
-            let lies = self.sliding.as_ref().and_then(|s| s.lies_on(corners));
-            if lies.is_none_or(|(_, slides)| !slides) {
-                let first = self.primitives.len() as u32;
-                let face = (axis, sign * cube.half_extents[axis]);
-                add_face(&mut self.primitives, cube, face, pose, 0.0, &region);
-                let added = first..self.primitives.len() as u32;
-                self.normals.extend(
-                    lies.iter()
-                        .flat_map(|(n, _)| added.clone().map(|p| (p, *n))),
-                );
-            }
+    /// Adds what `add` does for a flat face, unless it is no obstacle.
+    fn add_unless_slid(&mut self, face: &[Vector], add: impl FnOnce(&mut PrimitiveList)) {
+        let lying = self.sliding.as_ref().and_then(|s| s.treats(face));
+        if lying.is_some_and(|lying| lying.slides) {
+            return;
+        }
+        let first = self.primitives.len() as u32;
+        add(&mut self.primitives);
+        if let Some(Lying { normal, .. }) = lying {
+            let added = first..self.primitives.len() as u32;
+            self.normals.extend(added.map(|p| (p, normal.to_vector())));
         }
     }
 
@@ -186,8 +171,14 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
     let flat = |p: Vector| MedialSphere::new(pose * p, 0.0);
     match shape.as_typed_shape() {
         TypedShape::TriMesh(m) => {
+            let corners = |i: u32| m.triangle(i).vertices().map(|p| pose * p);
+            if let Some(sliding) = &mut parts.sliding {
+                for i in m.bvh().intersect_aabb(&local) {
+                    sliding.look(&corners(i));
+                }
+            }
             for i in m.bvh().intersect_aabb(&local) {
-                parts.add_triangle(&m.triangle(i), pose, i);
+                parts.add_triangle(corners(i), i);
             }
         }
         TypedShape::Polyline(l) => {
@@ -198,16 +189,37 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
             }
         }
         TypedShape::HeightField(h) => {
-            h.map_elements_in_local_aabb(&local, &mut |i, t| parts.add_triangle(t, pose, i));
+            let corners = |t: &Triangle| t.vertices().map(|p| pose * p);
+            if let Some(sliding) = &mut parts.sliding {
+                h.map_elements_in_local_aabb(&local, &mut |_, t| sliding.look(&corners(t)));
+            }
+            h.map_elements_in_local_aabb(&local, &mut |i, t| parts.add_triangle(corners(t), i));
         }
         TypedShape::Voxels(v) => {
             let cube = Cuboid::new(v.voxel_size() * 0.5);
-            for voxel in v.voxels_intersecting_local_aabb(&local) {
-                if !voxel.state.is_empty() {
-                    let at = pose * Pose::from_translation(voxel.center);
-                    parts.add_voxel(&cube, voxel.state.free_faces(), &at, region);
-                    parts.name(voxel.linear_id.flat_id() as u32);
+            let full = || {
+                v.voxels_intersecting_local_aabb(&local)
+                    .filter(|v| !v.state.is_empty())
+            };
+            let at = |center: Vector| pose * Pose::from_translation(center);
+            if let Some(sliding) = &mut parts.sliding {
+                for voxel in full() {
+                    for face in free_faces(voxel.state) {
+                        sliding.look(&face_corners(&cube, face, &at(voxel.center)));
+                    }
                 }
+            }
+            for voxel in full() {
+                let pose = at(voxel.center);
+                let region = seen_from(&pose, region);
+                for face in free_faces(voxel.state) {
+                    parts.add_unless_slid(&face_corners(&cube, face, &pose), |primitives| {
+                        let (axis, sign) = face;
+                        let side = sign * cube.half_extents[axis];
+                        add_face(primitives, &cube, (axis, side), &pose, 0.0, &region);
+                    });
+                }
+                parts.name(voxel.linear_id.flat_id() as u32);
             }
         }
         _ => return false,
@@ -238,6 +250,22 @@ fn add_cuboid(
             add_face(primitives, cuboid, (axis, side), pose, border, region);
         }
     }
+}
+
+/// Axis and side (1 or -1) of each face of a voxel that is not inside the solid.
+fn free_faces(state: VoxelState) -> impl Iterator<Item = (usize, Real)> {
+    let bits = state.free_faces().bits();
+    let faces = (0..6).filter(move |k| bits & (1 << k) != 0);
+    faces.map(|k| (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 }))
+}
+
+/// The corners of a cuboid's face, in their order around it.
+fn face_corners(cuboid: &Cuboid, (axis, sign): (usize, Real), pose: &Pose) -> [Vector; 4] {
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| {
+        let mut local = Vector::splat(sign);
+        (local[(axis + 1) % 3], local[(axis + 2) % 3]) = (x, y);
+        pose * (local * cuboid.half_extents)
+    })
 }
 
 /// The face of a cuboid at `side` along an axis, as far as `region` (in its frame) meets it.

@@ -6,6 +6,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
@@ -346,7 +347,11 @@ fn ctrl_c_leaves_nothing() {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        let mut mesh = fs::OpenOptions::new().write(true).open(&pipe).unwrap();
+        let (opened, open) = mpsc::channel();
+        let path = pipe.clone();
+        thread::spawn(move || opened.send(fs::OpenOptions::new().write(true).open(path)));
+        let open = open.recv_timeout(Duration::from_secs(60));
+        let mut mesh = open.expect("the command reads the mesh").unwrap();
         let interrupt = || {
             let child = child.id().to_string();
             Command::new("kill")
@@ -358,7 +363,8 @@ fn ctrl_c_leaves_nothing() {
             assert!(interrupt().success());
             thread::sleep(Duration::from_millis(300));
         }
-        mesh.write_all(CORNER.as_bytes()).unwrap();
+        // A command that ends while it reads closes the pipe.
+        let _ = mesh.write_all(CORNER.as_bytes());
         drop(mesh);
         if let Some(delay) = delay {
             thread::sleep(Duration::from_millis(delay));

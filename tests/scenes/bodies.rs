@@ -112,3 +112,25 @@ pub fn boxes(all: &[(Vector, Vector)]) -> (Vec<Vector>, Vec<[u32; 3]>) {
     }
     (vertices, indices)
 }
+
+/// A plateau of triangles in cells of a metre at height 0, which ends with a cliff 3 m high at x = 0; its internal edges are
+/// fixed.
+pub fn plateau() -> ColliderBuilder {
+    let line = |k: i32| (-5..6).map(move |j| Vector::new((k - 10) as Real, 0.0, j as Real));
+    let mut vertices: Vec<_> = (0..11).flat_map(line).collect();
+    let pair = |i: u32, j: u32| {
+        let [a, b] = [i * 11 + j, (i + 1) * 11 + j];
+        [[a, a + 1, b + 1], [a, b + 1, b]]
+    };
+    let cells = (0..10).flat_map(|i| (0..10).flat_map(move |j| pair(i, j)));
+    let mut triangles: Vec<_> = cells.collect();
+    // The cliff, 3 m high.
+    vertices.extend((-5..6).map(|j| Vector::new(0.0, -3.0, j as Real)));
+    triangles.extend((0..10).flat_map(|j| {
+        let [a, b] = [110 + j, 121 + j];
+        [[a, a + 1, b + 1], [a, b + 1, b]]
+    }));
+    let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
+    let plateau = ColliderBuilder::trimesh_with_flags(vertices, triangles, flags);
+    plateau.expect("a plateau")
+}

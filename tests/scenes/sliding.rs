@@ -1,5 +1,6 @@
 //! Bodies on the planes of triangles: what may pass over a triangle's edge, and what may not.
 
+use crate::bodies::plateau;
 use crate::feet::table;
 use crate::triangles::{Part, Watched, both, flagged_ground, ground, slide};
 use rapier3d::prelude::*;
@@ -69,7 +70,8 @@ fn thin_feet_of_thick_bodies_are_not_pressed_through_triangles() {
     }
 }
 
-/// A table put 20 cm deep into a ground that pushes to its front only, a way longer than that out at its back.
+/// A table put 20 cm deep into a ground that pushes to its front only, where the way out to the side of
+/// a leg is shorter.
 #[test]
 fn bodies_deep_in_one_sided_triangles_come_out() {
     let collider = both(&table())[0].clone().density(1000.0);
@@ -147,6 +149,40 @@ fn turntables_of_triangles_carry_bodies_as_rapiers() {
         "{ours:?}, rapier's {own:?}"
     );
     assert!(ours.1 < 1.1 * own.1, "{ours:?}, rapier's {own:?}");
+}
+
+/// The side of a plateau stops nothing that lies on its top.
+#[test]
+fn bodies_slide_off_a_plateau_as_rapiers_do() {
+    let plateau = plateau().friction(0.0);
+    let card: Vec<Part> = vec![(Vector::ZERO, Vector::new(0.4, 0.02, 0.3))];
+    for speed in [8.0, 20.0] {
+        for phase in 0..8 {
+            let [ours, own] = both(&card).map(|body| {
+                let is_medial = body.shape.as_shape::<MedialMesh>().is_some();
+                let mut world = PhysicsWorld::new();
+                world.insert_collider(plateau.clone(), None);
+                let slides = RigidBodyBuilder::dynamic()
+                    .translation(Vector::new(-3.0 - 0.04 * phase as Real, 0.02, 0.3))
+                    .rotation(Vector::Y * 0.4 * phase as Real)
+                    .linvel(Vector::X * speed);
+                let body = body.friction(0.0).density(1000.0);
+                let (body, _) = world.insert(slides, body);
+                let mut pipeline = MedialPipeline::default();
+                for _ in 0..(4.5 / speed * 60.0) as usize {
+                    match is_medial {
+                        true => drop(pipeline.step(&mut world)),
+                        false => world.step(),
+                    }
+                }
+                world.bodies[body].linvel().x
+            });
+            assert!(
+                (ours - own).abs() < 0.02 * speed,
+                "{speed} m/s, phase {phase}: {ours} m/s, rapier's {own}"
+            );
+        }
+    }
 }
 
 /// Voxels have no faces between them.
