@@ -219,7 +219,8 @@ impl Cast<'_> {
     ) -> Result<Touching, Unsweepable> {
         let [start1, start2] = motions.map(|m| m.start);
         // What the query took for a contact may be farther off by its tolerance, with a normal that says less.
-        let (pos12, reach) = (start1.inverse() * start2, self.target_distance + tolerance);
+        let reach = self.target_distance + tolerance;
+        let pos12 = start1.inverse() * start2;
         let (nearest, _) = distance::nearest(self.mesh, self.other, &pos12, reach)?;
         let (gap, normal, points, primitives) = match nearest {
             Some(c) => {
@@ -244,7 +245,7 @@ impl Cast<'_> {
         })
     }
 
-    /// First contact in `seconds` of motions that start now; times are fractions of it. `parts` are empty, and say what is left out.
+    /// First contact in `seconds` of motions that start now; times are fractions of it. `parts` have none yet.
     fn query(
         &self,
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
@@ -273,9 +274,8 @@ impl Cast<'_> {
         } = &parts;
         let mut found = self.search(primitives, motion1, motion2, seconds, options, left);
         let primitive = found.toi.primitives[1];
-        if let Some(n) = parts.normal_below(primitive)
-            && found.toi.status != ToiStatus::Separated
-        {
+        let is_hit = found.toi.status != ToiStatus::Separated;
+        if let Some(n) = parts.normal_below(primitive).filter(|_| is_hit) {
             let at = motion2.position_at_time(found.toi.lower * seconds);
             found.toi.normal = at.rotation * -n;
             found.met = None;

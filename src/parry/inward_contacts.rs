@@ -23,8 +23,8 @@ const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// Leaves out deep contacts of a mesh's convex pieces along which the piece reaches beyond the contact by more than the
 /// contact's depth, as long as it has another deep one. Leaves out as well those that are deeper than the piece is in the
-/// triangle, as no contact of a part of it can be. The mesh is body `side` (0 or
-/// 1) of the manifolds; `ground` are the triangles, and where they are in the mesh's frame.
+/// triangle, as no contact of a part of it can be. The mesh is body `side` (0 or 1) of the manifolds; `ground` are the
+/// triangles, and where they are in the mesh's frame.
 pub fn leave_out<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
