@@ -66,7 +66,7 @@ pub enum MeshError {
     ZeroSize {
         /// How many spheres there are.
         count: usize,
-        /// Position of both.
+        /// Where they are.
         center: [f32; 3],
     },
     /// A length, radius or number given to a constructor of a simple solid is out of its range.

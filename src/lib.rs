@@ -82,19 +82,23 @@ pub use batch::Backend;
 pub use elementary::{AlternatingStart, InitialContact, Toi, ToiOptions, ToiStatus};
 pub use error::{AssetError, BuildError, CalibrationError, GpuError, MeshError};
 pub use medial::{MedialMesh, MedialPrimitive, MedialSphere};
-pub use meshing::{BuildOptions, BuildReport, Progress, Quality};
+pub use meshing::{BuildOptions, BuildReport, Creases, Progress, Quality, Variant};
 pub use parry::MedialDispatcher;
 pub use rapier::{
     Effect, Effects, MedialColliderBuilder, MedialIntegrationParameters, MedialOptions,
     MedialPipeline, MedialSharedShape, StepReport,
 };
 
-/// Everything that a game with rapier usually needs: `use rapier3d_medial::prelude::*;`.
+/// Everything that a game with rapier usually needs: `use rapier3d_medial::prelude::*;`. Saving of worlds and drawing
+/// are in [`rapier`](crate::rapier) ([`save_world`](crate::rapier::save_world) with the feature `serde-serialize`,
+/// [`MedialDebugRender`](crate::rapier::MedialDebugRender) with `debug-render`), reading of mesh files in
+/// [`meshing::mesh_file`](crate::meshing::mesh_file).
 pub mod prelude {
     pub use crate::{
-        Backend, BuildError, BuildOptions, BuildReport, Effect, Effects, MedialColliderBuilder,
-        MedialIntegrationParameters, MedialMesh, MedialOptions, MedialPipeline, MedialSharedShape,
-        MedialSphere, MeshError, Progress, Quality, StepReport,
+        AssetError, Backend, BuildError, BuildOptions, BuildReport, Creases, Effect, Effects,
+        MedialColliderBuilder, MedialIntegrationParameters, MedialMesh, MedialOptions,
+        MedialPipeline, MedialSharedShape, MedialSphere, MeshError, Progress, Quality, StepReport,
+        Variant,
     };
 }
 

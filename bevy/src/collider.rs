@@ -21,7 +21,7 @@ pub(crate) use assets::finish;
 pub enum MedialCollider {
     /// A medial mesh made in code.
     Mesh(MedialMesh),
-    /// A `.medial` file, made by `medial build --bake` or `MedialMesh::save_asset`.
+    /// A `.medial` file, made by `medial build body.obj -o body.medial` or `MedialMesh::save_asset`.
     #[cfg(feature = "assets")]
     Asset(Handle<MedialAsset>),
     /// A render mesh, built in the background; once for all entities that name the same mesh and options.

@@ -26,7 +26,8 @@ use crate::error::GpuError;
 /// bit by bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// A GPU for batches that are large enough, if there is one; else the CPU. Needs the feature `gpu`.
+    /// A GPU for batches that are large enough, if there is one; else the CPU, and [`BatchReport::error`] says why. Needs
+    /// the feature `gpu`, without which it is the same as [`Self::Cpu`].
     Auto,
     /// The CPU.
     #[default]

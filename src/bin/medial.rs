@@ -29,9 +29,12 @@ mod jobs;
 mod lengths;
 #[path = "medial/output.rs"]
 mod output;
+#[path = "medial/placing.rs"]
+mod placing;
 
 use build::BuildArguments;
-use clap::{Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{CommandFactory as _, Parser, Subcommand};
 use compare::CompareArguments;
 use info::{BakeArguments, InfoArguments};
 use std::process::ExitCode;
@@ -43,9 +46,13 @@ const INTERRUPTED: u8 = 130;
 /// Set by Ctrl-C.
 static STOP: AtomicBool = AtomicBool::new(false);
 
-/// Medial meshes: concave colliders for rapier that never tunnel.
+/// Medial meshes: concave colliders for rapier with continuous collision detection.
 #[derive(Parser)]
-#[command(name = "medial", version)]
+#[command(
+    name = "medial",
+    version,
+    after_help = "Exit codes: 0 all went well, 1 something failed, 2 wrong command line, 130 stopped by Ctrl-C."
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -59,11 +66,19 @@ enum Command {
     Bake(BakeArguments),
     /// Describe a medial mesh (.ma or .medial), or show the error of a triangle mesh at several numbers of primitives.
     Info(InfoArguments),
-    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side, and measure error and cost of each.
+    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side, and measure error and cost of each,
+    /// scaled to a longest side of one metre.
     Compare(CompareArguments),
     /// Measure how large a batch must be for the GPU to be faster than the CPU, for `Backend::Auto`.
     #[cfg(feature = "gpu")]
     Calibrate(calibrate::CalibrateArguments),
+}
+
+/// Ends the program with a message about the command line.
+fn refuse(message: &str) -> ! {
+    Arguments::command()
+        .error(ErrorKind::MissingRequiredArgument, message)
+        .exit()
 }
 
 fn main() -> ExitCode {

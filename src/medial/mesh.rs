@@ -169,7 +169,8 @@ impl MedialMesh {
     }
 
     /// Returns this mesh with other mass properties (at density 1, in the body's frame), for instance those of the
-    /// triangle mesh that it stands for. [`Self::from_trimesh`] sets those of its triangles itself.
+    /// triangle mesh that it stands for; they are not checked. [`Self::from_trimesh`] sets those of its triangles itself.
+    /// The data are copied: keep the result, and clone that.
     pub fn with_mass_properties(self, unit_density: MassProperties) -> Self {
         let parts = Parts {
             source_mass: Some(unit_density),
@@ -280,7 +281,8 @@ impl MedialMesh {
         self.data.aabb
     }
 
-    /// How thin the solid typically is: the radius that 95 % of the medial mesh, by area, exceed. For the area, a
+    /// How thin the solid typically is: the radius (half of what a caliper shows, in the mesh's unit of length) that
+    /// 95 % of the medial mesh, by area, exceed. For the area, a
     /// cone counts as a strip as wide as the cone. A blunt tip, as at the edges of a box, is taken to be as thick as
     /// the part at whose end it is. The smallest radius would not do instead: it is near 0 at the tips of most
     /// meshes, so every motion would count as fast.
@@ -305,7 +307,15 @@ impl MedialMesh {
     /// the solid, with overlaps of primitives counted once. Those of the solid are measured when they are first asked
     /// for, here or by the first contact, in 1.5 ms for a ball and 80 ms for 1,200 cones;
     /// of a convex body with flat faces they are exact, at once. Density 0 gives no mass, and
-    /// measures nothing.
+    /// measures nothing. Sheets have no volume, and no mass.
+    ///
+    /// ```
+    /// use rapier3d_medial::MedialMesh;
+    /// let ring = MedialMesh::torus(0.5, 0.1, 24)?;
+    /// let steel = ring.mass_properties(7800.0).mass(); // kilograms, if lengths are in metres
+    /// assert!((730.0..780.0).contains(&steel));
+    /// # Ok::<(), rapier3d_medial::MeshError>(())
+    /// ```
     pub fn mass_properties(&self, density: Real) -> MassProperties {
         if density == 0.0 {
             return MassProperties::default();

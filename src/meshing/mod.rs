@@ -49,13 +49,14 @@ impl MedialMesh {
     /// order are turned round. Other damage (cracks, small openings, repeated triangles, overlapping parts) is
     /// repaired if possible, and [`BuildReport::findings`] counts it.
     ///
-    /// A build takes a second to half a minute in optimised code (`docs/measurements/medial-mesh-error.md` has a
-    /// table), and many times as long without optimisation. Build once and save the result
+    /// A build with some hundreds of primitives takes a second to half a minute in optimised code
+    /// (`docs/measurements/medial-mesh-error.md` has a table), over a minute with thousands, and many times as long
+    /// without optimisation. Build once and save the result
     /// ([`MedialMesh::save_asset`]).
     ///
     /// # Errors
-    /// [`BuildError`] says what is wrong: an option out of its range, no triangles, coordinates that are
-    /// not finite or too large, an index beyond the vertices, or triangles without any extent.
+    /// [`BuildError`] names the item and its value: [`BuildError::Option`] an option out of its range, other variants a
+    /// triangle mesh that is empty, not finite, too large, without extent, or has an index beyond its vertices.
     ///
     /// ```
     /// use rapier3d::prelude::*;

@@ -30,6 +30,12 @@ pub enum Quality {
 /// not convex, those of convex pieces. Other closed bodies whose surface does not overlap itself are built twice,
 /// with sharp edges and without, and the result with the smaller error is returned ([`Quality::Fast`] builds only the
 /// one without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
+///
+/// ```
+/// use rapier3d_medial::prelude::*;
+/// let options = BuildOptions { creases: Creases::Keep(40_f32.to_radians()), ..Default::default() };
+/// # assert_eq!(options.primitives, Some(500));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Creases {
     /// Edges at which the surface bends by more than 25°. If most of these edges end within a face, as on a coarse
@@ -79,9 +85,9 @@ impl Creases {
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuildOptions {
     /// Largest number of primitives (slabs, cones that belong to no slab, lone spheres). It decides what the collider
-    /// costs. With `None`, `max_error` decides the number; if that is `None` too, it is 500.
+    /// costs. At least 1. With `None`, `max_error` decides the number; if that is `None` too, it is 500.
     pub primitives: Option<usize>,
-    /// Largest error ([`Hausdorff::error`] of the result), as a fraction of the longest side of the bounding box.
+    /// Largest error ([`Hausdorff::error`] of the result), as a fraction of the longest side of the bounding box. Above 0.
     /// Several numbers of primitives are tried ([`BuildReport::notes`]), and the smallest mesh that keeps to this
     /// error is returned. If `primitives` is set as well, the mesh has at most that many. If no mesh keeps to the
     /// error, the best one found is returned, and [`BuildReport::target_reached`] is false. A build with `max_error`
@@ -94,7 +100,7 @@ pub struct BuildOptions {
     /// the triangle mesh stick out of the solid.
     pub enclose: bool,
     /// Distance by which the triangle mesh may stick out of the solid in spite of `enclose`, as a fraction of the
-    /// longest side of the bounding box. The solid becomes thinner by up to this distance.
+    /// longest side of the bounding box; at least 0. The solid becomes thinner by up to this distance.
     pub allow_uncovered: Real,
     /// Which edges of the triangle mesh count as sharp.
     pub creases: Creases,
@@ -117,7 +123,8 @@ impl Default for BuildOptions {
 /// ([`MedialMesh::from_trimesh_with_progress`](crate::MedialMesh::from_trimesh_with_progress)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Name of the running stage: `"simplify"`, `"refit"`, ….
+    /// Name of the running stage, in English: `"surface"`, `"simplify"`, `"refit"`, `"measure"` and others. Which stages
+    /// there are depends on the mesh and may change; they are for people to read.
     pub stage: &'static str,
     /// Share of the whole build that is done, from 0 to 1. It is estimated, and never falls.
     pub fraction: Real,
@@ -130,9 +137,8 @@ pub struct Progress {
 pub struct Hausdorff {
     /// Largest distance from a point of the triangle mesh to the surface of the medial mesh.
     pub surface_to_envelope: Real,
-    /// Largest distance from a point on the surface of the medial mesh to the triangle mesh. If this is below
-    /// [`Self::surface_to_envelope`], the true distance may be larger than given here (which may be 0), because it is
-    /// then not searched for.
+    /// Largest distance from a point on the surface of the medial mesh to the triangle mesh. Only the larger of the two
+    /// distances is searched for to the end: if this one is the smaller, it is a lower bound, and may be 0.
     pub envelope_to_surface: Real,
     /// How far the triangle mesh sticks out of the medial mesh, at most.
     pub uncovered: Real,
@@ -152,7 +158,8 @@ impl Hausdorff {
     }
 
     /// The largest distance that is possible anywhere, also between the points measured: [`Self::error`] plus
-    /// [`Self::sampling`].
+    /// [`Self::sampling`]. Compare [`Self::error`] with [`BuildOptions::max_error`]: of round bodies the bound may be
+    /// several times as large.
     pub fn bound(&self) -> Real {
         self.error() + self.sampling
     }

@@ -142,7 +142,8 @@ impl MedialPipeline {
 
     /// Sets the effects of one collider. An effect left at [`Effect::Auto`](crate::Effect::Auto) follows the scene's
     /// setting, so [`Effects::default`] removes the collider's own settings. If the two colliders of a pair have
-    /// different settings for an effect, `On` wins over `Off`.
+    /// different settings for an effect, `On` wins over `Off`. A handle that the world does not have is ignored. The
+    /// settings are not part of a saved world.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
         self.state.effects.set(collider, effects);
         self.state.kept = None;
@@ -177,7 +178,7 @@ impl MedialPipeline {
     /// `integration_parameters.normalized_contact_recycle_distance` is the distance that a pair may move before
     /// rapier computes its contacts anew. While there are medial colliders, the step uses
     /// [`RECYCLE_DISTANCE`](crate::rapier::RECYCLE_DISTANCE) in its place if yours is larger. This holds for all
-    /// bodies.
+    /// bodies. Medial bodies on joints that turn fast get more solver iterations for the step (`docs/host.md`).
     pub fn step(&mut self, world: &mut PhysicsWorld) -> StepReport {
         self.step_with_events(world, &(), &())
     }

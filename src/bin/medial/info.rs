@@ -7,6 +7,8 @@ use crate::failure::Failure;
 use crate::jobs;
 use crate::lengths::longest_side;
 use crate::output::print;
+use crate::placing::PlacingArguments;
+use crate::refuse;
 use clap::Args;
 use rapier3d_medial::medial::asset;
 use rapier3d_medial::meshing::hausdorff;
@@ -36,6 +38,8 @@ pub struct InfoArguments {
     /// Measure how far it is from the triangle mesh that it was built from.
     #[arg(long, value_name = "IN")]
     against: Option<PathBuf>,
+    #[command(flatten)]
+    placing: PlacingArguments,
     /// Show the error of a triangle mesh at several numbers of primitives.
     #[arg(long, conflicts_with = "against")]
     curve: bool,
@@ -89,10 +93,16 @@ pub fn info(arguments: &InfoArguments) -> Result<(), Failure> {
     if arguments.curve {
         return curve(arguments);
     }
+    if arguments.placing.is_given() && arguments.against.is_none() {
+        refuse("--scale and --up are for the triangle mesh of --against IN");
+    }
     let mesh = load(&arguments.mesh)?;
     let errors = match &arguments.against {
         Some(path) => {
-            let measured = mesh_file::read(path).and_then(|source| measure(&mesh, &source));
+            let measured = mesh_file::read(path).and_then(|mut source| {
+                arguments.placing.place(&mut source);
+                measure(&mesh, &source)
+            });
             Some(measured.map_err(|e| Failure::from(e).of(path))?)
         }
         None => None,
