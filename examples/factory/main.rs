@@ -21,6 +21,7 @@ mod solid;
 mod thread;
 
 use common::arguments::{Arguments, example, verdict};
+use common::progress::bar;
 use common::table::Table;
 use nut::{Descent, Drive};
 use peg::Shape;
@@ -150,7 +151,10 @@ fn nuts(setting: &Setting, out: &std::path::Path) -> Result<Vec<String>, String>
     let mut failures = Vec::new();
     let mut table = header();
     let is_wanted = |t: &&Thread| setting.thread.as_ref().is_none_or(|name| name == t.name);
-    for thread in THREADS.iter().filter(is_wanted).copied() {
+    let threads: Vec<Thread> = THREADS.iter().filter(is_wanted).copied().collect();
+    let progress = bar("nuts", 3 * threads.len());
+    progress.tick();
+    for thread in threads {
         let made = nut::colliders(&thread, Kind::Medial)?;
         // Three turns without friction.
         let three = (6.0 * thread.pitch / thread.acceleration()).sqrt();
@@ -163,6 +167,7 @@ fn nuts(setting: &Setting, out: &std::path::Path) -> Result<Vec<String>, String>
             let descent = nut::turn(&thread, &made, (Kind::Medial, drive), setting, seconds);
             let name = format!("{}, {how}", thread.name);
             row(&mut table, &name, &descent, &thread);
+            progress.inc(1);
             if descent.tunnels() {
                 failures.push(format!("{name}: the nut left its thread"));
             }
@@ -176,6 +181,7 @@ fn nuts(setting: &Setting, out: &std::path::Path) -> Result<Vec<String>, String>
             }
         }
     }
+    progress.finish_and_clear();
     println!("{table}");
     Ok(failures)
 }
@@ -205,10 +211,12 @@ fn pegs(setting: &Setting) -> Result<Vec<String>, String> {
         ["in after s", "mm inside", "depth mm", "ms p50", "ms worst"],
     );
     println!("\npegs fall freely in {:.3} s", peg::free_fall());
+    let progress = bar("pegs", 6);
     for shape in [Shape::Round, Shape::Square] {
         for kind in [Kind::Medial, Kind::Triangles, Kind::Parts] {
             let made = peg::colliders(shape, kind)?;
             let slide = peg::slide(shape, &made, kind, setting);
+            progress.inc(1);
             let [median, worst] = slide.milliseconds;
             let seconds = slide.seconds.map(|s| format!("{s:.3}"));
             table.row(
@@ -226,6 +234,7 @@ fn pegs(setting: &Setting) -> Result<Vec<String>, String> {
             }
         }
     }
+    progress.finish_and_clear();
     println!("{table}");
     Ok(failures)
 }
@@ -252,6 +261,7 @@ fn gears(setting: &Setting) -> Result<Vec<String>, String> {
 fn rivals(setting: &Setting) -> Result<(), String> {
     let thread = THREADS[0];
     let mut table = header();
+    let progress = bar("rapier's own", 6);
     for kind in [Kind::Hull, Kind::Parts, Kind::Triangles] {
         let clock = Instant::now();
         let made = nut::colliders(&thread, kind)?;
@@ -264,8 +274,10 @@ fn rivals(setting: &Setting) -> Result<(), String> {
                 &descent,
                 &thread,
             );
+            progress.inc(1);
         }
     }
+    progress.finish_and_clear();
     println!("\n{}, rapier's own:\n{table}", thread.name);
     Ok(())
 }

@@ -142,3 +142,29 @@ fn endless_turns_are_answered_as_by_the_cpu() {
     let report = batch.report();
     assert_eq!((report.counts.settled_by_gpu, report.counts.unfit), (2, 2));
 }
+
+/// As many pairs as ten thousand bodies of twenty neighbours have: one submission, and the contacts of the CPU.
+#[test]
+fn a_hundred_thousand_pairs_are_answered_as_by_the_cpu() {
+    if scene::gpu(scene::options()).is_none() {
+        return;
+    }
+    let mut batch = block_on(Batch::open_async(Backend::Gpu, scene::options()));
+    let jobs = pair_jobs(100_000);
+    let expected = cpu::run(&jobs);
+    let free = expected.iter().filter(|e| e.contacts.is_empty()).count();
+    assert!((20_000..80_000).contains(&free), "{free}");
+    for (answer, expected) in batch.run(&jobs).iter().zip(&expected) {
+        assert_eq!(answer.contacts, expected.contacts);
+    }
+    let counts = batch.report().counts.clone();
+    let bytes = batch.gpu_stock().bytes_made;
+    println!("{free} free, {counts:?}, {bytes} bytes on the device");
+    // What the device neither frees nor lists is searched as without it.
+    assert_eq!(counts.submissions, 1);
+    assert_eq!(counts.fallbacks, 0);
+    let settled = counts.settled_by_gpu as usize;
+    assert!(settled <= free && settled * 10 > free * 9);
+    assert!(counts.listed as usize * 10 > (jobs.len() - settled) * 9);
+    assert!(bytes < 2_500 * jobs.len() as u64, "{bytes}");
+}

@@ -66,6 +66,8 @@ pub struct Context {
     fault: Fault,
     /// Buffers made so far: none are in a step like those before.
     pub(super) buffers_made: u64,
+    /// Bytes of these.
+    pub(super) bytes_made: u64,
     /// Groups of bindings made so far, likewise.
     pub(super) bindings_made: u64,
     name: String,
@@ -131,6 +133,7 @@ impl Context {
             },
             fault,
             buffers_made: 0,
+            bytes_made: 0,
             bindings_made: 0,
             name: format!("{} ({:?})", info.name, info.backend),
             driver: format!("{} {}", info.driver, info.driver_info),
@@ -208,6 +211,7 @@ impl Context {
             return Err(GpuError::TooLarge { what, bytes, limit });
         }
         self.buffers_made += 1;
+        self.bytes_made += bytes;
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(what),
             size: bytes.max(16).next_multiple_of(16),

@@ -48,6 +48,8 @@ use transfer::Transfer;
 pub struct GpuStock {
     /// Buffers and textures that were made.
     pub buffers_made: u64,
+    /// Bytes of these, larger ones that replaced smaller ones included.
+    pub bytes_made: u64,
     /// Bind groups that were made.
     pub bindings_made: u64,
     /// Meshes that are kept on the GPU.
@@ -181,6 +183,7 @@ impl Gpu {
     pub fn stock(&self) -> GpuStock {
         GpuStock {
             buffers_made: self.context.buffers_made,
+            bytes_made: self.context.bytes_made,
             bindings_made: self.context.bindings_made,
             meshes: self.meshes.len(),
         }

@@ -63,6 +63,7 @@ impl Texels {
 
 fn texture(context: &mut Context, what: &'static str, rows: usize) -> Result<Texture, GpuError> {
     context.buffers_made += 1;
+    context.bytes_made += 16 * u64::from(TEXELS) * rows as u64;
     let texture = context.device.create_texture(&TextureDescriptor {
         label: Some(what),
         size: Extent3d {
