@@ -3,6 +3,7 @@
 
 use super::axisymmetric_toi;
 use super::distance;
+use super::folds;
 use super::initial_contacts::{Touching, approach_of_rounding};
 use super::inside;
 use super::sliding::{Sinks, Sliding};
@@ -27,6 +28,10 @@ const MOST_SLANT: Real = 0.5;
 /// Larger, and rapier's character controller, which leaves gaps of a few micrometres more than it asks for, is stopped by
 /// what it only passes; smaller, and rounding of the poses decides.
 const PRECISION: Real = 2.0;
+
+/// Height above a plane, in tolerances beyond the target distance, up to which a mesh counts as lying on it: an impact leaves
+/// it within one of them.
+const LIES_ABOVE: Real = 2.0;
 
 /// First contact of a medial mesh with another shape, both moving rigidly, from `start` to `end`
 /// seconds.
@@ -82,7 +87,9 @@ impl Cast<'_> {
                 met: None,
             });
         }
-        let (motions, target) = (motions.each_ref(), options.target_distance);
+        // A contact is where the two are to within the tolerance.
+        let target = options.target_distance + LIES_ABOVE * options.tolerance;
+        let motions = motions.each_ref();
         let slides = |s| Sliding::new((self.mesh, self.other), motions, seconds, target, s);
         let parts = Parts::under(sinks.and_then(slides));
         self.query(motions, seconds, options, left, parts)
@@ -267,20 +274,10 @@ impl Cast<'_> {
         if !swept_sphere_parts::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {
             return Err(Unsweepable);
         }
-        let Parts {
-            primitives,
-            axisymmetric,
-            ..
-        } = &parts;
-        let mut found = self.search(primitives, motion1, motion2, seconds, options, left);
-        let primitive = found.toi.primitives[1];
-        let is_hit = found.toi.status != ToiStatus::Separated;
-        if let Some(n) = parts.normal_below(primitive).filter(|_| is_hit) {
-            let at = motion2.position_at_time(found.toi.lower * seconds);
-            found.toi.normal = at.rotation * -n;
-            found.met = None;
-        }
-        found.toi.primitives[1] = parts.primitive_subshape(primitive);
+        let axisymmetric = &parts.axisymmetric;
+        let mut found = self.search(&parts.primitives, motion1, motion2, seconds, options, left);
+        folds::correct_normal(&mut found, &parts, self.mesh, [motion1, motion2], seconds);
+        found.toi.primitives[1] = parts.primitive_subshape(found.toi.primitives[1]);
         if !axisymmetric.is_empty() {
             let mut other = axisymmetric_toi::first_contact(
                 self.mesh,

@@ -4,6 +4,7 @@
 
 use super::contact_reduction;
 use super::dispatcher::{MedialDispatcher, medial};
+use super::false_contacts;
 use super::flat_face;
 use super::inward_contacts;
 use super::manifolds::{self, ensure_workspace, write_one_point};
@@ -85,6 +86,7 @@ impl MedialDispatcher {
                 TypedShape::TriMesh(_) | TypedShape::HeightField(_)
             ) {
                 let pose = [*pos12, pos12.inverse()][side];
+                false_contacts::correct(manifolds, (mesh, side), (other, &pose), prediction);
                 inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
             }
             if goes_on != Some(true) {

@@ -13,7 +13,7 @@ use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::convex_pieces::ConvexPiece;
 use parry3d::query::ContactManifold;
-use parry3d::shape::{Shape, TypedShape};
+use parry3d::shape::{Shape, TrianglePseudoNormals, TypedShape};
 
 /// How much deeper than a piece its contacts may be told to be, in units of its thickness.
 const DEEPER: Real = 0.01;
@@ -61,11 +61,12 @@ pub fn leave_out<M, C>(
         // The least distance of a contact that the piece may have there, asked for where any contact is deeper than rounding.
         let least = || {
             let piece = pieces.of_node(piece?)?;
-            let triangle = triangle(ground, id)?;
-            let size = triangle.0.iter().map(|p| p.length()).fold(0.0, Real::max);
+            let (corners, normals) = triangle(ground, id)?;
+            let is_one_sided = normals.is_some_and(|n| !n.two_sided);
+            let size = corners.iter().map(|p| p.length()).fold(0.0, Real::max);
             let more = prediction.min(DEEPER * piece.thickness) + ROUNDING * size;
             let half = prediction.min(0.5 * piece.thickness);
-            Some(gap(piece, triangle, half) - more)
+            Some(gap(piece, (corners, is_one_sided), half) - more)
         };
         let is_asked = m.points.iter().any(|point| point.dist < 0.0);
         let least = is_asked.then(least).flatten();
@@ -80,8 +81,12 @@ pub fn leave_out<M, C>(
     }
 }
 
-/// The corners of a triangle of the ground in the mesh's frame, and whether what is in it is pushed out at its front only.
-fn triangle((ground, pose): (&dyn Shape, &Pose), id: u32) -> Option<([Vector; 3], bool)> {
+/// The corners of a triangle of the ground in the mesh's frame, and what normals rapier allows there, if not all: mostly
+/// those at its front.
+pub fn triangle(
+    (ground, pose): (&dyn Shape, &Pose),
+    id: u32,
+) -> Option<([Vector; 3], Option<TrianglePseudoNormals>)> {
     let (triangle, normals) = match ground.as_typed_shape() {
         TypedShape::TriMesh(mesh) => (mesh.triangle(id), mesh.triangle_normal_constraints(id)),
         TypedShape::HeightField(field) => {
@@ -90,8 +95,7 @@ fn triangle((ground, pose): (&dyn Shape, &Pose), id: u32) -> Option<([Vector; 3]
         }
         _ => return None,
     };
-    let is_one_sided = normals.is_some_and(|n| !n.two_sided);
-    Some((triangle.vertices().map(|p| pose * p), is_one_sided))
+    Some((triangle.vertices().map(|p| pose * p), normals))
 }
 
 /// The largest gap of a piece and a triangle along the directions across their faces, a length; negative where they overlap

@@ -4,12 +4,12 @@
 //! # Files
 //! - The entry: `dispatcher.rs`; the shape: `shape.rs`, of convex parts: `medial_part.rs`; rays: `rays.rs`.
 //! - Contact manifolds: `contact_manifolds.rs` is what parry calls; it takes those of two meshes from `manifolds.rs`,
-//!   those on a flat face from `flat_face.rs`, and leaves the ones that bear the load (`contact_reduction.rs`) and that
-//!   do not point into the body (`inward_contacts.rs`).
+//!   those on a flat face from `flat_face.rs`, and others from parry; of those with triangles wrong ones are replaced
+//!   (`false_contacts.rs`) or left out (`inward_contacts.rs`). `contact_reduction.rs` leaves the ones that bear the load.
 //! - Casts: `cast.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
 //!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
 //!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at. Triangles
-//!   on whose plane a body lies are treated by `sliding.rs`.
+//!   on whose plane a body lies are treated by `sliding.rs`, normals at their edges corrected by `folds.rs`.
 //! - Distance: `distance.rs`.
 //! - What a pipeline tells the dispatcher for a step, muted pairs among it: `narrow_phase_plan.rs`.
 
@@ -21,7 +21,9 @@ mod contact_manifolds;
 pub mod contact_reduction;
 pub(crate) mod dispatcher;
 pub(crate) mod distance;
+mod false_contacts;
 pub(crate) mod flat_face;
+mod folds;
 mod initial_contacts;
 pub(crate) mod inside;
 mod inward_contacts;

@@ -53,14 +53,27 @@ pub struct Lying {
     pub normal: Vec3<f64>,
     /// A point of the plane.
     place: Vec3<f64>,
+    /// Rounding of the face's corners, a length, and of its normal, a length per length.
+    rounding: [f64; 2],
     /// Whether what is in the plane or below it is no obstacle.
     pub slides: bool,
     /// Whether the mesh is near the plane over the face itself, not only beside it.
     is_over: bool,
 }
 
+/// Rounding error of the coordinates of a face's corners.
+const CORNERS: Real = 2.0 * Real::EPSILON;
+
+impl Lying {
+    /// Whether a point is in the plane or below it, rounding apart.
+    fn is_above(&self, point: Vector) -> bool {
+        let way = Vec3::from_vector(point) - self.place;
+        self.normal.dot(way) <= self.rounding[0] + self.rounding[1] * way.length()
+    }
+}
+
 /// Cosine from which two faces face about the same way (60°).
-const ALIKE: f64 = 0.5;
+pub const ALIKE: f64 = 0.5;
 
 impl Sliding {
     /// For a mesh over a ground of triangles or voxels. It counts as lying on a plane up to the distance `target`. `None` for
@@ -99,12 +112,8 @@ impl Sliding {
             Vec3::from_vector(middle),
             farthest(&poses[0], middle).into(),
         );
-        let placed = |pose: Pose| {
-            let place = |s: &MedialSphere| (Vec3::from_vector(pose * s.center), s.radius.into());
-            mesh.spheres().iter().map(place).collect::<Vec<_>>()
-        };
         Some(Self {
-            spheres: poses.map(placed),
+            spheres: poses.map(|pose| placed(mesh, &pose)),
             bound,
             bend: (0.125 * acceleration * seconds * seconds + rounding).into(),
             rounding: rounding.into(),
@@ -132,10 +141,29 @@ impl Sliding {
         self.ground_above(face).copied().or_else(own)
     }
 
+    /// The normal of a face's plane, to the side of the mesh, if the mesh lies on it once it is at `pose` in the ground's frame,
+    /// and it faces about the same way as a ground on which the mesh lies now. There the mesh comes from a ground up a
+    /// slope, and its nearest point is on the fold between the two, straight ahead.
+    pub fn comes_to_lie(&self, face: &[Vector], mesh: &MedialMesh, pose: &Pose) -> Option<Vector> {
+        let spheres = placed(mesh, pose);
+        let there = Self {
+            spheres: [spheres.clone(), spheres],
+            bound: (self.bound.0, f64::MAX),
+            bend: self.rounding,
+            grounds: Vec::new(),
+            ..*self
+        };
+        let lying = there.lies_on(face)?;
+        let is_alike = self
+            .grounds
+            .iter()
+            .any(|g| g.normal.dot(lying.normal) > ALIKE);
+        is_alike.then(|| lying.normal.to_vector())
+    }
+
     /// A ground in or below whose plane a face is.
     fn ground_above(&self, face: &[Vector]) -> Option<&Lying> {
-        let height = |g: &Lying, p: Vector| g.normal.dot(Vec3::from_vector(p) - g.place);
-        let is_below = |g: &&Lying| face.iter().all(|p| height(g, *p) <= self.rounding);
+        let is_below = |g: &&Lying| face.iter().all(|p| g.is_above(*p));
         self.grounds.iter().find(is_below)
     }
 
@@ -147,13 +175,25 @@ impl Sliding {
         if length <= 0.0 {
             return None;
         }
+        let sides = [
+            corner(1) - corner(0),
+            corner(2) - corner(0),
+            corner(2) - corner(1),
+        ];
+        let width = length / sides.map(|s| s.length()).into_iter().fold(0.0, f64::max);
         let across = across * (1.0 / length);
         let mut sides = [1.0, -1.0].into_iter();
-        sides.find_map(|side| self.lies_on_side(face, across, side))
+        sides.find_map(|side| self.lies_on_side(face, (across, width), side))
     }
 
-    /// The same on one side: that of the normal (1), about which the corners turn to the left, or the other (-1).
-    fn lies_on_side(&self, face: &[Vector], across: Vec3<f64>, side: f64) -> Option<Lying> {
+    /// The same on one side: that of the normal (1), about which the corners turn to the left, or the other (-1). `width`:
+    /// the least height of the triangle of the first three corners.
+    fn lies_on_side(
+        &self,
+        face: &[Vector],
+        (across, width): (Vec3<f64>, f64),
+        side: f64,
+    ) -> Option<Lying> {
         let corner = |k: usize| Vec3::<f64>::from_vector(face[k % face.len()]);
         let (n, a) = (across * side, corner(0));
         let height = |(center, radius): &(Vec3<f64>, f64)| n.dot(*center - a) - radius;
@@ -176,11 +216,20 @@ impl Sliding {
             };
             height(sphere) <= self.target && (0..face.len()).all(is_left_of)
         });
+        let coordinates = face.iter().map(|p| p.abs().max_element());
+        let rounding = f64::from(CORNERS * coordinates.fold(0.0, Real::max));
         Some(Lying {
             normal: n,
             place: a,
+            rounding: [rounding, rounding / width],
             slides: start >= least && lowest(1, least).is_some(),
             is_over,
         })
     }
+}
+
+/// The spheres of a mesh at a pose.
+fn placed(mesh: &MedialMesh, pose: &Pose) -> Vec<(Vec3<f64>, f64)> {
+    let place = |s: &MedialSphere| (Vec3::from_vector(pose * s.center), s.radius.into());
+    mesh.spheres().iter().map(place).collect()
 }

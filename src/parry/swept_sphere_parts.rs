@@ -38,9 +38,11 @@ pub struct Parts {
     primitive_subshapes: Vec<u32>,
     axisymmetric_subshapes: Vec<u32>,
     /// What leaves triangles and faces of voxels out.
-    sliding: Option<Sliding>,
+    pub(super) sliding: Option<Sliding>,
+    /// What it left out.
+    pub(super) left_out: Vec<[Vector; 3]>,
     /// Primitives in or below a plane on which that mesh lies, and its unit normal, to the side of the mesh.
-    normals: Vec<(u32, Vector)>,
+    pub(super) normals: Vec<(u32, Vector)>,
 }
 
 impl Parts {
@@ -56,12 +58,6 @@ impl Parts {
     pub fn primitive_subshape(&self, primitive: u32) -> u32 {
         let of = self.primitive_subshapes.get(primitive as usize);
         of.copied().unwrap_or(0)
-    }
-
-    /// The normal along which a primitive is met because the mesh lies on it, if it does.
-    pub fn normal_below(&self, primitive: u32) -> Option<Vector> {
-        let mut normals = self.normals.iter();
-        normals.find(|(p, _)| *p == primitive).map(|(_, n)| *n)
     }
 
     /// parry's subshape of one of the axisymmetric bodies.
@@ -82,6 +78,7 @@ impl Parts {
     fn add_unless_slid(&mut self, face: &[Vector], add: impl FnOnce(&mut PrimitiveList)) {
         let lying = self.sliding.as_ref().and_then(|s| s.treats(face));
         if lying.is_some_and(|lying| lying.slides) {
+            self.left_out.push([face[0], face[1], face[2]]);
             return;
         }
         let first = self.primitives.len() as u32;

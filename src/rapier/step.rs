@@ -1,7 +1,7 @@
 //! One step, in order: the plan (who may meet whom, and the contacts that rapier will ask for), rapier's own step, the
 //! impacts within it, and the report. The work itself is in the rooms of this folder.
 
-use crate::math::{Pose, Real};
+use crate::math::{Pose, Real, Vector};
 use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Tally};
 use crate::rapier::contacts::candidates;
 use crate::rapier::contacts::muting::{self, Muted};
@@ -47,12 +47,16 @@ impl StepArgs<'_> {
         &self,
         effects: &'e EffectSettings,
         (tuning, budget): (Tuning, u64),
+        gravity: Vector,
         bouncing: bool,
     ) -> CcdPolicy<'e> {
+        let frequency = self.parameters.contact_softness.natural_frequency;
+        let angular_frequency = std::f32::consts::TAU * frequency;
         CcdPolicy {
             effects,
             dt: self.parameters.dt,
             unit: self.parameters.length_unit,
+            sag: gravity.length() / angular_frequency.powi(2),
             substeps: self.parameters.num_solver_iterations.max(1),
             tuning,
             may_stop: self.may_stop,
@@ -192,7 +196,12 @@ impl State {
         self.placed.begin(&view, world.narrow_phase, &rules);
         let wild = WildMultibodies::find(&view, &rules, world.narrow_phase, parameters.dt);
         let prediction = parameters.prediction_distance();
-        let policy = args.policy(&self.effects, (self.tuning, self.budget), false);
+        let policy = args.policy(
+            &self.effects,
+            (self.tuning, self.budget),
+            world.gravity,
+            false,
+        );
         let Muted {
             keys: muted,
             bouncing,
@@ -304,7 +313,12 @@ impl State {
         wild.take_back(view, &rules, world.narrow_phase, parameters.dt);
         let depth = plan.depth.max(depth);
         let bouncing = plan.bouncing;
-        let policy = args.policy(&self.effects, (self.tuning, self.budget), bouncing);
+        let policy = args.policy(
+            &self.effects,
+            (self.tuning, self.budget),
+            world.gravity,
+            bouncing,
+        );
         event_loop::resolve(
             view,
             policy,

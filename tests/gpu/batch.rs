@@ -157,7 +157,7 @@ fn a_hundred_thousand_pairs_are_answered_as_by_the_cpu() {
     for (answer, expected) in batch.run(&jobs).iter().zip(&expected) {
         assert_eq!(answer.contacts, expected.contacts);
     }
-    let counts = batch.report().counts.clone();
+    let counts = batch.report().counts;
     let bytes = batch.gpu_stock().bytes_made;
     println!("{free} free, {counts:?}, {bytes} bytes on the device");
     // What the device neither frees nor lists is searched as without it.

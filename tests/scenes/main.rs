@@ -29,6 +29,7 @@ mod feet;
 mod filters;
 mod fixed_partners;
 mod fixtures;
+mod folds;
 mod force_events;
 #[cfg_attr(
     not(feature = "enhanced-determinism"),

@@ -41,7 +41,7 @@ pub fn flagged_ground(flags: TriMeshFlags) -> ColliderBuilder {
 }
 
 /// A flat ground of triangles in cells of this size.
-fn ground_of(cell: Real, flags: TriMeshFlags) -> ColliderBuilder {
+pub fn ground_of(cell: Real, flags: TriMeshFlags) -> ColliderBuilder {
     let at = move |k: i32| cell * (k - 15) as Real;
     let line = |k: i32| (0..31).map(move |j| Vector::new(at(k), 0.0, at(j)));
     let vertices = (0..31).flat_map(line).collect();

@@ -107,6 +107,8 @@ pub struct CcdPolicy<'a> {
     pub dt: Real,
     /// rapier's length unit.
     pub unit: Real,
+    /// How far gravity presses a body into rapier's contacts, which are springs, a length.
+    pub sag: Real,
     /// rapier's sub-steps in a step.
     pub substeps: usize,
     /// Constants.
@@ -272,7 +274,7 @@ impl CcdPolicy<'_> {
         let least = pair.map(|k| view.parts[k].least);
         let least = least[0].min(least[1]);
         let sinks = Sinks {
-            lies: least.min(tuning.lies * self.unit),
+            lies: least.min(tuning.lies * self.unit + self.sag),
             to: tuning.floor * least,
             by: by.min(tuning.sink * least),
         };

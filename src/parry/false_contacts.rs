@@ -1,0 +1,88 @@
+//! Contacts of a single primitive with a triangle that parry's EPA algorithm finds wrongly: without a normal, or deeper
+//! than the two are. Of small spheres on triangles of about their size EPA now and then ends without a direction. The
+//! nearest spheres take the place of such a contact.
+
+use super::inward_contacts::triangle;
+use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::{Pose, Real, Vector};
+use crate::medial::{MedialMesh, MedialSphere};
+use crate::pair::PrimitiveList;
+use crate::pair::distance::nearest_spheres;
+use parry3d::query::details::NormalConstraints;
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::{PackedFeatureId, Shape};
+
+/// How much deeper than the nearest spheres a contact may be told to be, in units of the primitive's largest radius.
+const DEEPER: Real = 0.01;
+
+/// Rounding error of a depth, in units of the coordinates in the mesh's frame.
+const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
+
+/// Corrects the contacts of a mesh's primitives that belong to no convex piece. The mesh is body `side` (0 or 1) of the
+/// manifolds; `ground` are the triangles, and where they are in the mesh's frame. Contacts on the back of a triangle that
+/// pushes to its front only are left out.
+pub fn correct<M, C: Default + Copy>(
+    manifolds: &mut [ContactManifold<M, C>],
+    (mesh, side): (&MedialMesh, usize),
+    ground: (&dyn Shape, &Pose),
+    prediction: Real,
+) {
+    for m in manifolds {
+        let of_mesh = [m.subshape1, m.subshape2][side];
+        let is_sound = m.points.iter().all(|point| point.dist >= 0.0) && !m.points.is_empty();
+        let primitive = mesh.primitive(of_mesh as usize);
+        let is_ball = primitive.spheres().len() == 1;
+        if is_sound && !is_ball || mesh.convex_pieces().node_of(of_mesh).is_some() {
+            continue;
+        }
+        let Some((corners, constraints)) = triangle(ground, [m.subshape2, m.subshape1][side])
+        else {
+            continue;
+        };
+        let lists = [
+            primitive.spheres().to_vec(),
+            corners.map(|p| MedialSphere::new(p, 0.0)).to_vec(),
+        ]
+        .map(|spheres| {
+            let mut list = PrimitiveList::default();
+            list.push(&spheres);
+            (list, spheres)
+        });
+        let [(a, spheres), (b, _)] = &lists;
+        let Some(own) = nearest_spheres(a, b, &Pose::IDENTITY, prediction).0 else {
+            if is_ball {
+                m.points.clear();
+            }
+            continue;
+        };
+        let size = corners.map(Vector::length).into_iter().fold(0.0, Real::max);
+        let thickest = spheres.iter().map(|s| s.radius).fold(0.0, Real::max);
+        let least = own.distance - DEEPER * thickest - ROUNDING * size;
+        let has_normal = m.local_n1.length_squared() > 0.5;
+        let is_missing = m.points.is_empty() && own.distance < 0.0;
+        let is_right = has_normal && m.points.iter().all(|point| point.dist >= least);
+        if !is_ball && !is_missing && is_right {
+            continue;
+        }
+        let to_mesh = match constraints {
+            Some(cone) => cone.project_local_normal(ground.1.rotation.inverse() * -own.normal),
+            None => Some(ground.1.rotation.inverse() * -own.normal),
+        };
+        let data = m.points.first().map(|point| point.data);
+        m.points.clear();
+        let Some(to_mesh) = to_mesh else {
+            continue;
+        };
+        let (normal, place) = (-(ground.1.rotation * to_mesh), own.points[0]);
+        let on_ground = ground.1.inverse_transform_point(own.points[1]);
+        let ([n1, p1], [n2, p2]) = match side {
+            0 => ([normal, place], [to_mesh, on_ground]),
+            _ => ([to_mesh, on_ground], [normal, place]),
+        };
+        [m.local_n1, m.local_n2] = [n1, n2];
+        let feature = PackedFeatureId::face(0);
+        let mut point = TrackedContact::new(p1, p2, feature, feature, own.distance);
+        point.data = data.unwrap_or_default();
+        m.points.push(point);
+    }
+}

@@ -1,0 +1,115 @@
+//! Normals at the folds between the triangles of a ground.
+//!
+//! Where two triangles share an edge, what lies on the ground can be pushed along their normals only, or along one between
+//! these where the edge is a ridge. But a solver lets bodies sink in a little. The nearest point of what slides in a valley,
+//! just below the surface, is then the edge straight ahead, with a normal against the motion.
+
+use super::sliding::ALIKE;
+use super::swept_sphere_parts::Parts;
+use crate::elementary::ToiStatus;
+use crate::math::{Real, Vector};
+use crate::medial::MedialMesh;
+use crate::pair::PrimitiveTree;
+use crate::pair::first_contact::ToiResult;
+use parry3d::query::NonlinearRigidMotion;
+
+/// How a mesh meets a triangle, in the ground's frame.
+struct Met {
+    /// Nearest point of the triangle.
+    point: Vector,
+    /// Unit normal from there to the mesh.
+    normal: Vector,
+    /// Middle of the mesh.
+    middle: Vector,
+}
+
+/// Gives a hit on one of `parts` the normal along which the mesh can be thrown back there: where it lies on the plane of a
+/// face, comes to lie there, or meets it at a fold. The motions, over `seconds`, are those of the mesh and of the ground.
+pub fn correct_normal(
+    found: &mut ToiResult,
+    parts: &Parts,
+    mesh: &MedialMesh,
+    motions: [&NonlinearRigidMotion; 2],
+    seconds: Real,
+) {
+    let toi = &mut found.toi;
+    let Some(sliding) = parts.sliding.as_ref() else {
+        return;
+    };
+    if toi.status == ToiStatus::Separated {
+        return;
+    }
+    let poses = motions.map(|m| m.position_at_time(toi.lower * seconds));
+    let (point, to_ground) = (toi.points[1], poses[1].inverse());
+    let pose = to_ground * poses[0];
+    let met = Met {
+        point: to_ground * point,
+        normal: to_ground.rotation * -toi.normal,
+        middle: pose * mesh.aabb().center(),
+    };
+    let corners = |k: u32| parts.primitives.primitive(k).0.map(|s| s.center);
+    let face = corners(toi.primitives[1]);
+    let others = || (0..parts.primitives.len() as u32).map(corners);
+    let known = parts.normals.iter().find(|(p, _)| *p == toi.primitives[1]);
+    let normal = known
+        .map(|(_, n)| *n)
+        .or_else(|| normal(face, others().chain(parts.left_out.iter().copied()), &met))
+        .or_else(|| sliding.comes_to_lie(&face, mesh, &pose));
+    if let Some(n) = normal {
+        toi.normal = poses[1].rotation * -n;
+        found.met = None;
+    }
+}
+
+/// Cosine of a normal with that of the face up to which the nearest point is beside the face (6° from its plane).
+const BESIDE: Real = 0.1;
+
+/// Share of an edge's length within which a point is on it.
+const ON_EDGE: Real = 0.02;
+
+/// The normal nearest to that of `met` that is possible at its point of `face`: within the face its own, at an edge between
+/// it and another of the triangles that faces about the same way one of both or between these. `None` at any other edge.
+fn normal(
+    face: [Vector; 3],
+    others: impl Iterator<Item = [Vector; 3]> + Clone,
+    met: &Met,
+) -> Option<Vector> {
+    // To the side of the mesh: that of its nearest point, unless this is beside the face.
+    let facing = |[a, b, c]: [Vector; 3]| {
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let side = match normal.dot(met.normal) {
+            along if along.abs() > BESIDE => along,
+            _ => normal.dot(met.middle - met.point),
+        };
+        normal * side.signum()
+    };
+    let own = facing(face);
+    let mut allowed: Option<Vector> = None;
+    for edge in [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]] {
+        let along = edge[1] - edge[0];
+        if along.cross(met.point - edge[0]).length() > ON_EDGE * along.length_squared() {
+            continue;
+        }
+        let holds = |other: &[Vector; 3]| *other != face && edge.iter().all(|p| other.contains(p));
+        let beyond = others
+            .clone()
+            .filter(holds)
+            .map(|other| (other, facing(other)));
+        let (other, normal) = beyond
+            .filter(|(_, normal)| normal.dot(own) > ALIKE as Real)
+            .max_by(|a, b| a.1.dot(own).total_cmp(&b.1.dot(own)))?;
+        let across = met.normal - along * (along.dot(met.normal) / along.length_squared());
+        // A ridge bends away from the face, and has all normals between both.
+        let is_ridge = other.iter().all(|p| own.dot(*p - edge[0]) <= 0.0);
+        let bend = own.cross(normal);
+        let is_between = bend.dot(own.cross(across)) > 0.0 && bend.dot(across.cross(normal)) > 0.0;
+        let nearest = match is_ridge && is_between {
+            true => across.normalize_or_zero(),
+            false if own.dot(across) < normal.dot(across) => normal,
+            false => own,
+        };
+        let is_nearer = |n: &Vector| n.dot(met.normal) >= nearest.dot(met.normal);
+        allowed = allowed.filter(is_nearer).or(Some(nearest));
+    }
+    Some(allowed.unwrap_or(own))
+}
