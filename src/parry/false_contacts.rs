@@ -24,7 +24,7 @@ const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 pub fn correct<M, C: Default + Copy>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
-    ground: (&dyn Shape, &Pose),
+    (ground, pose): (&dyn Shape, &Pose),
     prediction: Real,
 ) {
     for m in manifolds {
@@ -35,7 +35,8 @@ pub fn correct<M, C: Default + Copy>(
         if is_sound && !is_ball || mesh.convex_pieces().node_of(of_mesh).is_some() {
             continue;
         }
-        let Some((corners, constraints)) = triangle(ground, [m.subshape2, m.subshape1][side])
+        let Some((corners, constraints)) =
+            triangle((ground, pose), [m.subshape2, m.subshape1][side])
         else {
             continue;
         };
@@ -64,17 +65,18 @@ pub fn correct<M, C: Default + Copy>(
         if !is_ball && !is_missing && is_right {
             continue;
         }
+        let to_mesh = pose.rotation.inverse() * -own.normal;
         let to_mesh = match constraints {
-            Some(cone) => cone.project_local_normal(ground.1.rotation.inverse() * -own.normal),
-            None => Some(ground.1.rotation.inverse() * -own.normal),
+            Some(cone) => cone.project_local_normal(to_mesh),
+            None => Some(to_mesh),
         };
         let data = m.points.first().map(|point| point.data);
         m.points.clear();
         let Some(to_mesh) = to_mesh else {
             continue;
         };
-        let (normal, place) = (-(ground.1.rotation * to_mesh), own.points[0]);
-        let on_ground = ground.1.inverse_transform_point(own.points[1]);
+        let (normal, place) = (-(pose.rotation * to_mesh), own.points[0]);
+        let on_ground = pose.inverse_transform_point(own.points[1]);
         let ([n1, p1], [n2, p2]) = match side {
             0 => ([normal, place], [to_mesh, on_ground]),
             _ => ([to_mesh, on_ground], [normal, place]),

@@ -21,6 +21,8 @@ struct Met {
     normal: Vector,
     /// Middle of the mesh.
     middle: Vector,
+    /// Longest side of the mesh's box.
+    size: Real,
 }
 
 /// Gives a hit on one of `parts` the normal along which the mesh can be thrown back there: where it lies on the plane of a
@@ -46,6 +48,7 @@ pub fn correct_normal(
         point: to_ground * point,
         normal: to_ground.rotation * -toi.normal,
         middle: pose * mesh.aabb().center(),
+        size: mesh.aabb().extents().max_element(),
     };
     let corners = |k: u32| parts.primitives.primitive(k).0.map(|s| s.center);
     let face = corners(toi.primitives[1]);
@@ -64,8 +67,8 @@ pub fn correct_normal(
 /// Cosine of a normal with that of the face up to which the nearest point is beside the face (6° from its plane).
 const BESIDE: Real = 0.1;
 
-/// Share of an edge's length within which a point is on it.
-const ON_EDGE: Real = 0.02;
+/// Distance within which a point is on an edge, in units of the edge's length and of the mesh's size.
+const ON_EDGE: [Real; 2] = [0.02, 0.01];
 
 /// The normal nearest to that of `met` that is possible at its point of `face`: within the face its own, at an edge between
 /// it and another of the triangles that faces about the same way one of both or between these. `None` at any other edge.
@@ -87,7 +90,9 @@ fn normal(
     let mut allowed: Option<Vector> = None;
     for edge in [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]] {
         let along = edge[1] - edge[0];
-        if along.cross(met.point - edge[0]).length() > ON_EDGE * along.length_squared() {
+        let length = along.length();
+        let within = (ON_EDGE[0] * length).min(ON_EDGE[1] * met.size);
+        if along.cross(met.point - edge[0]).length() > within * length {
             continue;
         }
         let holds = |other: &[Vector; 3]| *other != face && edge.iter().all(|p| other.contains(p));
