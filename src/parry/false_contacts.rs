@@ -15,12 +15,15 @@ use parry3d::shape::{PackedFeatureId, Shape};
 /// How much deeper than the nearest spheres a contact may be told to be, in units of the primitive's largest radius.
 const DEEPER: Real = 0.01;
 
+/// Cosine with the nearest normal that is allowed from which one is allowed (2.5°).
+const ALLOWED: Real = 0.999;
+
 /// Rounding error of a depth, in units of the coordinates in the mesh's frame.
 const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// Corrects the contacts of a mesh's primitives that belong to no convex piece. The mesh is body `side` (0 or 1) of the
-/// manifolds; `ground` are the triangles, and where they are in the mesh's frame. Contacts on the back of a triangle that
-/// pushes to its front only are left out.
+/// manifolds; `ground` are the triangles, and where they are in the mesh's frame. Where rapier allows some normals only, as
+/// with its flag for internal edges, wrong contacts with others are left out.
 pub fn correct<M, C: Default + Copy>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
@@ -29,10 +32,7 @@ pub fn correct<M, C: Default + Copy>(
 ) {
     for m in manifolds {
         let of_mesh = [m.subshape1, m.subshape2][side];
-        let is_sound = m.points.iter().all(|point| point.dist >= 0.0) && !m.points.is_empty();
-        let primitive = mesh.primitive(of_mesh as usize);
-        let is_ball = primitive.spheres().len() == 1;
-        if is_sound && !is_ball || mesh.convex_pieces().node_of(of_mesh).is_some() {
+        if mesh.convex_pieces().node_of(of_mesh).is_some() {
             continue;
         }
         let Some((corners, constraints)) =
@@ -40,6 +40,15 @@ pub fn correct<M, C: Default + Copy>(
         else {
             continue;
         };
+        let primitive = mesh.primitive(of_mesh as usize);
+        // Where not all normals are allowed parry leaves contacts out on purpose.
+        let is_free = constraints.is_none();
+        let is_ball = is_free && primitive.spheres().len() == 1;
+        let is_missing = is_free && m.points.is_empty();
+        let is_deep = m.points.iter().any(|point| point.dist < 0.0);
+        if !(is_ball || is_missing || is_deep) {
+            continue;
+        }
         let lists = [
             primitive.spheres().to_vec(),
             corners.map(|p| MedialSphere::new(p, 0.0)).to_vec(),
@@ -60,21 +69,23 @@ pub fn correct<M, C: Default + Copy>(
         let thickest = spheres.iter().map(|s| s.radius).fold(0.0, Real::max);
         let least = own.distance - DEEPER * thickest - ROUNDING * size;
         let has_normal = m.local_n1.length_squared() > 0.5;
-        let is_missing = m.points.is_empty() && own.distance < 0.0;
-        let is_right = has_normal && m.points.iter().all(|point| point.dist >= least);
-        if !is_ball && !is_missing && is_right {
+        let is_right = match is_missing {
+            true => own.distance >= 0.0,
+            false => has_normal && m.points.iter().all(|point| point.dist >= least),
+        };
+        if is_right && !is_ball {
             continue;
         }
         let to_mesh = pose.rotation.inverse() * -own.normal;
-        let to_mesh = match constraints {
-            Some(cone) => cone.project_local_normal(to_mesh),
-            None => Some(to_mesh),
-        };
+        let is_allowed = constraints.is_none_or(|cone| {
+            let allowed = cone.project_local_normal(to_mesh);
+            allowed.is_some_and(|n| n.dot(to_mesh) > ALLOWED)
+        });
         let data = m.points.first().map(|point| point.data);
         m.points.clear();
-        let Some(to_mesh) = to_mesh else {
+        if !is_allowed {
             continue;
-        };
+        }
         let (normal, place) = (-(pose.rotation * to_mesh), own.points[0]);
         let on_ground = pose.inverse_transform_point(own.points[1]);
         let ([n1, p1], [n2, p2]) = match side {

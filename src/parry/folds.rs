@@ -54,9 +54,14 @@ pub fn correct_normal(
     let face = corners(toi.primitives[1]);
     let others = || (0..parts.primitives.len() as u32).map(corners);
     let known = parts.normals.iter().find(|(p, _)| *p == toi.primitives[1]);
+    let primitive = mesh.primitive(toi.primitives[0] as usize);
+    let at_fold = || match sliding.keeps_above(primitive.spheres()) {
+        true => None,
+        false => normal(face, others().chain(parts.left_out.iter().copied()), &met),
+    };
     let normal = known
         .map(|(_, n)| *n)
-        .or_else(|| normal(face, others().chain(parts.left_out.iter().copied()), &met))
+        .or_else(at_fold)
         .or_else(|| sliding.comes_to_lie(&face, mesh, &pose));
     if let Some(n) = normal {
         toi.normal = poses[1].rotation * -n;
@@ -88,6 +93,7 @@ fn normal(
     };
     let own = facing(face);
     let mut allowed: Option<Vector> = None;
+    let mut ridges: Vec<Real> = Vec::new();
     for edge in [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]] {
         let along = edge[1] - edge[0];
         let length = along.length();
@@ -113,8 +119,12 @@ fn normal(
             false if own.dot(across) < normal.dot(across) => normal,
             false => own,
         };
+        ridges.extend(is_ridge.then_some(normal.dot(own)));
         let is_nearer = |n: &Vector| n.dot(met.normal) >= nearest.dot(met.normal);
         allowed = allowed.filter(is_nearer).or(Some(nearest));
     }
-    Some(allowed.unwrap_or(own))
+    // The top of a hill has all normals between those of its faces.
+    let widest = ridges.iter().copied().fold(1.0, Real::min);
+    let is_top = ridges.len() > 1 && own.dot(met.normal) >= widest;
+    (!is_top).then(|| allowed.unwrap_or(own))
 }

@@ -53,22 +53,23 @@ pub struct Lying {
     pub normal: Vec3<f64>,
     /// A point of the plane.
     place: Vec3<f64>,
-    /// Rounding of the face's corners, a length, and of its normal, a length per length.
-    rounding: [f64; 2],
+    /// Rounding of the face's corners, a length.
+    rounding: f64,
     /// Whether what is in the plane or below it is no obstacle.
     pub slides: bool,
     /// Whether the mesh is near the plane over the face itself, not only beside it.
     is_over: bool,
 }
 
-/// Rounding error of the coordinates of a face's corners.
-const CORNERS: Real = 2.0 * Real::EPSILON;
+/// Rounding error of the heights of corners over a face, in units of their coordinates: eight ulps. More, and a fin may count
+/// as part of the ground that it stands on; less only lets bodies stumble.
+const CORNERS: Real = 8.0 * Real::EPSILON;
 
 impl Lying {
     /// Whether a point is in the plane or below it, rounding apart.
     fn is_above(&self, point: Vector) -> bool {
         let way = Vec3::from_vector(point) - self.place;
-        self.normal.dot(way) <= self.rounding[0] + self.rounding[1] * way.length()
+        self.normal.dot(way) <= self.rounding
     }
 }
 
@@ -161,6 +162,11 @@ impl Sliding {
         is_alike.then(|| lying.normal.to_vector())
     }
 
+    /// Whether the centres of spheres stay above a plane on which they lie, so that normals to them are right.
+    pub fn keeps_above(&self, spheres: &[MedialSphere]) -> bool {
+        spheres.iter().all(|s| s.radius >= self.sinks.lies)
+    }
+
     /// A ground in or below whose plane a face is.
     fn ground_above(&self, face: &[Vector]) -> Option<&Lying> {
         let is_below = |g: &&Lying| face.iter().all(|p| g.is_above(*p));
@@ -175,25 +181,13 @@ impl Sliding {
         if length <= 0.0 {
             return None;
         }
-        let sides = [
-            corner(1) - corner(0),
-            corner(2) - corner(0),
-            corner(2) - corner(1),
-        ];
-        let width = length / sides.map(|s| s.length()).into_iter().fold(0.0, f64::max);
         let across = across * (1.0 / length);
         let mut sides = [1.0, -1.0].into_iter();
-        sides.find_map(|side| self.lies_on_side(face, (across, width), side))
+        sides.find_map(|side| self.lies_on_side(face, across, side))
     }
 
-    /// The same on one side: that of the normal (1), about which the corners turn to the left, or the other (-1). `width`:
-    /// the least height of the triangle of the first three corners.
-    fn lies_on_side(
-        &self,
-        face: &[Vector],
-        (across, width): (Vec3<f64>, f64),
-        side: f64,
-    ) -> Option<Lying> {
+    /// The same on one side: that of the normal (1), about which the corners turn to the left, or the other (-1).
+    fn lies_on_side(&self, face: &[Vector], across: Vec3<f64>, side: f64) -> Option<Lying> {
         let corner = |k: usize| Vec3::<f64>::from_vector(face[k % face.len()]);
         let (n, a) = (across * side, corner(0));
         let height = |(center, radius): &(Vec3<f64>, f64)| n.dot(*center - a) - radius;
@@ -217,11 +211,10 @@ impl Sliding {
             height(sphere) <= self.target && (0..face.len()).all(is_left_of)
         });
         let coordinates = face.iter().map(|p| p.abs().max_element());
-        let rounding = f64::from(CORNERS * coordinates.fold(0.0, Real::max));
         Some(Lying {
             normal: n,
             place: a,
-            rounding: [rounding, rounding / width],
+            rounding: f64::from(CORNERS * coordinates.fold(0.0, Real::max)),
             slides: start >= least && lowest(1, least).is_some(),
             is_over,
         })

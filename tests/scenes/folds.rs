@@ -242,3 +242,79 @@ fn small_cubes_slide_over_small_triangles() {
         }
     }
 }
+
+/// Of a normal that the flag does not allow parry turns the contact's points, too, or leaves the contact out.
+#[test]
+fn balls_roll_over_triangles_with_the_flag() {
+    let ball = MedialMesh::ball(0.2).expect("a ball");
+    let mut world = PhysicsWorld::new();
+    let ground = ground_of(0.2, TriMeshFlags::FIX_INTERNAL_EDGES);
+    world.insert_collider(ground.friction(0.5), None);
+    let rolls = RigidBodyBuilder::dynamic()
+        .translation(Vector::new(-2.0, 0.2, 0.13))
+        .linvel(Vector::new(1.6, 0.0, 0.2))
+        .angvel(Vector::new(1.0, 0.0, -8.0));
+    let collider = ColliderBuilder::medial_mesh(ball).density(1000.0);
+    let (body, _) = world.insert(rolls, collider.friction(0.5));
+    let mut pipeline = MedialPipeline::default();
+    for _ in 0..120 {
+        pipeline.step(&mut world);
+    }
+    let speed = world.bodies[body].linvel().x;
+    assert!(speed > 1.59, "{speed} m/s");
+}
+
+/// A fence across a ground of two narrow triangles, whose plane is known the less the farther off its narrow side.
+#[test]
+fn fences_on_narrow_triangles_stop_bodies() {
+    for (off, wide, long) in [(100.0, 0.1, 400.0), (1000.0, 0.3, 400.0)] {
+        let at = |x: Real, y: Real, z: Real| Vector::new(off + x, y, off + z);
+        let floor = [[-long, -wide], [-long, wide], [long, wide], [long, -wide]];
+        let mut vertices = floor.map(|[x, z]| at(x, 0.0, 0.5 * z)).to_vec();
+        vertices.extend([at(1.0, 0.0, -2.0), at(1.0, 0.0, 2.0)]);
+        vertices.extend([at(1.0, 0.3, 2.0), at(1.0, 0.3, -2.0)]);
+        let triangles = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+        let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
+        let ground = ColliderBuilder::trimesh_with_flags(vertices, triangles, flags);
+        for speed in [20.0, 60.0] {
+            let ball = MedialMesh::ball(0.2).expect("a ball");
+            let mut world = PhysicsWorld::new();
+            world.insert_collider(ground.clone().expect("a ground"), None);
+            let rolls = RigidBodyBuilder::dynamic()
+                .translation(at(-0.7, 0.2, 0.0))
+                .linvel(Vector::X * speed);
+            let collider = ColliderBuilder::medial_mesh(ball).density(1000.0);
+            let (body, _) = world.insert(rolls, collider.friction(0.3));
+            let mut pipeline = MedialPipeline::default();
+            for _ in 0..20 {
+                pipeline.step(&mut world);
+            }
+            let x = world.bodies[body].translation().x - off;
+            assert!(x < 1.0, "{off} m off, {speed} m/s: at {x} m");
+        }
+    }
+}
+
+/// A plate that falls flat on the top of a pyramid.
+#[test]
+fn tops_of_hills_throw_nothing_sideways() {
+    let ring = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+    let mut vertices = ring.map(|[x, z]| Vector::new(x, 0.0, z)).to_vec();
+    vertices.push(Vector::Y * 0.36);
+    let triangles = (0..4).map(|k| [(k + 1) % 4, k, 4]).collect();
+    let pyramid = ColliderBuilder::trimesh(vertices, triangles).expect("a pyramid");
+    let plate = both(&[(Vector::ZERO, Vector::new(0.4, 0.1, 0.4))])[0].clone();
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    world.insert_collider(pyramid.friction(0.0), None);
+    let falls = RigidBodyBuilder::dynamic()
+        .translation(Vector::Y * 0.6)
+        .linvel(Vector::NEG_Y * 10.0);
+    let (body, _) = world.insert(falls, plate.friction(0.0).density(1000.0));
+    let mut pipeline = MedialPipeline::default();
+    for _ in 0..10 {
+        pipeline.step(&mut world);
+    }
+    let v = world.bodies[body].linvel();
+    assert!(v.x.hypot(v.z) < 0.1, "{v:?}");
+}
