@@ -1,6 +1,7 @@
 //! Contacts of a single primitive with a triangle that parry's EPA algorithm finds wrongly: without a normal, or deeper
 //! than the two are. Of small spheres on triangles of about their size EPA now and then ends without a direction. The
-//! nearest spheres take the place of such a contact.
+//! nearest spheres take the place of such a contact, and of all of a single sphere's where any normal is allowed: there the
+//! nearest point is the contact.
 
 use super::inward_contacts::triangle;
 use crate::math::tolerance::ROUNDING_ULPS;
