@@ -5,7 +5,9 @@
 //! `cargo bench --features gpu --bench gpu_host`, with `-- --json FILE` the same figures as JSON. A world on the CPU
 //! gives the poses. Of each step all pairs of near boxes are asked for, some times on each side in turn; *contacts* is what a
 //! batch takes on the CPU, *host* what sending it, and finishing it by the lists, takes on the same thread. Then the
-//! world is stepped on both backends: *step* is all of `MedialPipeline::step`.
+//! world is stepped on both backends: *step* is all of `MedialPipeline::step`, and *wall* its time on the clock, waiting
+//! included; with `parallel` all times are the clock's. `--scene TEXT` measures the scenes whose name contains the text,
+//! and only so that of 10,000 bodies.
 
 #[allow(dead_code, reason = "no hash of results is printed here")]
 mod common;
@@ -25,6 +27,7 @@ use rapier3d_medial::batch::{Batch, PairJob, cpu};
 use rapier3d_medial::prelude::*;
 use serde_json::{Value, json};
 use std::hint::black_box;
+use std::time::Instant;
 
 /// Distance up to which contacts are asked for, a length: about what pairs at rest get.
 const PREDICTION: Real = 0.01;
@@ -67,6 +70,12 @@ fn scenes() -> Vec<Scene> {
             "1,000 rings of 27 cones",
             ring,
             [1000, 10, 120, 10],
+            [1.4, 0.5],
+        ),
+        scene(
+            "10,000 rings of 27 cones",
+            MedialMesh::torus(0.5, 0.1, 27).expect("a ring"),
+            [10_000, 32, 100, 10],
             [1.4, 0.5],
         ),
         scene(
@@ -146,11 +155,16 @@ fn jobs(world: &PhysicsWorld) -> Vec<PairJob> {
     jobs
 }
 
-/// Milliseconds of processor time of this thread.
+/// Milliseconds of processor time of this thread; on the clock with `parallel`, where others do its work.
 fn processor_time<T>(f: impl FnOnce() -> T) -> f64 {
-    let start = ThreadTime::now();
+    let (clock, thread) = (Instant::now(), ThreadTime::now());
     black_box(f());
-    start.elapsed().as_secs_f64() * 1.0e3
+    let time = if cfg!(feature = "parallel") {
+        clock.elapsed()
+    } else {
+        thread.elapsed()
+    };
+    time.as_secs_f64() * 1.0e3
 }
 
 fn bits(world: &PhysicsWorld) -> Vec<u32> {
@@ -171,12 +185,18 @@ fn measure(scene: &Scene, batch: &mut Batch) -> Value {
         on_cpu.step(&mut world);
         on_device.step(&mut twin);
     }
-    let mut times = [const { Vec::new() }; 5];
+    let mut times = [const { Vec::new() }; 7];
     let (mut pairs, mut found) = (0, 0);
     let before = batch.report().clone();
     for _ in 0..scene.steps {
-        times[3].push(processor_time(|| on_cpu.step(&mut world).contacts));
-        times[4].push(processor_time(|| on_device.step(&mut twin).contacts));
+        for (k, (pipeline, world)) in [(&mut on_cpu, &mut world), (&mut on_device, &mut twin)]
+            .into_iter()
+            .enumerate()
+        {
+            let start = Instant::now();
+            times[3 + k].push(processor_time(|| pipeline.step(world).contacts));
+            times[5 + k].push(start.elapsed().as_secs_f64() * 1.0e3);
+        }
         assert!(bits(&world) == bits(&twin), "another world on the device");
         let jobs = jobs(&world);
         let mut expected = Vec::new();
@@ -201,10 +221,18 @@ fn measure(scene: &Scene, batch: &mut Batch) -> Value {
     let share = |count: u64| count as f64 / (ROUNDS * pairs) as f64;
     let listed = share(after.counts.listed - before.counts.listed);
     let free = share(after.counts.settled_by_gpu - before.counts.settled_by_gpu);
-    let [contacts, send, finish, step_cpu, step_device] = times.each_mut().map(|t| median(t));
+    let [
+        contacts,
+        send,
+        finish,
+        step_cpu,
+        step_device,
+        wall_cpu,
+        wall_device,
+    ] = times.each_mut().map(|t| median(t));
     let each = |count: usize| count as f64 / scene.steps as f64;
     println!(
-        "{:<40} {:>6.0} pairs, {:>6.0} contacts, {free:.2} free, {listed:.2} listed; ms: contacts {contacts:.3}, host {:.3} = {send:.3} + {finish:.3}, ratio {:.2}; step {step_cpu:.3} and {step_device:.3}",
+        "{:<40} {:>6.0} pairs, {:>6.0} contacts, {free:.2} free, {listed:.2} listed; ms: contacts {contacts:.3}, host {:.3} = {send:.3} + {finish:.3}, ratio {:.2}; step {step_cpu:.3} and {step_device:.3}, wall {wall_cpu:.3} and {wall_device:.3}",
         scene.name,
         each(pairs),
         each(found),
@@ -216,6 +244,7 @@ fn measure(scene: &Scene, batch: &mut Batch) -> Value {
         "contacts_ms": contacts, "send_ms": send, "finish_ms": finish,
         "ratio": (send + finish) / contacts,
         "step_cpu_ms": step_cpu, "step_device_ms": step_device,
+        "wall_cpu_ms": wall_cpu, "wall_device_ms": wall_device,
     })
 }
 
@@ -229,7 +258,10 @@ fn main() {
     println!("{}; device: {adapter}", processor());
     let only = argument("--scene").unwrap_or_default();
     let scenes = scenes();
-    let wanted = scenes.iter().filter(|s| s.name.contains(&only));
+    let wanted = scenes.iter().filter(|s| {
+        let large = s.count >= 10_000 && only.is_empty();
+        s.name.contains(&only) && !large
+    });
     let rows: Vec<Value> = wanted.map(|scene| measure(scene, &mut batch)).collect();
     let figures = json!({ "processor": processor(), "adapter": adapter, "host": rows });
     if let Some(path) = argument("--json") {

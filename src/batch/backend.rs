@@ -26,8 +26,9 @@ use crate::error::GpuError;
 /// bit by bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// A GPU for batches that are large enough, if there is one; else the CPU, and [`BatchReport::error`] says why. Needs
-    /// the feature `gpu`, without which it is the same as [`Self::Cpu`].
+    /// A GPU for batches that are large enough, if there is one; else the CPU, and [`BatchReport::error`] says why. How
+    /// large, `Batch::calibrate` is told; before that at least 512 jobs, and with the feature `parallel` none is large
+    /// enough. Needs the feature `gpu`, without which it is the same as [`Self::Cpu`].
     Auto,
     /// The CPU.
     #[default]

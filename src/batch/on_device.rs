@@ -12,12 +12,16 @@ use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
 
-/// Fewest jobs, and elementary tests, for which [`Backend::Auto`] asks a GPU before it is told by a
-/// [`Calibration`]. Estimated, not measured on one: the way there and back should take some 100 µs,
-/// as a few first contacts do, and a test takes 0.2 µs on one core. Wrong, it costs time only.
-const ESTIMATED: Least = Least {
-    jobs: Some(64),
-    tests: Some(1 << 14),
+/// Fewest jobs, and elementary tests, for which [`Backend::Auto`] asks a GPU before it is told by a [`Calibration`]: what
+/// was measured on an NVIDIA H200 beside one core. Beside sixteen no batch was large enough
+/// (`docs/measurements/benches.md`). Where it does not fit, it costs time only.
+const UNCALIBRATED: Least = Least {
+    jobs: if cfg!(feature = "parallel") {
+        None
+    } else {
+        Some(512)
+    },
+    tests: None,
 };
 
 impl Batch {
@@ -73,7 +77,7 @@ impl Batch {
     }
 
     fn asks_gpu(&self, size: usize, least: fn(Least) -> Option<usize>) -> bool {
-        let least = least(self.calibrated.unwrap_or(ESTIMATED));
+        let least = least(self.calibrated.unwrap_or(UNCALIBRATED));
         let large = self.backend == Backend::Gpu || least.is_some_and(|n| size >= n);
         self.gpu.is_some() && large && size > 0
     }

@@ -79,6 +79,9 @@ pub fn hang(sets: &Sets, medial: &MedialColliders) -> Vec<bool> {
         let [Some(i), Some(j)] = places else {
             continue;
         };
+        if hangs[i] && hangs[j] {
+            continue;
+        }
         let gap = medial.all[i].skin + medial.all[j].skin + TOUCHING * sets.parameters.length_unit;
         for m in pair.manifolds() {
             for p in m.points.iter().filter(|p| p.dist < gap) {
@@ -87,11 +90,14 @@ pub fn hang(sets: &Sets, medial: &MedialColliders) -> Vec<bool> {
                     (j, p.local_p2, m.data.normal),
                 ];
                 for (place, point, force) in sides {
+                    if hangs[place] {
+                        continue;
+                    }
                     let collider = &medial.all[place];
                     let arm = collider
                         .moving
                         .map(|(_, center)| *collider.pose() * point - center);
-                    hangs[place] |= arm.is_some_and(|arm| arm.dot(force) > 0.0);
+                    hangs[place] = arm.is_some_and(|arm| arm.dot(force) > 0.0);
                 }
             }
         }
