@@ -8,6 +8,7 @@ use super::false_contacts;
 use super::flat_face;
 use super::inward_contacts;
 use super::manifolds::{self, ensure_workspace, write_one_point};
+use super::voxel_normals;
 use crate::batch::PairJob;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
@@ -81,13 +82,16 @@ impl MedialDispatcher {
                 None => write_by_parry(pair, prediction, manifolds, workspace),
             };
             let other = [g2, g1][side];
-            if matches!(
-                other.as_typed_shape(),
-                TypedShape::TriMesh(_) | TypedShape::HeightField(_)
-            ) {
-                let pose = [*pos12, pos12.inverse()][side];
-                false_contacts::correct(manifolds, (mesh, side), (other, &pose), prediction);
-                inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
+            let pose = [*pos12, pos12.inverse()][side];
+            match other.as_typed_shape() {
+                TypedShape::TriMesh(_) | TypedShape::HeightField(_) => {
+                    false_contacts::correct(manifolds, (mesh, side), (other, &pose), prediction);
+                    inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
+                }
+                TypedShape::Voxels(voxels) => {
+                    voxel_normals::correct(manifolds, side, (voxels, &pose), prediction);
+                }
+                _ => {}
             }
             if goes_on != Some(true) {
                 contact_reduction::transfer_impulses(manifolds, &previous, prediction, side);

@@ -1,7 +1,6 @@
 //! Contacts of a single primitive with a triangle that parry's EPA algorithm finds wrongly: without a normal, or deeper
 //! than the two are. Of small spheres on triangles of about their size EPA now and then ends without a direction. The
-//! nearest spheres take the place of such a contact, and of all of a single sphere's where any normal is allowed: there the
-//! nearest point is the contact.
+//! nearest spheres take the place of such a contact. A single sphere's are those of parry's ball.
 
 use super::inward_contacts::triangle;
 use crate::math::tolerance::ROUNDING_ULPS;
@@ -42,12 +41,14 @@ pub fn correct<M, C: Default + Copy>(
             continue;
         };
         let primitive = mesh.primitive(of_mesh as usize);
+        if primitive.spheres().len() == 1 {
+            continue;
+        }
         // Where not all normals are allowed parry leaves contacts out on purpose.
         let is_free = constraints.is_none();
-        let is_ball = is_free && primitive.spheres().len() == 1;
         let is_missing = is_free && m.points.is_empty();
         let is_deep = m.points.iter().any(|point| point.dist < 0.0);
-        if !(is_ball || is_missing || is_deep) {
+        if !(is_missing || is_deep) {
             continue;
         }
         let lists = [
@@ -61,9 +62,6 @@ pub fn correct<M, C: Default + Copy>(
         });
         let [(a, spheres), (b, _)] = &lists;
         let Some(own) = nearest_spheres(a, b, &Pose::IDENTITY, prediction).0 else {
-            if is_ball {
-                m.points.clear();
-            }
             continue;
         };
         let size = corners.map(Vector::length).into_iter().fold(0.0, Real::max);
@@ -74,7 +72,7 @@ pub fn correct<M, C: Default + Copy>(
             true => own.distance >= 0.0,
             false => has_normal && m.points.iter().all(|point| point.dist >= least),
         };
-        if is_right && !is_ball {
+        if is_right {
             continue;
         }
         let to_mesh = pose.rotation.inverse() * -own.normal;

@@ -13,6 +13,10 @@ use crate::pair::PrimitiveTree;
 use crate::pair::first_contact::ToiResult;
 use parry3d::query::NonlinearRigidMotion;
 
+/// Distance of the corners of a side from the line of an edge within which the side is along it, in units of the edge's
+/// length: height fields whose cells are no power of two have neighbours off by their rounding.
+const ON_LINE: Real = 1.0e-3;
+
 /// How a mesh meets a triangle, in the ground's frame.
 struct Met {
     /// Nearest point of the triangle.
@@ -75,6 +79,21 @@ const BESIDE: Real = 0.1;
 /// Distance within which a point is on an edge, in units of the edge's length and of the mesh's size.
 const ON_EDGE: [Real; 2] = [0.02, 0.01];
 
+/// Whether a triangle has a side along an edge, at a point of it: the same side, or a part of it, or a longer one.
+fn meets_at([a, b, c]: [Vector; 3], edge: [Vector; 2], at: Vector) -> bool {
+    let along = edge[1] - edge[0];
+    let length = along.length();
+    let within = ON_LINE * length;
+    let is_on_line = |p: Vector| along.cross(p - edge[0]).length() <= within * length;
+    let place = |p: Vector| along.dot(p - edge[0]) / length;
+    let sides = [[a, b], [b, c], [c, a]];
+    sides.into_iter().any(|side| {
+        let [p, q] = side.map(place);
+        let holds = (p.min(q)..=p.max(q)).contains(&place(at).clamp(within, length - within));
+        holds && side.into_iter().all(is_on_line)
+    })
+}
+
 /// The normal nearest to that of `met` that is possible at its point of `face`: within the face its own, at an edge between
 /// it and another of the triangles that faces about the same way one of both or between these. `None` at any other edge.
 fn normal(
@@ -101,10 +120,10 @@ fn normal(
         if along.cross(met.point - edge[0]).length() > within * length {
             continue;
         }
-        let holds = |other: &[Vector; 3]| *other != face && edge.iter().all(|p| other.contains(p));
+        let meets = |other: &[Vector; 3]| *other != face && meets_at(*other, edge, met.point);
         let beyond = others
             .clone()
-            .filter(holds)
+            .filter(meets)
             .map(|other| (other, facing(other)));
         let (other, normal) = beyond
             .filter(|(_, normal)| normal.dot(own) > ALIKE as Real)

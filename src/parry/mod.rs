@@ -35,6 +35,7 @@ pub(crate) mod shape;
 pub(crate) mod sliding;
 mod swept_region;
 pub(crate) mod swept_sphere_parts;
+mod voxel_normals;
 
 pub use dispatcher::MedialDispatcher;
 pub use swept_sphere_parts::Unsweepable;

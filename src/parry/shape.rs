@@ -14,8 +14,8 @@ use parry3d::partitioning::Bvh;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
 use parry3d::shape::{
-    Capsule, CompositeShape, CompositeShapeRef, FeatureId, Shape, ShapeType, TypedCompositeShape,
-    TypedShape,
+    Ball, Capsule, CompositeShape, CompositeShapeRef, FeatureId, Shape, ShapeType,
+    TypedCompositeShape, TypedShape,
 };
 
 impl CompositeShape for MedialMesh {
@@ -28,6 +28,13 @@ impl CompositeShape for MedialMesh {
             return;
         }
         match self.primitive(shape_id as usize) {
+            MedialPrimitive::Sphere(s) => {
+                f(
+                    Some(&Pose::from_translation(s.center)),
+                    &Ball::new(s.radius),
+                    None,
+                );
+            }
             // parry's capsule panics at points that are no numbers where the square of its length is zero.
             MedialPrimitive::Cone([a, b])
                 if a.radius == b.radius && a.center.distance_squared(b.center) > 0.0 =>

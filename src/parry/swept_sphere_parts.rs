@@ -250,7 +250,7 @@ fn add_cuboid(
 }
 
 /// Axis and side (1 or -1) of each face of a voxel that is not inside the solid.
-fn free_faces(state: VoxelState) -> impl Iterator<Item = (usize, Real)> {
+pub fn free_faces(state: VoxelState) -> impl Iterator<Item = (usize, Real)> {
     let bits = state.free_faces().bits();
     let faces = (0..6).filter(move |k| bits & (1 << k) != 0);
     faces.map(|k| (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 }))

@@ -1,0 +1,92 @@
+//! Normals of contacts with voxels. parry asks for the contacts of a primitive with a box around all neighbouring voxels,
+//! by GJK, whose direction is noise where the two just touch: a slab that stands on a flat floor then has contacts to its
+//! sides. What touches a face can be pushed along its normal only, and at the border of several along one between theirs.
+
+use super::contact_reduction::places;
+use super::swept_sphere_parts::free_faces;
+use crate::math::{Pose, Real, Vector};
+use parry3d::bounding_volume::Aabb;
+use parry3d::query::ContactManifold;
+use parry3d::shape::Voxels;
+
+/// Distance from a face within which a contact is on it, in units of the voxels' smallest side.
+const ON_FACE: Real = 0.01;
+
+/// Cosine with the nearest normal that is possible from which a normal is left as it is (8°).
+const POSSIBLE: Real = 0.99;
+
+/// Cosine with a face up to which a normal is turned to it; what points farther away came out on the other side (6° beyond
+/// its plane).
+const AWAY: Real = -0.1;
+
+/// Turns normals that no point of the voxels' surface can have to the nearest that it can. The mesh is body `side` (0 or 1)
+/// of the manifolds, and the voxels are at `pose` in its frame.
+pub fn correct<M, C>(
+    manifolds: &mut [ContactManifold<M, C>],
+    side: usize,
+    (voxels, pose): (&Voxels, &Pose),
+    prediction: Real,
+) {
+    let within = ON_FACE * voxels.voxel_size().min_element();
+    let ground = 1 - side;
+    for m in manifolds.iter_mut().filter(|m| !m.points.is_empty()) {
+        // Parts of both are turned no further than their bodies.
+        let to_mesh = [m.local_n1, m.local_n2][ground];
+        let on_ground: Vec<Vector> = (0..m.points.len()).map(|i| places(m, i)[ground]).collect();
+        let all = on_ground.iter().map(|p| faces(voxels, *p, within));
+        let Some(faces) = all.reduce(|a, b| a.into_iter().filter(|f| b.contains(f)).collect())
+        else {
+            continue;
+        };
+        let Some(normal) = nearest(&faces, to_mesh) else {
+            continue;
+        };
+        if normal.dot(to_mesh) > POSSIBLE {
+            continue;
+        }
+        let in_mesh = pose.rotation * normal;
+        for (i, at) in on_ground.into_iter().enumerate() {
+            let gap = (places(m, i)[side] - pose * at).dot(in_mesh);
+            m.points[i].dist = gap;
+        }
+        m.points.retain(|point| point.dist < prediction);
+        [m.local_n1, m.local_n2] = match side {
+            0 => [-in_mesh, normal],
+            _ => [normal, -in_mesh],
+        };
+    }
+}
+
+/// Axis and side of each face of the surface that a point is on.
+fn faces(voxels: &Voxels, at: Vector, within: Real) -> Vec<(usize, Real)> {
+    let half = 0.5 * voxels.voxel_size();
+    let around = Aabb::from_half_extents(at, Vector::splat(within));
+    let full = voxels
+        .voxels_intersecting_local_aabb(&around)
+        .filter(|v| !v.state.is_empty());
+    let mut found = Vec::new();
+    for voxel in full {
+        for (axis, sign) in free_faces(voxel.state) {
+            let off = (at - voxel.center)[axis] * sign - half[axis];
+            if off.abs() <= within && !found.contains(&(axis, sign)) {
+                found.push((axis, sign));
+            }
+        }
+    }
+    found
+}
+
+/// The normal between those of faces that is nearest to `normal`; `None` where that points away from all of them.
+fn nearest(faces: &[(usize, Real)], normal: Vector) -> Option<Vector> {
+    let mut sum = Vector::ZERO;
+    for &(axis, sign) in faces {
+        sum[axis] += sign * (normal[axis] * sign).max(0.0);
+    }
+    if let [(axis, sign)] = *faces
+        && normal[axis] * sign > AWAY
+    {
+        sum = Vector::ZERO;
+        sum[axis] = sign;
+    }
+    (sum.length_squared() > 0.0).then(|| sum.normalize())
+}
