@@ -58,11 +58,7 @@ pub fn correct_normal(
     let face = corners(toi.primitives[1]);
     let others = || (0..parts.primitives.len() as u32).map(corners);
     let known = parts.normals.iter().find(|(p, _)| *p == toi.primitives[1]);
-    let primitive = mesh.primitive(toi.primitives[0] as usize);
-    let at_fold = || match sliding.keeps_above(primitive.spheres()) {
-        true => None,
-        false => normal(face, others().chain(parts.left_out.iter().copied()), &met),
-    };
+    let at_fold = || normal(face, others().chain(parts.left_out.iter().copied()), &met);
     let normal = known
         .map(|(_, n)| *n)
         .or_else(at_fold)

@@ -100,13 +100,10 @@ fn cubes_that_land_at_a_small_angle_slide_on() {
 
 #[test]
 fn cubes_land_on_voxels_likewise() {
-    let side = |x: i32| (-40..40).map(move |z| IVector::new(x, -1, z));
-    let cells: Vec<_> = (-40..40).flat_map(side).collect();
-    let ground = ColliderBuilder::voxels(Vector::splat(0.25), &cells).friction(0.0);
     let (sin, cos) = 2.0_f32.to_radians().sin_cos();
     let velocity = 10.0 * Vector::new(cos, -sin, 0.0);
     let cube = (Vector::splat(0.3), -5.0, 0.02);
-    as_rapiers("voxels", ground, cube, velocity, (0.3, [0.1, 0.1]));
+    as_rapiers("voxels", voxels(0.25), cube, velocity, (0.3, [0.1, 0.1]));
 }
 
 /// The nearest point of what slides up from a fold is the fold itself, straight ahead.
@@ -318,4 +315,134 @@ fn tops_of_hills_throw_nothing_sideways() {
     }
     let v = world.bodies[body].linvel();
     assert!(v.x.hypot(v.z) < 0.1, "{v:?}");
+}
+
+/// A height field with rapier's flag for internal edges, of so many cells 1 m wide along each side.
+fn field(cells: usize, height: impl Fn(Real, Real) -> Real) -> ColliderBuilder {
+    let mut heights = Array2::zeros(cells + 1, cells + 1);
+    let at = |k: usize| k as Real - 0.5 * cells as Real;
+    for i in 0..=cells {
+        for j in 0..=cells {
+            heights[(i, j)] = height(at(j), at(i));
+        }
+    }
+    let size = Vector::new(cells as Real, 1.0, cells as Real);
+    let flags = HeightFieldFlags::FIX_INTERNAL_EDGES;
+    let shape = SharedShape::heightfield_with_flags(heights, size, flags);
+    ColliderBuilder::new(shape).friction(0.0)
+}
+
+/// A flat floor of voxels.
+fn voxels(size: Real) -> ColliderBuilder {
+    let most = (24.0 / size) as i32;
+    let side = |x: i32| (-most..most).map(move |z| IVector::new(x, -1, z));
+    let cells: Vec<_> = (-most..most).flat_map(side).collect();
+    ColliderBuilder::voxels(Vector::splat(size), &cells).friction(0.0)
+}
+
+/// Neighbours in a height field have corners that are off by rounding where the width of a cell is no power of two.
+#[test]
+fn boxes_slide_over_hills_of_any_height_field() {
+    let hill = |x: Real, z: Real| 0.12 * (0.84 * x).sin() * (0.84 * z).cos();
+    let start = (Vector::splat(0.25), -3.0, 0.15);
+    for cells in [32, 40, 50] {
+        let name = format!("{cells} cells");
+        let ground = field(cells, hill);
+        as_rapiers(&name, ground, start, Vector::X * 4.0, (1.5, [0.2, 0.4]));
+    }
+}
+
+/// Rows of triangles with other divisions than their neighbours', as where levels are made of parts.
+#[test]
+fn boxes_slide_up_a_ramp_of_unlike_rows() {
+    let slope = 5.0_f32.to_radians().tan();
+    let height = |x: Real| slope * (x - 3.0).max(0.0);
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for row in 0..72 {
+        let edges = [0, 1].map(|k| 0.5 * (row + k) as Real - 18.0);
+        let parts = [72, 54][row % 2];
+        let first = vertices.len() as u32;
+        for k in 0..=parts {
+            let z = 36.0 * k as Real / parts as Real - 18.0;
+            vertices.extend(edges.map(|x| Vector::new(x, height(x), z)));
+        }
+        for k in 0..parts as u32 {
+            let a = first + 2 * k;
+            triangles.extend([[a, a + 2, a + 1], [a + 1, a + 2, a + 3]]);
+        }
+    }
+    let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
+    let ground = ColliderBuilder::trimesh_with_flags(vertices, triangles, flags);
+    let ground = ground.expect("a ground").friction(0.0);
+    let brick = (Vector::new(0.4, 0.2, 0.3), 1.6, 0.0005);
+    as_rapiers("rows", ground, brick, Vector::X * 8.0, (0.4, [0.2, 0.3]));
+}
+
+/// Where a primitive just touches the floor the direction that parry finds is noise.
+#[test]
+fn cubes_slide_over_voxels_as_large_as_they_are() {
+    let cube = (Vector::splat(0.25), -5.0, 0.0005);
+    for size in [0.5, 1.0, 2.0] {
+        let (name, velocity) = (format!("voxels of {size} m"), Vector::X * 4.0);
+        as_rapiers(&name, voxels(size), cube, velocity, (2.0, [0.1, 0.1]));
+    }
+}
+
+/// A contact that turns with the ball is behind its middle, and its normal pushes the ball on.
+#[test]
+fn balls_that_roll_slowly_roll_as_rapiers_on_every_ground() {
+    let balls = [
+        ColliderBuilder::medial_mesh(MedialMesh::ball(0.6).expect("a ball")),
+        ColliderBuilder::ball(0.6),
+    ];
+    let grounds = [
+        ground_of(1.0, TriMeshFlags::FIX_INTERNAL_EDGES),
+        ground_of(1.0, TriMeshFlags::empty()),
+        field(32, |_, _| 0.0),
+        voxels(1.0),
+    ];
+    for (k, ground) in grounds.into_iter().enumerate() {
+        let [ours, own] = balls.clone().map(|ball| {
+            let mut world = PhysicsWorld::new();
+            world.insert_collider(ground.clone().friction(0.5), None);
+            let pushed = RigidBodyBuilder::dynamic()
+                .translation(Vector::new(-1.03, 0.6, 0.21))
+                .linvel(Vector::X * 0.1);
+            let collider = ball.friction(0.5).density(1000.0);
+            let (body, _) = world.insert(pushed, collider);
+            let mut pipeline = MedialPipeline::default();
+            for _ in 0..600 {
+                pipeline.step(&mut world);
+            }
+            world.bodies[body].linvel().x
+        });
+        println!("ground {k}: {ours} m/s, rapier's {own}");
+        assert!(
+            (ours - own).abs() < 0.002,
+            "ground {k}: {ours}, rapier's {own}"
+        );
+    }
+}
+
+/// In the step of a landing one side of a plate sinks in before the other is down, and edges of triangles beside it are then
+/// in its way.
+#[test]
+fn rounded_plates_and_rods_land_flat_on_triangles() {
+    let corner = |x: Real, z: Real| MedialSphere::new(Vector::new(x, 0.0, z), 0.1);
+    let [a, b] = [-0.37, 0.37];
+    let corners = vec![corner(a, a), corner(b, a), corner(b, b), corner(a, b)];
+    let plate = MedialMesh::new(corners, vec![], vec![[0, 1, 2], [0, 2, 3]]).expect("a plate");
+    let rod = MedialMesh::capsule(Vector::X * a, Vector::X * b, 0.1).expect("a rod");
+    for (name, mesh) in [("plate", plate), ("rod", rod)] {
+        let body = ColliderBuilder::medial_mesh(mesh);
+        for cell in [0.3, 1.0] {
+            let ground = rough_ground(cell, |_, _| 0.0);
+            let half = Vector::new(0.0, 0.1, 0.0);
+            let velocity = Vector::new(5.0, -15.0, 0.0);
+            let all = starts(half, -2.0, 0.1).map(|s| speed(&ground, &body, (s, velocity), 0.2));
+            let all: Vec<Real> = all.collect();
+            let off = all.iter().map(|v| (v - 5.0).abs()).fold(0.0, Real::max);
+            assert!(off < 0.02, "{name}, cells of {cell} m: {all:?}");
+        }
+    }
 }
