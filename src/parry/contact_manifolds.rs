@@ -89,7 +89,7 @@ impl MedialDispatcher {
                     inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
                 }
                 TypedShape::Voxels(voxels) => {
-                    voxel_normals::correct(manifolds, side, (voxels, &pose), prediction);
+                    voxel_normals::correct(manifolds, (mesh, side), (voxels, &pose), prediction);
                 }
                 _ => {}
             }

@@ -17,6 +17,9 @@ use parry3d::query::NonlinearRigidMotion;
 /// length: height fields whose cells are no power of two have neighbours off by their rounding.
 const ON_LINE: Real = 1.0e-3;
 
+/// Cosine of the normals of neighbours up to which they make one flat surface (2.5°).
+const FLAT: Real = 0.999;
+
 /// How a mesh meets a triangle, in the ground's frame.
 struct Met {
     /// Nearest point of the triangle.
@@ -27,6 +30,41 @@ struct Met {
     middle: Vector,
     /// Longest side of the mesh's box.
     size: Real,
+}
+
+impl Met {
+    /// Unit normal of a triangle to the side of the mesh: that of its nearest point, unless this is beside the triangle.
+    fn facing(&self, [a, b, c]: [Vector; 3]) -> Vector {
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let side = match normal.dot(self.normal) {
+            along if along.abs() > BESIDE => along,
+            _ => normal.dot(self.middle - self.point),
+        };
+        normal * side.signum()
+    }
+
+    /// Whether the mesh meets a face within a flat surface, of several triangles at most, and its normal is about `normal`.
+    fn is_within(
+        &self,
+        face: [Vector; 3],
+        normal: Vector,
+        others: impl Iterator<Item = [Vector; 3]>,
+    ) -> bool {
+        let own = self.facing(face);
+        let mut around = others.filter(|other| self.is_at(*other));
+        self.normal.dot(normal) > ALIKE as Real
+            && around.all(|other| self.facing(other).dot(own) > FLAT)
+    }
+
+    /// Whether the point is on a side of a triangle, or beside it by no more than counts as on an edge.
+    fn is_at(&self, [a, b, c]: [Vector; 3]) -> bool {
+        [[a, b], [b, c], [c, a]].into_iter().any(|[p, q]| {
+            let along = q - p;
+            let share = along.dot(self.point - p) / along.length_squared().max(Real::MIN_POSITIVE);
+            let nearest = p + along * share.clamp(0.0, 1.0);
+            nearest.distance(self.point) <= ON_EDGE[1] * self.size
+        })
+    }
 }
 
 /// Gives a hit on one of `parts` the normal along which the mesh can be thrown back there: where it lies on the plane of a
@@ -58,7 +96,13 @@ pub fn correct_normal(
     let face = corners(toi.primitives[1]);
     let others = || (0..parts.primitives.len() as u32).map(corners);
     let known = parts.normals.iter().find(|(p, _)| *p == toi.primitives[1]);
-    let at_fold = || normal(face, others().chain(parts.left_out.iter().copied()), &met);
+    let all = || others().chain(parts.left_out.iter().copied());
+    let primitive = mesh.primitive(toi.primitives[0] as usize);
+    // What is thick has its centres above the surface, so that its normals are right but for what it has sunk in.
+    let at_fold = || match sliding.keeps_above(primitive.spheres()) {
+        true => normal(face, all(), &met).filter(|n| met.is_within(face, *n, all())),
+        false => normal(face, all(), &met),
+    };
     let normal = known
         .map(|(_, n)| *n)
         .or_else(at_fold)
@@ -97,16 +141,7 @@ fn normal(
     others: impl Iterator<Item = [Vector; 3]> + Clone,
     met: &Met,
 ) -> Option<Vector> {
-    // To the side of the mesh: that of its nearest point, unless this is beside the face.
-    let facing = |[a, b, c]: [Vector; 3]| {
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let side = match normal.dot(met.normal) {
-            along if along.abs() > BESIDE => along,
-            _ => normal.dot(met.middle - met.point),
-        };
-        normal * side.signum()
-    };
-    let own = facing(face);
+    let own = met.facing(face);
     let mut allowed: Option<Vector> = None;
     let mut ridges: Vec<Real> = Vec::new();
     for edge in [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]] {
@@ -120,7 +155,7 @@ fn normal(
         let beyond = others
             .clone()
             .filter(meets)
-            .map(|other| (other, facing(other)));
+            .map(|other| (other, met.facing(other)));
         let (other, normal) = beyond
             .filter(|(_, normal)| normal.dot(own) > ALIKE as Real)
             .max_by(|a, b| a.1.dot(own).total_cmp(&b.1.dot(own)))?;

@@ -162,6 +162,11 @@ impl Sliding {
         is_alike.then(|| lying.normal.to_vector())
     }
 
+    /// Whether the centres of spheres stay above a plane on which they lie.
+    pub fn keeps_above(&self, spheres: &[MedialSphere]) -> bool {
+        spheres.iter().all(|s| s.radius >= self.sinks.lies)
+    }
+
     /// A ground in or below whose plane a face is.
     fn ground_above(&self, face: &[Vector]) -> Option<&Lying> {
         let is_below = |g: &&Lying| face.iter().all(|p| g.is_above(*p));

@@ -1,10 +1,12 @@
-//! Normals of contacts with voxels. parry asks for the contacts of a primitive with a box around all neighbouring voxels,
-//! by GJK, whose direction is noise where the two just touch: a slab that stands on a flat floor then has contacts to its
-//! sides. What touches a face can be pushed along its normal only, and at the border of several along one between theirs.
+//! Normals of contacts of sharp edges with voxels. parry asks for the contacts of a primitive with a box around all
+//! neighbouring voxels, by GJK, whose direction is noise where the two just touch: a slab that stands on a flat floor then
+//! has contacts to its sides. What touches a face can be pushed along its normal only, and at the border of several along
+//! one between theirs. Of rounded parts GJK sees what is within their surface, which does not touch.
 
 use super::contact_reduction::places;
 use super::swept_sphere_parts::free_faces;
 use crate::math::{Pose, Real, Vector};
+use crate::medial::MedialMesh;
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::ContactManifold;
 use parry3d::shape::Voxels;
@@ -19,35 +21,35 @@ const POSSIBLE: Real = 0.99;
 /// its plane).
 const AWAY: Real = -0.1;
 
-/// Turns normals that no point of the voxels' surface can have to the nearest that it can. The mesh is body `side` (0 or 1)
-/// of the manifolds, and the voxels are at `pose` in its frame.
+/// Turns normals that the deepest contact cannot have to the nearest that it can. The mesh is body `side` (0 or 1) of the
+/// manifolds, and the voxels are at `pose` in its frame.
 pub fn correct<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
-    side: usize,
+    (mesh, side): (&MedialMesh, usize),
     (voxels, pose): (&Voxels, &Pose),
     prediction: Real,
 ) {
     let within = ON_FACE * voxels.voxel_size().min_element();
     let ground = 1 - side;
     for m in manifolds.iter_mut().filter(|m| !m.points.is_empty()) {
-        // Parts of both are turned no further than their bodies.
-        let to_mesh = [m.local_n1, m.local_n2][ground];
-        let on_ground: Vec<Vector> = (0..m.points.len()).map(|i| places(m, i)[ground]).collect();
-        let all = on_ground.iter().map(|p| faces(voxels, *p, within));
-        let Some(faces) = all.reduce(|a, b| a.into_iter().filter(|f| b.contains(f)).collect())
-        else {
-            continue;
-        };
-        let Some(normal) = nearest(&faces, to_mesh) else {
-            continue;
-        };
-        if normal.dot(to_mesh) > POSSIBLE {
+        let part = mesh.primitive([m.subshape1, m.subshape2][side] as usize);
+        if part.spheres().iter().all(|s| s.radius > within) {
             continue;
         }
+        // Parts of both are turned no further than their bodies.
+        let to_mesh = [m.local_n1, m.local_n2][ground];
+        let gaps = m.points.iter().map(|point| point.dist).enumerate();
+        let Some((deepest, _)) = gaps.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+            continue;
+        };
+        let faces = faces(voxels, places(m, deepest)[ground], within);
+        let Some(normal) = nearest(&faces, to_mesh).filter(|n| n.dot(to_mesh) <= POSSIBLE) else {
+            continue;
+        };
         let in_mesh = pose.rotation * normal;
-        for (i, at) in on_ground.into_iter().enumerate() {
-            let gap = (places(m, i)[side] - pose * at).dot(in_mesh);
-            m.points[i].dist = gap;
+        for i in 0..m.points.len() {
+            let places = places(m, i);
+            m.points[i].dist = (places[side] - pose * places[ground]).dot(in_mesh);
         }
         m.points.retain(|point| point.dist < prediction);
         [m.local_n1, m.local_n2] = match side {
