@@ -2,7 +2,8 @@
 //!
 //! Where two triangles share an edge, what lies on the ground can be pushed along their normals only, or along one between
 //! these where the edge is a ridge. But a solver lets bodies sink in a little. The nearest point of what slides in a valley,
-//! just below the surface, is then the edge straight ahead, with a normal against the motion.
+//! just below the surface, is then the edge straight ahead, with a normal against the motion. A rounded part has its middle
+//! above the surface and its normal is right, but for what the part has sunk in: only within a flat surface is it corrected.
 
 use super::sliding::ALIKE;
 use super::swept_sphere_parts::Parts;
@@ -94,14 +95,16 @@ pub fn correct_normal(
     };
     let corners = |k: u32| parts.primitives.primitive(k).0.map(|s| s.center);
     let face = corners(toi.primitives[1]);
-    let others = || (0..parts.primitives.len() as u32).map(corners);
+    let others = || {
+        let all = (0..parts.primitives.len() as u32).map(corners);
+        all.chain(parts.left_out.iter().copied())
+    };
     let known = parts.normals.iter().find(|(p, _)| *p == toi.primitives[1]);
-    let all = || others().chain(parts.left_out.iter().copied());
     let primitive = mesh.primitive(toi.primitives[0] as usize);
     // What is thick has its centres above the surface, so that its normals are right but for what it has sunk in.
     let at_fold = || match sliding.keeps_above(primitive.spheres()) {
-        true => normal(face, all(), &met).filter(|n| met.is_within(face, *n, all())),
-        false => normal(face, all(), &met),
+        true => normal(face, others(), &met).filter(|n| met.is_within(face, *n, others())),
+        false => normal(face, others(), &met),
     };
     let normal = known
         .map(|(_, n)| *n)
