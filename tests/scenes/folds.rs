@@ -397,30 +397,32 @@ fn cubes_slide_over_voxels_as_large_as_they_are() {
 /// A contact that turns with the ball is behind its middle, and its normal pushes the ball on.
 #[test]
 fn balls_that_roll_slowly_roll_as_rapiers_on_every_ground() {
-    let balls = [
-        ColliderBuilder::medial_mesh(MedialMesh::ball(0.6).expect("a ball")),
-        ColliderBuilder::ball(0.6),
-    ];
+    let ours = ColliderBuilder::medial_mesh(MedialMesh::ball(0.6).expect("a ball"));
+    let own = ColliderBuilder::ball(0.6);
+    let rolled = |ball: &ColliderBuilder, ground: &ColliderBuilder| {
+        let mut world = PhysicsWorld::new();
+        world.insert_collider(ground.clone().friction(0.5), None);
+        let pushed = RigidBodyBuilder::dynamic()
+            .translation(Vector::new(-1.03, 0.6, 0.21))
+            .linvel(Vector::X * 0.1);
+        let (body, _) = world.insert(pushed, ball.clone().friction(0.5));
+        let mut pipeline = MedialPipeline::default();
+        for _ in 0..600 {
+            pipeline.step(&mut world);
+        }
+        world.bodies[body].linvel().x
+    };
+    let flagged = ground_of(1.0, TriMeshFlags::FIX_INTERNAL_EDGES);
+    let [plain, flat] = [ground_of(1.0, TriMeshFlags::empty()), field(32, |_, _| 0.0)];
+    // In debug builds rapier 0.36.1 panics with its own ball on voxels.
     let grounds = [
-        ground_of(1.0, TriMeshFlags::FIX_INTERNAL_EDGES),
-        ground_of(1.0, TriMeshFlags::empty()),
-        field(32, |_, _| 0.0),
-        voxels(1.0),
+        [&flagged; 2],
+        [&plain; 2],
+        [&flat; 2],
+        [&voxels(1.0), &flat],
     ];
-    for (k, ground) in grounds.into_iter().enumerate() {
-        let [ours, own] = balls.clone().map(|ball| {
-            let mut world = PhysicsWorld::new();
-            world.insert_collider(ground.clone().friction(0.5), None);
-            let pushed = RigidBodyBuilder::dynamic()
-                .translation(Vector::new(-1.03, 0.6, 0.21))
-                .linvel(Vector::X * 0.1);
-            let (body, _) = world.insert(pushed, ball.friction(0.5));
-            let mut pipeline = MedialPipeline::default();
-            for _ in 0..600 {
-                pipeline.step(&mut world);
-            }
-            world.bodies[body].linvel().x
-        });
+    for (k, [ground, of_own]) in grounds.into_iter().enumerate() {
+        let [ours, own] = [rolled(&ours, ground), rolled(&own, of_own)];
         let off = (ours - own).abs();
         assert!(off < 0.002, "ground {k}: {ours}, rapier's {own}");
     }
