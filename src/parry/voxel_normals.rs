@@ -17,8 +17,8 @@ const ON_FACE: Real = 0.01;
 /// Cosine with the nearest normal that is possible from which a normal is left as it is (8°).
 const POSSIBLE: Real = 0.99;
 
-/// Cosine with a face up to which a normal is turned to it; what points farther away came out on the other side (6° beyond
-/// its plane).
+/// Cosine with the only face that a contact is on, from which a normal is turned to that of the face (down to 6° below its
+/// plane). A normal below that is left: the mesh is on the other side.
 const AWAY: Real = -0.1;
 
 /// Turns normals that the deepest contact cannot have to the nearest that it can. The mesh is body `side` (0 or 1) of the
@@ -36,7 +36,7 @@ pub fn correct<M, C>(
         if part.spheres().iter().all(|s| s.radius > within) {
             continue;
         }
-        // Parts of both are turned no further than their bodies.
+        // No part is turned against its body, so this is the normal in the voxels' frame.
         let to_mesh = [m.local_n1, m.local_n2][ground];
         let gaps = m.points.iter().map(|point| point.dist).enumerate();
         let Some((deepest, _)) = gaps.min_by(|a, b| a.1.total_cmp(&b.1)) else {
