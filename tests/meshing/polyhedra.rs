@@ -4,7 +4,7 @@
 use crate::creases::convex;
 use crate::meshes::*;
 use crate::oracle::{Random, signed_distance};
-use parry3d::math::Vector;
+use parry3d::math::{Rotation, Vector};
 use parry3d::transformation::convex_hull;
 use rapier3d_medial::{BuildOptions, BuildReport, MedialMesh, MedialSphere, Quality};
 
@@ -395,4 +395,50 @@ fn bodies_that_are_no_polyhedra_are_rounded() {
     let (_, report) =
         MedialMesh::from_trimesh(&body.vertices, &body.indices, &fast).expect("builds");
     assert!(!is_axis(&report));
+}
+
+/// Needles keep all their sides, which lie a few ten-thousandths of the length from each other.
+#[test]
+fn needles_of_many_sides_are_exact() {
+    for (sides, thin) in [8, 16, 32]
+        .into_iter()
+        .flat_map(|n| [500.0, 1000.0, 2000.0].map(|t| (n, t)))
+    {
+        let radius = 0.5 / thin;
+        let corners = [
+            ring(sides, radius, -0.5, 0.3),
+            ring(sides, radius, 0.5, 0.3),
+        ]
+        .concat();
+        let n = sides as u32;
+        let band = (0..n).flat_map(|i| {
+            let k = (i + 1) % n;
+            [[i, k, n + k], [i, n + k, n + i]]
+        });
+        let ends = (1..n - 1).flat_map(|i| [[0, i + 1, i], [n, n + i, n + i + 1]]);
+        let turn = Rotation::from_scaled_axis(Vector::new(0.7, 0.4, -0.2));
+        let mesh = Mesh {
+            vertices: corners.iter().map(|&c| turn * c).collect(),
+            indices: band.chain(ends).collect(),
+        };
+        let (medial, report) =
+            MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &BuildOptions::default())
+                .expect("builds");
+        assert!(is_axis(&report), "{sides}, {thin}: {:?}", report.notes);
+        let inner = f64::from(radius) * (std::f64::consts::PI / sides as f64).cos();
+        for sphere in medial.spheres() {
+            let (c, r) = (
+                f64s(turn.inverse() * sphere.center),
+                f64::from(sphere.radius),
+            );
+            let side = |k: usize| {
+                let (s, t) = ((k as f64 + 0.8) / sides as f64 * std::f64::consts::TAU).sin_cos();
+                t * c[0] + s * c[1] + r - inner
+            };
+            let out = (0..sides).map(side).fold(c[2].abs() + r - 0.5, f64::max);
+            assert!(out < EXACT, "{sides}, {thin}: {out:e}");
+        }
+        let (_, uncovered) = off(&mesh, &medial, 1, 200);
+        assert!(uncovered <= 0.0, "{sides}, {thin}: uncovered {uncovered:e}");
+    }
 }

@@ -34,10 +34,12 @@ pub struct FlatFaces {
 
 /// A face under collection.
 struct Face {
-    /// Plane of the face by its largest triangle, and how much it may turn: a height at distance 1.
+    /// Plane of the face by its largest triangle.
     first: Plane,
     middle: Point,
-    slack: f64,
+    /// The directions of that triangle's longest side and height, each over its length: the plane may be off by
+    /// rounding at one end of either, so it may turn about a needle's length far more than across it.
+    turns: [Point; 2],
     /// Sum of its triangles' normals times their areas, and of their middles times them.
     area: Point,
     moment: Point,
@@ -91,21 +93,34 @@ pub fn flat_faces(
         let is_on = |face: &Face| {
             face.first.normal.dot(normal) > 0.0
                 && corners.iter().all(|p| {
-                    let turned = face.slack * (*p - face.middle).length();
-                    face.first.depth(*p).abs() <= flat + turned
+                    let to = *p - face.middle;
+                    let turned = face.turns.map(|turn| to.dot(turn).abs());
+                    face.first.depth(*p).abs() <= flat * (1.0 + turned[0] + turned[1])
                 })
         };
         let middle = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
         let place = faces.iter().position(is_on).unwrap_or_else(|| {
             let [a, b, c] = corners;
-            let sides = [b - a, c - b, a - c].map(|side| side.length());
+            let along = [b - a, c - b, a - c]
+                .into_iter()
+                .fold(Point::zero(), |long, side| {
+                    if side.length() > long.length() {
+                        side
+                    } else {
+                        long
+                    }
+                });
+            let (length, height) = (along.length(), 2.0 * area(t) / along.length());
             faces.push(Face {
                 first: Plane {
                     normal,
                     offset: normal.dot(middle),
                 },
                 middle,
-                slack: flat * sides.into_iter().fold(0.0, f64::max) / (2.0 * area(t)),
+                turns: [
+                    along * (1.0 / (length * length)),
+                    normal.cross(along) * (1.0 / (length * height)),
+                ],
                 area: Point::zero(),
                 moment: Point::zero(),
                 weight: 0.0,
