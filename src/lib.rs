@@ -56,13 +56,13 @@
 //! | [`parry`] | the medial mesh as a shape of parry, rapier's geometry: queries, contacts, casts | `dispatcher.rs` |
 //! | [`batch`] | contacts or first contacts of many pairs at once, on the CPU or a GPU | `backend.rs` |
 //! | [`pair`] | two medial meshes: which primitives can meet, first contact, contacts | `search.rs`, `contacts.rs` |
-//! | [`elementary`] | two primitives: distance and first contact, certified; the paper's own method | `bracket.rs` |
+//! | [`elementary`] | two primitives: certified distance and first contact; the paper's own method | `bracket.rs` |
 //! | [`meshing`] | from a triangle mesh to a medial mesh | `recipe/pipeline.rs` |
 //! | [`medial`] | the medial mesh itself, its trees, mass, surface and files | `mesh.rs` |
 //! | [`math`] | SIMD lanes, closed forms, rigid motion, counters, constants | `nearest.rs`, `motion.rs` |
 //!
-//! `CONTRIBUTING.md` in the repository has the map: which file answers which question, from the paper's equations and
-//! what proves an answer to what a new version of rapier changes. The first lines of each folder's `mod.rs` list its
+//! `CONTRIBUTING.md` in the repository has the map: which file has which of the paper's equations,
+//! which proof, and which workaround for rapier. The first lines of each folder's `mod.rs` list its
 //! files.
 
 // Limits are in clippy.toml.

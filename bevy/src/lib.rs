@@ -2,7 +2,7 @@
 //!
 //! The plugin adds `RapierPhysicsPlugin` with all its systems but the step, and steps with
 //! [`rapier3d_medial::MedialPipeline`] instead. Time steps, interpolation, collision and contact force messages,
-//! hooks and several physics worlds work as before; a [`MedialCollider`] is one more kind of collider.
+//! hooks and several physics worlds work as in bevy_rapier; a [`MedialCollider`] is one more kind of collider.
 //!
 //! ```
 //! use bevy::prelude::*;

@@ -26,9 +26,10 @@ use crate::error::GpuError;
 /// bit by bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// A GPU for batches that are large enough, if there is one; else the CPU, and [`BatchReport::error`] says why. How
-    /// large, `Batch::calibrate` is told; before that at least 512 jobs, and with the feature `parallel` none is large
-    /// enough. Needs the feature `gpu`, without which it is the same as [`Self::Cpu`].
+    /// A GPU for batches that are large enough, and the CPU for others. If there is no GPU, the CPU
+    /// computes all of them, and [`BatchReport::error`] says why. `Batch::calibrate` sets how large
+    /// is large enough; until then it is 512 jobs, and with the feature `parallel` no batch is
+    /// large enough. Needs the feature `gpu`, without which it is the same as [`Self::Cpu`].
     Auto,
     /// The CPU.
     #[default]
@@ -43,7 +44,7 @@ pub enum Backend {
 pub struct BatchReport {
     /// Counts of jobs, submissions and failures.
     pub counts: BatchCounts,
-    /// Why the last of [`BatchCounts::fallbacks`], or the GPU as a whole, was not used.
+    /// Why the GPU did not take the last of [`BatchCounts::fallbacks`], or why there is no GPU.
     pub error: Option<GpuError>,
 }
 

@@ -1,5 +1,5 @@
-//! [`Calibration`]: from which sizes of batches on a GPU pays, measured on the machine itself and kept as three
-//! lines of text.
+//! [`Calibration`]: the sizes of batches from which on a GPU pays, measured on the machine itself
+//! and kept as three lines of text.
 
 use crate::error::CalibrationError;
 use std::fmt;

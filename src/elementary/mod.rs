@@ -1,13 +1,14 @@
 //! The maths of two primitives (layer 2): their distance at a fixed time, and when they first touch in motion. It knows
 //! spheres and their motion, but no meshes.
 //!
-//! Two primitives of 1, 2 or 3 interpolated spheres each are in contact exactly when one of their
+//! Two primitives, each of 1, 2 or 3 spheres, are in contact exactly when one of their
 //! elementary tests is (paper §4.1): cone–cone for every two edges, sphere–slab for every sphere
 //! of one and the slab of the other. That list is complete as long as the medial triangles do not
-//! cross: over two triangles the four parameters map to three coordinates, so some direction of
-//! change leaves `y` fixed and changes the radius sum linearly, and following it reaches an edge
-//! of one of them; edge against triangle has its stationary points on its boundary unless `y = 0`,
-//! the crossing. Crossings at the start are found by [`slab_crossing`].
+//! cross: over two triangles the four parameters map to three coordinates (`y`, from one centre to
+//! the other), so some direction of change leaves `y` fixed and changes the radius sum linearly,
+//! and following it reaches an edge of one of them; edge against triangle has its stationary points
+//! on its boundary unless `y = 0`, the crossing. Crossings at the start are found by
+//! [`slab_crossing`].
 //!
 //! # What the answer promises
 //! On the motion asked for (straight paths in [`first_contact()`], exact rigid motion in
@@ -117,8 +118,8 @@ pub struct Cores {
     /// no limit.
     pub at_most: Real,
     /// How thick a blunt tip has to be, as a share of the local thickness, to be kept from passing through what it
-    /// touches at the start ([`InitialContact::Deepen`]), shared between two medial bodies as [`Self::share`] is. 0: the
-    /// whole tip is kept, however thin it is.
+    /// touches at the start ([`InitialContact::Deepen`]), shared between two medial bodies as
+    /// [`Self::share`] is. With 0 the whole tip is kept from it, however thin it is.
     pub tips: Real,
 }
 

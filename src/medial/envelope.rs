@@ -72,8 +72,8 @@ impl MedialMesh {
     ///
     /// A spacing that is not positive and finite stands for 1/64 of the longest side of the bounding box. One
     /// that would need more than four million triangles is widened until it does not. Strips of the surface
-    /// narrower than 1/8 of the spacing may be missing, and the surface beneath a part narrower than the
-    /// spacing may not be cut out.
+    /// narrower than 1/8 of the spacing may be missing. Where a part narrower than the spacing
+    /// stands on another surface, the hidden piece of that surface may be left in.
     ///
     /// ```
     /// use rapier3d_medial::MedialMesh;

@@ -281,11 +281,11 @@ impl MedialMesh {
         self.data.aabb
     }
 
-    /// How thin the solid typically is: the radius (half of what a caliper shows, in the mesh's unit of length) that
-    /// 95 % of the medial mesh, by area, exceed. For the area, a
-    /// cone counts as a strip as wide as the cone. A blunt tip, as at the edges of a box, is taken to be as thick as
-    /// the part at whose end it is. The smallest radius would not do instead: it is near 0 at the tips of most
-    /// meshes, so every motion would count as fast.
+    /// How thin the solid typically is, as a radius (half of what a caliper shows) in the mesh's
+    /// unit of length: the radius that is exceeded on 95 % of the medial mesh's area, where a cone
+    /// counts as a strip as wide as the cone. A blunt tip, as at the edges of a box, counts as
+    /// thick as the part that it ends. The smallest radius would not do instead: it is near 0 at
+    /// the tips of most meshes, so every motion would count as fast.
     pub fn thickness(&self) -> Real {
         self.data.parts.thickness
     }
@@ -305,9 +305,9 @@ impl MedialMesh {
     /// Mass, centre of mass and inertia at a density (mass per cubed unit of length), in the body's frame. If the
     /// medial mesh was built from a triangle mesh, they are those of the triangle mesh; otherwise they are those of
     /// the solid, with overlaps of primitives counted once. Those of the solid are measured when they are first asked
-    /// for, here or by the first contact, in 1.5 ms for a ball and 80 ms for 1,200 cones;
-    /// of a convex body with flat faces they are exact, at once. Density 0 gives no mass, and
-    /// measures nothing. Sheets have no volume, and no mass.
+    /// for, here or by the first contact, in 1.5 ms for a ball and 80 ms for 1,200 cones. For a
+    /// convex body with flat faces they are exact, and need no measuring. Density 0 gives no mass,
+    /// and measures nothing. Sheets have no volume, and no mass.
     ///
     /// ```
     /// use rapier3d_medial::MedialMesh;

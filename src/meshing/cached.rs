@@ -11,9 +11,9 @@ impl MedialMesh {
     /// Loads from `folder` what [`MedialMesh::from_trimesh`] makes of the same triangles and options, if it was built
     /// before; otherwise builds it and saves it there, so that a game builds in its first run only. The folder is
     /// created if it is missing. Other triangles, options or versions of this crate make other files (16 hexadecimal
-    /// digits and `.medial`); none is ever deleted, except that a damaged one is built and written again. Versions are
-    /// told apart by the number in `Cargo.toml`: if you depend on a clone of the repository, delete the folder to get
-    /// what a newer state of it builds.
+    /// digits and `.medial`). Files are never deleted; a damaged one is built and written again.
+    /// Versions are told apart by the version number in this crate's `Cargo.toml`: if you depend on
+    /// a clone of the repository, delete the folder to get what a newer state of it builds.
     ///
     /// # Errors
     /// Those of [`MedialMesh::from_trimesh`], and [`MeshError::File`] within [`BuildError::Mesh`] if the folder or

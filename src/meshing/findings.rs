@@ -14,8 +14,9 @@ pub struct Findings {
     pub vertices_unused: usize,
     /// Vertices that were welded to another at the same place (within 1e-6 of the longest side).
     pub vertices_welded: usize,
-    /// Triangles of which two corners are one vertex. The medial mesh covers the segments or points that they are, and
-    /// the error includes how far they stick out; for all else they are ignored.
+    /// Triangles with two or three corners at one vertex, so that they are segments or points. The
+    /// medial mesh covers them, and the error includes how far they stick out of it; for all else
+    /// they are ignored.
     pub triangles_collapsed: usize,
     /// Triangles dropped because another has the same corners, in any order.
     pub triangles_repeated: usize,
@@ -31,7 +32,7 @@ pub struct Findings {
     pub edges_crowded: usize,
     /// Edges whose triangles cannot be made to face the same way.
     pub edges_twisted: usize,
-    /// Patches.
+    /// Patches, solid or not.
     pub patches: usize,
     /// Solid patches.
     pub patches_solid: usize,
@@ -51,8 +52,9 @@ pub struct Findings {
     pub triangles_hidden: usize,
     /// Patches of which all triangles lie entirely inside a solid.
     pub patches_hidden: usize,
-    /// Whether the surface is too tangled to tell in reasonable time what of it lies inside a solid, to 0.6 % of the
-    /// longest side: larger pieces count as seen if a part of them is, which may overstate the error.
+    /// Whether the surface is so tangled that not all of it was tested for lying inside a solid,
+    /// down to pieces of 0.6 % of the longest side. A larger piece then counts as outside if a part
+    /// of it is, which may overstate the error.
     pub boundary_coarse: bool,
     /// Whether fits ended early, after a fixed amount of work, because the surface is so tangled that its nearest points
     /// take long to find: they may not have reached the least error.

@@ -146,8 +146,8 @@ pub struct Hausdorff {
     pub bloat: Real,
     /// Uncertainty of [`Self::error`], since only some points were measured: no point of either surface is farther from
     /// the other than `error() + sampling`. It is a quarter of the error (half with [`Quality::Fast`] and no
-    /// [`BuildOptions::max_error`]), or more if the error is below two thousandths of the size or the
-    /// search ran out of its budget. For [`Variant::Exact`] it is known from how the result is made.
+    /// [`BuildOptions::max_error`]), or more if the error is below 0.2 % of the longest side or the
+    /// search ran out of its budget. For [`Variant::Exact`] it follows from how the result is made.
     pub sampling: Real,
 }
 
@@ -178,11 +178,11 @@ pub enum Variant {
         edges: usize,
     },
     /// The medial mesh is exact: it consists of the medial axes of convex bodies with flat faces, or of overlapping
-    /// convex pieces that together are the body. For such pieces [`Hausdorff::error`] is measured. It is some
-    /// millionths of the size, or more if vertices lie off the planes of their faces (by up to two hundred-thousandths
-    /// of the size, for errors of one to two ten-thousandths), or are rounded because the mesh is far from the origin.
-    /// [`Hausdorff::sampling`] follows from how the pieces are made: ten millionths of the size, or four
-    /// ten-thousandths where vertices are off.
+    /// convex pieces that together are the body. For such pieces [`Hausdorff::error`] is measured:
+    /// some 1e-6 of the longest side. It is larger if vertices lie off the planes of their faces
+    /// (1e-4 to 2e-4 of the longest side, if they are off by up to 2e-5 of it), or are rounded
+    /// because the mesh is far from the origin. [`Hausdorff::sampling`] follows from how the pieces
+    /// are made: 1e-5 of the longest side, or 4e-4 of it if vertices are off.
     Exact,
 }
 
@@ -202,8 +202,9 @@ pub struct BuildReport {
     pub longest_side: Real,
     /// Number of primitives of the result.
     pub primitives: usize,
-    /// Number of primitives with which the result would be exact; `None` if it is, or if that takes more than you allow
-    /// and than the default of [`BuildOptions::primitives`]. Bodies of flat faces are often exact with few.
+    /// Number of primitives with which the result would be exact. `None` if it is exact already, or
+    /// if that takes more primitives than you allow and than the default of
+    /// [`BuildOptions::primitives`]. Bodies with flat faces are often exact with few.
     pub exact_with: Option<usize>,
     /// Whether sharp edges were kept.
     pub variant: Variant,

@@ -14,14 +14,14 @@ pub enum Effect {
     Off,
     /// Always.
     On,
-    /// Decided for each pair in each step, as the documentation of each effect says. In the settings of a single
-    /// collider it means that the scene's setting holds.
+    /// Decided by this crate: the documentation of each effect says how. In the settings of a
+    /// single collider it means that the scene's setting holds.
     #[default]
     Auto,
 }
 
-/// Which work beyond rapier's own step is done for a pair of colliders. By default all of this is decided
-/// automatically. Then only pairs that move fast, or are deep in each other, cost extra time.
+/// Which work beyond rapier's own step is done for a pair of colliders. By default all effects are
+/// [`Effect::Auto`]. Then only pairs that move fast, or are deep in each other, cost extra time.
 ///
 /// Set effects for the whole scene by [`MedialOptions::effects`], or for single colliders by
 /// [`MedialPipeline::set_effects`](crate::rapier::MedialPipeline::set_effects). For a pair, each effect is decided by
@@ -76,8 +76,9 @@ pub struct Effects {
     pub restitution: Effect,
 }
 
-/// Settings of a [`MedialPipeline`](crate::rapier::MedialPipeline). The defaults leave nothing out; for games, which
-/// want short steps, there is [`MedialOptions::games`].
+/// Settings of a [`MedialPipeline`](crate::rapier::MedialPipeline). With the defaults a step takes
+/// as long as its impacts need, up to seconds; for games, which want short steps, there is
+/// [`MedialOptions::games`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MedialOptions {
@@ -179,9 +180,9 @@ impl MedialOptions {
         self
     }
 
-    /// Options for games: all effects, and a budget of 16,384, with which the search for first contacts took up to 20 ms
-    /// a step in the scenes of `docs/effects.md`. If the budget does not suffice, bodies wait for the next step; they still pass through
-    /// nothing.
+    /// Options for games: the default effects, and a budget of 16,384, with which the search for
+    /// first contacts took up to 20 ms a step in the scenes of `docs/effects.md`. If the budget
+    /// does not suffice, bodies wait for the next step; they still pass through nothing.
     pub fn games() -> Self {
         Self::default().budget(BUDGET_OF_GAMES)
     }

@@ -149,7 +149,7 @@ impl MedialPipeline {
         self.state.kept = None;
     }
 
-    /// Other constants of the event loop, to measure what they do.
+    /// Sets other constants of the event loop, to measure what they do.
     #[doc(hidden)]
     pub fn set_tuning(&mut self, tuning: Tuning) {
         self.state.tuning = tuning;
@@ -178,7 +178,8 @@ impl MedialPipeline {
     /// `integration_parameters.normalized_contact_recycle_distance` is the distance that a pair may move before
     /// rapier computes its contacts anew. While there are medial colliders, the step uses
     /// [`RECYCLE_DISTANCE`](crate::rapier::RECYCLE_DISTANCE) in its place if yours is larger. This holds for all
-    /// bodies. Medial bodies on joints that turn fast get more solver iterations for the step (`docs/host.md`).
+    /// bodies. Medial bodies that joints hold and that turn fast get more solver iterations for the
+    /// step (`docs/host.md`).
     pub fn step(&mut self, world: &mut PhysicsWorld) -> StepReport {
         self.step_with_events(world, &(), &())
     }

@@ -47,17 +47,17 @@ counters! {
         /// Continuous queries after rapier's step in which a body turned and was followed on its exact path.
         pub rotating_queries: u64,
         /// Pairs of two medial colliders whose first contact was asked for at the end of rapier's step, before any
-        /// impact. Not all of these need a query: bounding spheres or a direction may show that the two stay apart,
-        /// or an earlier impact comes between. Other continuous queries are with rapier's shapes, by rapier's own
-        /// sweeps, or after an impact.
+        /// impact. Not all of these need a query: bounding spheres or a separating direction may
+        /// show that the two stay apart, or an earlier impact may change their motion. All other
+        /// continuous queries are with rapier's shapes, by rapier's own sweeps, or after an impact.
         pub continuous_jobs: usize,
         /// Fast pairs whose contacts were kept from rapier's solver, because their first contact is resolved after
         /// rapier's step.
         pub muted: usize,
         /// Impacts resolved within the step.
         pub events: usize,
-        /// Bodies that stopped before the step's end, or were carried along by what pushed them, after too many impacts
-        /// (more than 16).
+        /// Bodies that had too many impacts in the step (more than 16): they stopped before its
+        /// end, or were carried along by what pushed them.
         pub frozen: usize,
         /// How much of [`crate::MedialOptions::budget`] was spent: node pairs and elementary tests for first contacts, and
         /// looks at two convex pieces as a whole, each of which counts as 16.

@@ -30,20 +30,21 @@ pub struct BuildArguments {
     #[arg(short, long, value_name = "OUT.medial")]
     output: PathBuf,
     /// Largest number of primitives: slabs, cones that belong to no slab, lone spheres
-    /// [default: 500, or what the largest error needs].
+    /// [default: 500, or as many as --max-error needs].
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     primitives: Option<u32>,
     /// Largest distance between the surfaces of mesh and collider, as a fraction of the mesh's longest side. Without
     /// --primitives, the smallest medial mesh that keeps to it is built.
     #[arg(short = 'e', long, value_name = "E", value_parser = positive)]
     max_error: Option<f32>,
-    /// The same as a length: 0.02 is in the unit of the file; 0.02mm needs --unit, the unit of the file.
+    /// Like --max-error, as a length: 0.02 is in the unit of the file; 0.02mm needs --unit, except
+    /// for glTF.
     #[arg(long, value_name = "LENGTH", conflicts_with = "max_error")]
     tolerance: Option<Length>,
     /// The unit of the file (um, mm, cm, m, km, in, ft); glTF is in metres.
     #[arg(long, value_name = "UNIT")]
     unit: Option<Unit>,
-    /// How much work to spend on a small error.
+    /// How much work to spend on making the error small.
     #[arg(short, long, value_enum, default_value_t)]
     quality: QualityArgument,
     /// Fit the surface from both sides instead of covering it.

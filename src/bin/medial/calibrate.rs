@@ -13,7 +13,7 @@ pub struct CalibrateArguments {
     /// Where to write the sizes: text for `Calibration` to read.
     #[arg(short, long, value_name = "OUT.txt")]
     output: PathBuf,
-    /// Take an adapter that computes on the CPU, too.
+    /// Accept an adapter that is simulated on the CPU, too.
     #[arg(long)]
     software: bool,
 }

@@ -49,13 +49,13 @@ pub struct CompareArguments {
     /// Largest number of primitives of the medial mesh.
     #[arg(short, long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..))]
     primitives: u32,
-    /// How much work to spend on a small error of the medial mesh.
+    /// How much work to spend on making the medial mesh's error small.
     #[arg(short, long, value_enum, default_value_t)]
     quality: QualityArgument,
     /// Round all edges of the medial mesh, also where sharp ones would make its error smaller.
     #[arg(long)]
     round_edges: bool,
-    /// Steps to time, of each of 4 heaps of 12 bodies; 0 times none.
+    /// Number of steps to time in each of 4 heaps of 12 bodies; with 0 nothing is timed.
     #[arg(long, value_name = "N", default_value_t = 240)]
     steps: usize,
     /// Print the table as JSON.
@@ -309,7 +309,7 @@ impl Comparison {
             table.row(row.collider, cells);
         }
         let mut text = format!(
-            "{}\n\n{table}\n% off: largest distance from the surface of the mesh, of its longest side, {}\n",
+            "{}\n\n{table}\n% off: largest distance from the surface of the mesh, in % of its longest side ({})\n",
             self.picture.display(),
             self.longest_side
         );

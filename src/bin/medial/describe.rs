@@ -98,10 +98,10 @@ impl Errors {
             false => "",
         };
         format!(
-            "{title}, of the triangle mesh's longest side\n\
+            "{title}, as fractions of the triangle mesh's longest side\n\
              \x20 mesh to collider     {:.5}\n  collider to mesh     {:.5}{or_more}\n\
              \x20 mesh sticks out by   {:.5}\n\
-             \x20 between the points measured all may be larger by {:.5}\n",
+             \x20 all may be larger by {:.5} between the points measured\n",
             self.surface_to_envelope, self.envelope_to_surface, self.uncovered, self.sampling,
         )
     }

@@ -30,7 +30,7 @@ pub enum Failure {
     TriangleMesh(PathBuf),
     #[error("{path}: {source}")]
     OfFile { path: PathBuf, source: Box<Failure> },
-    #[error("{0} is not a triangle mesh, for which --curve shows the errors")]
+    #[error("{0} is not a triangle mesh, which --curve needs")]
     NoTriangleMesh(PathBuf),
     #[error("rapier cannot make a convex hull of this mesh")]
     NoHull,

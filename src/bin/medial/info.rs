@@ -35,7 +35,7 @@ const COUNTS: [u32; 6] = [10, 20, 50, 100, 200, 500];
 pub struct InfoArguments {
     /// Medial mesh (.ma or .medial); with --curve a triangle mesh.
     pub mesh: PathBuf,
-    /// Measure how far it is from the triangle mesh that it was built from.
+    /// Measure how far the medial mesh is from the triangle mesh that it was built from.
     #[arg(long, value_name = "IN")]
     against: Option<PathBuf>,
     #[command(flatten)]
@@ -43,14 +43,14 @@ pub struct InfoArguments {
     /// Show the error of a triangle mesh at several numbers of primitives.
     #[arg(long, conflicts_with = "against")]
     curve: bool,
-    /// The numbers of primitives.
+    /// Numbers of primitives for --curve.
     #[arg(long, value_name = "N,N,…", value_delimiter = ',', requires = "curve", default_values_t = COUNTS,
           value_parser = clap::value_parser!(u32).range(1..))]
     pub counts: Vec<u32>,
-    /// How much work to spend on a small error.
+    /// With --curve: how much work to spend on making the error small.
     #[arg(short, long, value_enum, default_value_t, requires = "curve")]
     pub quality: QualityArgument,
-    /// Fit the surface from both sides instead of covering it.
+    /// With --curve: fit the surface from both sides instead of covering it.
     #[arg(long, requires = "curve")]
     pub no_enclose: bool,
     /// Print as JSON.

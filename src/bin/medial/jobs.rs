@@ -20,9 +20,9 @@ pub struct Job {
 pub enum PlanError {
     #[error("{0} is the input: the output would replace it")]
     OverInput(PathBuf),
-    #[error("{0}: the output is a medial mesh, in a file that ends in .ma or .medial")]
+    #[error("{0}: the output is a medial mesh; name a file that ends in .ma or .medial")]
     MeshOutput(PathBuf),
-    #[error("{0}: the output is a picture, in a file that ends in .png")]
+    #[error("{0}: the output is a picture; name a file that ends in .png")]
     PictureOutput(PathBuf),
     #[error("{0}: no such directory")]
     NoDirectory(PathBuf),

@@ -58,7 +58,7 @@ impl FromStr for Length {
                 let number = text.trim_end_matches(is_unit);
                 let unit = text[number.len()..].parse()?;
                 let number = number.trim_end().parse();
-                let wanted = "must be a number, or one and a unit, as 0.02mm";
+                let wanted = "must be a number, with or without a unit, as 0.02mm";
                 (number.map_err(|_| wanted.to_owned())?, Some(unit))
             }
         };

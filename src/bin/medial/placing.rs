@@ -7,7 +7,7 @@ use rapier3d_medial::meshing::mesh_file::TriangleMesh;
 
 #[derive(Args)]
 pub struct PlacingArguments {
-    /// Multiply all lengths of the triangle mesh first: 0.001 takes millimetres to metres.
+    /// Multiply all lengths of the triangle mesh first: 0.001 turns millimetres into metres.
     #[arg(long, value_name = "S", value_parser = positive)]
     scale: Option<f32>,
     /// Which axis points up in the triangle mesh's file; z is turned to y.

@@ -124,7 +124,7 @@ impl MedialDebugRender {
         self.outlines.retain(|key, _| seen.contains(key));
     }
 
-    /// How many meshes have their lines in store.
+    /// Number of meshes whose lines are kept.
     pub fn stored(&self) -> usize {
         debug_assert!(self.outlines.values().all(|o| !o.mesh.spheres().is_empty()));
         self.outlines.len()

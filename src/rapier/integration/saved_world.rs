@@ -94,14 +94,15 @@ impl MedialPipeline {
         &self.state.reported.started
     }
 
-    /// Restores what [`Self::told_starts`] was when the world was saved, so that no `Started` is emitted twice and each
-    /// `Stopped` is.
+    /// Restores what [`Self::told_starts`] was when the world was saved, so that no `Started` is
+    /// emitted twice and no `Stopped` is lost.
     pub fn resume_told_starts(&mut self, starts: Vec<[ColliderHandle; 2]>) {
         self.state.reported.started = starts;
     }
 
     /// What the next step has to know of bodies that were put into each other (spawned, teleported) and have not come
-    /// apart. It is not part of the world: if your game does that, save it beside the world.
+    /// apart. It is not part of the world: if your game puts bodies into each other, save it beside
+    /// the world.
     pub fn overlaps(&self) -> OverlapsRecord {
         self.state.placed.record()
     }
@@ -252,8 +253,9 @@ fn forget_changes(world: &PhysicsWorld, colliders: &mut ColliderSet) {
     );
 }
 
-/// Saves a world as bytes with a checksum. Call it between steps. What is no part of the world is saved beside it:
-/// [`MedialPipeline::told_starts`], [`MedialPipeline::overlaps`].
+/// Saves a world as bytes with a checksum. Call it between steps. The bytes do not contain
+/// [`MedialPipeline::told_starts`] and [`MedialPipeline::overlaps`]: if your game needs them, save
+/// them too.
 ///
 /// # Errors
 /// [`SavedWorldError::Removed`] if colliders were removed since the last step, [`SavedWorldError::Unwritable`] if
