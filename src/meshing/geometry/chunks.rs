@@ -17,19 +17,40 @@ const CHUNK: usize = 512;
 /// on one core, below the 0.2 s within which a cancelled build returns.
 const BATCH: usize = 16;
 
+/// Items of a chunk that take a hundred times as long each as a look-up.
+const FEW: usize = 2;
+
 /// Joins what `map` makes of each chunk of `items`, in order.
 pub fn map_chunks<T: Sync, R: Send>(
     items: &[T],
     watch: &mut Watch,
     map: impl Fn(&[T]) -> Vec<R> + Sync,
 ) -> Result<Vec<R>, BuildError> {
+    map_chunks_of(CHUNK, items, watch, map)
+}
+
+/// What `map` makes of each item, in order, where each takes long.
+pub fn map_long<T: Sync, R: Send>(
+    items: &[T],
+    watch: &mut Watch,
+    map: impl Fn(&T) -> R + Sync,
+) -> Result<Vec<R>, BuildError> {
+    map_chunks_of(FEW, items, watch, |chunk| chunk.iter().map(&map).collect())
+}
+
+fn map_chunks_of<T: Sync, R: Send>(
+    count: usize,
+    items: &[T],
+    watch: &mut Watch,
+    map: impl Fn(&[T]) -> Vec<R> + Sync,
+) -> Result<Vec<R>, BuildError> {
     let mut results = Vec::with_capacity(items.len());
-    for batch in items.chunks(CHUNK * BATCH) {
+    for batch in items.chunks(count * BATCH) {
         watch.again()?;
         #[cfg(feature = "parallel")]
-        let parts: Vec<Vec<R>> = batch.par_chunks(CHUNK).map(&map).collect();
+        let parts: Vec<Vec<R>> = batch.par_chunks(count).map(&map).collect();
         #[cfg(not(feature = "parallel"))]
-        let parts = batch.chunks(CHUNK).map(&map);
+        let parts = batch.chunks(count).map(&map);
         for part in parts {
             results.extend(part);
         }

@@ -13,6 +13,7 @@ use crate::meshing::certify::inside::Solid;
 use crate::meshing::certify::prepared_primitives::Prepared;
 use crate::meshing::draft::{Ball, Corners, Signed};
 use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::chunks::map_long;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::refine::residuals::GUESS;
 use crate::meshing::simplify::collapse::Simplifier;
@@ -58,20 +59,11 @@ pub fn reduce_measured(
         return Ok(());
     }
     let mut measure = Measure::new(simplifier, samples, tree, start < FEW);
-    let mut heap = BinaryHeap::new();
-    let balls = simplifier.complex().balls.len() as u32;
-    for v in 0..balls {
-        if !simplifier.complex().is_alive(v) {
-            continue;
-        }
-        watch.again()?;
-        for i in 0..simplifier.complex().neighbors(v).len() {
-            let u = simplifier.complex().neighbors(v)[i];
-            if u > v {
-                heap.push(measure.candidate(simplifier, [v, u], 0.0));
-            }
-        }
-    }
+    let complex = simplifier.complex();
+    let alive = (0..complex.balls.len() as u32).filter(|&v| complex.is_alive(v));
+    let above = |v: u32| complex.neighbors(v).iter().filter(move |&&u| u > v);
+    let edges: Vec<[u32; 2]> = alive.flat_map(|v| above(v).map(move |&u| [v, u])).collect();
+    let mut heap = BinaryHeap::from(measure.candidates(simplifier, &edges, 0.0, watch)?);
     let mut blocked = Vec::new();
     let mut progressed = false;
     // The error accepted so far: what is below it costs nothing new.
@@ -113,10 +105,9 @@ pub fn reduce_measured(
         simplifier.collapse(a, b, ball);
         measure.assign(simplifier, edge, old);
         progressed = true;
-        for i in 0..simplifier.complex().neighbors(a).len() {
-            let v = simplifier.complex().neighbors(a)[i];
-            heap.push(measure.candidate(simplifier, [a.min(v), a.max(v)], accepted));
-        }
+        let neighbors = simplifier.complex().neighbors(a).iter();
+        let edges: Vec<[u32; 2]> = neighbors.map(|&v| [a.min(v), a.max(v)]).collect();
+        heap.extend(measure.candidates(simplifier, &edges, accepted, watch)?);
     }
     Ok(())
 }
@@ -166,19 +157,22 @@ impl<'a> Measure<'a> {
         measure
     }
 
-    fn candidate(&self, s: &Simplifier, edge: [u32; 2], accepted: f64) -> Candidate {
-        let (error, _) = self.merge(s, edge, accepted);
-        Candidate {
-            cost: error,
-            edge,
-            versions: edge.map(|v| s.version(v)),
-        }
-    }
-
-    fn merge(&self, s: &Simplifier, edge: [u32; 2], accepted: f64) -> (f64, Ball) {
-        let (measured, ball) = self.best(s, edge, accepted);
-        let (quadric, _) = s.merge(edge[0], edge[1]);
-        (measured + QUADRIC * quadric.sqrt(), ball)
+    fn candidates(
+        &self,
+        s: &Simplifier,
+        edges: &[[u32; 2]],
+        accepted: f64,
+        watch: &mut Watch,
+    ) -> Result<Vec<Candidate>, BuildError> {
+        map_long(edges, watch, |&edge| {
+            let (measured, _) = self.best(s, edge, accepted);
+            let (quadric, _) = s.merge(edge[0], edge[1]);
+            Candidate {
+                cost: measured + QUADRIC * quadric.sqrt(),
+                edge,
+                versions: edge.map(|v| s.version(v)),
+            }
+        })
     }
 
     /// The best ball for a merged edge and its measured cost.
