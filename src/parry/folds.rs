@@ -164,7 +164,8 @@ fn normal(
             .max_by(|a, b| a.1.dot(own).total_cmp(&b.1.dot(own)))?;
         let across = met.normal - along * (along.dot(met.normal) / along.length_squared());
         // A ridge bends away from the face, and has all normals between both.
-        let is_ridge = other.iter().all(|p| own.dot(*p - edge[0]) <= 0.0);
+        let is_below = |p: &Vector| own.dot(*p - edge[0]) <= ON_LINE * length;
+        let is_ridge = other.iter().all(is_below);
         let bend = own.cross(normal);
         let is_between = bend.dot(own.cross(across)) > 0.0 && bend.dot(across.cross(normal)) > 0.0;
         let nearest = match is_ridge && is_between {
