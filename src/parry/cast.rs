@@ -4,7 +4,7 @@
 use super::axisymmetric_toi;
 use super::distance;
 use super::folds;
-use super::initial_contacts::{Touching, approach_of_rounding};
+use super::initial_contacts::{AtStart, Touching, approach_of_rounding};
 use super::inside;
 use super::sliding::{Sinks, Sliding};
 use super::swept_region::{started, swept_region};
@@ -49,8 +49,8 @@ pub struct Cast<'a> {
     pub times: [Real; 2],
     /// Distance at which they count as in contact.
     pub target_distance: Real,
-    /// Whether a contact at the start is the answer. Otherwise the next, deeper one is searched for.
-    pub stop_at_penetration: bool,
+    /// What is made of contacts at the start.
+    pub at_start: AtStart,
     /// Whether a contact at the start is the answer at least if the two approach, as for parry's straight casts.
     /// Without this, rapier's character controller would sink in.
     pub stop_approach: bool,
@@ -124,10 +124,11 @@ impl Cast<'_> {
             mut counts,
             ..
         } = found;
-        if toi.upper <= 0.0 && !self.stop_at_penetration {
+        let stops = self.at_start == AtStart::Stop;
+        if toi.upper <= 0.0 && !stops {
             let touching = self.touching([&motion1, &motion2], &toi, options.tolerance)?;
             let further = if !self.stop_approach {
-                touching.sinking(self.foreign_thickness(), seconds, &options)
+                touching.sinking(self.at_start, self.foreign_thickness(), seconds, &options)
             } else if !touching.approaches(seconds) {
                 touching.unless_nearer(seconds, &options)
             } else {
@@ -160,7 +161,7 @@ impl Cast<'_> {
         let slant = slant.sqrt().min(MOST_SLANT);
         let slides =
             toi.status == ToiStatus::Contact && way.dot(toi.normal) <= slant * way.length();
-        if slides && self.stop_approach && !self.stop_at_penetration {
+        if slides && self.stop_approach && !stops {
             let by = options.tolerance + grazing;
             options.target_distance -= by;
             let nearer = query(&options)?;

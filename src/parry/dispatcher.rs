@@ -3,7 +3,8 @@
 
 use super::cast::Cast;
 use super::distance;
-use super::narrow_phase_plan::PlanExchange;
+use super::initial_contacts::AtStart;
+use super::narrow_phase_plan::{PlanExchange, Sweeps};
 use crate::batch::{PairJob, PairResult};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -52,7 +53,8 @@ impl MedialDispatcher {
         shapes: [&dyn Shape; 2],
         times: [Real; 2],
         target_distance: Real,
-        [stop_at_penetration, stop_approach]: [bool; 2],
+        at_start: AtStart,
+        stop_approach: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let flipped = medial(shapes[0]).is_none();
         let [first, second] = if flipped { [1, 0] } else { [0, 1] };
@@ -68,7 +70,7 @@ impl MedialDispatcher {
             other: shapes[second],
             times,
             target_distance,
-            stop_at_penetration,
+            at_start,
             stop_approach,
         };
         let (hit, counts) = cast.run().map_err(|_| Unsupported)?;
@@ -260,7 +262,8 @@ impl QueryDispatcher for MedialDispatcher {
             [g1, g2],
             [0.0, end],
             options.target_distance,
-            [options.stop_at_penetration, true],
+            AtStart::of(options.stop_at_penetration),
+            true,
         )
     }
 
@@ -274,17 +277,23 @@ impl QueryDispatcher for MedialDispatcher {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let one_is_medial = medial(g1).is_some() || medial(g2).is_some();
-        // rapier asks so of solid pairs; of what only tells of events it wants the first contact.
-        if one_is_medial && !stop_at_penetration && self.exchange.plan().skips_sweeps {
-            return Ok(None);
-        }
+        // Within its step rapier asks so of solid pairs; of what only tells of events it wants the first contact.
+        let sweeps = match stop_at_penetration {
+            true => Sweeps::AsCasts,
+            false => self.exchange.plan().sweeps,
+        };
+        let at_start = match sweeps {
+            Sweeps::FindNothing if medial(g1).or(medial(g2)).is_some() => return Ok(None),
+            Sweeps::PassOverlaps => AtStart::Pass,
+            _ => AtStart::of(stop_at_penetration),
+        };
         self.cast(
             [motion1, motion2],
             [g1, g2],
             [start_time, end_time],
             0.0,
-            [stop_at_penetration, false],
+            at_start,
+            false,
         )
     }
 }

@@ -32,6 +32,29 @@ pub fn approach_of_rounding(lengths: Real) -> Real {
     (SLIDE * lengths).clamp(Real::MIN_POSITIVE, Real::MAX)
 }
 
+/// What a cast makes of contacts at its start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AtStart {
+    /// They are the answer.
+    Stop,
+    /// The next, deeper contact is searched for.
+    Deepen,
+    /// The same, but what is deeper than half way to the medial axes already is the answer. rapier takes a hit at time 0
+    /// for none, so its sweeps let pass what the solver did not keep out, as with rapier's own shapes: a body within a
+    /// platform that is to let it through.
+    Pass,
+}
+
+impl AtStart {
+    /// What parry's casts say of it.
+    pub fn of(stop_at_penetration: bool) -> Self {
+        match stop_at_penetration {
+            true => Self::Stop,
+            false => Self::Deepen,
+        }
+    }
+}
+
 /// The deepest contact at the start, world frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Touching {
@@ -79,13 +102,22 @@ impl Touching {
     /// Options of a cast in which they may go on touching: with `d` the depth that the deepest contact may
     /// get, two primitives of which the thinner is `t` thick may be `min(d, CORE t)` deep. `thickness` is
     /// that of a partner that is not medial, infinite if there is none.
-    pub fn sinking(&self, thickness: Real, seconds: Real, options: &ToiOptions) -> ToiOptions {
+    pub fn sinking(
+        &self,
+        at_start: AtStart,
+        thickness: Real,
+        seconds: Real,
+        options: &ToiOptions,
+    ) -> ToiOptions {
         let depth = (options.target_distance - self.gap).max(0.0) + self.closing(seconds);
         // What is found within the tolerance of the target is as deep as it is allowed to get.
         let sinks = depth + self.slide(seconds) + options.tolerance;
         ToiOptions {
-            initial_contact: InitialContact::Deepen {
-                by: FURTHER * sinks,
+            initial_contact: match at_start {
+                AtStart::Pass => InitialContact::Stop,
+                _ => InitialContact::Deepen {
+                    by: FURTHER * sinks,
+                },
             },
             cores: Some(Cores {
                 share: CORE,

@@ -25,7 +25,7 @@ pub(crate) mod distance;
 mod false_contacts;
 pub(crate) mod flat_face;
 mod folds;
-mod initial_contacts;
+pub mod initial_contacts;
 pub(crate) mod inside;
 mod inward_contacts;
 pub(crate) mod manifolds;

@@ -96,8 +96,20 @@ pub struct NarrowPhasePlan {
     pub muted: HashSet<PairKey>,
     /// Pairs that get only their deepest contact.
     pub single_point_pairs: SinglePointPairs,
-    /// Whether rapier's own sweeps of medial bodies find nothing, because the event loop resolves what these bodies meet.
-    pub skips_sweeps: bool,
+    /// What rapier's own sweeps of medial bodies find.
+    pub sweeps: Sweeps,
+}
+
+/// What rapier's own sweeps of medial bodies find: its casts of solid pairs in turning motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sweeps {
+    /// The same as others' casts: outside of rapier's step.
+    #[default]
+    AsCasts,
+    /// Nothing, because the event loop resolves what these bodies meet.
+    FindNothing,
+    /// First contacts, but for bodies that are deep in each other.
+    PassOverlaps,
 }
 
 impl NarrowPhasePlan {

@@ -2,7 +2,7 @@
 //! impacts within it, and the report. The work itself is in the rooms of this folder.
 
 use crate::math::{Pose, Real, Vector};
-use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Tally};
+use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Sweeps, Tally};
 use crate::rapier::contacts::candidates;
 use crate::rapier::contacts::muting::{self, Muted};
 use crate::rapier::contacts::predicted_contacts::predicted;
@@ -240,7 +240,10 @@ impl State {
             muted,
             single_point_pairs: self.effects.single_point_pairs(world.colliders),
             // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
-            skips_sweeps: takes_all && !world.has_links_or_particles(),
+            sweeps: match takes_all && !world.has_links_or_particles() {
+                true => Sweeps::FindNothing,
+                false => Sweeps::PassOverlaps,
+            },
         });
         report.batch_seconds = clock.elapsed().as_secs_f64();
         StepPlan {

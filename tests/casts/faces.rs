@@ -11,6 +11,7 @@ use parry3d::query::{NonlinearRigidMotion, QueryDispatcher};
 use parry3d::shape::{Cuboid, SharedShape};
 use rapier3d_medial::parry::MedialDispatcher;
 use rapier3d_medial::parry::cast::Cast;
+use rapier3d_medial::parry::initial_contacts::AtStart;
 use rapier3d_medial::{MedialMesh, MedialSphere, ToiOptions, ToiStatus};
 
 const CASES: usize = 12_000;
@@ -202,7 +203,7 @@ fn of_a_wide_face_what_is_near_is_hit() {
             other: &*cuboid,
             times: [0.0, seconds],
             target_distance: target as Real,
-            stop_at_penetration: true,
+            at_start: AtStart::Stop,
             stop_approach: true,
         };
         let options = ToiOptions {
@@ -269,7 +270,7 @@ fn a_face_far_from_its_own_origin_is_there() {
                 other: &*compound,
                 times: [0.0, 1.0],
                 target_distance: 0.0,
-                stop_at_penetration: true,
+                at_start: AtStart::Stop,
                 stop_approach: true,
             };
             let toi = cast

@@ -7,6 +7,7 @@ use parry3d::shape::SharedShape;
 use rapier3d_medial::elementary::{Toi, ToiStatus};
 use rapier3d_medial::pair::first_contact::Counts;
 use rapier3d_medial::parry::cast::Cast;
+use rapier3d_medial::parry::initial_contacts::AtStart;
 use rapier3d_medial::{MedialMesh, MedialSphere, ToiOptions};
 
 const HALF_LENGTH: f64 = 0.75;
@@ -56,7 +57,7 @@ fn cast(floor: &SharedShape, at: Vector, turn: Real) -> (Toi, Counts) {
         other: &**floor,
         times: [0.0, 1.0],
         target_distance: 0.0,
-        stop_at_penetration: true,
+        at_start: AtStart::Stop,
         stop_approach: true,
     };
     let found = cast.toi(&ToiOptions::default(), None);

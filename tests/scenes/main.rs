@@ -42,6 +42,7 @@ mod hanging;
 mod hanging_limits;
 mod heaps;
 mod heavy_blows;
+mod heavy_loads;
 mod heavy_on_light;
 mod held;
 mod impact_laws;

@@ -1,5 +1,5 @@
 //! Bodies that are pressed between two others of which neither gives way: a door and a wall, two fingers, a press and the
-//! ground.
+//! ground, or the ground and a hand that they hang on by joints.
 //!
 //! Where such a body is 2 mm or more in both of them, and below the floor ([`crate::rapier::tuning::Tuning::floor`]) in one,
 //! there is no way out, and each impact on one side only brings the next one on the other, until the body has had all that it may
@@ -7,7 +7,10 @@
 //! So its deep pairs are left to rapier's solver, which divides the depth between the two sides.
 
 use crate::math::fast_hash::FastMap;
-use crate::rapier::impacts::deep_pairs::DeepPairs;
+use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
+use crate::rapier::view::all_joints::for_each_joint;
+use crate::rapier::view::eligible_pairs::Rules;
+use crate::rapier::view::groups::Groups;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 
@@ -68,6 +71,43 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
     pairs.map(|(pair, ..)| *pair).collect()
 }
 
+/// Watched pairs below the floor of which one body does not give way, and the other hangs by joints on a third that moves
+/// and does not either, as on a hand: the joints press it as a jaw does.
+pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
+    let is_below = |(pair, deep): (&[usize; 2], &Deep)| {
+        let bodies = yielding(view, pair.map(|k| view.parts[k].body))?;
+        (deep.way > 0.0).then_some((*pair, bodies))
+    };
+    let below: Vec<_> = deep.watched.iter().filter_map(is_below).collect();
+    if below.is_empty() {
+        return Vec::new();
+    }
+    let bodies = view.bodies.iter().enumerate();
+    let known: FastMap<_, _> = bodies.filter_map(|(k, b)| Some((b.handle?, k))).collect();
+    let mut groups = Groups::default();
+    let mut hands = Vec::new();
+    for_each_joint(
+        rules.impulse_joints,
+        rules.multibody_joints,
+        |handles, _| {
+            if let [Some(&a), Some(&b)] = handles.map(|handle| known.get(&handle)) {
+                match [a, b].map(|k| view.bodies[k].kind) {
+                    [Kind::Free, Kind::Free] => groups.join([a, b]),
+                    [Kind::Free, Kind::Driven] => hands.push([a, b]),
+                    [Kind::Driven, Kind::Free] => hands.push([b, a]),
+                    _ => {}
+                }
+            }
+        },
+    );
+    let hangs = |[body, jaw]: [usize; 2]| {
+        let mut hands = hands.iter();
+        hands.any(|[held, hand]| *hand != jaw && groups.of(*held) == groups.of(body))
+    };
+    let pressed = below.into_iter().filter(|(_, bodies)| hangs(*bodies));
+    pressed.map(|(pair, _)| pair).collect()
+}
+
 /// What holds a group of bodies.
 #[derive(Default)]
 struct Held {
@@ -79,26 +119,4 @@ struct Held {
     moves: bool,
     /// Whether one is below the floor with them.
     is_below: bool,
-}
-
-/// Bodies that touch, by one of them that stands for all.
-#[derive(Default)]
-struct Groups {
-    next: FastMap<usize, usize>,
-}
-
-impl Groups {
-    fn of(&self, mut body: usize) -> usize {
-        while let Some(next) = self.next.get(&body) {
-            body = *next;
-        }
-        body
-    }
-
-    fn join(&mut self, bodies: [usize; 2]) {
-        let [a, b] = bodies.map(|body| self.of(body));
-        if a != b {
-            self.next.insert(a, b);
-        }
-    }
 }

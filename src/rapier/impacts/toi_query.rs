@@ -17,6 +17,7 @@ use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::met::Met;
 use crate::pair::outline::ActivePrimitives;
 use crate::parry::cast::Cast;
+use crate::parry::initial_contacts::AtStart;
 use crate::parry::sliding::Sinks;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::impacts::fast_parts::FastParts;
@@ -381,7 +382,7 @@ fn ask(
         other: &*other.shape,
         times: [0.0, seconds],
         target_distance: options.target_distance,
-        stop_at_penetration: true,
+        at_start: AtStart::Stop,
         stop_approach: false,
     };
     let left = left.as_ref().map(|left| order.map(|k| left[k].clone()));
