@@ -10,8 +10,8 @@ use crate::meshing::findings::Findings;
 /// also makes the result of the lower quality and keeps the better one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quality {
-    /// A fifth of the time of [`Self::Balanced`], and one and a half to three times its error. Edges are collapsed in
-    /// the order of an estimated error (the quadric error of Q-MAT); nothing else is done.
+    /// A fifth of the time of [`Self::Balanced`], and one and a half to three times its error, of some creatures six
+    /// times. Edges are collapsed in the order of an estimated error (the quadric error of Q-MAT); nothing else is done.
     Fast,
     /// The default. After the work of [`Self::Fast`], edges are collapsed by the measured error, primitives are
     /// inserted where the error is largest, and centres and radii are fitted by least squares.

@@ -125,7 +125,9 @@ fn failures_are_one_line_and_exit_code_1() {
     assert_fails(&build("flat.obj", "out.ma"), "no triangles");
     assert_fails(&build("flat.obj", "no/such/out.ma"), "no/such");
     assert_fails(&build("flat.obj", "./flat.obj"), "is the input");
-    assert_fails(&build("flat.obj", "out.obj"), "ends in .ma or .medial");
+    for output in ["out.obj", "out.dat", "out"] {
+        assert_fails(&build("flat.obj", output), "ends in .ma or .medial");
+    }
     let of_mesh = medial(&directory, &["info", "flat.obj"]);
     assert_fails(&of_mesh, "flat.obj is a triangle mesh");
     assert!(!directory.join("out.ma").exists());

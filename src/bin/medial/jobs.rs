@@ -110,11 +110,10 @@ pub fn check_output(input: &Path, output: &Path) -> Result<(), PlanError> {
     if is_same_file(output, input) {
         return Err(PlanError::OverInput(output.to_owned()));
     }
-    // Others would take it for a triangle mesh.
-    if MeshFormat::of(output).is_some() {
-        return Err(PlanError::MeshOutput(output.to_owned()));
+    match ends_in(output, &["ma", "medial"]) {
+        true => Ok(()),
+        false => Err(PlanError::MeshOutput(output.to_owned())),
     }
-    Ok(())
 }
 
 /// Refuses, before any work, a picture that cannot be or must not be written.
@@ -123,11 +122,15 @@ pub fn check_picture(input: Option<&Path>, output: &Path) -> Result<(), PlanErro
     if input.is_some_and(|input| is_same_file(output, input)) {
         return Err(PlanError::OverInput(output.to_owned()));
     }
-    let ending = output.extension().and_then(|e| e.to_str());
-    match ending.is_some_and(|e| e.eq_ignore_ascii_case("png")) && !output.is_dir() {
+    match ends_in(output, &["png"]) && !output.is_dir() {
         true => Ok(()),
         false => Err(PlanError::PictureOutput(output.to_owned())),
     }
+}
+
+fn ends_in(path: &Path, endings: &[&str]) -> bool {
+    let own = path.extension().and_then(|e| e.to_str());
+    own.is_some_and(|own| endings.iter().any(|e| own.eq_ignore_ascii_case(e)))
 }
 
 fn check_parent(output: &Path) -> Result<(), PlanError> {
