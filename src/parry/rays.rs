@@ -147,14 +147,19 @@ impl RayFrame {
 
 /// The point where a ray enters one primitive: the time in units of the length of the ray's direction, up to `most`, and the outward
 /// normal. A ray that starts inside enters at once, with no normal, if the primitive is `solid`; else it is where it leaves,
-/// with the normal that points back inside, as in parry.
+/// with the normal that points back inside, as in parry. A ray without direction enters only what is solid and holds it.
 pub fn enter(
     primitive: &MedialPrimitive,
     ray: &Ray,
     most: Real,
     solid: bool,
 ) -> Option<RayIntersection> {
-    let frame = RayFrame::new(ray)?;
+    let within = || RayIntersection::new(0.0, Vector::ZERO, FeatureId::Face(0));
+    let Some(frame) = RayFrame::new(ray) else {
+        // It is a point.
+        let holds = primitive.signed_distance(ray.origin).distance <= 0.0;
+        return (holds && solid).then(within);
+    };
     let balls = frame.seen(primitive);
     let [from, to] = ChordSolver::new(balls).chord(0.0, 0.0)?;
     let inside = from <= 0.0;
@@ -162,8 +167,7 @@ pub fn enter(
         return None;
     }
     if inside && solid {
-        let normal = Vector::ZERO;
-        return Some(RayIntersection::new(0.0, normal, FeatureId::Face(0)));
+        return Some(within());
     }
     let at = if inside { to } else { from };
     let time = (at / f64::from(ray.dir.length())) as Real;

@@ -6,6 +6,7 @@ use crate::rotating::vector;
 use crate::shapes::ring;
 use parry3d::math::{Real, Vector};
 use parry3d::query::{PointQuery, Ray, RayCast};
+use parry3d::shape::Cuboid;
 use rapier3d_medial::medial::MedialPrimitive;
 use rapier3d_medial::{MedialMesh, MedialSphere};
 
@@ -203,4 +204,23 @@ fn rays_enter_boxes_where_their_faces_are() {
         entered > 8_000 && missed > 1_000 && judged > 7_000,
         "{entered} {missed} {judged}"
     );
+}
+
+/// A ray without direction is a point: it hits the solid that holds it, as with parry's cuboid.
+#[test]
+fn rays_without_direction_hit_what_holds_them() {
+    let half = Vector::new(0.3, 0.4, 0.5);
+    let mesh = MedialMesh::cuboid(half).expect("a box");
+    let own = Cuboid::new(half);
+    let mut rng = Rng::new(7);
+    let mut held = 0;
+    for _ in 0..CASES {
+        let ray = Ray::new(vector(rng.in_ball()), Vector::ZERO);
+        let hit = mesh.cast_local_ray_and_get_normal(&ray, LENGTH, true);
+        let time = hit.map(|h| h.time_of_impact);
+        assert_eq!(time, own.cast_local_ray(&ray, LENGTH, true), "{ray:?}");
+        held += usize::from(time == Some(0.0));
+    }
+    // The box has a ninth of the volume of the ball.
+    assert!((10..40).contains(&held), "{held} inside");
 }
