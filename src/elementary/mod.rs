@@ -212,7 +212,7 @@ pub enum InitialContact {
     /// when its signed distance has fallen by `by` below what it is at the start. Other pairs are searched as usual.
     Deepen {
         /// How much deeper they may get at most, a length above 0. Where parts are so thin that their axes would cross
-        /// before, it is a share of the distance of the axes instead.
+        /// before, it is a share of the distance of the axes instead. Infinite: such pairs never count as in contact.
         by: Real,
     },
     /// Pairs in contact at the start are the answer, a contact at time 0, if they come nearer to each other in the

@@ -117,6 +117,13 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         };
         let contact = match touches && found.gap <= touching - depth {
             false => touching - depth,
+            true if by == Some(f64::INFINITY) => {
+                return Some(Pieces {
+                    contact: f64::NEG_INFINITY,
+                    touched: false,
+                    direction: found.direction,
+                });
+            }
             true => {
                 let left = through * thickness + found.gap;
                 found.gap - given(by?, left.max(0.0), self.earliest.limits.tolerance)

@@ -46,6 +46,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 let touching = target + tolerance;
                 if distance > touching {
                     direction = normal;
+                } else if by == Real::INFINITY {
+                    return true;
                 } else {
                     let depth = (distance - touching - f64::from(by)) / self.thickness(pair);
                     let (a, b) = (self.sides.0.node(i).node, self.sides.1.node(j).node);

@@ -242,6 +242,9 @@ impl Search<'_> {
             let starting = self.advance(body, &all[..len], &at_start);
             let start = starting.near.distance();
             let within = limits.target + limits.tolerance;
+            if start <= within && by == Real::INFINITY {
+                return;
+            }
             if start <= within {
                 touching = Some(starting);
                 let deeper = start - within - f64::from(by);

@@ -39,9 +39,9 @@ pub enum AtStart {
     Stop,
     /// The next, deeper contact is searched for.
     Deepen,
-    /// The same, but what is deeper than half way to the medial axes already is the answer. rapier takes a hit at time 0
-    /// for none, so its sweeps let pass what the solver did not keep out, as with rapier's own shapes: a body within a
-    /// platform that is to let it through.
+    /// The same, but two primitives that are deeper than half way to their medial axes already may pass each other. So
+    /// rapier's sweeps let through what the solver did not keep out, as with the parts of rapier's own shapes: a body within
+    /// a platform that is open to it.
     Pass,
 }
 
@@ -113,10 +113,10 @@ impl Touching {
         // What is found within the tolerance of the target is as deep as it is allowed to get.
         let sinks = depth + self.slide(seconds) + options.tolerance;
         ToiOptions {
-            initial_contact: match at_start {
-                AtStart::Pass => InitialContact::Stop,
-                _ => InitialContact::Deepen {
-                    by: FURTHER * sinks,
+            initial_contact: InitialContact::Deepen {
+                by: match at_start {
+                    AtStart::Pass => Real::INFINITY,
+                    _ => FURTHER * sinks,
                 },
             },
             cores: Some(Cores {

@@ -72,7 +72,7 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
 }
 
 /// Watched pairs below the floor of which one body does not give way, and the other hangs by joints on a third that moves
-/// and does not either, as on a hand: the joints press it as a jaw does.
+/// and does not either, as on a hand: the joints press it as a jaw does. Ropes and springs, which lock no axis, do not.
 pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
     let is_below = |(pair, deep): (&[usize; 2], &Deep)| {
         let bodies = yielding(view, pair.map(|k| view.parts[k].body))?;
@@ -89,8 +89,11 @@ pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Ve
     for_each_joint(
         rules.impulse_joints,
         rules.multibody_joints,
-        |handles, _| {
-            if let [Some(&a), Some(&b)] = handles.map(|handle| known.get(&handle)) {
+        |handles, joint| {
+            let holds = joint.is_enabled() && !joint.locked_axes.is_empty();
+            if let [Some(&a), Some(&b)] = handles.map(|handle| known.get(&handle))
+                && holds
+            {
                 match [a, b].map(|k| view.bodies[k].kind) {
                     [Kind::Free, Kind::Free] => groups.join([a, b]),
                     [Kind::Free, Kind::Driven] => hands.push([a, b]),
