@@ -82,8 +82,6 @@ pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Ve
     if below.is_empty() {
         return Vec::new();
     }
-    let bodies = view.bodies.iter().enumerate();
-    let known: FastMap<_, _> = bodies.filter_map(|(k, b)| Some((b.handle?, k))).collect();
     let mut groups = Groups::default();
     let mut hands = Vec::new();
     for_each_joint(
@@ -91,7 +89,7 @@ pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Ve
         rules.multibody_joints,
         |handles, joint| {
             let holds = joint.is_enabled() && !joint.locked_axes.is_empty();
-            if let [Some(&a), Some(&b)] = handles.map(|handle| known.get(&handle))
+            if let [Some(&a), Some(&b)] = handles.map(|handle| view.index.get(&handle))
                 && holds
             {
                 match [a, b].map(|k| view.bodies[k].kind) {
