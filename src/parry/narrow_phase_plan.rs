@@ -108,7 +108,7 @@ pub enum Sweeps {
     AsCasts,
     /// Nothing, because the event loop resolves what these bodies meet.
     FindNothing,
-    /// First contacts, but for bodies that are deep in each other.
+    /// First contacts, but for primitives that are deep in the other shape at the start already.
     PassOverlaps,
 }
 

@@ -362,11 +362,11 @@ fn what_a_hand_presses_into_the_ground_comes_along_as_rapiers() {
         let [ours, own] = [true, false].map(|medial| drag(medial, joint));
         println!("{name}: {ours:.3?}, rapier's {own:.3?}");
         assert!(
-            (ours.way - own.way).abs() < 0.25,
+            (ours.way - own.way).abs() < 0.05,
             "{name}: {ours:?}, {own:?}"
         );
         assert!(
-            (ours.off - own.off).abs() < 0.25,
+            (ours.off - own.off).abs() < 0.05,
             "{name}: {ours:?}, {own:?}"
         );
     }

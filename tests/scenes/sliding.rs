@@ -183,6 +183,26 @@ fn bodies_slide_over_voxels_as_rapiers_do() {
     slides_as_rapiers("card", &card, 0.02, &ground, 0.05);
 }
 
+/// Velocity of a body without friction that was thrown along X so many steps ago.
+fn slid(
+    ground: &ColliderBuilder,
+    body: &ColliderBuilder,
+    pose: Pose,
+    speed: Real,
+    steps: usize,
+) -> Vector {
+    let mut world = PhysicsWorld::new();
+    world.insert_collider(ground.clone(), None);
+    let thrown = RigidBodyBuilder::dynamic().pose(pose);
+    let thrown = thrown.linvel(Vector::X * speed);
+    let (body, _) = world.insert(thrown, body.clone().friction(0.0).density(1000.0));
+    let mut pipeline = MedialPipeline::default();
+    for _ in 0..steps {
+        pipeline.step(&mut world);
+    }
+    world.bodies[body].linvel()
+}
+
 /// A rounded plate that has come up a low curb, and lies on its edge, meets the flat triangles of its side from above.
 #[test]
 fn rounded_plates_climb_low_curbs() {
@@ -210,16 +230,7 @@ fn rounded_plates_climb_low_curbs() {
         let turn = Vector::Y * 0.52 * k as Real;
         let at = Vector::new(-1.2, 0.11, 0.08 * k as Real - 0.5);
         for (sum, body) in sums.iter_mut().zip(&bodies) {
-            let mut world = PhysicsWorld::new();
-            world.insert_collider(ground.clone(), None);
-            let thrown = RigidBodyBuilder::dynamic().pose(Pose::new(at, turn));
-            let thrown = thrown.linvel(Vector::X * 1.9);
-            let (body, _) = world.insert(thrown, body.clone().friction(0.0).density(1000.0));
-            let mut pipeline = MedialPipeline::default();
-            for _ in 0..78 {
-                pipeline.step(&mut world);
-            }
-            *sum += world.bodies[body].linvel().x;
+            *sum += slid(&ground, body, Pose::new(at, turn), 1.9, 78).x;
         }
     }
     let [ours, own] = sums;
@@ -241,18 +252,10 @@ fn capsules_glance_off_a_voxel_as_rapiers() {
     for k in 0..12 {
         let turn = Vector::Y * 0.52 * k as Real;
         let at = Vector::new(-0.8, 0.15, 0.05 * k as Real - 0.1);
-        let [ours, own] = bodies.each_ref().map(|body| {
-            let mut world = PhysicsWorld::new();
-            world.insert_collider(ground.clone(), None);
-            let thrown = RigidBodyBuilder::dynamic().pose(Pose::new(at, turn));
-            let thrown = thrown.linvel(Vector::X * 0.6);
-            let (body, _) = world.insert(thrown, body.clone().friction(0.0).density(1000.0));
-            let mut pipeline = MedialPipeline::default();
-            for _ in 0..120 {
-                pipeline.step(&mut world);
-            }
-            world.bodies[body].linvel()
-        });
+        let pose = Pose::new(at, turn);
+        let [ours, own] = bodies
+            .each_ref()
+            .map(|body| slid(&ground, body, pose, 0.6, 120));
         sum += ours.distance(own);
     }
     // Of twelve that end at up to 0.6 m/s.
