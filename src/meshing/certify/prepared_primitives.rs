@@ -74,39 +74,6 @@ struct Middle {
     normal: Point,
 }
 
-/// Planes that a primitive lies behind, at most: the two that touch a slab's flat sides, and one across each edge.
-pub const PLANES: usize = 5;
-
-/// A half space `normal · x ≤ offset`.
-#[derive(Clone, Copy)]
-pub struct HalfSpace {
-    /// Outward unit normal; zero where there is none.
-    pub normal: Point,
-    /// Distance of its plane from the origin; infinite where there is none.
-    pub offset: f64,
-}
-
-impl HalfSpace {
-    /// All of space.
-    pub const ALL: Self = Self {
-        normal: Point {
-            x: 0.0,
-            y: 0.0,
-            z: 0.0,
-        },
-        offset: f64::INFINITY,
-    };
-
-    /// The least one of a unit normal that holds balls.
-    fn around(normal: Point, balls: &[Ball]) -> Self {
-        let reach = balls.iter().map(|b| normal.dot(b.center) + b.radius);
-        Self {
-            normal,
-            offset: reach.fold(f64::NEG_INFINITY, f64::max),
-        }
-    }
-}
-
 /// A ball, a cone or a slab.
 #[derive(Clone, Copy)]
 pub struct Prepared {
@@ -115,8 +82,6 @@ pub struct Prepared {
     /// How many of them count: 1 for a cone or ball.
     count: usize,
     middle: Option<Middle>,
-    /// Half spaces that hold it. The signed distance is no less than how far a point is beyond any of them.
-    pub half_spaces: [HalfSpace; PLANES],
 }
 
 impl Prepared {
@@ -128,24 +93,29 @@ impl Prepared {
                 edges: [ab; 3],
                 count: 1,
                 middle: None,
-                half_spaces: around_cone(&ab, [a, b]),
             };
         }
         let ac = Edge::new(&a, &c);
-        let middle = middle(&ab, &ac);
         Self {
-            half_spaces: around_slab(middle.as_ref(), [a, b, c]),
-            middle,
+            middle: middle(&ab, &ac),
             edges: [ab, ac, Edge::new(&b, &c)],
             count: 3,
         }
     }
 
-    /// Whether the signed distance of `p` is above `limit` for certain, by what costs least.
+    /// Whether the signed distance of `p` is above `limit` for certain, by how far the balls reach along a unit vector.
     #[inline]
-    pub fn is_beyond(&self, p: Point, limit: f64) -> bool {
-        let beyond = |h: &HalfSpace| h.normal.dot(p) - h.offset > limit + ROUNDING;
-        self.half_spaces.iter().any(beyond)
+    pub fn is_beyond(&self, p: Point, way: Point, limit: f64) -> bool {
+        let [ab, ac, _] = &self.edges;
+        let farther = |edge: &Edge| edge.axis.dot(way) + edge.growth;
+        let reach = ab.radius + farther(ab).max(farther(ac)).max(0.0);
+        (p - ab.start).dot(way) - reach > limit + ROUNDING
+    }
+
+    /// The direction in which `p` lies from the ball of these weights.
+    pub fn direction_to(&self, p: Point, weights: [f64; 3]) -> Point {
+        let [ab, ac, _] = &self.edges;
+        direction(p - ab.start - ab.axis * weights[1] - ac.axis * weights[2])
     }
 
     /// Signed distance of `p`, and the weights of the balls that give it.
@@ -182,38 +152,6 @@ impl Prepared {
         }
         least
     }
-}
-
-/// Half spaces at the ends of a cone.
-fn around_cone(ab: &Edge, balls: [Ball; 2]) -> [HalfSpace; PLANES] {
-    let mut all = [HalfSpace::ALL; PLANES];
-    let along = direction(ab.axis);
-    if along != Point::zero() {
-        all[0] = HalfSpace::around(along, &balls);
-        all[1] = HalfSpace::around(-along, &balls);
-    }
-    all
-}
-
-/// Half spaces at the flat sides of a slab, and across its edges.
-fn around_slab(middle: Option<&Middle>, balls: [Ball; 3]) -> [HalfSpace; PLANES] {
-    let mut all = [HalfSpace::ALL; PLANES];
-    let Some(m) = middle else { return all };
-    let up = m.normal * (1.0 - m.slope.length_sq());
-    all[0] = HalfSpace::around(direction(up - m.slope), &balls);
-    all[1] = HalfSpace::around(direction(-up - m.slope), &balls);
-    let flat = direction(m.normal);
-    for k in 0..3 {
-        let [a, b, c] = [k, (k + 1) % 3, (k + 2) % 3].map(|i| balls[i].center);
-        let across = direction((b - a).cross(flat));
-        let outward = if across.dot(c - a) > 0.0 {
-            -across
-        } else {
-            across
-        };
-        all[2 + k] = HalfSpace::around(outward, &balls);
-    }
-    all
 }
 
 const NONE: Signed = Signed {

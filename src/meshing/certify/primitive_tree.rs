@@ -3,14 +3,14 @@
 //! A point near the medial axis is about as far from everything around it, a tree's worst case. Two
 //! lower bounds of the signed distance to a group prune it, and the larger counts: the signed
 //! distance to the box of its volume, and the distance to the box of its centres minus its
-//! largest radius. Single primitives are pruned by half spaces that hold them as well: slabs that lie aslant fill
-//! little of their boxes.
+//! largest radius. Single primitives are pruned by how far their balls reach as well, along the direction in which the
+//! point lies from the primitive nearest so far: of a round body all primitives at a place are about as near.
 
-use crate::meshing::certify::prepared_primitives::{HalfSpace, PLANES, Prepared};
+use crate::meshing::certify::prepared_primitives::Prepared;
 use crate::meshing::draft::{Ball, Corners, Draft, Signed};
-use crate::meshing::geometry::bounds::{Bounds, Point, coordinate};
+use crate::meshing::geometry::bounds::{Bounds, Point, coordinate, direction};
 use crate::meshing::geometry::four_boxes::{
-    Child, FourBoxes, FourHalfSpaces, FourPoints, nearest_first, slack,
+    Child, FourBalls, FourBoxes, FourPoints, nearest_first, slack,
 };
 use std::ops::ControlFlow;
 use wide::f32x4;
@@ -20,20 +20,21 @@ struct Node {
     volumes: FourBoxes,
     centers: FourBoxes,
     largest_radii: f32x4,
-    /// Half spaces that hold single primitives, if there are any among the children.
-    half_spaces: Option<[FourHalfSpaces; PLANES]>,
+    /// The three balls of single primitives, if there are any among the children.
+    balls: Option<[FourBalls; 3]>,
     children: [Child; 4],
 }
 
 impl Node {
-    /// Lower bounds of the signed distances.
+    /// Lower bounds of the signed distances; `way` is any unit vector, or zero.
     #[inline]
-    fn lower_bounds(&self, p: &FourPoints) -> [f32; 4] {
+    fn lower_bounds(&self, p: &FourPoints, way: &FourPoints) -> [f32; 4] {
         let volumes = self.volumes.signed_distance(p);
         let centers = self.centers.distance_sq(p).sqrt() - self.largest_radii;
         let mut bounds = volumes.fast_max(centers);
-        for half_spaces in self.half_spaces.iter().flatten() {
-            bounds = bounds.fast_max(half_spaces.beyond(p));
+        if let Some([a, b, c]) = &self.balls {
+            let reach = a.reach(way).fast_max(b.reach(way)).fast_max(c.reach(way));
+            bounds = bounds.fast_max(p.dot(way) - reach);
         }
         bounds.to_array()
     }
@@ -130,20 +131,17 @@ impl<'a> PrimitiveTree<'a> {
             FourBoxes::new([0, 1, 2, 3].map(|k| balls(k).map(bounds).reduce(Bounds::union)))
         };
         let radius = |k: usize| balls(k).map(|b| b.radius).fold(0.0, f64::max) as f32;
-        let half_space = |k: usize, side: usize| {
-            let held = match &*parts[k] {
-                [only] => self.prepared[only.1 as usize].half_spaces[side],
-                _ => HalfSpace::ALL,
-            };
-            (held.normal, held.offset)
+        let corner = |k: usize, corner: usize| match &*parts[k] {
+            [only] => Some(self.draft.balls_of(self.primitives[only.1 as usize])[corner]),
+            _ => None,
         };
-        let four = |side: usize| FourHalfSpaces::new([0, 1, 2, 3].map(|k| half_space(k, side)));
+        let four = |i: usize| FourBalls::new([0, 1, 2, 3].map(|k| corner(k, i)));
         let has_leaf = parts.iter().any(|part| part.len() == 1);
         Node {
             volumes: around(&|b| Bounds::of_ball(b.center, b.radius)),
             centers: around(&|b| Bounds::of([b.center])),
             largest_radii: f32x4::from([0, 1, 2, 3].map(radius)),
-            half_spaces: has_leaf.then(|| std::array::from_fn(four)),
+            balls: has_leaf.then(|| std::array::from_fn(four)),
             children: [Child::Nothing; 4],
         }
     }
@@ -164,11 +162,8 @@ impl<'a> PrimitiveTree<'a> {
     /// one of the point before; any index is allowed.
     pub fn nearest(&self, p: Point, hint: u32) -> Nearest {
         let primitive = hint.min(self.primitives.len().saturating_sub(1) as u32);
-        let mut best = Nearest {
-            signed: self.distance_to(primitive, p),
-            primitive,
-        };
-        self.visit(p, best.signed.distance, |signed, primitive| {
+        let mut best = self.hinted(primitive, p);
+        self.visit(p, best, best.signed.distance, |signed, primitive| {
             best.take_nearer(Nearest { signed, primitive });
             Some(best.signed.distance)
         });
@@ -178,12 +173,10 @@ impl<'a> PrimitiveTree<'a> {
     /// The same as [`Self::nearest`] where the smallest signed distance is between `least` and `most`; elsewhere some
     /// primitive, of a signed distance that is not either.
     pub fn nearest_between(&self, p: Point, least: f64, most: f64, hint: u32) -> Nearest {
-        let mut best = Nearest {
-            signed: self.distance_to(hint, p),
-            primitive: hint,
-        };
+        let mut best = self.hinted(hint, p);
         if best.signed.distance >= least {
-            self.visit(p, best.signed.distance.min(most), |signed, primitive| {
+            let limit = best.signed.distance.min(most);
+            self.visit(p, best, limit, |signed, primitive| {
                 best.take_nearer(Nearest { signed, primitive });
                 let lowest = best.signed.distance;
                 (lowest >= least).then_some(lowest.min(most))
@@ -194,9 +187,10 @@ impl<'a> PrimitiveTree<'a> {
 
     /// Whether some signed distance is below `limit`; `hint` is a primitive that may have it.
     pub fn any_below(&self, p: Point, limit: f64, hint: u32) -> bool {
-        let mut found = self.distance_to(hint, p).distance < limit;
+        let hinted = self.hinted(hint, p);
+        let mut found = hinted.signed.distance < limit;
         if !found {
-            self.visit(p, limit, |signed, _| {
+            self.visit(p, hinted, limit, |signed, _| {
                 found = signed.distance < limit;
                 (!found).then_some(limit)
             });
@@ -213,26 +207,40 @@ impl<'a> PrimitiveTree<'a> {
         hint: u32,
         mut keeps: impl FnMut(&Nearest) -> bool,
     ) -> bool {
-        let mut keep = |signed: Signed, primitive: u32| {
-            signed.distance >= limit || keeps(&Nearest { signed, primitive })
-        };
-        let mut all = keep(self.distance_to(hint, p), hint);
+        let mut keep = |near: &Nearest| near.signed.distance >= limit || keeps(near);
+        let hinted = self.hinted(hint, p);
+        let mut all = keep(&hinted);
         if all {
-            self.visit(p, limit, |signed, primitive| {
-                all = keep(signed, primitive);
+            self.visit(p, hinted, limit, |signed, primitive| {
+                all = keep(&Nearest { signed, primitive });
                 all.then_some(limit)
             });
         }
         all
     }
 
+    /// A primitive that is likely the nearest.
+    fn hinted(&self, primitive: u32, p: Point) -> Nearest {
+        Nearest {
+            signed: self.distance_to(primitive, p),
+            primitive,
+        }
+    }
+
     /// Calls `see` for primitives whose distance may be below `limit`, nearer groups first; `see`
-    /// returns the new limit, or `None` to stop.
-    fn visit(&self, p: Point, limit: f64, mut see: impl FnMut(Signed, u32) -> Option<f64>) {
-        let point = FourPoints::splat(p);
+    /// returns the new limit, or `None` to stop. The nearer `guess` is, the fewer primitives are looked at.
+    fn visit(
+        &self,
+        p: Point,
+        guess: Nearest,
+        limit: f64,
+        mut see: impl FnMut(Signed, u32) -> Option<f64>,
+    ) {
+        let way = direction(p - self.ball(&guess).center);
+        let [point, way] = [p, way].map(FourPoints::splat);
         let look = |group: u32| {
             let node = &self.nodes[group as usize];
-            (node.lower_bounds(&point), node.children)
+            (node.lower_bounds(&point, &way), node.children)
         };
         nearest_first(limit, slack(p, self.reach), look, |primitive| {
             match see(self.distance_to(primitive, p), primitive) {

@@ -3,6 +3,7 @@
 //! A bound computed here may be off by rounding; [`slack`] says by how much at most. Whoever prunes
 //! by it adds that to the limit, so that results are those of double precision, bit by bit.
 
+use crate::math::sphere::Ball;
 use crate::meshing::geometry::bounds::{Bounds, Point, coordinate};
 use std::ops::ControlFlow;
 use wide::f32x4;
@@ -73,32 +74,33 @@ pub struct FourBoxes {
     hi: [f32x4; 3],
 }
 
-/// Four half spaces.
+/// Four balls.
 #[derive(Clone, Copy)]
-pub struct FourHalfSpaces {
-    normal: [f32x4; 3],
-    offset: f32x4,
+pub struct FourBalls {
+    centers: FourPoints,
+    radii: f32x4,
 }
 
-impl FourHalfSpaces {
-    /// Half spaces `normal · x ≤ offset`.
-    pub fn new(of: [(Point, f64); 4]) -> Self {
-        let lane = |axis: usize| f32x4::from(of.map(|h| coordinate(h.0, axis) as f32));
+impl FourBalls {
+    /// Four balls; where there is none, it reaches infinitely far.
+    pub fn new(balls: [Option<Ball>; 4]) -> Self {
+        let center = |axis: usize| {
+            f32x4::from(balls.map(|b| b.map_or(0.0, |b| coordinate(b.center, axis) as f32)))
+        };
         Self {
-            normal: [0, 1, 2].map(lane),
-            offset: f32x4::from(of.map(|h| h.1 as f32)),
+            centers: FourPoints([0, 1, 2].map(center)),
+            radii: f32x4::from(balls.map(|b| b.map_or(f32::INFINITY, |b| b.radius as f32))),
         }
     }
 
-    /// How far a point is beyond each.
+    /// How far each reaches along a direction, from the origin.
     #[inline]
-    pub fn beyond(&self, p: &FourPoints) -> f32x4 {
-        let [x, y, z] = self.normal;
-        x * p.0[0] + y * p.0[1] + z * p.0[2] - self.offset
+    pub fn reach(&self, way: &FourPoints) -> f32x4 {
+        self.centers.dot(way) + self.radii
     }
 }
 
-/// A point in all four lanes.
+/// Four points.
 #[derive(Clone, Copy)]
 pub struct FourPoints([f32x4; 3]);
 
@@ -108,13 +110,20 @@ impl FourPoints {
     pub fn splat(p: Point) -> Self {
         Self([p.x, p.y, p.z].map(|x| f32x4::splat(x as f32)))
     }
+
+    /// The four dot products.
+    #[inline]
+    pub fn dot(&self, other: &Self) -> f32x4 {
+        let ([x, y, z], [u, v, w]) = (self.0, other.0);
+        x * u + y * v + z * w
+    }
 }
 
 /// Largest error of a distance between `p` and boxes whose coordinates are at most `reach`.
 ///
 /// Rounding a coordinate, of the box or of the point, and their difference: 1.5 ε each of `reach`
 /// and of `|p|`; √3 of that for the length, and four operations more of half an ε each on a length of
-/// at most √3 their sum. A height over a plane of unit normal rounds six times, each by half an ε of at most √3 their
+/// at most √3 their sum. Heights along a unit vector round eight times, each by half an ε of at most √3 their
 /// sum. Radii and limits that are taken off or compared with are no larger.
 #[inline]
 pub fn slack(p: Point, reach: f64) -> f64 {

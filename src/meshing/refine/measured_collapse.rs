@@ -216,12 +216,14 @@ impl<'a> Measure<'a> {
                     continue;
                 }
                 let p = self.samples[i];
-                let nearer = |d: f64, primitive: &Prepared| match primitive.is_beyond(p, d) {
+                // The one nearest to the sample before rules most others out.
+                let near = prepared[last].signed_distance(p);
+                let way = prepared[last].direction_to(p, near.weights);
+                let nearer = |d: f64, primitive: &Prepared| match primitive.is_beyond(p, way, d) {
                     true => d,
                     false => d.min(primitive.signed_distance(p).distance),
                 };
-                // The one nearest to the sample before rules most others out.
-                let mut d = prepared[last].signed_distance(p).distance;
+                let mut d = near.distance;
                 for (k, primitive) in prepared.iter().enumerate() {
                     let nearer = nearer(d, primitive);
                     if nearer < d {
