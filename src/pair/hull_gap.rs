@@ -326,7 +326,7 @@ fn proposed(
 }
 
 /// Spheres in single precision, as parry's algorithms see their hull.
-struct Support(Vec<(Vector, Real)>);
+pub struct Support(pub Vec<(Vector, Real)>);
 
 impl SupportMap for Support {
     fn local_support_point(&self, direction: Vector) -> Vector {

@@ -3,6 +3,7 @@
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
 use super::contact_reduction;
+use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
 use super::flat_face;
@@ -90,6 +91,9 @@ impl MedialDispatcher {
                 }
                 TypedShape::Voxels(voxels) => {
                     voxel_normals::correct(manifolds, (mesh, side), (voxels, &pose), prediction);
+                }
+                _ if goes_on.is_none() => {
+                    deep_pieces::leave_out(manifolds, (mesh, side), (other, &pose));
                 }
                 _ => {}
             }

@@ -88,6 +88,7 @@ mod thread;
 mod threads;
 mod told;
 mod triangles;
+mod two_hands;
 mod walls;
 mod whirls;
 mod wire_heaps;

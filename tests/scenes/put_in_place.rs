@@ -152,3 +152,90 @@ fn rings_that_a_joint_with_contacts_lets_go_of_come_apart_as_far_as_rapiers() {
     println!("{ours} m deep in the mean, rapier's own {own}");
     assert!(ours < own + 0.005, "{ours} {own}");
 }
+
+/// The most energy that a brick gains in a step, J/kg, after it was put across a floor 0.3 m thick on which it lay.
+fn across_a_floor(medial: bool, seed: u64) -> Real {
+    let half = Vector::new(0.3, 0.2, 0.1);
+    let shape = match medial {
+        true => SharedShape::medial_mesh(MedialMesh::cuboid(half).expect("a brick")),
+        false => SharedShape::cuboid(half.x, half.y, half.z),
+    };
+    let mut random = crate::random::Random(seed);
+    let mut world = PhysicsWorld::new();
+    let mut pipeline = attached(&mut world);
+    let floor = ColliderBuilder::cuboid(9.0, 0.15, 9.0).translation(Vector::NEG_Y * 0.15);
+    world.insert_collider(floor, None);
+    let pose = Pose::new(Vector::Y * 0.6, random.direction() * 3.0);
+    let body = RigidBodyBuilder::dynamic().pose(pose).can_sleep(false);
+    let (body, _) = world.insert(body, ColliderBuilder::new(shape));
+    let mut most: Real = 0.0;
+    let mut before: Real = 0.0;
+    for step in 0..480 {
+        if step == 120 {
+            let below = Vector::new(0.0, -0.3, 0.0) + random.direction() * 0.1;
+            let body = &mut world.bodies[body];
+            let put = Pose::new(body.translation() + below, random.direction() * 0.5);
+            body.set_position(put * Pose::from_rotation(*body.rotation()), true);
+        }
+        match medial {
+            true => _ = pipeline.step(&mut world),
+            false => world.step(),
+        }
+        let body = &world.bodies[body];
+        let height = body.translation().y;
+        let energy = body.kinetic_energy() / body.mass() + 9.81 * height;
+        if step > 122 {
+            most = most.max(energy - before);
+        }
+        before = energy;
+    }
+    most
+}
+
+/// Symptom: slabs of the brick that are out sooner above the floor and others that are out sooner below pulled it to and fro, and
+/// threw it, by up to 57 J/kg. rapier's own cuboids gain nothing.
+#[test]
+fn a_brick_put_across_a_thin_floor_is_not_thrown() {
+    for seed in 0..24 {
+        let [ours, own] = [true, false].map(|medial| across_a_floor(medial, seed));
+        println!("seed {seed}: gains {ours} J/kg, rapier's own {own}");
+        assert!(ours < own.max(0.5), "seed {seed}: {ours} J/kg, {own}");
+    }
+}
+
+/// Two plates that cross come apart within two seconds after one that was disabled is enabled. Its collider was enabled the
+/// step before, so that rapier had contacts of the two already.
+#[test]
+fn a_body_enabled_after_its_collider_in_another_comes_out() {
+    let half = Vector::new(0.4, 0.05, 0.3);
+    let plate = SharedShape::medial_mesh(MedialMesh::cuboid(half).expect("a plate"));
+    let own = SharedShape::cuboid(half.x, half.y, half.z);
+    for seed in 0..8 {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let mut pipeline = attached(&mut world);
+        let mut random = crate::random::Random(seed);
+        let bodies = [0, 1].map(|k| {
+            let pose = Pose::new(random.direction() * 0.1, random.direction() * 3.0);
+            let body = RigidBodyBuilder::dynamic().pose(pose).enabled(k == 0);
+            let collider = ColliderBuilder::new(plate.clone());
+            world.insert(body, collider.enabled(k == 0))
+        });
+        for _ in 0..10 {
+            pipeline.step(&mut world);
+        }
+        world.colliders[bodies[1].1].set_enabled(true);
+        pipeline.step(&mut world);
+        world.bodies[bodies[1].0].set_enabled(true);
+        let mut frozen = 0;
+        for _ in 0..120 {
+            frozen += pipeline.step(&mut world).frozen;
+        }
+        let [p, q] = bodies.map(|(body, _)| *world.bodies[body].position());
+        let contact = rapier3d::parry::query::contact(&p, &*own, &q, &*own, 0.0);
+        let depth = contact.expect("rapier knows both").map_or(0.0, |c| -c.dist);
+        println!("seed {seed}: {depth} m deep, held {frozen} times");
+        assert!(frozen < 10, "seed {seed}: held {frozen} times");
+        assert!(depth < 0.01, "seed {seed}: {depth} m deep");
+    }
+}

@@ -52,6 +52,9 @@ pub struct Impact {
     pub response: [Vector; 3],
     /// Restitution and friction.
     pub material: Material,
+    /// Whether one of the bodies hangs by joints on one that is driven: this one makes up for what the normal impulse
+    /// takes, without end, so that friction may add nothing either.
+    pub is_driven: bool,
 }
 
 impl Impact {
@@ -102,7 +105,10 @@ impl Impact {
         let a = 0.5 * friction.dot(self.effect(friction));
         let b = friction.dot(after_normal);
         // A normal impulse that pushes bodies apart may add energy, friction none to it.
-        let c = (0.5 * normal.dot(v + after_normal)).min(0.0);
+        let c = match self.is_driven {
+            true => 0.0,
+            false => (0.5 * normal.dot(v + after_normal)).min(0.0),
+        };
         if a + b + c <= 0.0 {
             return 1.0;
         }

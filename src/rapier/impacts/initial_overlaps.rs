@@ -8,8 +8,8 @@
 //! then on. A pair left to the solver until it is above the floor alone would be held there: next to the contact that is
 //! above it are edges that still cross.
 //!
-//! A pair counts as put into each other if one of the two is new, or its groups or type changed, or no joint turns their
-//! contacts off any more, and rapier's solver did not hold the pair apart before; or if it is below the floor and the two were moved against each other between two
+//! A pair counts as put into each other if one of the two is new to a pipeline, or its groups or type changed, or no joint
+//! turns their contacts off any more, and rapier's solver did not hold the pair apart before; or if it is below the floor and the two were moved against each other between two
 //! steps, or got other shapes, by so much that they may have been apart before. A pair that forces pressed together is
 //! held, even if both are moved together. A free body that gives way to another, by rapier's dominance groups, is
 //! left to the solver as soon as the two are below the floor, and so is one between two that do not give way
@@ -237,7 +237,8 @@ impl InitialOverlaps {
                     true
                 }
                 Some(moved) => deep.way > 0.0 && moved >= deep.way,
-                None => deep.is_sunk && !is_met,
+                // rapier has contacts with enabled colliders of disabled bodies, too.
+                None => deep.is_sunk && !(is_met && self.ends.is_empty()),
             }
         };
         let mut pinched = pinched(view, deep);

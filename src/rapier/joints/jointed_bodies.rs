@@ -135,6 +135,12 @@ impl Joints {
         self.tied(view, from).0
     }
 
+    /// Whether a body hangs by joints on one that is driven.
+    pub fn hang_on_driven(&self, view: &StepView, body: usize) -> bool {
+        let mut tied = self.tied(view, &[body]).0.into_iter().skip(1);
+        tied.any(|b| view.bodies[b].kind == Kind::Driven)
+    }
+
     /// Gives a body and what joints tie to it the motions from `time` on that joints let them make, and lets
     /// their velocities follow, which together gain no energy. At the end of the step, `dt`, joints are to be as open
     /// as rapier's step left them. `frozen`: of a body, whether it stays on its path; it takes what joints give it for the

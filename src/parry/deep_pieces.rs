@@ -1,0 +1,76 @@
+//! Contacts of convex pieces of a medial mesh that are deep in another convex shape: those that push the piece another
+//! way than the shortest one out are left out.
+//!
+//! Of a mesh and another shape parry finds the contacts of each primitive for itself. Of a box put across a floor, some
+//! slabs are out sooner above it and others below: these pull the box to and fro, and throw it in the end. parry's EPA
+//! algorithm, asked for the piece as a whole, tells the way out of all of it.
+
+use crate::math::fast_hash::FastMap;
+use crate::math::{Pose, Real, Vector};
+use crate::medial::MedialMesh;
+use crate::pair::Support;
+use parry3d::query::ContactManifold;
+use parry3d::query::details::contact_support_map_support_map;
+use parry3d::shape::{Shape, TypedShape};
+
+/// Depth of a contact in units of the piece's thickness from which the piece is deep. Less deep, all of its slabs that
+/// touch are out soonest on one side.
+const DEEP: Real = 0.25;
+
+/// Cosine of the angle with the way out up to which a contact helps.
+const HELPS: Real = 0.5;
+
+/// Leaves out contacts of deep pieces that do not help, as long as others of the piece do. The mesh is body `side` (0 or 1)
+/// of the manifolds; `other` is the other shape, and where it is in the mesh's frame.
+pub fn leave_out<M, C>(
+    manifolds: &mut [ContactManifold<M, C>],
+    (mesh, side): (&MedialMesh, usize),
+    other: (&dyn Shape, &Pose),
+) {
+    let pieces = mesh.convex_pieces();
+    if pieces.is_empty() {
+        return;
+    }
+    let ids = |m: &ContactManifold<M, C>| {
+        let [own, others] =
+            [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]].map(|k| k[side]);
+        pieces.node_of(own).map(|node| [node, others])
+    };
+    let mut ways: FastMap<[u32; 2], Option<Vector>> = FastMap::default();
+    for m in manifolds.iter() {
+        let depth = m.points.iter().map(|p| -p.dist).fold(0.0, Real::max);
+        if let Some([node, part]) = ids(m)
+            && let Some(piece) = pieces.of_node(node)
+            && depth > DEEP * piece.thickness
+        {
+            let spheres = piece.spheres.iter().map(|s| (s.center, s.radius));
+            ways.entry([node, part])
+                .or_insert_with(|| way_out(&Support(spheres.collect()), other, part));
+        }
+    }
+    let helps =
+        |m: &ContactManifold<M, C>, way: Vector| [m.local_n1, m.local_n2][side].dot(way) >= HELPS;
+    ways.retain(|of, way| {
+        let of_it = |m: &&ContactManifold<M, C>| ids(m) == Some(*of) && !m.points.is_empty();
+        way.is_some_and(|way| manifolds.iter().filter(of_it).any(|m| helps(m, way)))
+    });
+    for m in manifolds {
+        let way = ids(m).and_then(|of| *ways.get(&of)?);
+        if way.is_some_and(|way| !helps(m, way)) {
+            m.points.clear();
+        }
+    }
+}
+
+/// The direction into a convex part of the other shape along which a piece is least deep in it.
+fn way_out(piece: &Support, (other, pose): (&dyn Shape, &Pose), part: u32) -> Option<Vector> {
+    let (pose, other) = match other.as_typed_shape() {
+        TypedShape::Compound(compound) => {
+            let (own, shape) = compound.shapes().get(part as usize)?;
+            (*pose * *own, &**shape)
+        }
+        _ => (*pose, other),
+    };
+    let contact = contact_support_map_support_map(&pose, piece, other.as_support_map()?, 0.0)?;
+    Some(contact.normal1)
+}
