@@ -5,9 +5,9 @@
 //! later than the last, these would be three impacts of four, and freeze the bodies in the middle. So all that
 //! touches is solved together at the time of the impact (paper, section 4.5), by sequential impulses, until nothing
 //! approaches fast enough to meet again in this step. Fixed bodies take part: the links of a taut chain between a heavy
-//! load and its hook would else hand the load's momentum to and fro, and be frozen. Driven bodies do not, nor what hangs
-//! on them by joints: the rounds between two of them would not end, and their friction would hold what they press out. No
-//! contact is taken for granted afterwards: all pairs of the bodies that changed are searched again.
+//! load and its hook would else hand the load's momentum to and fro, and be frozen. Driven bodies do not: the rounds
+//! between two of them would not end, and their friction would hold what they press out. No contact is taken for granted
+//! afterwards: all pairs of the bodies that changed are searched again.
 
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;
@@ -179,13 +179,8 @@ impl Response {
         let mut last = changed.clone();
         for round in 0..ROUNDS {
             let mut next = Vec::new();
-            let hangs = |b: &usize| {
-                let joints = self.joints.as_ref();
-                joints.is_some_and(|joints| joints.hang_on_driven(view, *b))
-            };
             let pairs = self.met.of(view, &last).into_iter();
-            let free = pairs.filter(|pair| !bodies(view, *pair).iter().any(hangs));
-            let all = free.flat_map(|pair| (0..self.met.places(pair)).map(move |k| (pair, k)));
+            let all = pairs.flat_map(|pair| (0..self.met.places(pair)).map(move |k| (pair, k)));
             for (pair, place) in all.collect::<Vec<_>>() {
                 let own = undisturbed.filter(|_| pair == struck);
                 if own.is_some() && round > 0 {
