@@ -13,8 +13,8 @@ use parry3d::query::ContactManifold;
 use parry3d::query::details::contact_support_map_support_map;
 use parry3d::shape::{Shape, TypedShape};
 
-/// Depth of a contact in units of the piece's thickness from which the piece is deep. Less deep, all of its slabs that
-/// touch are out soonest on one side.
+/// Depth of a contact in units of the piece's thickness from which the piece is deep: that from which contacts of a piece
+/// with primitives of another mesh are left out, too (`pair/hulls.rs`). No other was tried.
 const DEEP: Real = 0.25;
 
 /// Cosine of the angle with the way out up to which a contact helps.
