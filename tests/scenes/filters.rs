@@ -2,6 +2,7 @@
 //! same size in the same scene.
 
 use crate::bodies::{attached, boxes};
+use crate::oneway::plates;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
@@ -68,8 +69,8 @@ enum Hook {
     Cleared,
     /// `filter_contact_pair` returns no flags.
     NoFlags,
-    /// `update_as_oneway_platform`, open from below, with this angle in radians.
-    OneWay(Real),
+    /// `update_as_oneway_platform`, open from below.
+    OneWay,
 }
 
 struct Platform {
@@ -84,13 +85,13 @@ impl PhysicsHooks for Platform {
 
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
         match self.hook {
-            Hook::OneWay(angle) => {
+            Hook::OneWay => {
                 let side = if context.collider1 == self.platform {
                     1.0
                 } else {
                     -1.0
                 };
-                context.update_as_oneway_platform(Vector::Y * side, angle);
+                context.update_as_oneway_platform(Vector::Y * side, 0.1);
             }
             _ => {
                 let rigid = context.rigid_mut().expect("rigid bodies");
@@ -131,7 +132,7 @@ fn flight(medial: bool, hook: Hook, start: Real, velocity: Real, lift: Option<Re
 
 #[test]
 fn contacts_that_are_turned_off_stop_nothing() {
-    for hook in [Hook::Cleared, Hook::NoFlags, Hook::OneWay(0.1)] {
+    for hook in [Hook::Cleared, Hook::NoFlags, Hook::OneWay] {
         for speed in [3.0, 7.5, 30.0] {
             let starts: [(Real, Real); 2] = [(-0.35, speed), (0.6, -speed)];
             for (start, velocity) in starts {
@@ -210,7 +211,7 @@ fn left_within(medial: bool, half: Real) -> usize {
             .linvel(Vector::Y * (random.within(6.0, 9.0) + half));
         let (body, _) = world.insert(body, ColliderBuilder::new(shape.clone()));
         let hooks = Platform {
-            hook: Hook::OneWay(0.1),
+            hook: Hook::OneWay,
             platform,
         };
         for _ in 0..300 {
@@ -232,61 +233,14 @@ fn concave_bodies_pass_a_oneway_platform() {
     }
 }
 
-/// How many of thin plates that were thrown up through a one-way platform, which rises for two seconds, are in it throughout
-/// the fifth second.
-fn plates_held(medial: bool) -> usize {
-    let [half, x, z] = [0.03, 0.5, 0.35];
-    let shape = match medial {
-        true => {
-            SharedShape::medial_mesh(MedialMesh::cuboid(Vector::new(x, half, z)).expect("a plate"))
-        }
-        false => SharedShape::cuboid(x, half, z),
-    };
-    let seeds = (0..96).filter(|seed| {
-        let mut random = crate::random::Random(*seed);
-        let mut world = PhysicsWorld::new();
-        let mut pipeline = attached(&mut world);
-        let thick = [0.05, 0.1, 0.2][(random.unit() * 3.0) as usize];
-        let platform = ColliderBuilder::cuboid(4.0, thick, 4.0)
-            .translation(Vector::NEG_Y * thick)
-            .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
-        let moves = RigidBodyBuilder::kinematic_velocity_based()
-            .linvel(Vector::Y * random.within(0.5, 3.0));
-        let (base, platform) = world.insert(moves, platform);
-        let turn = random.direction() * random.within(0.0, 3.0);
-        let body = RigidBodyBuilder::dynamic()
-            .translation(Vector::NEG_Y * (2.0 * thick + 0.7))
-            .rotation(turn)
-            .angvel(turn)
-            .linvel(Vector::new(1.0, random.within(4.0, 6.5), 0.0));
-        let (_, collider) = world.insert(body, ColliderBuilder::new(shape.clone()));
-        let hooks = Platform {
-            hook: Hook::OneWay(0.6),
-            platform,
-        };
-        let mut is_held = true;
-        for step in 0..300 {
-            if step == 120 {
-                world.bodies[base].set_linvel(Vector::ZERO, true);
-            }
-            pipeline.step_with_events(&mut world, &hooks, &());
-            let top = world.bodies[base].translation().y;
-            let aabb = world.colliders[collider].compute_aabb();
-            let is_in = aabb.mins.y < top - 0.03 && aabb.maxs.y > top - 2.0 * thick + 0.03;
-            is_held &= step < 240 || is_in;
-        }
-        is_held
-    });
-    seeds.count()
-}
-
-/// Symptom: plates were carried up half through the platform, and trembled there for good. Cause: slabs that stuck out above it
-/// were held by it already, while others were still to pass.
+/// Symptom: plates were carried up half through the platform, and trembled there for good. Cause: of a plate that stuck in it some
+/// slabs pushed up and others down. That more of ours end on it is in `tests/known_issues.rs`.
 #[test]
 fn plates_pass_a_oneway_platform_that_moves() {
-    let [ours, own] = [true, false].map(plates_held);
-    println!("{ours} and {own} of 96 plates are held");
-    assert!(ours <= own, "{ours} are held, of cuboids {own}");
+    let [ours, own] = [true, false].map(plates);
+    println!("{ours:?}, of cuboids {own:?}");
+    assert!(ours.held <= own.held, "{ours:?}, of cuboids {own:?}");
+    assert!(ours.on_top >= own.on_top, "{ours:?}, of cuboids {own:?}");
 }
 
 /// Two rods that cross at 2 × 60 m/s; one is disabled, or enabled, right before the step in which they meet.

@@ -58,6 +58,7 @@ mod multibodies;
 mod muted;
 mod neighbours;
 mod odd_steps;
+mod oneway;
 mod oracle;
 mod partners;
 mod pinched;
