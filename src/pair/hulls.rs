@@ -19,9 +19,10 @@ use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 
 /// How deep a convex piece and a primitive are in each other, in units of the thickness of the thinner, for contacts that point
-/// into the piece to be left out. Larger, and a body may stay where such contacts hold it; smaller, and more pairs are
+/// into the piece to be left out; in another shape than a medial mesh, for those that do not push it the shortest way out
+/// (`parry/deep_pieces.rs`). Larger, and a body may stay where such contacts hold it; smaller, and more pairs are
 /// computed without the tree.
-const DEEP: f64 = 0.25;
+pub(crate) const DEEP: f64 = 0.25;
 
 /// How much deeper two hulls may be along a contact's normal than along the best direction. At 1 a capsule that lies on two
 /// faces of a box would have one contact; larger, and contacts through the whole of a piece count.

@@ -8,16 +8,12 @@
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::pair::Support;
+use crate::pair::{DEEP, Support};
 use parry3d::query::ContactManifold;
 use parry3d::query::details::contact_support_map_support_map;
 use parry3d::shape::{Shape, TypedShape};
 
-/// Depth of a contact in units of the piece's thickness from which the piece is deep: that from which contacts of a piece
-/// with primitives of another mesh are left out, too (`pair/hulls.rs`). No other was tried.
-const DEEP: Real = 0.25;
-
-/// Cosine of the angle with the way out up to which a contact helps.
+/// Cosine of the angle with the way out up to which a contact helps. No other was tried.
 const HELPS: Real = 0.5;
 
 /// Leaves out contacts of deep pieces that do not help, as long as others of the piece do. The mesh is body `side` (0 or 1)
@@ -41,7 +37,7 @@ pub fn leave_out<M, C>(
         let depth = m.points.iter().map(|p| -p.dist).fold(0.0, Real::max);
         if let Some([node, part]) = ids(m)
             && let Some(piece) = pieces.of_node(node)
-            && depth > DEEP * piece.thickness
+            && depth > DEEP as Real * piece.thickness
         {
             let spheres = piece.spheres.iter().map(|s| (s.center, s.radius));
             ways.entry([node, part])

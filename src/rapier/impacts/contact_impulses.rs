@@ -46,7 +46,7 @@ impl Response {
         let [c1, c2] = pair.map(|k| &rules.colliders[view.parts[k].handle]);
         let [v1, v2] = [0, 1].map(|k| point.velocity(view.bodies[both[k]].velocity, k));
         let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, Material::of(c1, c2));
-        let is_driven = both.iter().any(|b| joints.hang_on_driven(view, *b));
+        let is_driven = both.iter().any(|b| joints.hangs_on_driven(view, *b));
         let own = point.impact(&system, material, is_driven);
         let (mut moved, mut impact) = (system, own);
         let free = both.map(|b| unlocked(view, both, b));

@@ -136,7 +136,7 @@ impl Joints {
     }
 
     /// Whether a body hangs by joints on one that is driven.
-    pub fn hang_on_driven(&self, view: &StepView, body: usize) -> bool {
+    pub fn hangs_on_driven(&self, view: &StepView, body: usize) -> bool {
         let mut tied = self.tied(view, &[body]).0.into_iter().skip(1);
         tied.any(|b| view.bodies[b].kind == Kind::Driven)
     }
