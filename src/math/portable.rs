@@ -3,25 +3,17 @@
 
 #[cfg(feature = "enhanced-determinism")]
 mod of {
-    pub use libm::{hypot, sincos, sincosf};
+    pub use libm::{sincos, sincosf};
 }
 
 #[cfg(not(feature = "enhanced-determinism"))]
 mod of {
-    pub fn hypot(x: f64, y: f64) -> f64 {
-        x.hypot(y)
-    }
     pub fn sincos(x: f64) -> (f64, f64) {
         x.sin_cos()
     }
     pub fn sincosf(x: f32) -> (f32, f32) {
         x.sin_cos()
     }
-}
-
-/// Length of the hypotenuse.
-pub fn hypot(x: f64, y: f64) -> f64 {
-    of::hypot(x, y)
 }
 
 /// Sine and cosine of an angle in radians.

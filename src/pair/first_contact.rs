@@ -26,7 +26,8 @@ counters! {
         pub nodes: u64,
         /// Elementary tests that were computed, each counted once.
         pub tests: u64,
-        /// Looks at two convex pieces as a whole, each of which takes about as long as 16 tests.
+        /// Looks at two convex pieces, or at a slab and a cylinder or cone, as a whole, each of which takes about as long
+        /// as 16 tests.
         pub looks: u64,
     }
 }

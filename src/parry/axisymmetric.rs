@@ -22,17 +22,20 @@
 //! decides how sharp the bound is, never whether it holds.
 
 use crate::math::lane::Vec3;
-use crate::math::portable::hypot;
 use crate::math::{Pose, Real, Vector};
 use parry3d::shape::{Shape, TypedShape};
 
 /// Rounds of one search for a zero. Three in four interpolate, the fourth halves, so that 48 are
-/// never fewer than 12 halvings; smooth slopes need 6 to 10. Fewer blunt the bound.
+/// never fewer than 12 halvings; half of the searches need 9 or fewer. Fewer blunt the bound.
 const ROUNDS: u32 = 48;
 
 /// Slope, and width of the bracket, that count as 0: in units of the length of the edge searched,
 /// and of the edge. 4 ulps of `f64`.
 const FLAT: f64 = 1.0e-15;
+
+/// Difference of a distance and its bound that counts as 0, in units of the lengths in play. Few ulps of `f64`, and an
+/// eighth of the slack that [`super::conservative_advancement`] allows for.
+const SHARP: f64 = 8.0 * f64::EPSILON;
 
 /// A cylinder or cone, about an axis through its centre.
 #[derive(Clone, Copy, Debug)]
@@ -195,15 +198,17 @@ impl Axisymmetric {
 
     /// The interpolated sphere of 1 to 3 that is nearest; of none, a sphere at the origin.
     pub fn nearest(&self, place: &Place, balls: &[Ball]) -> NearBall {
+        let far = balls.iter().map(|ball| ball.0.length() + ball.1.abs());
+        let sharp = SHARP * (self.reach() + far.fold(0.0, f64::max));
         match *balls {
             [] => self.at(place, (Vec3::zero(), 0.0)),
             [a] => self.at(place, a),
-            [a, b] => self.along(place, a, edge(a, b), 1.0),
+            [a, b] => self.along(place, a, edge(a, b), 1.0, sharp),
             [a, b, c, ..] => {
                 let (u, v) = (edge(a, b), edge(a, c));
-                let size = u.0.length();
-                minimise(1.0, size, |x| {
-                    let near = self.along(place, moved(a, u, x), v, 1.0 - x);
+                let is_sharp = |near: &NearBall| self.is_sharp(place, near, &[a, b, c], sharp);
+                minimise(1.0, u.0.length(), is_sharp, |x| {
+                    let near = self.along(place, moved(a, u, x), v, 1.0 - x, sharp);
                     // Where the far side of the triangle stops the inner search, moving along `u`
                     // takes back as much of `v`.
                     (near, near.slope(u) - near.slope(v).min(0.0))
@@ -212,11 +217,21 @@ impl Axisymmetric {
         }
     }
 
-    fn along(&self, place: &Place, from: Ball, edge: Ball, until: f64) -> NearBall {
-        minimise(until, edge.0.length(), |x| {
+    fn along(&self, place: &Place, from: Ball, edge: Ball, until: f64, sharp: f64) -> NearBall {
+        let ends = [from, moved(from, edge, until)];
+        let is_sharp = |near: &NearBall| self.is_sharp(place, near, &ends, sharp);
+        minimise(until, edge.0.length(), is_sharp, |x| {
             let near = self.at(place, moved(from, edge, x));
             (near, near.slope(edge))
         })
+    }
+
+    /// Whether the bound of these corners along its direction is as large as the distance of a sphere, but for `sharp`.
+    fn is_sharp(&self, place: &Place, near: &NearBall, corners: &[Ball], sharp: f64) -> bool {
+        let m = near.direction;
+        let ends = corners.iter().map(|ball| m.dot(ball.0) - ball.1);
+        let bound = ends.fold(f64::INFINITY, f64::min) - self.support(place, m);
+        near.distance() - bound <= sharp
     }
 }
 
@@ -229,8 +244,13 @@ fn moved(from: Ball, edge: Ball, share: f64) -> Ball {
 }
 
 /// Least member over `[0, until]` of a convex family, given with its slope; `size` is the length of
-/// the edge.
-fn minimise(until: f64, size: f64, eval: impl Fn(f64) -> (NearBall, f64)) -> NearBall {
+/// the edge. Ends as soon as the best one, with the direction along which the family is flat, is sharp.
+fn minimise(
+    until: f64,
+    size: f64,
+    is_sharp: impl Fn(&NearBall) -> bool,
+    eval: impl Fn(f64) -> (NearBall, f64),
+) -> NearBall {
     let (mut near_lo, mut slope_lo) = eval(0.0);
     if slope_lo >= 0.0 || until <= 0.0 {
         return near_lo;
@@ -240,42 +260,60 @@ fn minimise(until: f64, size: f64, eval: impl Fn(f64) -> (NearBall, f64)) -> Nea
         return near_hi;
     }
     let (mut lo, mut hi) = (0.0, until);
-    // Interpolation with halved weights (the Illinois rule).
-    let (mut weight_lo, mut weight_hi) = (slope_lo, slope_hi);
     for round in 1..=ROUNDS {
-        if hi - lo <= FLAT {
+        let width = hi - lo;
+        if width <= FLAT {
             break;
         }
-        let between = lo - weight_lo * (hi - lo) / (weight_hi - weight_lo);
-        // Slopes that overflow leave nothing to interpolate.
-        let x = if round % 4 == 0 || between.is_nan() {
-            0.5 * (lo + hi)
-        } else {
-            between.clamp(lo, hi)
+        let (rise, slopes) = (near_hi.distance() - near_lo.distance(), slope_hi - slope_lo);
+        let share = match round % 4 {
+            0 => 0.5,
+            // Where both tangents cross: near the least of a kink, or of a valley narrower than the bracket.
+            1 => (slope_hi * width - rise) / (slopes * width),
+            // The least of the cubic with the distances and slopes of both ends.
+            _ => {
+                let bend = slope_lo + slope_hi - 3.0 * rise / width;
+                let root = (bend * bend - slope_lo * slope_hi).sqrt();
+                1.0 - (slope_hi + root - bend) / (slopes + 2.0 * root)
+            }
         };
+        // Slopes that overflow leave nothing to interpolate.
+        let share = if share.is_nan() { 0.5 } else { share };
+        let x = (lo + share * width).clamp(lo, hi);
         let (near, slope) = eval(x);
         if slope.abs() <= FLAT * size {
             return near;
         }
         if slope < 0.0 {
-            (lo, near_lo, slope_lo, weight_lo) = (x, near, slope, slope);
-            weight_hi *= 0.5;
+            (lo, near_lo, slope_lo) = (x, near, slope);
         } else if slope > 0.0 {
-            (hi, near_hi, slope_hi, weight_hi) = (x, near, slope, slope);
-            weight_lo *= 0.5;
+            (hi, near_hi, slope_hi) = (x, near, slope);
         } else {
             return near;
         }
+        let best = flattest([near_lo, near_hi], [slope_lo, slope_hi]);
+        if is_sharp(&best) {
+            return best;
+        }
     }
-    // The mean direction along which the family is flat.
-    let share = slope_lo / (slope_lo - slope_hi);
-    let direction = near_lo.direction * (1.0 - share) + near_hi.direction * share;
-    let best = if near_lo.distance() <= near_hi.distance() {
-        near_lo
+    flattest([near_lo, near_hi], [slope_lo, slope_hi])
+}
+
+/// The nearer of two spheres on both sides of the least, with the mean direction along which the family is flat.
+fn flattest([lo, hi]: [NearBall; 2], slopes: [f64; 2]) -> NearBall {
+    let share = slopes[0] / (slopes[0] - slopes[1]);
+    let direction = lo.direction * (1.0 - share) + hi.direction * share;
+    let best = if lo.distance() <= hi.distance() {
+        lo
     } else {
-        near_hi
+        hi
     };
     NearBall { direction, ..best }
+}
+
+/// Length of the hypotenuse. Lengths in single precision have squares in double precision.
+fn hypot(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
 }
 
 /// Some direction across a unit vector.

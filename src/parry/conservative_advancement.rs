@@ -14,6 +14,13 @@
 //! corner, up to the first root. The Lipschitz step, `g` over the largest relative speed of points of the two
 //! bodies, is taken instead where it is longer.
 //!
+//! Where faces and edges meet, the distance has a kink, and another direction takes over at once: that of a face that
+//! rolls over a rim turns with the face, that of two edges with neither. So `m` may turn with any `ν` as well: with that
+//! of the primitive, or as it has turned since the step before. In that frame `ν` stands for `ω` above, and a point `q`
+//! of the body, from its centre, moves with `(ω − ν) × q` and an acceleration of at most `(|ω × ν| + |ω − ν|²) |q|`: its
+//! support along `m` is at most `h(m + s m × (ω − ν))` and half of that times `s²`. The bound is concave in `s`, so
+//! between two times it is above its chord.
+//!
 //! # Rounding
 //! Positions are sums of at most 16 rounded terms no larger than `scale`, the sum of all lengths in
 //! play, so that `ULPS` ulps of it cover the bound. A tolerance below [`CHASE_TOLERANCE_PER_SLACK`] times
@@ -30,6 +37,11 @@ const ULPS: f64 = 64.0;
 /// Smallest tolerance in units of the slack: one slack is lost in the bound, one in the test for
 /// contact, and the last step needs room.
 pub const CHASE_TOLERANCE_PER_SLACK: f64 = 4.0;
+
+/// Chords by which a step along a direction that turns is told, and how much later the next time is at which it is tried
+/// first. Not tuned; only speed depends on them.
+const CHORDS: usize = 4;
+const WIDER: f64 = 4.0;
 
 /// How one volume is followed.
 #[derive(Clone, Copy)]
@@ -92,7 +104,7 @@ struct Chase<'a> {
 struct Moment {
     place: Place,
     balls: [Ball; 3],
-    /// Velocities of the spheres against the turning body.
+    /// Velocities of the spheres against the body's centre.
     rates: [Vec3<f64>; 3],
     /// Rounding slack, a length.
     slack: f64,
@@ -138,14 +150,13 @@ impl<'a> Chase<'a> {
         let [motion1, motion2] = self.motions;
         let turned = [motion1.sin_cos(t), motion2.sin_cos(t)];
         let center = self.pivot.at(t, turned[1]);
-        let spin = motion2.angular_velocity();
         let mut balls = [(Vec3::zero(), 0.0); 3];
         let mut rates = [Vec3::zero(); 3];
         for (i, c) in self.corners().iter().enumerate() {
             let state = c.path.at(t, turned[0]);
             let p = state.position - center.position;
             balls[i] = (p, c.radius);
-            rates[i] = state.velocity - center.velocity - spin.cross(p);
+            rates[i] = state.velocity - center.velocity;
         }
         let distances = balls[..self.count].iter().map(|b| b.0.length());
         let far = distances.fold(0.0, f64::max);
@@ -162,27 +173,96 @@ impl<'a> Chase<'a> {
         }
     }
 
+    /// Bound of the acceleration of a corner seen from the body's centre, in a frame that turns by `turn`, within `left`.
+    fn bend(&self, corner: &Corner, p: Vec3<f64>, turn: f64, left: f64) -> f64 {
+        let farthest = p.length() + corner.speed * left;
+        corner.path.acceleration
+            + self.pivot.acceleration
+            + 2.0 * turn * corner.speed
+            + turn * turn * farthest
+    }
+
     /// Least gap of the spheres above the target along the direction `m` from the body, and a time for which none closes
-    /// its own within `left`.
+    /// its own within `left`, if `m` turns with the body.
     fn step(&self, moment: &Moment, m: Vec3<f64>, target: f64, left: f64) -> (f64, f64) {
         let support = self.body.support(&moment.place, m);
-        let turn = self.motions[1].angle();
+        let (turn, spin) = (self.motions[1].angle(), self.motions[1].angular_velocity());
         let (mut least, mut step) = (f64::MAX, f64::MAX);
         for ((p, corner), rate) in moment.balls.iter().zip(self.corners()).zip(moment.rates) {
             let gap = m.dot(p.0) - p.1 - support - target - moment.slack;
             least = least.min(gap);
-            let farthest = p.0.length() + corner.speed * left;
-            let bend = corner.path.acceleration
-                + self.pivot.acceleration
-                + 2.0 * turn * corner.speed
-                + turn * turn * farthest;
-            step = step.min(first_root(gap, m.dot(rate), bend));
+            let rate = m.dot(rate - spin.cross(p.0));
+            step = step.min(first_root(gap, rate, self.bend(corner, p.0, turn, left)));
         }
         // The zero direction: the distance is never below minus the largest radius.
         if -self.largest(|c| c.radius) - target > moment.slack {
             step = f64::MAX;
         }
         (least, step)
+    }
+
+    /// The same time if `m` turns with an angular velocity of its own, to within a few chords.
+    fn step_turning(
+        &self,
+        moment: &Moment,
+        (m, spin): (Vec3<f64>, Vec3<f64>),
+        target: f64,
+        left: f64,
+    ) -> f64 {
+        let (turn, of_body) = (spin.length(), self.motions[1].angular_velocity());
+        let (against, aside) = (of_body - spin, of_body.cross(spin));
+        let swing = m.cross(against);
+        let swerve = (aside.length() + against.length_sq()) * self.body.reach();
+        let mut ends = [(f64::MAX, 0.0, 0.0); 3];
+        let corners = moment.balls.iter().zip(self.corners()).zip(moment.rates);
+        for (end, ((p, corner), rate)) in ends.iter_mut().zip(corners) {
+            let rate = m.dot(rate - spin.cross(p.0));
+            let bend = self.bend(corner, p.0, turn, left) + swerve;
+            *end = (m.dot(p.0) - p.1, rate, bend);
+        }
+        let ends = &ends[..self.count];
+        let gap = |s: f64| {
+            let at = ends
+                .iter()
+                .map(|end| end.0 + end.1 * s - 0.5 * end.2 * s * s);
+            let support = self.body.support(&moment.place, m + swing * s);
+            (
+                s,
+                at.fold(f64::MAX, f64::min) - support - target - moment.slack,
+            )
+        };
+        let mut free = gap(0.0);
+        if free.1.is_nan() || free.1 <= 0.0 {
+            return 0.0;
+        }
+        let bend = ends
+            .iter()
+            .map(|end| end.2)
+            .fold(f64::MIN_POSITIVE, f64::max);
+        let mut closed = gap((2.0 * free.1 / bend).sqrt().min(left));
+        while closed.1 > 0.0 {
+            if closed.0 >= left || closed.0 <= 0.0 {
+                return closed.0;
+            }
+            free = closed;
+            closed = gap((WIDER * free.0).min(left));
+        }
+        let chord = |free: (f64, f64), closed: (f64, f64)| {
+            free.0 + (closed.0 - free.0) * (free.1 / (free.1 - closed.1))
+        };
+        for _ in 0..CHORDS {
+            for middle in [false, true] {
+                let time = match middle {
+                    true => 0.5 * (free.0 + closed.0),
+                    false => chord(free, closed),
+                };
+                match gap(time) {
+                    end if end.1 > 0.0 => free = end,
+                    end => closed = end,
+                }
+            }
+        }
+        chord(free, closed)
     }
 }
 
@@ -207,6 +287,7 @@ pub fn follow(
         near: body.nearest(&place, &[]),
         place,
     };
+    let mut before: Option<(f64, Vec3<f64>)> = None;
     while known.steps < limits.steps {
         known.steps += 1;
         let t = known.lower;
@@ -223,7 +304,20 @@ pub fn follow(
         }
         let left = limits.horizon - t;
         let (least, step) = chase.step(&moment, known.near.direction, limits.target, left);
-        let step = step.max(least / chase.speed) * (1.0 - 8.0 * f64::EPSILON);
+        let mut step = step.max(least / chase.speed);
+        // The distance of a single ball has no kink.
+        if chase.count > 1 {
+            let m = known.near.direction;
+            let since = before.replace((t, m));
+            let lately = since.map(|(then, old)| old.cross(m) * (1.0 / (t - then)));
+            let spins = [Some(motions[0].angular_velocity()), lately];
+            for spin in spins.into_iter().flatten() {
+                if step < left {
+                    step = step.max(chase.step_turning(&moment, (m, spin), limits.target, left));
+                }
+            }
+        }
+        let step = step * (1.0 - 8.0 * f64::EPSILON);
         let next = (t + step) * (1.0 - 4.0 * f64::EPSILON);
         if step > 0.0 && next >= limits.horizon {
             known.separated = true;

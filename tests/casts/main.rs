@@ -10,6 +10,7 @@ mod oracle;
 #[allow(dead_code)]
 #[path = "../common/ccd/rng.rs"]
 mod rng;
+mod rolling;
 mod rotating;
 mod shallow;
 mod shapes;
