@@ -1,5 +1,7 @@
-//! Contacts of a single primitive with a triangle that parry's EPA algorithm finds wrongly: without a normal, or deeper
-//! than the two are. Of small spheres on triangles of about their size EPA now and then ends without a direction. The
+//! Contacts of a single primitive with a triangle that parry finds wrongly: without a normal or deeper than the two are
+//! (its EPA algorithm now and then ends without a direction for small spheres on triangles of about their size), or not
+//! at all where they overlap. Where a cone's radii differ much, its tangent segment, which parry takes for what touches,
+//! is far from its lowest point, and of triangles that allow some normals only parry leaves out the nearest points. The
 //! nearest spheres take the place of such a contact. A single sphere's are those of parry's ball.
 
 use super::inward_contacts::triangle;
@@ -23,7 +25,7 @@ const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// Corrects the contacts of a mesh's primitives that belong to no convex piece. The mesh is body `side` (0 or 1) of the
 /// manifolds; `ground` are the triangles, and where they are in the mesh's frame. Where rapier allows some normals only, as
-/// with its flag for internal edges, wrong contacts with others are left out.
+/// with its flag for internal edges, nearest spheres of others are no contact.
 pub fn correct<M, C: Default + Copy>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
@@ -44,11 +46,9 @@ pub fn correct<M, C: Default + Copy>(
         if primitive.spheres().len() == 1 {
             continue;
         }
-        // Where not all normals are allowed parry leaves contacts out on purpose.
-        let is_free = constraints.is_none();
-        let is_missing = is_free && m.points.is_empty();
         let is_deep = m.points.iter().any(|point| point.dist < 0.0);
-        if !(is_missing || is_deep) {
+        let may_lack = m.points.is_empty() || constraints.is_some();
+        if !(is_deep || may_lack && reaches_plane(primitive.spheres(), corners)) {
             continue;
         }
         let lists = [
@@ -66,13 +66,13 @@ pub fn correct<M, C: Default + Copy>(
         };
         let size = corners.map(Vector::length).into_iter().fold(0.0, Real::max);
         let thickest = spheres.iter().map(|s| s.radius).fold(0.0, Real::max);
-        let least = own.distance - DEEPER * thickest - ROUNDING * size;
-        let has_normal = m.local_n1.length_squared() > 0.5;
-        let is_right = match is_missing {
-            true => own.distance >= 0.0,
-            false => has_normal && m.points.iter().all(|point| point.dist >= least),
-        };
-        if is_right {
+        let slack = DEEPER * thickest + ROUNDING * size;
+        let has_normal = m.points.is_empty() || m.local_n1.length_squared() > 0.5;
+        let depths = m.points.iter().map(|point| point.dist);
+        let deepest = depths.fold(Real::MAX, Real::min);
+        let is_wrong = !has_normal || deepest < own.distance - slack;
+        let is_missing = own.distance < 0.0 && deepest > own.distance + slack;
+        if !(is_wrong || is_missing) {
             continue;
         }
         let to_mesh = pose.rotation.inverse() * -own.normal;
@@ -80,8 +80,11 @@ pub fn correct<M, C: Default + Copy>(
             let allowed = cone.project_local_normal(to_mesh);
             allowed.is_some_and(|n| n.dot(to_mesh) > ALLOWED)
         });
-        let data = m.points.first().map(|point| point.data);
-        m.points.clear();
+        let wrong = m.points.first().filter(|_| is_wrong);
+        let data = wrong.map(|point| point.data);
+        if is_wrong {
+            m.points.clear();
+        }
         if !is_allowed {
             continue;
         }
@@ -91,10 +94,27 @@ pub fn correct<M, C: Default + Copy>(
             0 => ([normal, place], [to_mesh, on_ground]),
             _ => ([to_mesh, on_ground], [normal, place]),
         };
+        if m.local_n1.dot(n1) < ALLOWED {
+            m.points.clear();
+        }
         [m.local_n1, m.local_n2] = [n1, n2];
         let feature = PackedFeatureId::face(0);
         let mut point = TrackedContact::new(p1, p2, feature, feature, own.distance);
         point.data = data.unwrap_or_default();
         m.points.push(point);
     }
+}
+
+/// Whether some of these spheres are not wholly on one side of a triangle's plane.
+fn reaches_plane(spheres: &[MedialSphere], [a, b, c]: [Vector; 3]) -> bool {
+    let normal = (b - a).cross(c - a);
+    let length = normal.length();
+    let ends = spheres.iter().map(|s| {
+        let height = normal.dot(s.center - a);
+        [height - length * s.radius, height + length * s.radius]
+    });
+    let [least, most] = ends.fold([Real::MAX, Real::MIN], |all, end| {
+        [all[0].min(end[0]), all[1].max(end[1])]
+    });
+    least <= 0.0 && most >= 0.0
 }

@@ -83,6 +83,7 @@ mod solid;
 mod spawned;
 mod stairs;
 mod still;
+mod tapered;
 #[allow(dead_code)]
 #[path = "../../examples/factory/thread.rs"]
 mod thread;
