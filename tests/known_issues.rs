@@ -339,3 +339,38 @@ fn plates_that_fall_back_into_a_oneway_platform_are_pressed_out_on_top() {
     println!("{ours:?}, of cuboids {own:?}");
     assert!(ours.on_top > 2 * own.on_top, "{ours:?}, of cuboids {own:?}");
 }
+
+/// A card between cuboids 30 times as heavy: rapier's contacts give way by more than half its thickness (its own cards come to
+/// rest 4 mm deep in the cuboids), which would take its medial plane through theirs. So impacts hold the stack up in every
+/// step, at some 50 ms, and it never sleeps.
+#[test]
+fn cards_between_heavy_cuboids_never_sleep() {
+    let half = Vector::new(0.4, 0.003, 0.3);
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let sphere = |(x, z)| MedialSphere::new(Vector::new(x * half.x, 0.0, z * half.z), half.y);
+    let slabs = vec![[0, 1, 2], [0, 2, 3]];
+    let card = MedialMesh::new(corners.map(sphere).to_vec(), vec![], slabs).expect("a card");
+    let own = ColliderBuilder::cuboid(half.x, half.y, half.z);
+    let asleep = [own, ColliderBuilder::medial_mesh(card)].map(|card| {
+        let mut world = PhysicsWorld::new();
+        let ground = ColliderBuilder::cuboid(20.0, 0.5, 20.0).translation(Vector::NEG_Y * 0.5);
+        world.insert_collider(ground, None);
+        let mut put = |y: Real, turn: Real, collider: ColliderBuilder| {
+            let body = RigidBodyBuilder::dynamic().translation(Vector::Y * y);
+            let body = body.rotation(Vector::Y * turn);
+            world.insert(body, collider.density(1000.0)).0
+        };
+        for k in 0..4 {
+            let (y, turn) = (0.307 * k as Real, 0.2 * k as Real);
+            put(y + 0.1505, -turn, ColliderBuilder::cuboid(0.3, 0.15, 0.25));
+            put(y + 0.3041, turn, card.clone());
+        }
+        let mut pipeline = MedialPipeline::default();
+        (0..120).find(|_| {
+            pipeline.step(&mut world);
+            world.bodies.iter().all(|(_, b)| b.is_sleeping())
+        })
+    });
+    println!("asleep after {asleep:?} steps");
+    assert!(asleep[0].is_some() && asleep[1].is_none(), "{asleep:?}");
+}
