@@ -213,6 +213,7 @@ impl<'a> Chase<'a> {
         let (against, aside) = (of_body - spin, of_body.cross(spin));
         let swing = m.cross(against);
         let swerve = (aside.length() + against.length_sq()) * self.body.reach();
+        // How far each corner ends along `m`, how fast that changes, and the bound of its acceleration.
         let mut ends = [(f64::MAX, 0.0, 0.0); 3];
         let corners = moment.balls.iter().zip(self.corners()).zip(moment.rates);
         for (end, ((p, corner), rate)) in ends.iter_mut().zip(corners) {
@@ -221,6 +222,7 @@ impl<'a> Chase<'a> {
             *end = (m.dot(p.0) - p.1, rate, bend);
         }
         let ends = &ends[..self.count];
+        // A time, and the least gap then.
         let gap = |s: f64| {
             let at = ends
                 .iter()
