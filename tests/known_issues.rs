@@ -340,8 +340,8 @@ fn plates_that_fall_back_into_a_oneway_platform_are_pressed_out_on_top() {
     assert!(ours.on_top > 2 * own.on_top, "{ours:?}, of cuboids {own:?}");
 }
 
-/// A card between cuboids 30 times as heavy: rapier's contacts give way by more than half its thickness (its own cards come to
-/// rest 4 mm deep in the cuboids), which would take its medial plane through theirs. So impacts hold the stack up in every
+/// A card between cuboids 30 times as heavy: rapier's contacts give way by more than half its thickness (its own rounded
+/// cuboids in place of the cards come to rest 4 mm deep in the others), which would take its medial plane through theirs. So impacts hold the stack up in every
 /// step, at some 50 ms, and it never sleeps.
 #[test]
 fn cards_between_heavy_cuboids_never_sleep() {

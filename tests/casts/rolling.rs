@@ -4,6 +4,7 @@
 
 use crate::rng::Rng;
 use crate::rotating::{rotation, vector};
+use crate::within::least;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastStatus};
@@ -18,8 +19,8 @@ const HALF: [f64; 2] = [0.4, 0.3];
 const HEIGHT: f64 = 0.5;
 const RADIUS: f64 = 0.4;
 
-/// Error of the distance found by section, and of poses in `f32`, in metres.
-const ERROR: f64 = 3.0e-6;
+/// Error of the distance found by section, and of a time and an axis in `f32`, in metres.
+const ERROR: f64 = 5.0e-7;
 
 /// Distance of a point to a body, 0 inside.
 type Distance = fn(Vector3<f64>) -> f64;
@@ -41,32 +42,11 @@ fn to_cone(p: Vector3<f64>) -> f64 {
     base.min((x - RADIUS - s * dx).hypot(y + HEIGHT - s * dy))
 }
 
-/// Least value of a convex function over `[-half, half]`.
-fn least(half: f64, f: &dyn Fn(f64) -> f64) -> f64 {
-    let golden = 0.618_033_988_749_894_9;
-    let (mut a, mut b) = (-half, half);
-    let mut x = [b - golden * (b - a), a + golden * (b - a)];
-    let mut y = x.map(f);
-    for _ in 0..26 {
-        if y[0] < y[1] {
-            b = x[1];
-            (x[1], y[1]) = (x[0], y[0]);
-            x[0] = b - golden * (b - a);
-            y[0] = f(x[0]);
-        } else {
-            a = x[0];
-            (x[0], y[0]) = (x[1], y[1]);
-            x[1] = a + golden * (b - a);
-            y[1] = f(x[1]);
-        }
-    }
-    y[0].min(y[1]).min(f(-half)).min(f(half))
-}
-
 /// Distance of the plate's medial rectangle, in the body's frame.
 fn distance(to_body: Distance, pose: &Isometry3<f64>) -> f64 {
     let at = |x: f64, z: f64| to_body((pose * nalgebra::Point3::new(x, 0.0, z)).coords);
-    least(HALF[0], &|x| least(HALF[1], &|z| at(x, z)))
+    let [x_span, z_span] = HALF.map(|half| [-half, half]);
+    least(x_span, |x| least(z_span, |z| at(x, z)).0).0
 }
 
 fn exact(pose: &Pose) -> Isometry3<f64> {

@@ -150,7 +150,7 @@ fn compound() -> SharedShape {
 }
 
 /// Least value of a convex function in an interval, and where.
-fn least([mut a, mut b]: [f64; 2], f: impl Fn(f64) -> f64) -> (f64, f64) {
+pub fn least([mut a, mut b]: [f64; 2], f: impl Fn(f64) -> f64) -> (f64, f64) {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let mut x = [b - GOLDEN * (b - a), a + GOLDEN * (b - a)];
     let mut y = x.map(&f);
