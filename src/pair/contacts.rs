@@ -4,6 +4,7 @@
 //! whole (`face_contacts.rs`), and so is a convex piece that is deep in a primitive (`hulls.rs`); of all other bodies
 //! primitives are taken pair by pair (`primitive_pair.rs`).
 
+use super::contact_list::ContactList;
 use super::descent::Step;
 use super::first_contact::Counts;
 use super::hulls::Hulls;
@@ -26,30 +27,29 @@ const SPLITS: u8 = 3;
 /// Failures after which that is done: what are fewer costs less than it may save.
 const FAILED: u32 = 256;
 
-/// All contacts of two bodies at fixed poses: pairs of spheres within `prediction` (a length) of each other. `pos12` is
-/// the pose of the second body in the frame of the first. Computed in double precision; result and order depend on
-/// the input only. A pose that is not finite gives no contacts.
+/// Contacts of two bodies at fixed poses: pairs of spheres within `prediction` (a length) of each other, all of them up to
+/// 2,048, and of more the nearest. `pos12` is the pose of the second body in the frame of the first. Computed in double
+/// precision; result and order depend on the input only. A pose that is not finite gives no contacts.
 pub fn contacts(
     body1: &impl PrimitiveTree,
     body2: &impl PrimitiveTree,
     pos12: &Pose,
     prediction: Real,
 ) -> (Vec<SpherePair>, Counts) {
-    let mut found = Vec::new();
+    let mut found = ContactList::new(prediction.into());
     let mut counts = Counts::default();
     if !(pos12.is_finite() && prediction.is_finite()) {
-        return (found, counts);
+        return (Vec::new(), counts);
     }
     let place = Placement::new(pos12);
     let Some(near) = outline::near(body1, body2, |p| place.point(p), prediction) else {
-        return (found, counts);
+        return (Vec::new(), counts);
     };
     // With the splits since directions were tried.
     let mut stack: Vec<([u32; 2], u8)> = Vec::new();
     for i in 0..body1.roots() {
         stack.extend((0..body2.roots()).map(|j| ([i, j], SPLITS)));
     }
-    let margin = f64::from(prediction);
     let mut hulls = Hulls::new((body1, body2), &place);
     // Inner nodes that directions kept apart, and that they did not.
     let mut inner = [0; 2];
@@ -58,6 +58,7 @@ pub fn contacts(
             continue;
         }
         counts.nodes += 1;
+        let margin = found.margin();
         let (a, b) = (body1.bound(i), body2.bound(j));
         let (ra, rb) = (f64::from(a.1), f64::from(b.1));
         let y = place.point(b.0) - Vec3::from_vector(a.0);
@@ -88,7 +89,7 @@ pub fn contacts(
         match step {
             Step::Leaves(primitives) => {
                 let pair = PrimitivePair::new(body1, body2, primitives, &place);
-                pair.contacts(margin, &mut found, &mut counts);
+                pair.contacts(&mut found, &mut counts);
             }
             Step::First(children) => {
                 stack.extend(children.map(|c| ([c, j], splits)).into_iter().rev())
@@ -98,7 +99,7 @@ pub fn contacts(
             }
         }
     }
-    (found, counts)
+    (found.into_contacts(), counts)
 }
 
 /// The spheres of a convex piece, placed, or of the primitive where it is of none.

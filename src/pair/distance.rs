@@ -4,6 +4,7 @@
 //! For bodies that overlap it is the most negative distance of any two primitives: how deep the nearest spheres are in
 //! each other, not how far the bodies must move to be apart.
 
+use super::contact_list::ContactList;
 use super::first_contact::Counts;
 use super::hulls::Hulls;
 use super::outline;
@@ -76,7 +77,6 @@ pub fn near_spheres(
     for i in 0..body1.roots() {
         heap.extend((0..body2.roots()).map(|j| entry(i, j)));
     }
-    let mut found = Vec::new();
     let mut hulls = Hulls::new((body1, body2), &place);
     while let Some(mut e) = heap.pop() {
         if e.bound > limit {
@@ -100,13 +100,13 @@ pub fn near_spheres(
         }
         match (body1.kind(i), body2.kind(j)) {
             (NodeKind::Primitive(p), NodeKind::Primitive(q)) => {
-                found.clear();
+                let mut found = ContactList::new(limit);
                 let pair = PrimitivePair::new(body1, body2, [p, q], &place);
-                pair.contacts(limit, &mut found, &mut counts);
-                for c in &found {
+                pair.contacts(&mut found, &mut counts);
+                for c in found.into_contacts() {
                     if f64::from(c.distance) <= limit {
                         limit = c.distance.into();
-                        best = Some(*c);
+                        best = Some(c);
                     }
                 }
                 if best.is_some() && wanted == Wanted::Any {

@@ -3,6 +3,7 @@
 //! for.
 
 use super::apart::{Balls, Plane, approached};
+use super::contact_list::ContactList;
 use super::face_contacts::{add_nearest, face_contacts};
 use super::first_contact::Counts;
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
@@ -185,13 +186,14 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
     ) -> Vec<SpherePair> {
         let ((first, second), place) = (self.bodies, self.place);
         let below = [below(first, nodes[0]), below(second, nodes[1])];
-        let mut found = Vec::new();
+        let mut found = ContactList::new(margin);
         for &p in &below[0] {
             for &q in &below[1] {
                 let pair = PrimitivePair::new(first, second, [p, q], place);
-                pair.contacts(margin, &mut found, counts);
+                pair.contacts(&mut found, counts);
             }
         }
+        let mut found = found.into_contacts();
         let hulls = self.pieces(nodes);
         found.retain(|contact| {
             let n = Vec3::from_vector(contact.normal);

@@ -8,6 +8,7 @@
 //! holds: farther pairs add none.
 
 use super::SpherePair;
+use super::contact_list::ContactList;
 use super::contacts::contacts;
 use super::descent::Step;
 use super::first_contact::Counts;
@@ -35,16 +36,16 @@ pub fn contacts_of_listed(
     if prediction < 0.0 || has_pieces(mesh1) || has_pieces(mesh2) {
         return contacts(mesh1, mesh2, pos12, prediction);
     }
-    let (mut found, mut counts) = (Vec::with_capacity(listed.len()), Counts::default());
+    let (mut found, mut counts) = (ContactList::new(prediction.into()), Counts::default());
     if !(pos12.is_finite() && prediction.is_finite()) {
-        return (found, counts);
+        return (Vec::new(), counts);
     }
     let place = Placement::new(pos12);
     in_order([mesh1, mesh2], listed, |primitives| {
         let pair = PrimitivePair::new(mesh1, mesh2, primitives, &place);
-        pair.contacts(prediction.into(), &mut found, &mut counts);
+        pair.contacts(&mut found, &mut counts);
     });
-    (found, counts)
+    (found.into_contacts(), counts)
 }
 
 /// Calls `take` on each of the pairs listed once, in the order of a walk down both trees. Leaves the list in disorder.

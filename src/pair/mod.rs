@@ -10,11 +10,13 @@
 //!   convex pieces) with `piece_contact.rs` and `patch.rs`, `deepening.rs`, `tips.rs`, `ending.rs`. Proofs that two are
 //!   apart: `apart.rs`, `path_ends.rs`.
 //! - Contacts at fixed poses: `contacts.rs`, in the order of `descent.rs`; of two primitives `primitive_pair.rs`, of two convex pieces (the blocks of a body
-//!   with flat faces) `face_contacts.rs`; from a list of primitive pairs `listed.rs`; `held_back.rs` leaves some out.
+//!   with flat faces) `face_contacts.rs`; from a list of primitive pairs `listed.rs`. `contact_list.rs` keeps the
+//!   nearest, and `held_back.rs` leaves some out.
 //! - Distance at fixed poses: `distance.rs`. Proofs at fixed poses: `hulls.rs`, `hull_gap.rs`.
 //! - What spares a search: `outline.rs`, `near_pairs.rs`, `pair_list.rs`.
 
 mod apart;
+mod contact_list;
 pub mod contacts;
 mod convex_pieces;
 pub(crate) mod deepening;

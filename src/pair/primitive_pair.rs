@@ -5,6 +5,7 @@
 //! lost, and the true penetration depth and normal take its place ([`crate::elementary::penetration`]). Long
 //! parallel cones get a second pair, so that they can rest on a line.
 
+use super::contact_list::ContactList;
 use super::first_contact::Counts;
 use super::placement::Placement;
 use super::primitive_tree::PrimitiveTree;
@@ -64,21 +65,21 @@ impl<'a> PrimitivePair<'a> {
         }
     }
 
-    /// Adds the sphere pairs within `margin`.
-    pub(super) fn contacts(&self, margin: f64, found: &mut Vec<SpherePair>, counts: &mut Counts) {
+    /// Adds the sphere pairs within the list's margin.
+    pub(super) fn contacts(&self, found: &mut ContactList, counts: &mut Counts) {
         if let Some(crossing) = self.crossing() {
-            self.push_crossing(crossing, margin, found);
+            self.push_crossing(crossing, found);
             return;
         }
         let faces = self.along_faces();
         let (a, b) = self.spheres();
         let size = |s: &[Ball]| s.iter().map(|s| s.0.taxicab() + s.1.abs()).sum::<f64>();
-        let beyond = margin + ROUNDING_ULPS * f64::EPSILON * (size(a) + size(b));
+        let beyond = found.margin() + ROUNDING_ULPS * f64::EPSILON * (size(a) + size(b));
         let mut feature = 0;
         for_each_test(self.shares[0], self.shares[1], |test| {
             if !faces.iter().flatten().any(|ends| ends.gap(&test) > beyond) {
                 counts.tests += 1;
-                self.test(&test, feature, margin, found);
+                self.test(&test, feature, found);
             }
             feature += 1;
             true
@@ -98,7 +99,8 @@ impl<'a> PrimitivePair<'a> {
         [of(a, y).map(ends), of(b, -y).map(|n| ends(-n))]
     }
 
-    fn test(&self, test: &ElementaryTest, feature: u32, margin: f64, found: &mut Vec<SpherePair>) {
+    fn test(&self, test: &ElementaryTest, feature: u32, found: &mut ContactList) {
+        let margin = found.margin();
         let f = family(test, &self.balls[0], &self.balls[1]);
         if test.domain == Domain::Box && is_beyond(&f, margin) {
             return;
@@ -152,15 +154,10 @@ impl<'a> PrimitivePair<'a> {
         (&a[..self.shares[0].spheres], &b[..self.shares[1].spheres])
     }
 
-    fn push_crossing(
-        &self,
-        crossing: slab_crossing::Crossing<f64>,
-        margin: f64,
-        found: &mut Vec<SpherePair>,
-    ) {
+    fn push_crossing(&self, crossing: slab_crossing::Crossing<f64>, found: &mut ContactList) {
         let (gap, n) = self.deepest();
-        if gap <= margin {
-            found.push(self.across(crossing.point, gap, n));
+        if gap <= found.margin() {
+            found.extend([self.across(crossing.point, gap, n)]);
         }
     }
 
@@ -176,7 +173,7 @@ impl<'a> PrimitivePair<'a> {
         feature: u32,
         s: &Nearest<f64>,
         normal: Vec3<f64>,
-        found: &mut Vec<SpherePair>,
+        found: &mut ContactList,
     ) {
         let w = corner_weights(test.domain, s);
         let mut spheres = [(Vec3::zero(), 0.0); 2];
@@ -191,19 +188,8 @@ impl<'a> PrimitivePair<'a> {
         // Along the certified normal, so that the points and the normal agree with the distance.
         let point1 = a.0 + normal * a.1;
         let point2 = b.0 - normal * b.1;
-        let near = SAME_POINT * (a.1 + b.1);
-        let same = found.iter_mut().rev().find(|c| {
-            let along = f64::from(c.points[0].x) - point1.x;
-            along * along <= near * near
-                && (Vec3::<f64>::from_vector(c.points[0]) - point1).length_sq() <= near * near
-                && Vec3::<f64>::from_vector(c.normal).dot(normal) >= ONE_DIRECTION
-        });
         let pair = self.sphere_pair(feature, s.distance, normal, [point1, point2]);
-        match same {
-            None => found.push(pair),
-            Some(c) if pair.distance < c.distance => *c = pair,
-            Some(_) => {}
-        }
+        found.add(pair, [point1, normal], SAME_POINT * (a.1 + b.1));
     }
 
     fn sphere_pair(

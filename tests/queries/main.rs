@@ -35,6 +35,7 @@ mod held_back;
 mod judge;
 mod lanes;
 mod listed;
+mod many_contacts;
 mod meshes;
 mod near_pairs;
 mod oracle;

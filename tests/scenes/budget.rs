@@ -2,6 +2,7 @@
 
 use crate::bodies::*;
 use crate::heaps::{Findings, loops, throw};
+use crate::knots;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
@@ -233,6 +234,49 @@ fn cards_on_cones_and_cylinders_take_few_looks() {
         assert!(
             spent.iter().all(|spent| (500..12_000).contains(spent)),
             "{name}: {spent:?}"
+        );
+    }
+}
+
+/// Symptom: steps of many seconds. Cause: bodies of 3 cm are within rapier's prediction distance of 2 cm with all their
+/// primitives, and the list of a pair's contacts had no bound.
+#[test]
+fn bodies_of_three_centimetres_have_a_bounded_number_of_contacts() {
+    let scale = Vector::splat(0.02);
+    let knot = MedialMesh::tube(&knots::knot(), true).expect("a closed tube");
+    let knot = knot.scaled(scale).expect("a small knot");
+    let mut world = world_with_ground();
+    let bodies: Vec<RigidBodyHandle> = (0..5)
+        .map(|k| {
+            let up = 0.02 + 0.015 * k as Real;
+            let body = RigidBodyBuilder::dynamic()
+                .translation(Vector::Y * up)
+                .rotation(Vector::new(k as Real, 1.0, 0.5));
+            let collider = ColliderBuilder::medial_mesh(knot.clone()).density(1000.0);
+            world.insert(body, collider).0
+        })
+        .collect();
+    let mut pipeline = pipeline(&mut world, u64::MAX);
+    let mut most = [0; 2];
+    for step in 0..400 {
+        let report = pipeline.step(&mut world);
+        assert!(
+            report.contacts <= 2048 * report.jobs,
+            "step {step}: {} contacts of {} pairs",
+            report.contacts,
+            report.jobs
+        );
+        most = [most[0].max(report.contacts), most[1].max(report.jobs)];
+    }
+    println!("{most:?}");
+    assert!(most[0] > 1024, "nothing was near");
+    for body in bodies {
+        let body = &world.bodies[body];
+        assert!(body.is_sleeping(), "{:?}", body.linvel());
+        assert!(
+            (0.0..0.05).contains(&body.translation().y),
+            "{:?}",
+            body.translation()
         );
     }
 }

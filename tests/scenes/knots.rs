@@ -11,7 +11,7 @@ use std::f32::consts::{PI, TAU};
 const LIMIT: usize = 900;
 
 /// Spheres along a trefoil knot, 1 m across.
-fn knot() -> Vec<MedialSphere> {
+pub fn knot() -> Vec<MedialSphere> {
     let at = |k: usize| {
         let t = TAU * k as Real / 150.0;
         let (x, z) = (
