@@ -271,7 +271,14 @@ impl State {
             let unit = parameters.length_unit;
             let speculators = Speculators::set(&plan.view, &self.effects, unit, world.bodies);
             let joints = (&*world.impulse_joints, &*world.multibody_joints);
-            let substeps = Substeps::set(&plan.view, joints, parameters, &plan.wild, world.bodies);
+            let substeps = Substeps::set(
+                &plan.view,
+                joints,
+                world.narrow_phase,
+                parameters,
+                &plan.wild,
+                world.bodies,
+            );
             report.speculative = speculators.count();
             let contacts = (&*world.colliders, &*world.narrow_phase);
             let moved = self.moved.as_deref().unwrap_or_default();

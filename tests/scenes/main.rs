@@ -48,6 +48,7 @@ mod held;
 mod impact_laws;
 mod impacts;
 mod knots;
+mod let_go;
 mod limits;
 mod linking;
 mod local_thickness;
@@ -83,6 +84,7 @@ mod solid;
 mod spawned;
 mod stairs;
 mod still;
+mod strained_joints;
 mod tapered;
 #[allow(dead_code)]
 #[path = "../../examples/factory/thread.rs"]

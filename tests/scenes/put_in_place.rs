@@ -1,26 +1,10 @@
 //! Bodies that are in each other because they were something else the step before: from then on they come apart as rapier's
 //! own do.
 
-use crate::bodies::{attached, ring};
+use crate::bodies::attached;
+use crate::let_go::{let_go, shapes};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
-
-/// A ring of 12 cones, and a capsule; as rapier's own.
-fn shapes() -> ([MedialMesh; 2], [SharedShape; 2]) {
-    let mesh = ring(12, 0.4, 0.1);
-    let (end, radius) = (Vector::X * 0.3, 0.15);
-    let part = |e: &[u32; 2]| {
-        let [a, b] = e.map(|k| mesh.spheres()[k as usize].center);
-        (Pose::IDENTITY, SharedShape::capsule(a, b, 0.1))
-    };
-    let parts = mesh.edges().iter().map(part).collect();
-    let own = [
-        SharedShape::compound(parts),
-        SharedShape::capsule(end, -end, radius),
-    ];
-    let capsule = MedialMesh::capsule(end, -end, radius).expect("a capsule");
-    ([mesh, capsule], own)
-}
 
 /// What a heap did.
 struct Heap {
@@ -93,43 +77,6 @@ fn bodies_that_get_another_shape_in_each_other_come_apart() {
     assert!(sum / 6.0 < 0.00155, "{} m deep in the mean", sum / 6.0);
 }
 
-/// How deep two rings are in each other, by rapier's own shapes: a joint with or without contacts held them so, and was
-/// removed two seconds ago.
-fn let_go(medial: bool, contacts: bool, seed: u64) -> Real {
-    let mut world = PhysicsWorld::new();
-    world.gravity = Vector::ZERO;
-    let mut pipeline = attached(&mut world);
-    let (meshes, own) = shapes();
-    let shape = match medial {
-        true => SharedShape::medial_mesh(meshes[0].clone()),
-        false => own[0].clone(),
-    };
-    let mut random = crate::random::Random(seed);
-    let poses = [0, 1].map(|_| Pose::new(random.direction() * 0.1, random.direction() * 3.0));
-    let bodies = poses.map(|pose| {
-        let collider = ColliderBuilder::new(shape.clone()).density(300.0);
-        world
-            .insert(RigidBodyBuilder::dynamic().pose(pose), collider)
-            .0
-    });
-    let joint = FixedJointBuilder::new()
-        .local_frame1(poses[0].inv_mul(&poses[1]))
-        .contacts_enabled(contacts);
-    let joint = world.insert_impulse_joint(bodies[0], bodies[1], joint);
-    for step in 0..180 {
-        if step == 60 {
-            world.remove_impulse_joint(joint);
-        }
-        match medial {
-            true => _ = pipeline.step(&mut world),
-            false => world.step(),
-        }
-    }
-    let [p, q] = bodies.map(|b| *world.bodies[b].position());
-    let contact = rapier3d::parry::query::contact(&p, &*own[0], &q, &*own[0], 0.0);
-    contact.expect("rapier knows both").map_or(0.0, |c| -c.dist)
-}
-
 /// Symptom: what a joint without contacts had held in each other was held so by the event loop once the joint was gone.
 #[test]
 fn bodies_that_a_joint_lets_go_of_in_each_other_come_apart() {
@@ -138,19 +85,6 @@ fn bodies_that_a_joint_lets_go_of_in_each_other_come_apart() {
         println!("seed {seed}: {ours} m deep, rapier's own {own}");
         assert!(ours < own.max(0.0) + 0.002, "seed {seed}: {ours} m, {own}");
     }
-}
-
-/// Symptom: the same of a joint with contacts: 3.2 cm deep in the mean, where rapier's own are 1.8. Nothing parts rings that are
-/// caught in each other quite, neither ours nor rapier's.
-#[test]
-fn rings_that_a_joint_with_contacts_lets_go_of_come_apart_as_far_as_rapiers() {
-    let mean = |medial: bool| {
-        let depths = (0..8).map(|seed| let_go(medial, true, seed).max(0.0));
-        depths.sum::<Real>() / 8.0
-    };
-    let [ours, own] = [true, false].map(mean);
-    println!("{ours} m deep in the mean, rapier's own {own}");
-    assert!(ours < own + 0.005, "{ours} {own}");
 }
 
 /// The most energy that a brick gains in a step, J/kg, after it was put across a floor 0.3 m thick on which it lay, and whether

@@ -3,8 +3,10 @@
 //! of the sub-step and `r` the vector from each centre of mass to the joint. Joints of multibodies stay closed, but
 //! turn wrong instead.
 //!
-//! Where a joint is wide open, as where much more mass hangs on light links than rapier's solver holds, many sub-steps would
-//! close it at once, and throw what it holds: what hangs together with it gets none.
+//! What hangs together with a strained joint gets none. Where a joint is wide open, as where much more mass hangs on light
+//! links than rapier's solver holds, many sub-steps would close it at once, and throw what it holds. Where a joint presses its
+//! two bodies into each other, the joint and the contact gain energy in each sub-step: with twelve more in a step chains
+//! of five links of rapier's own capsules get to 169 m/s instead of 16, in the mean of 20.
 
 use crate::math::fast_hash::FastSet;
 use crate::math::{Real, Vector};
@@ -17,6 +19,7 @@ use rapier3d::dynamics::{
     GenericJoint, ImpulseJointSet, IntegrationParameters, MultibodyJointSet, RigidBodyHandle,
     RigidBodySet,
 };
+use rapier3d::geometry::NarrowPhase;
 
 /// Length by which a joint may open in a sub-step, in units of rapier's length unit. Chains of bars of 0.4 m, four
 /// sub-steps a step, reach it at 12 rad/s.
@@ -38,6 +41,7 @@ impl Substeps {
     pub fn set(
         view: &StepView,
         (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
+        contacts: &NarrowPhase,
         parameters: &IntegrationParameters,
         wild: &WildMultibodies,
         bodies: &mut RigidBodySet,
@@ -46,7 +50,8 @@ impl Substeps {
         for part in &view.parts {
             medial[part.body] |= part.medial().is_some();
         }
-        let wide = WideOpen::find(view, (joints, multibodies), parameters.length_unit);
+        let unit = parameters.length_unit;
+        let strained = Strained::find((view, contacts, bodies), (joints, multibodies), unit);
         let mut own = Vec::new();
         let add = |handles: [RigidBodyHandle; 2], joint: &GenericJoint| {
             let [Some(&a), Some(&b)] = handles.map(|h| view.index.get(&h)) else {
@@ -62,7 +67,7 @@ impl Substeps {
             if let Some(k) = (0..2).find(free)
                 && let Some(body) = bodies.get_mut(handles[k])
                 && added > body.additional_solver_iterations()
-                && !wide.holds([a, b][k])
+                && !strained.holds([a, b][k])
             {
                 own.push((handles[k], body.additional_solver_iterations()));
                 body.set_additional_solver_iterations(added);
@@ -82,20 +87,20 @@ impl Substeps {
     }
 }
 
-/// Bodies that hang together by joints, and which of them have a joint that is wide open.
-struct WideOpen {
+/// Bodies that hang together by joints, and which of them have a joint that is wide open, or presses its bodies into each other.
+struct Strained {
     groups: Groups,
-    wide: FastSet<usize>,
+    strained: FastSet<usize>,
 }
 
-impl WideOpen {
+impl Strained {
     fn find(
-        view: &StepView,
+        (view, contacts, bodies): (&StepView, &NarrowPhase, &RigidBodySet),
         (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
         unit: Real,
     ) -> Self {
         let mut groups = Groups::default();
-        let mut wide = Vec::new();
+        let mut strained = Vec::new();
         for_each_joint(joints, multibodies, |handles, joint| {
             let [Some(&a), Some(&b)] = handles.map(|h| view.index.get(&h)) else {
                 return;
@@ -104,17 +109,20 @@ impl WideOpen {
             if is_free(&a) && is_free(&b) {
                 groups.join([a, b]);
             }
-            if joint.is_enabled() && opening(view, [a, b], joint) > WIDE * unit {
-                wide.extend([a, b].into_iter().filter(is_free));
+            let is_wide = || opening(view, [a, b], joint) > WIDE * unit;
+            let is_pressed = || joint.contacts_enabled() && overlap(contacts, bodies, handles);
+            if joint.is_enabled() && (is_wide() || is_pressed()) {
+                strained.extend([a, b].into_iter().filter(is_free));
             }
         });
-        let wide = wide.into_iter().map(|body| groups.of(body)).collect();
-        Self { groups, wide }
+        let strained = strained.into_iter();
+        let strained = strained.map(|body| groups.of(body)).collect();
+        Self { groups, strained }
     }
 
-    /// Whether something wide open hangs together with a body.
+    /// Whether a body hangs together with such a joint.
     fn holds(&self, body: usize) -> bool {
-        self.wide.contains(&self.groups.of(body))
+        self.strained.contains(&self.groups.of(body))
     }
 }
 
@@ -126,6 +134,22 @@ fn opening(view: &StepView, both: [usize; 2], joint: &GenericJoint) -> Real {
     let is_locked = |axis: usize| joint.locked_axes.bits() & (1 << axis) != 0;
     let along = |axis: usize| if is_locked(axis) { off[axis] } else { 0.0 };
     Vector::new(along(0), along(1), along(2)).length()
+}
+
+/// Whether colliders of two bodies overlap.
+fn overlap(contacts: &NarrowPhase, bodies: &RigidBodySet, both: [RigidBodyHandle; 2]) -> bool {
+    let [Some(a), Some(b)] = both.map(|handle| bodies.get(handle)) else {
+        return false;
+    };
+    let pairs = a
+        .colliders()
+        .iter()
+        .flat_map(|c| b.colliders().iter().map(move |d| (*c, *d)));
+    let mut pairs = pairs.filter_map(|(c, d)| contacts.contact_pair(c, d));
+    pairs.any(|pair| {
+        pair.find_deepest_contact()
+            .is_some_and(|(_, c)| c.dist < 0.0)
+    })
 }
 
 /// Sub-steps in a step with which a joint between two bodies opens by no more than it may.
