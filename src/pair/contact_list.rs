@@ -1,16 +1,21 @@
-//! The contacts of two bodies while a search finds them: at most [`MOST`], the nearest ones.
+//! The contacts of two bodies while a search finds them. Of very many, those that do not touch are dropped.
 //!
 //! A body that is hardly larger than rapier's prediction distance has all its primitives within reach of the other's: two
 //! creatures of 3 cm and 500 primitives each have 110,000 contacts within rapier's default of 2 cm, of which those that touch
-//! are a handful. Once there are more than [`MOST`], the nearer half stays, and the search goes on for nearer ones only.
+//! are a handful. Once there are more than [`MOST`], the nearer half stays, with all that nearly touch, and the search goes
+//! on for nearer ones only. What nearly touches is never dropped: of two plates of many slabs that lie on each other, the
+//! nearer half may be that of one side.
 
 use super::SpherePair;
 use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::ONE_DIRECTION;
 
-/// Contacts of two bodies, at most. A nut of 500 primitives on its bolt has 975.
+/// Number of contacts from which the farther ones are dropped. A nut of 500 primitives on its bolt has 975.
 const MOST: usize = 2048;
+
+/// Distance, as a share of the prediction distance, up to which a contact nearly touches.
+const TOUCHING: Real = 0.125;
 
 /// Contacts in the order in which they were found.
 pub(super) struct ContactList {
@@ -19,6 +24,10 @@ pub(super) struct ContactList {
     limit: Real,
     /// Distance beyond which none need be searched for.
     margin: f64,
+    /// Distance up to which all are kept.
+    touching: Real,
+    /// Number of contacts from which the farther ones are dropped.
+    most: usize,
 }
 
 impl ContactList {
@@ -28,6 +37,8 @@ impl ContactList {
             contacts: Vec::new(),
             limit: Real::INFINITY,
             margin: prediction,
+            touching: TOUCHING * prediction.max(0.0) as Real,
+            most: MOST,
         }
     }
 
@@ -61,24 +72,20 @@ impl ContactList {
         let limit = self.limit;
         self.contacts
             .extend(contacts.into_iter().filter(|c| c.distance <= limit));
-        if self.contacts.len() > MOST {
+        if self.contacts.len() > self.most {
             self.keep_nearer_half();
         }
     }
 
     fn keep_nearer_half(&mut self) {
         let mut distances: Vec<_> = self.contacts.iter().map(|c| c.distance).collect();
-        let (nearer, &mut limit, _) =
-            distances.select_nth_unstable_by(MOST / 2, |a, b| a.total_cmp(b));
-        // Of those that are just as far as the limit, the first ones.
-        let mut ties = MOST / 2 - nearer.iter().filter(|d| **d < limit).count();
-        self.contacts.retain(|c| {
-            let stays = c.distance < limit || c.distance == limit && ties > 0;
-            ties -= usize::from(stays && c.distance == limit);
-            stays
-        });
-        self.limit = limit;
-        self.margin = self.margin.min(f64::from(limit).max(0.0));
+        let half = distances.len() / 2;
+        let (_, &mut middle, _) = distances.select_nth_unstable_by(half, |a, b| a.total_cmp(b));
+        self.limit = middle.max(self.touching);
+        let limit = self.limit;
+        self.contacts.retain(|c| c.distance <= limit);
+        self.margin = self.margin.min(f64::from(limit));
+        self.most = MOST.max(2 * self.contacts.len());
     }
 
     /// The contacts, in the order in which they were found.

@@ -1,5 +1,5 @@
-//! Bodies whose primitives are all within the prediction distance of each other: the nearest contacts are found, and only so
-//! many. Brute force over all pairs of spheres, in `f64`, says which these are.
+//! Bodies whose primitives are all within the prediction distance of each other: the nearest contacts are found, among them all
+//! that nearly touch. Brute force over all pairs of spheres, in `f64`, says which these are.
 
 use crate::ccd::rng::Rng;
 use crate::meshes::vector;
@@ -50,8 +50,15 @@ fn of_very_many_contacts_the_nearest_are_found() {
             assert_eq!(found.len(), within, "{k}");
             complete += usize::from(within > 0);
         } else {
-            assert!((1024..=2048).contains(&found.len()), "{k}: {}", found.len());
-            shortened += 1;
+            let touch = |d: f64| d < f64::from(prediction) / 8.0 - 1.0e-7;
+            let touching = expected.iter().filter(|(_, d)| touch(*d)).count();
+            let most = 2048.max(2 * touching + 1);
+            assert!(
+                (1024.max(touching)..=most).contains(&found.len()),
+                "{k}: {} of {within}, {touching} touch",
+                found.len()
+            );
+            shortened += usize::from(found.len() < within);
         }
         let farthest = found
             .iter()

@@ -3,6 +3,7 @@
 use crate::bodies::*;
 use crate::heaps::{Findings, loops, throw};
 use crate::knots;
+use crate::random::Random;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
@@ -277,6 +278,49 @@ fn bodies_of_three_centimetres_have_a_bounded_number_of_contacts() {
             (0.0..0.05).contains(&body.translation().y),
             "{:?}",
             body.translation()
+        );
+    }
+}
+
+/// A plate of 28 by 28 spheres, with two slabs between each four.
+fn dense_plate() -> MedialMesh {
+    const SIDE: u32 = 28;
+    let sphere = |k: u32| {
+        let [x, z] = [k % SIDE, k / SIDE].map(|i| i as Real / (SIDE - 1) as Real - 0.5);
+        MedialSphere::new(Vector::new(x, 0.0, z), 0.03)
+    };
+    let corners = (0..SIDE * SIDE).filter(|k| k % SIDE < SIDE - 1 && k / SIDE < SIDE - 1);
+    let slabs = corners.flat_map(|k| [[k, k + 1, k + SIDE], [k + 1, k + SIDE + 1, k + SIDE]]);
+    let spheres = (0..SIDE * SIDE).map(sphere).collect();
+    MedialMesh::new(spheres, vec![], slabs.collect()).expect("a plate")
+}
+
+/// Which contacts of very many are left out must not be those of one side: plates of 1,458 slabs on each other have some 7,000
+/// that touch.
+#[test]
+fn dense_plates_lie_still_on_each_other() {
+    let plate = dense_plate();
+    for seed in 0..4 {
+        let mut random = Random(seed);
+        let mut world = PhysicsWorld::new();
+        world.insert_collider(ColliderBuilder::medial_mesh(plate.clone()), None);
+        let [x, z] = [0, 1].map(|_| random.within(-0.02, 0.02));
+        let turn = Vector::Y * random.within(-0.3, 0.3);
+        let body = RigidBodyBuilder::dynamic().pose(Pose::new(Vector::new(x, 0.061, z), turn));
+        let collider = ColliderBuilder::medial_mesh(plate.clone()).density(1000.0);
+        let (body, _) = world.insert(body, collider);
+        let mut pipeline = pipeline(&mut world, u64::MAX);
+        let mut most = 0;
+        let asleep = (0..60).find(|_| {
+            most = most.max(pipeline.step(&mut world).contacts);
+            world.bodies[body].is_sleeping()
+        });
+        let height = world.bodies[body].translation().y;
+        println!("seed {seed}: asleep after {asleep:?} steps at {height} m, {most} contacts");
+        assert!(most > 2048, "seed {seed}: {most} contacts");
+        assert!(
+            asleep.is_some() && height > 0.0595,
+            "seed {seed}: {height} m"
         );
     }
 }

@@ -20,7 +20,7 @@ use crate::math::fast_hash::FastSet;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
-use crate::rapier::impacts::pinched::{one_gives_way, pinched};
+use crate::rapier::impacts::pinched::{one_gives_way, pinched, pressed_by_joints};
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::step_view::{Part, StepView};
@@ -241,7 +241,8 @@ impl InitialOverlaps {
                 None => deep.is_sunk && !(is_met && self.ends.is_empty()),
             }
         };
-        let pinched = pinched(view, deep, rules);
+        let mut pinched = pinched(view, deep);
+        pinched.extend(pressed_by_joints(view, deep, rules));
         let is_left = |pair: &[usize; 2], deep: &Deep| {
             self.left.contains(&handles(*pair))
                 || was_put(*pair, deep)

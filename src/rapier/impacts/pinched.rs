@@ -6,14 +6,14 @@
 //! have in a step.
 //! So its deep pairs are left to rapier's solver, which divides the depth between the two sides.
 
+use crate::math::Real;
 use crate::math::fast_hash::FastMap;
-use crate::rapier::impacts::deep_pairs::DeepPairs;
-use crate::rapier::view::all_joints::for_each_joint;
+use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
+use crate::rapier::view::all_joints::{for_each_joint, opening};
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::groups::Groups;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
-use std::collections::BTreeSet;
 
 /// The one of two bodies that gives way to the other, and the other: a free one to one that is not, or to one of a higher
 /// dominance group of rapier; `None` if each gives way.
@@ -37,108 +37,122 @@ pub fn one_gives_way(view: &StepView, pair: [usize; 2]) -> bool {
 }
 
 /// Watched pairs of bodies that are pressed, by themselves or through each other, against two that do not give way to them.
-/// One of these two moves, and with one of them a body is below the floor; with the other it need not be as deep as to be
-/// watched. Or one of the bodies hangs on one of the two by joints, and any pair is below the floor.
-pub fn pinched(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
-    let is_below = |pair: &[usize; 2]| deep.watched.get(pair).is_some_and(|deep| deep.way > 0.0);
-    if !deep.watched.keys().any(is_below) {
-        return Vec::new();
-    }
+/// One of these two moves, and with one of them the bodies are below the floor; in the other they need not be as deep as to be
+/// watched.
+pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
     let free = |b: &usize| view.bodies[*b].kind == Kind::Free;
+    let is_below = |pair: &[usize; 2]| deep.watched.get(pair).is_some_and(|deep| deep.way > 0.0);
     let sunk = deep.sunk.iter();
-    let sunk = sunk.map(|pair| (*pair, pair.map(|k| view.parts[k].body)));
-    let sunk: Vec<_> = sunk.filter(|(_, bodies)| bodies.iter().any(free)).collect();
+    let sunk = sunk.map(|pair| (*pair, pair.map(|k| view.parts[k].body), is_below(pair)));
+    let sunk: Vec<_> = sunk
+        .filter(|(_, bodies, _)| bodies.iter().any(free))
+        .collect();
     let mut groups = Groups::default();
-    for (_, bodies) in &sunk {
+    for (_, bodies, _) in &sunk {
         if yielding(view, *bodies).is_none() {
             groups.join(*bodies);
         }
     }
-    let hands = Hands::find(view, rules);
     let mut held: FastMap<usize, Held> = FastMap::default();
-    for (pair, bodies) in &sunk {
-        let gives_way = yielding(view, *bodies);
-        for body in bodies.iter().filter(|b| free(b)) {
-            let held = held.entry(groups.of(*body)).or_default();
-            held.overlaps |= is_below(pair);
-            held.hands.extend(hands.of(*body));
-        }
-        if let Some([body, jaw]) = gives_way {
+    for (_, bodies, is_below) in &sunk {
+        if let Some([body, jaw]) = yielding(view, *bodies) {
             let held = held.entry(groups.of(body)).or_default();
-            held.is_below |= is_below(pair);
+            held.is_below |= is_below;
             held.moves |= view.bodies[jaw].kind != Kind::Fixed;
-            held.jaws.insert(jaw);
+            held.is_pinched |= held.jaw.is_some_and(|other| other != jaw);
+            held.jaw = Some(jaw);
         }
     }
-    held.retain(|_, held| held.is_pressed());
-    let is_pressed = |bodies: [usize; 2]| bodies.iter().any(|b| held.contains_key(&groups.of(*b)));
+    held.retain(|_, held| held.is_pinched && held.moves && held.is_below);
+    let is_pinched = |bodies: [usize; 2]| bodies.iter().any(|b| held.contains_key(&groups.of(*b)));
     let watched = sunk
         .iter()
-        .filter(|(pair, _)| deep.watched.contains_key(pair));
-    let pairs = watched.filter(|(_, bodies)| is_pressed(*bodies));
-    pairs.map(|(pair, _)| *pair).collect()
+        .filter(|(pair, ..)| deep.watched.contains_key(pair));
+    let pairs = watched.filter(|(_, bodies, _)| is_pinched(*bodies));
+    pairs.map(|(pair, ..)| *pair).collect()
 }
 
-/// What holds a group of bodies that are sunk in each other.
-#[derive(Default)]
-struct Held {
-    /// Bodies that they are sunk in and that do not give way.
-    jaws: BTreeSet<usize>,
-    /// Whether one of these moves.
-    moves: bool,
-    /// Bodies that move and do not give way, and on which one of the group hangs.
-    hands: BTreeSet<usize>,
-    /// Whether one is below the floor with a jaw.
-    is_below: bool,
-    /// Whether one is below the floor with any body.
-    overlaps: bool,
-}
-
-impl Held {
-    /// Whether two that do not give way press the group, of which one moves.
-    fn is_pressed(&self) -> bool {
-        let is_between = |hand| self.jaws.iter().any(|jaw| jaw != hand);
-        let by_hand = self.hands.iter().any(is_between);
-        self.jaws.len() > 1 && self.moves && self.is_below || by_hand && self.overlaps
+/// Watched pairs below the floor that joints press together as jaws do, because one of the two bodies hangs by joints on a third
+/// that moves and does not give way, as on a hand: those of which the other body does not give way, and those of which it is
+/// in something that does not. These only where the hand's joint is open by more than the pair would have to part: a
+/// hand that holds a chain of rings over the ground presses nothing. Ropes and springs, which lock no axis, do not count.
+pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
+    let is_below = |(_, deep): &(&[usize; 2], &Deep)| deep.way > 0.0;
+    let below: Vec<_> = deep.watched.iter().filter(is_below).collect();
+    if below.is_empty() {
+        return Vec::new();
     }
+    let hands = Hands::find(view, rules);
+    let bodies = |pair: &[usize; 2]| pair.map(|k| view.parts[k].body);
+    let sunk = deep.sunk.iter();
+    let stuck: Vec<_> = sunk
+        .filter_map(|pair| yielding(view, bodies(pair)))
+        .collect();
+    let is_pressed = |pair: &[usize; 2], way: Real| {
+        let [a, b] = bodies(pair);
+        match yielding(view, [a, b]) {
+            Some([body, jaw]) => hands.hold(body, jaw, 0.0),
+            None => [[a, b], [b, a]].iter().any(|[held, other]| {
+                let mut jaws = stuck.iter().filter(|[body, _]| body == other);
+                jaws.any(|[_, jaw]| hands.hold(*held, *jaw, way))
+            }),
+        }
+    };
+    let pressed = below.into_iter();
+    let pressed = pressed.filter(|(pair, deep)| is_pressed(pair, deep.way));
+    pressed.map(|(pair, _)| *pair).collect()
 }
 
-/// Bodies that move and do not give way, and what hangs on them by joints, which press it as a jaw does. Ropes and springs,
-/// which lock no axis, do not.
+/// What hangs by joints on bodies that move and do not give way.
 struct Hands {
+    /// Free bodies that joints hold together.
     groups: Groups,
-    /// The hands of each group of free bodies.
-    of_group: FastMap<usize, Vec<usize>>,
+    /// A body that hangs on a hand, the hand, and the length by which their joint is open.
+    held: Vec<([usize; 2], Real)>,
 }
 
 impl Hands {
     fn find(view: &StepView, rules: &Rules) -> Self {
         let mut groups = Groups::default();
-        let mut hands = Vec::new();
+        let mut held = Vec::new();
         let joints = (rules.impulse_joints, rules.multibody_joints);
         for_each_joint(joints.0, joints.1, |handles, joint| {
-            let holds = joint.is_enabled() && !joint.locked_axes.is_empty();
-            if let [Some(&a), Some(&b)] = handles.map(|handle| view.index.get(&handle))
-                && holds
-            {
-                match [a, b].map(|k| view.bodies[k].kind) {
-                    [Kind::Free, Kind::Free] => groups.join([a, b]),
-                    [Kind::Free, Kind::Driven] => hands.push([a, b]),
-                    [Kind::Driven, Kind::Free] => hands.push([b, a]),
-                    _ => {}
-                }
+            let [Some(&a), Some(&b)] = handles.map(|handle| view.index.get(&handle)) else {
+                return;
+            };
+            if !joint.is_enabled() || joint.locked_axes.is_empty() {
+                return;
+            }
+            match [a, b].map(|k| view.bodies[k].kind) {
+                [Kind::Free, Kind::Free] => groups.join([a, b]),
+                [Kind::Free, Kind::Driven] => held.push(([a, b], opening(view, [a, b], joint))),
+                [Kind::Driven, Kind::Free] => held.push(([b, a], opening(view, [a, b], joint))),
+                _ => {}
             }
         });
-        let mut of_group: FastMap<usize, Vec<usize>> = FastMap::default();
-        for [held, hand] in hands {
-            of_group.entry(groups.of(held)).or_default().push(hand);
-        }
-        Self { groups, of_group }
+        Self { groups, held }
     }
 
-    /// The hands on which a body hangs.
-    fn of(&self, body: usize) -> &[usize] {
-        let of_group = self.of_group.get(&self.groups.of(body));
-        of_group.map_or(&[], Vec::as_slice)
+    /// Whether a body hangs on a hand other than `jaw`, by a joint that is open by more than `way`, or by any if that is 0.
+    fn hold(&self, body: usize, jaw: usize, way: Real) -> bool {
+        let mut held = self.held.iter();
+        held.any(|([held, hand], opening)| {
+            *hand != jaw
+                && self.groups.of(*held) == self.groups.of(body)
+                && (way == 0.0 || *opening > way)
+        })
     }
+}
+
+/// What holds a group of bodies.
+#[derive(Default)]
+struct Held {
+    /// One of the bodies that do not give way.
+    jaw: Option<usize>,
+    /// Whether there is another.
+    is_pinched: bool,
+    /// Whether one of them moves.
+    moves: bool,
+    /// Whether one is below the floor with them.
+    is_below: bool,
 }
