@@ -11,8 +11,9 @@
 use crate::math::Real;
 use crate::math::fast_hash::FastSet;
 use crate::rapier::host::multibody_energy::WildMultibodies;
-use crate::rapier::view::all_joints::{for_each_joint, opening};
+use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::groups::Groups;
+use crate::rapier::view::joint_opening::opening;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{

@@ -9,9 +9,10 @@
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
 use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
-use crate::rapier::view::all_joints::{for_each_joint, opening};
+use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::groups::Groups;
+use crate::rapier::view::joint_opening::opening;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 

@@ -1,7 +1,7 @@
 //! View of the world that a step is taken with, made before rapier's step: bodies and their motions, colliders, who may
 //! meet whom.
 //!
-//! - The view itself: `step_view.rs`, of bodies (`motion.rs`), colliders and joints (`all_joints.rs`, `groups.rs`); medial ones: `medial_colliders.rs`.
+//! - The view itself: `step_view.rs`, of bodies (`motion.rs`), colliders and joints (`all_joints.rs`, `joint_opening.rs`, `groups.rs`); medial ones: `medial_colliders.rs`.
 //! - Who may meet whom: `eligible_pairs.rs`, `filter_answers.rs` (hooks of the user), `enabled.rs`,
 //!   `overlapping_boxes.rs`.
 //! - How fast they meet: `meeting_speed.rs`. How they resist: `inertia.rs`. Whether there is anything to do:
@@ -14,6 +14,7 @@ pub(crate) mod enabled;
 pub(crate) mod filter_answers;
 pub(crate) mod groups;
 pub(crate) mod inertia;
+pub(crate) mod joint_opening;
 pub(crate) mod link_angles;
 pub(crate) mod medial_colliders;
 pub(crate) mod meeting_speed;
