@@ -28,8 +28,9 @@ const SPLITS: u8 = 3;
 const FAILED: u32 = 256;
 
 /// Contacts of two bodies at fixed poses: pairs of spheres within `prediction` (a length) of each other, all of them up to
-/// 2,048, and of more the nearest, with all within an eighth of `prediction`. `pos12` is the pose of the second body in the frame of the first. Computed in double
-/// precision; result and order depend on the input only. A pose that is not finite gives no contacts.
+/// 2,048, and of more the nearest, with all within an eighth of `prediction`. `pos12` is the pose of the second body in
+/// the frame of the first. Computed in double precision; result and order depend on the input only. A pose that is not
+/// finite gives no contacts.
 pub fn contacts(
     body1: &impl PrimitiveTree,
     body2: &impl PrimitiveTree,

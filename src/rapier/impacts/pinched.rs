@@ -75,7 +75,7 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
 
 /// Watched pairs below the floor that joints press together as jaws do, because one of the two bodies hangs by joints on a third
 /// that moves and does not give way, as on a hand: those of which the other body does not give way, and those of which it is
-/// in something that does not. These only where the hand's joint is open by more than the pair would have to part: a
+/// in something that does not. These only where the hand's joint is open by as much as the pair would have to part: a
 /// hand that holds a chain of rings over the ground presses nothing. Ropes and springs, which lock no axis, do not count.
 pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
     let is_below = |(_, deep): &(&[usize; 2], &Deep)| deep.way > 0.0;
@@ -134,13 +134,11 @@ impl Hands {
         Self { groups, held }
     }
 
-    /// Whether a body hangs on a hand other than `jaw`, by a joint that is open by more than `way`, or by any if that is 0.
+    /// Whether a body hangs on a hand other than `jaw`, by a joint that is open by `way` or more.
     fn hold(&self, body: usize, jaw: usize, way: Real) -> bool {
         let mut held = self.held.iter();
         held.any(|([held, hand], opening)| {
-            *hand != jaw
-                && self.groups.of(*held) == self.groups.of(body)
-                && (way == 0.0 || *opening > way)
+            *hand != jaw && self.groups.of(*held) == self.groups.of(body) && *opening >= way
         })
     }
 }
