@@ -35,6 +35,26 @@ struct Strain {
 }
 
 impl Strain {
+    /// Of some steps, right before each of which `drive` moves what it wants.
+    fn of(
+        world: &mut PhysicsWorld,
+        medial: bool,
+        steps: usize,
+        mut drive: impl FnMut(&mut PhysicsWorld),
+    ) -> Self {
+        let mut pipeline = attached(world);
+        let mut strain = Self::default();
+        for _ in 0..steps {
+            drive(world);
+            match medial {
+                true => _ = pipeline.step(world),
+                false => world.step(),
+            }
+            strain.look(world);
+        }
+        strain
+    }
+
     fn look(&mut self, world: &PhysicsWorld) {
         for (_, body) in world.bodies.iter().filter(|(_, b)| b.is_dynamic()) {
             self.fastest = self.fastest.max(body.linvel().length());
@@ -69,7 +89,6 @@ fn means(seeds: u64, scene: fn(bool, u64) -> Strain) -> [Strain; 2] {
 fn hanging(medial: bool, seed: u64) -> Strain {
     let mut random = Random(seed);
     let mut world = PhysicsWorld::new();
-    let mut pipeline = attached(&mut world);
     let tilt = random.within(0.8, 1.1);
     let down = Vector::new(tilt.sin(), -tilt.cos(), random.within(-0.05, 0.05)).normalize();
     let turn = Rotation::from_rotation_arc(Vector::NEG_X, down);
@@ -85,15 +104,7 @@ fn hanging(medial: bool, seed: u64) -> Strain {
         world.insert_impulse_joint(above.0, body, joint);
         above = (body, -ANCHOR);
     }
-    let mut strain = Strain::default();
-    for _ in 0..300 {
-        match medial {
-            true => _ = pipeline.step(&mut world),
-            false => world.step(),
-        }
-        strain.look(&world);
-    }
-    strain
+    Strain::of(&mut world, medial, 300, |_| ())
 }
 
 /// Symptom: jointed links that touch each other came to 66 m/s, where rapier's own came to 26. Cause: what joints hold and turns
@@ -109,7 +120,6 @@ fn jointed_rings_in_each_other_get_no_faster_than_rapiers() {
 fn dragged(medial: bool, seed: u64) -> Strain {
     let mut random = Random(seed);
     let mut world = PhysicsWorld::new();
-    let mut pipeline = attached(&mut world);
     world.insert_collider(plateau(), None);
     let wall = ColliderBuilder::cuboid(0.1, 1.2, 5.0).translation(Vector::new(-1.3, 1.2, 0.0));
     world.insert_collider(wall, None);
@@ -130,18 +140,11 @@ fn dragged(medial: bool, seed: u64) -> Strain {
     let hand = world.insert_body(RigidBodyBuilder::kinematic_position_based().translation(at));
     let joint = SphericalJointBuilder::new().local_anchor2(ANCHOR);
     world.insert_impulse_joint(hand, hung, joint);
-    let mut strain = Strain::default();
-    for _ in 0..45 {
+    Strain::of(&mut world, medial, 45, |world| {
         let fall = if at.y > 0.1 { -0.64 } else { 0.0 };
         at += Vector::new(-1.73, fall, 0.3) / 60.0;
         world.bodies[hand].set_next_kinematic_translation(at);
-        match medial {
-            true => _ = pipeline.step(&mut world),
-            false => world.step(),
-        }
-        strain.look(&world);
-    }
-    strain
+    })
 }
 
 /// Symptom: the rings stood still while the hand moved on, by up to a metre, and then left at up to 145 m/s. Cause: the event
