@@ -13,22 +13,16 @@
 
 use super::apart::{end_along, ends_hold};
 use super::deepening::given;
-use super::hull_gap::{HullGap, PlacedHull, hull_gap, nearest_points};
+use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::path_ends::{held_on_paths, path_ends};
-use super::piece_contact::{
-    Look, Nearest, Pieces, PiecesMet, farthest, is_blunt, nearest_primitive, patch, placed,
-};
+use super::piece_contact::{Look, Nearest, Pieces, PiecesMet, is_blunt, patch, placed};
 use super::primitive_tree::{PrimitiveTree, thickness};
 use super::search::Search;
 use crate::elementary::InitialContact;
 use crate::elementary::bracket::Bracket;
-use crate::elementary::distance::signed_distance_along;
 use crate::elementary::penetration::gap_along;
 use crate::elementary::test_list::{OwnedFeatures, for_each_test};
-use crate::math::lane::Vec3;
-use crate::math::motion::Frame;
 use crate::math::tolerance::ROUNDING_ULPS;
-use crate::medial::MedialSphere;
 
 /// Depth of two solid pieces in units of the thickness of the thinner, from which the shortest way apart may lead on through:
 /// there the middles of two alike pass each other.
@@ -48,9 +42,6 @@ const DEEPEST_IN_SURFACE: f64 = 0.75;
 /// How much less than the gap at which pieces meet a step of the search aims at, in units of the tolerance. At 1 it would
 /// be the target distance itself, and what comes to it no nearer would not be found free.
 const PAST: f64 = 0.99;
-
-/// How often the nearest primitives are asked for a better direction at most.
-const ROUNDS: usize = 3;
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Looks at two nodes, proven free until a time, as convex pieces.
@@ -95,12 +86,16 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let at = if is_known_apart { time } else { 0.0 };
         self.looks += 1;
         let hulls = self.placed(nodes, at);
-        let mut found = hull_gap(hulls.each_ref(), touching);
+        let (mut found, mut known) = (hull_gap(hulls.each_ref(), touching), None);
         if !is_known_apart && found.gap <= touching {
-            by?;
+            // How deep they are in each other their primitives say.
+            if by.is_none() && (found.gap <= 0.0 || depth > 0.0) {
+                return None;
+            }
             // Where parry was not asked, no direction has more.
             if found.nearest.is_some() {
-                found = self.nearest(nodes, hulls.each_ref(), found, at).hull;
+                let near = self.nearest(nodes, hulls.each_ref(), found, at);
+                (found, known) = (near.hull, Some((at, near)));
             }
         }
         let touches = !is_known_apart && found.gap <= touching;
@@ -115,18 +110,19 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         } else {
             (DEEPEST_IN_SURFACE, THROUGH_SURFACE)
         };
-        let contact = match touches && found.gap <= touching - depth {
-            false => touching - depth,
-            true if by == Some(f64::INFINITY) => {
+        let contact = match by.filter(|_| touches && found.gap <= touching - depth) {
+            None => touching - depth,
+            Some(f64::INFINITY) => {
                 return Some(Pieces {
                     contact: f64::NEG_INFINITY,
                     touched: false,
                     direction: found.direction,
+                    known,
                 });
             }
-            true => {
+            Some(by) => {
                 let left = through * thickness + found.gap;
-                found.gap - given(by?, left.max(0.0), self.earliest.limits.tolerance)
+                found.gap - given(by, left.max(0.0), self.earliest.limits.tolerance)
             }
         };
         if -contact > deepest * thickness {
@@ -141,6 +137,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             contact,
             touched,
             direction: found.direction,
+            known,
         })
     }
 
@@ -154,6 +151,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     ) -> Look {
         let mut free = self.pieces_held_until(swept, nodes, pieces, time);
         let mut found = None;
+        let mut known = pieces.known.take().filter(|(at, _)| *at == time);
         // First any direction that keeps them apart now, then that of the largest gap.
         for is_last in [false, true] {
             match free {
@@ -161,20 +159,27 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 Some(free) if !self.soon(free, time) => return Look::FreeUntil(free),
                 Some(_) => {}
             }
-            self.looks += 1;
+            let known = known.take();
+            let is_last = is_last || known.is_some();
+            self.looks += u64::from(known.is_none());
             let placed = self.placed(nodes, time);
             let [a, b] = placed.each_ref().map(|hull| &hull.spheres[..]);
             let before = gap_along(a, b, pieces.direction);
             let enough = if is_last { f64::MAX } else { pieces.contact };
-            // What was not enough is the largest that can be found.
-            let hull = match found {
-                Some(hull) => hull,
-                None => hull_gap(placed.each_ref(), enough),
-            };
-            found = (hull.gap <= enough).then_some(hull);
-            let mut near = match is_last {
-                false => Nearest::of(hull),
-                true => self.nearest(nodes, placed.each_ref(), hull, time),
+            let mut near = match known {
+                Some((_, near)) => near,
+                None => {
+                    // What was not enough is the largest that can be found.
+                    let hull = match found {
+                        Some(hull) => hull,
+                        None => hull_gap(placed.each_ref(), enough),
+                    };
+                    found = (hull.gap <= enough).then_some(hull);
+                    match is_last {
+                        false => Nearest::of(hull),
+                        true => self.nearest(nodes, placed.each_ref(), hull, time),
+                    }
+                }
             };
             if before > near.hull.gap {
                 (near.hull.gap, near.hull.direction) = (before, pieces.direction);
@@ -190,7 +195,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                     Some(primitives) => Look::Met(PiecesMet::of(
                         nodes,
                         placed.each_ref(),
-                        (primitives, &near.hull),
+                        (primitives, near.distance, &near.hull),
                         self.earliest.limits.tolerance,
                     )),
                     None => Look::Split,
@@ -205,8 +210,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         }
     }
 
-    /// The largest gap of two pieces at a time that can be found, from that of their hulls on, with a pair of primitives
-    /// that are about nearest.
+    /// How near two pieces are at a time, from the gap of their hulls on.
     fn nearest(
         &self,
         nodes: [u32; 2],
@@ -214,47 +218,14 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         hull: HullGap,
         time: f64,
     ) -> Nearest {
-        let [a, b] = hulls.map(|hull| &hull.spheres[..]);
-        let mut near = Nearest::of(nearest_points(hulls, hull));
-        let Some(mut points) = near.hull.nearest else {
-            return near;
-        };
-        let [first, second] = [0, 1].map(|k| self.motions[k].frame(time));
-        for _ in 0..ROUNDS {
-            let [p, q] = [first.local(points[0]), second.local(points[1])];
-            let pair = [
-                nearest_primitive(self.sides.0.body, nodes[0], p),
-                nearest_primitive(self.sides.1.body, nodes[1], q),
-            ];
-            if near.primitives == Some(pair) {
-                break;
-            }
-            let (of_a, m) = self.sides.0.body.primitive(pair[0]);
-            let (of_b, n) = self.sides.1.body.primitive(pair[1]);
-            let place = |frame: &Frame<f64>, s: MedialSphere| {
-                (
-                    frame.point(Vec3::from_vector(s.center)),
-                    f64::from(s.radius),
-                )
-            };
-            let (of_a, of_b) = (
-                of_a.map(|s| place(&first, s)),
-                of_b.map(|s| place(&second, s)),
-            );
-            let (distance, direction) =
-                signed_distance_along(&of_a[..m.spheres], &of_b[..n.spheres]);
-            if distance < near.distance {
-                (near.distance, near.primitives) = (distance, Some(pair));
-            }
-            let Some(n) = direction else { break };
-            let gap = gap_along(a, b, n);
-            if gap <= near.hull.gap {
-                break;
-            }
-            (near.hull.gap, near.hull.direction) = (gap, n);
-            points = [farthest(a, n), farthest(b, -n)];
-        }
-        near
+        let frames = [0, 1].map(|k| self.motions[k].frame(time));
+        let bodies = (self.sides.0.body, self.sides.1.body);
+        Nearest::search(
+            (bodies, nodes),
+            (hulls, hull),
+            |k, p| frames[k].point(p),
+            |k, p| frames[k].local(p),
+        )
     }
 
     /// Time until which the direction tried last keeps two pieces from meeting; `None` if until the end.
@@ -305,7 +276,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 let near = self.nearest(nodes, placed.each_ref(), hull, 0.0);
                 let primitives = near.primitives.unwrap_or(met.primitives);
                 let tolerance = self.earliest.limits.tolerance;
-                let found = (primitives, &near.hull);
+                let found = (primitives, near.distance, &near.hull);
                 (
                     PiecesMet::of(nodes, placed.each_ref(), found, tolerance),
                     0.0,
@@ -325,7 +296,10 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let Some(test) = some_test else {
             return true;
         };
-        let bracket = Bracket::met(&self.earliest.limits, time, met.gap - self.target);
+        let mut bracket = Bracket::met(&self.earliest.limits, time, met.gap - self.target);
+        if time == 0.0 && self.initial_contact == InitialContact::Stop {
+            bracket.start_distance = met.distance - self.target;
+        }
         let goes_on = self
             .earliest
             .take(test, bracket, self.earliest.limits.start, primitives);

@@ -52,8 +52,10 @@ pub fn near_spheres(
         return (None, counts);
     }
     let place = Placement::new(pos12);
-    let mut best: Option<SpherePair> = None;
-    let mut limit = f64::from(max_distance);
+    let mut best = Best {
+        pair: None,
+        limit: max_distance.into(),
+    };
     // Directions tell little of what is far.
     let near = if body1.roots() > 0 && max_distance < body1.bound(0).1 {
         outline::near(body1, body2, |p| place.point(p), max_distance)
@@ -79,7 +81,7 @@ pub fn near_spheres(
     }
     let mut hulls = Hulls::new((body1, body2), &place);
     while let Some(mut e) = heap.pop() {
-        if e.bound > limit {
+        if e.bound > best.limit || (best.pair.is_some() && wanted == Wanted::Any) {
             break;
         }
         let [i, j] = e.nodes;
@@ -88,30 +90,31 @@ pub fn near_spheres(
         }
         if !e.of_hulls {
             counts.nodes += 1;
-            e.bound = e.bound.max(hulls.gap(e.nodes, limit));
+            e.bound = e.bound.max(hulls.gap(e.nodes, best.limit));
             e.of_hulls = true;
             if heap.peek().is_some_and(|next| *next > e) {
                 heap.push(e);
                 continue;
             }
-            if e.bound > limit {
+            if e.bound > best.limit {
                 break;
+            }
+        }
+        if let Some(near) = hulls.pieces_nearest(e.nodes, best.limit) {
+            if let Some(pair) = near.primitives {
+                best.try_pair(PrimitivePair::new(body1, body2, pair, &place), &mut counts);
+            }
+            // The answer is in single precision.
+            if near.hull.gap >= best.limit * (1.0 - f64::from(Real::EPSILON)) {
+                continue;
             }
         }
         match (body1.kind(i), body2.kind(j)) {
             (NodeKind::Primitive(p), NodeKind::Primitive(q)) => {
-                let mut found = ContactList::new(limit);
-                let pair = PrimitivePair::new(body1, body2, [p, q], &place);
-                pair.contacts(&mut found, &mut counts);
-                for c in found.into_contacts() {
-                    if f64::from(c.distance) <= limit {
-                        limit = c.distance.into();
-                        best = Some(c);
-                    }
-                }
-                if best.is_some() && wanted == Wanted::Any {
-                    break;
-                }
+                best.try_pair(
+                    PrimitivePair::new(body1, body2, [p, q], &place),
+                    &mut counts,
+                );
             }
             (NodeKind::Nodes(c, d), other)
                 if e.first_is_larger || matches!(other, NodeKind::Primitive(_)) =>
@@ -123,7 +126,27 @@ pub fn near_spheres(
             (NodeKind::Nodes(..), NodeKind::Primitive(_)) => {}
         }
     }
-    (best, counts)
+    (best.pair, counts)
+}
+
+/// The nearest pair of spheres so far.
+struct Best {
+    pair: Option<SpherePair>,
+    /// Its distance, or the largest that counts.
+    limit: f64,
+}
+
+impl Best {
+    /// Takes the nearest spheres of two primitives, if no others are nearer.
+    fn try_pair(&mut self, pair: PrimitivePair, counts: &mut Counts) {
+        let mut found = ContactList::new(self.limit);
+        pair.contacts(&mut found, counts);
+        for c in found.into_contacts() {
+            if f64::from(c.distance) <= self.limit {
+                (self.pair, self.limit) = (Some(c), c.distance.into());
+            }
+        }
+    }
 }
 
 /// An entry of the queue: two nodes with a lower bound of their distance, the nearest first.

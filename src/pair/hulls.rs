@@ -7,6 +7,7 @@ use super::contact_list::ContactList;
 use super::face_contacts::{add_nearest, face_contacts};
 use super::first_contact::Counts;
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
+use super::piece_contact::Nearest;
 use super::placement::Placement;
 use super::primitive_pair::PrimitivePair;
 use super::primitive_tree::{PrimitiveTree, thickness};
@@ -173,6 +174,32 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
                 is_deep.then(|| self.deep_contacts([i, j], found, margin, counts))
             }
         }
+    }
+
+    /// How near what two nodes hold is, if it is convex pieces, and they are within `margin` of each other and apart. Farther
+    /// ones have a gap beyond it and no primitives.
+    pub(super) fn pieces_nearest(&mut self, nodes: [u32; 2], margin: f64) -> Option<Nearest> {
+        let ((first, second), place) = (self.bodies, self.place);
+        let pieces = [first.convex_piece(nodes[0]), second.convex_piece(nodes[1])];
+        let is_piece = pieces.iter().any(Option::is_some);
+        if !(is_piece && first.is_convex(nodes[0]) && second.is_convex(nodes[1])) {
+            return None;
+        }
+        let hulls = self.pieces(nodes);
+        let hull = hull_gap(hulls, margin);
+        if hull.gap > margin {
+            return Some(Nearest::of(hull));
+        }
+        if hull.gap <= 0.0 {
+            return None;
+        }
+        let taken_back = |p| Vec3::from_vector(place.inverse_point(p));
+        Some(Nearest::search(
+            ((first, second), nodes),
+            (hulls, hull),
+            |k, p| [p, place.placed(p)][k],
+            |k, p| [p, taken_back(p)][k],
+        ))
     }
 
     /// Contacts of a convex piece and a primitive that are deep in each other: those of the piece's own primitives along which

@@ -2,14 +2,19 @@
 //! where faces of them lie on each other, so that what falls flat is struck evenly, or else at their nearest points.
 
 use super::face_contacts::{FacingCorner, FacingFaces, facing_faces};
-use super::hull_gap::{HullGap, PlacedHull};
+use super::hull_gap::{HullGap, PlacedHull, nearest_points};
 use super::patch::Patch;
 use super::primitive_tree::PrimitiveTree;
-use crate::elementary::distance::{Ball, signed_distance};
+use crate::elementary::distance::{Ball, signed_distance, signed_distance_along};
+use crate::elementary::penetration::gap_along;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
+use crate::medial::MedialSphere;
 use crate::medial::thickness;
 use crate::medial::tree::NodeKind;
+
+/// How often the nearest primitives are asked for a better direction at most.
+const ROUNDS: usize = 3;
 
 /// Two pieces that are looked at as a whole.
 #[derive(Clone, Copy)]
@@ -20,6 +25,8 @@ pub(super) struct Pieces {
     pub(super) touched: bool,
     /// The direction tried last.
     pub(super) direction: Vec3<f64>,
+    /// How near they are at a time, where that is known and was not looked at yet.
+    pub(super) known: Option<(f64, Nearest)>,
 }
 
 /// Where two pieces met, in the frame of the motions.
@@ -29,6 +36,8 @@ pub(super) struct PiecesMet {
     pub(super) nodes: [u32; 2],
     /// The primitives of them that are about nearest.
     pub(super) primitives: [u32; 2],
+    /// Signed distance of these then, never less than that of the bodies.
+    pub(super) distance: f64,
     /// Gap of their hulls then, a length.
     pub(super) gap: f64,
     /// The direction of that gap, of length 1, from the first to the second.
@@ -44,13 +53,14 @@ impl PiecesMet {
     pub(super) fn of(
         nodes: [u32; 2],
         hulls: [&PlacedHull; 2],
-        (primitives, found): ([u32; 2], &HullGap),
+        (primitives, distance, found): ([u32; 2], f64, &HullGap),
         tolerance: f64,
     ) -> Self {
         let (patch, of) = patch(hulls, found.direction, found.gap, tolerance);
         Self {
             nodes,
             primitives,
+            distance,
             gap: found.gap,
             normal: found.direction,
             of,
@@ -103,6 +113,7 @@ pub(super) fn patch(
 }
 
 /// How near two pieces are at a time.
+#[derive(Clone, Copy)]
 pub(super) struct Nearest {
     /// The largest gap of their hulls found: never more than their distance.
     pub(super) hull: HullGap,
@@ -119,6 +130,49 @@ impl Nearest {
             primitives: None,
             distance: f64::MAX,
         }
+    }
+
+    /// The largest gap of two nodes' pieces that can be found, from that of their hulls on, with a pair of primitives that are
+    /// about nearest. `place` takes a point of a body's frame to where it is, `local` takes it back.
+    pub(super) fn search(
+        ((first, second), nodes): ((&impl PrimitiveTree, &impl PrimitiveTree), [u32; 2]),
+        (hulls, hull): ([&PlacedHull; 2], HullGap),
+        place: impl Fn(usize, Vec3<f64>) -> Vec3<f64>,
+        local: impl Fn(usize, Vec3<f64>) -> Vec3<f64>,
+    ) -> Self {
+        let [a, b] = hulls.map(|hull| &hull.spheres[..]);
+        let mut near = Self::of(nearest_points(hulls, hull));
+        let Some(mut points) = near.hull.nearest else {
+            return near;
+        };
+        for _ in 0..ROUNDS {
+            let pair = [
+                nearest_primitive(first, nodes[0], local(0, points[0])),
+                nearest_primitive(second, nodes[1], local(1, points[1])),
+            ];
+            if near.primitives == Some(pair) {
+                break;
+            }
+            let (of_a, m) = first.primitive(pair[0]);
+            let (of_b, n) = second.primitive(pair[1]);
+            let placed = |k: usize, s: MedialSphere| {
+                (place(k, Vec3::from_vector(s.center)), f64::from(s.radius))
+            };
+            let (of_a, of_b) = (of_a.map(|s| placed(0, s)), of_b.map(|s| placed(1, s)));
+            let (distance, direction) =
+                signed_distance_along(&of_a[..m.spheres], &of_b[..n.spheres]);
+            if distance < near.distance {
+                (near.distance, near.primitives) = (distance, Some(pair));
+            }
+            let Some(n) = direction else { break };
+            let gap = gap_along(a, b, n);
+            if gap <= near.hull.gap {
+                break;
+            }
+            (near.hull.gap, near.hull.direction) = (gap, n);
+            points = [farthest(a, n), farthest(b, -n)];
+        }
+        near
     }
 }
 

@@ -37,6 +37,7 @@ mod lanes;
 mod listed;
 mod many_contacts;
 mod meshes;
+mod near_blocks;
 mod near_pairs;
 mod oracle;
 mod outlines;
