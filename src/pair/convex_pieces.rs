@@ -18,10 +18,10 @@ use super::path_ends::{held_on_paths, path_ends};
 use super::piece_contact::{Look, Nearest, Pieces, PiecesMet, is_blunt, patch, placed};
 use super::primitive_tree::{PrimitiveTree, thickness};
 use super::search::Search;
-use crate::elementary::InitialContact;
 use crate::elementary::bracket::Bracket;
 use crate::elementary::penetration::gap_along;
 use crate::elementary::test_list::{OwnedFeatures, for_each_test};
+use crate::elementary::{InitialContact, ToiStatus};
 use crate::math::tolerance::ROUNDING_ULPS;
 
 /// Depth of two solid pieces in units of the thickness of the thinner, from which the shortest way apart may lead on through:
@@ -308,7 +308,10 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         };
         if self.earliest.found.is_some_and(is_found) {
             self.found = None;
-            self.met = Some(met);
+            // Where they are nearer than the target at the start, faces that lie on each other may be far from where they are
+            // nearest.
+            let overlaps = self.earliest.status == ToiStatus::Overlapping;
+            self.met = (!overlaps).then_some(met);
         }
         goes_on
     }

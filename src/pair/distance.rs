@@ -104,8 +104,12 @@ pub fn near_spheres(
             if let Some(pair) = near.primitives {
                 best.try_pair(PrimitivePair::new(body1, body2, pair, &place), &mut counts);
             }
-            // The answer is in single precision.
-            if near.hull.gap >= best.limit * (1.0 - f64::from(Real::EPSILON)) {
+            // The answer is in single precision; what is asked for is exact.
+            let rounding = match best.pair {
+                Some(_) => f64::from(Real::EPSILON) * best.limit,
+                None => 0.0,
+            };
+            if near.hull.gap > best.limit - rounding {
                 continue;
             }
         }

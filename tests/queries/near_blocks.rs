@@ -2,11 +2,13 @@
 //! apart, and that a query that starts within its target distance says so, both against the distance of their
 //! triangles in double precision, and by few elementary tests.
 
-use crate::blocks::{l_shape, t_shape};
+use crate::blocks::{l_shape, t_shape, u_shape};
 use crate::ccd::rng::Rng;
 use crate::convex_pieces::{V, cuboid, mesh_of, motion};
 use crate::truth_of_examples::mesh::Mesh;
 use crate::truth_of_examples::triangle_toi::{TriangleBody, distance_at};
+use rapier3d::parry::query::PointQuery;
+use rapier3d::parry::shape::TriMesh;
 use rapier3d_medial::pair::first_contact::first_contact_counted;
 use rapier3d_medial::pair::nearest_spheres;
 use rapier3d_medial::{MedialMesh, ToiOptions, ToiStatus};
@@ -15,9 +17,10 @@ use rapier3d_medial::{MedialMesh, ToiOptions, ToiStatus};
 const THICKER: f64 = 6.0e-6;
 
 /// The blocks, and their triangles.
-fn blocks() -> [(Mesh, MedialMesh); 3] {
-    let [l, t] = [l_shape(), t_shape()].map(|(vertices, indices)| Mesh { vertices, indices });
-    [l, t, cuboid([0.3, 0.2, 0.5])].map(|source| {
+fn blocks() -> [(Mesh, MedialMesh); 4] {
+    let built = [l_shape(), t_shape(), u_shape()];
+    let [l, t, u] = built.map(|(vertices, indices)| Mesh { vertices, indices });
+    [l, t, u, cuboid([0.3, 0.2, 0.5])].map(|source| {
         let mesh = mesh_of(&source);
         (source, mesh)
     })
@@ -29,7 +32,7 @@ fn blocks_are_as_far_apart_as_their_triangles() {
     let mut rng = Rng::new(4101);
     let (mut apart, mut tests) = (0, 0);
     for case in 0..600 {
-        let [i, j] = [case % 3, case / 3 % 3];
+        let [i, j] = [case % 4, case / 4 % 4];
         let first = motion(V::zeros(), V::zeros(), rng.in_ball());
         let second = motion(rng.in_ball() * 1.6, V::zeros(), rng.in_ball() * 3.0);
         let bodies = [i, j].map(|k| TriangleBody::new(&blocks[k].0));
@@ -48,6 +51,14 @@ fn blocks_are_as_far_apart_as_their_triangles() {
         );
         apart += 1;
         tests += counts.tests;
+        // What is asked for to the last digit is found.
+        let limit = (found as f32).next_up();
+        let (again, _) = nearest_spheres(a, b, &(p.inverse() * q), limit);
+        let again = again.map(|pair| pair.distance);
+        assert!(
+            again.is_some_and(|d| d <= limit),
+            "{case}: {again:?} within {limit}"
+        );
     }
     println!("{apart} apart, {tests} elementary tests");
     assert!(apart > 200, "{apart}");
@@ -57,10 +68,14 @@ fn blocks_are_as_far_apart_as_their_triangles() {
 #[test]
 fn blocks_within_the_target_distance_are_told_so_at_once() {
     let blocks = blocks();
+    let surface = |(source, _): &(Mesh, MedialMesh)| {
+        TriMesh::new(source.vertices.clone(), source.indices.clone()).expect("a surface")
+    };
+    let surfaces = blocks.each_ref().map(surface);
     let mut rng = Rng::new(4102);
     let (mut within, mut tests) = (0, 0);
     for case in 0..2000 {
-        let [i, j] = [case % 3, case / 3 % 3];
+        let [i, j] = [case % 4, case / 4 % 4];
         let first = motion(V::zeros(), rng.in_ball() * 0.05, V::zeros());
         let second = motion(rng.in_ball() * 1.2, V::zeros(), V::zeros());
         let bodies = [i, j].map(|k| TriangleBody::new(&blocks[k].0));
@@ -85,6 +100,11 @@ fn blocks_within_the_target_distance_are_told_so_at_once() {
             let found = f64::from((toi.points[1] - toi.points[0]).dot(toi.normal));
             let told = truth - THICKER..target + THICKER;
             assert!(told.contains(&found), "{case}: {found}, truly {truth}");
+            for (side, (block, (_, motion))) in [(i, &first), (j, &second)].iter().enumerate() {
+                let pose = motion.position_at_time(0.0);
+                let off = surfaces[*block].distance_to_point(&pose, toi.points[side], false);
+                assert!(f64::from(off) < THICKER, "{case}: {off} off the surface");
+            }
             within += 1;
             tests += counts.tests;
         } else if beyond > THICKER + f64::from(options.tolerance) {
