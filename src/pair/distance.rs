@@ -1,5 +1,6 @@
 //! Signed distance of two bodies at fixed poses, and the pair of spheres that attains it: a best-first search over both
-//! trees, the nearest pair of nodes first.
+//! trees, the nearest pair of nodes first. Two convex pieces that are apart are looked at as a whole: one pair of their
+//! primitives as far apart as their hulls is enough.
 //!
 //! For bodies that overlap it is the most negative distance of any two primitives: how deep the nearest spheres are in
 //! each other, not how far the bodies must move to be apart.
