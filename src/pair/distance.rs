@@ -105,12 +105,7 @@ pub fn near_spheres(
             if let Some(pair) = near.primitives {
                 best.try_pair(PrimitivePair::new(body1, body2, pair, &place), &mut counts);
             }
-            // The answer is in single precision; what is asked for is exact.
-            let rounding = match best.pair {
-                Some(_) => f64::from(Real::EPSILON) * best.limit,
-                None => 0.0,
-            };
-            if near.hull.gap > best.limit - rounding {
+            if best.is_no_farther_than(near.hull.gap) {
                 continue;
             }
         }
@@ -142,6 +137,16 @@ struct Best {
 }
 
 impl Best {
+    /// Whether nothing that is apart by `gap` can be nearer.
+    fn is_no_farther_than(&self, gap: f64) -> bool {
+        // The answer is in single precision; what is asked for is exact.
+        let rounding = match self.pair {
+            Some(_) => f64::from(Real::EPSILON) * self.limit,
+            None => 0.0,
+        };
+        gap > self.limit - rounding
+    }
+
     /// Takes the nearest spheres of two primitives, if no others are nearer.
     fn try_pair(&mut self, pair: PrimitivePair, counts: &mut Counts) {
         let mut found = ContactList::new(self.limit);
