@@ -17,24 +17,6 @@ pub fn l_shape() -> (Vec<Vector>, Vec<[u32; 3]>) {
     prism(&outline, &faces, [-0.17, 0.18])
 }
 
-/// A U-shaped block of 1 m by 1 m by 0.27 m.
-pub fn u_shape() -> (Vec<Vector>, Vec<[u32; 3]>) {
-    let outline = [
-        (0.0, 0.0),
-        (3.0, 0.0),
-        (3.0, 3.0),
-        (2.0, 3.0),
-        (2.0, 1.0),
-        (1.0, 1.0),
-        (1.0, 3.0),
-        (0.0, 3.0),
-    ];
-    let outline = outline.map(|(x, y): (Real, Real)| ((x - 1.5) / 3.0, (y - 1.5) / 3.0));
-    let base = [[0, 1, 4], [0, 4, 5]];
-    let arms = [[1, 2, 3], [1, 3, 4], [0, 5, 6], [0, 6, 7]];
-    prism(&outline, &[&base[..], &arms[..]].concat(), [-0.135, 0.135])
-}
-
 /// A T-shaped block of 1 m by 1 m by 0.27 m.
 pub fn t_shape() -> (Vec<Vector>, Vec<[u32; 3]>) {
     let outline = [
@@ -55,7 +37,7 @@ pub fn t_shape() -> (Vec<Vector>, Vec<[u32; 3]>) {
 }
 
 /// A prism between two heights over an outline, which these triangles fill.
-fn prism(
+pub fn prism(
     outline: &[(Real, Real)],
     faces: &[[u32; 3]],
     [low, high]: [Real; 2],

@@ -2,19 +2,38 @@
 //! apart, and that a query that starts within its target distance says so, both against the distance of their
 //! triangles in double precision, and by few elementary tests.
 
-use crate::blocks::{l_shape, t_shape, u_shape};
+use crate::blocks::{l_shape, prism, t_shape};
 use crate::ccd::rng::Rng;
 use crate::convex_pieces::{V, cuboid, mesh_of, motion};
 use crate::truth_of_examples::mesh::Mesh;
 use crate::truth_of_examples::triangle_toi::{TriangleBody, distance_at};
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::TriMesh;
+use rapier3d::prelude::{Real, Vector};
 use rapier3d_medial::pair::first_contact::first_contact_counted;
 use rapier3d_medial::pair::nearest_spheres;
 use rapier3d_medial::{MedialMesh, ToiOptions, ToiStatus};
 
 /// What two blocks are thicker than their triangles, and rounding of the poses, together.
 const THICKER: f64 = 6.0e-6;
+
+/// A U-shaped block of 1 m by 1 m by 0.27 m.
+fn u_shape() -> (Vec<Vector>, Vec<[u32; 3]>) {
+    let outline = [
+        (0.0, 0.0),
+        (3.0, 0.0),
+        (3.0, 3.0),
+        (2.0, 3.0),
+        (2.0, 1.0),
+        (1.0, 1.0),
+        (1.0, 3.0),
+        (0.0, 3.0),
+    ];
+    let outline = outline.map(|(x, y): (Real, Real)| ((x - 1.5) / 3.0, (y - 1.5) / 3.0));
+    let base = [[0, 1, 4], [0, 4, 5]];
+    let arms = [[1, 2, 3], [1, 3, 4], [0, 5, 6], [0, 6, 7]];
+    prism(&outline, &[&base[..], &arms[..]].concat(), [-0.135, 0.135])
+}
 
 /// The blocks, and their triangles.
 fn blocks() -> [(Mesh, MedialMesh); 4] {
