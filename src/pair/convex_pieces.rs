@@ -9,7 +9,8 @@
 //!
 //! **Pieces that touch at the start** and may sink in, or must come nearer to count
 //! ([`crate::elementary::InitialContact`]), have a gap of their own at which they meet. Where they are so deep in each
-//! other that the shortest way apart might lead on through, their primitives decide.
+//! other that the shortest way apart might lead on through, their primitives decide. If they may not sink in, those that are apart
+//! meet at the start; of those that overlap their primitives decide.
 
 use super::apart::{end_along, ends_hold};
 use super::deepening::given;
