@@ -5,6 +5,7 @@
 //! leaves the solid at the end of the stretches that follow from the start without a gap. parry's iteration for convex
 //! shapes, which would serve as well, is off by a few thousandths of the size on flat faces.
 
+use crate::elementary::penetration::LOST;
 use crate::math::lane::Vec3;
 use crate::math::sphere::Ball;
 use crate::math::{Real, Vector};
@@ -40,9 +41,7 @@ pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
     let Stretch { to, primitive, .. } = end?;
     let time = (to / length) as Real;
     let part = mesh.primitive(primitive as usize);
-    let at = ray.point_at(time);
-    let center = part.interpolate(part.signed_distance(at).weights).center;
-    let normal = (center - at).try_normalize().unwrap_or(-ray.dir);
+    let normal = -way_out(&part, ray.point_at(time), ray.dir);
     Some(RayIntersection::new(time, normal, FeatureId::Face(0)).with_subshape(primitive))
 }
 
@@ -51,10 +50,10 @@ pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
 pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> {
     let inside = |i: &u32| mesh.primitive(*i as usize).signed_distance(point).distance <= 0.0;
     let ways = holding(mesh, point).filter(inside).filter_map(|i| {
-        let part = mesh.primitive(i as usize);
-        let s = part.interpolate(part.signed_distance(point).weights);
-        let out = (point - s.center).try_normalize();
-        let ray = Ray::new(point, out.unwrap_or(Vector::Y));
+        let ray = Ray::new(
+            point,
+            way_out(&mesh.primitive(i as usize), point, Vector::ZERO),
+        );
         let hit = exit(mesh, &ray)?;
         Some((
             hit.time_of_impact,
@@ -64,6 +63,24 @@ pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> 
     });
     let nearest = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((nearest.1, nearest.2))
+}
+
+/// Unit direction straight out of a primitive from a point in it: away from the centre of the nearest sphere. Where the
+/// point is that centre, to rounding, it is across a plane that touches the sphere and its neighbours, which on a sharp rim or at
+/// a tip passes through the point; of the two planes of a slab the one that faces `along` more.
+fn way_out(part: &MedialPrimitive, point: Vector, along: Vector) -> Vector {
+    let balls = exact::balls(part.as_slab());
+    let out = -exact::nearest_to_point(&balls, Vec3::from_vector(point)).y;
+    let [a, b, c] = balls.map(|ball| ball.center);
+    let size = (b - a).length().max((c - a).length());
+    if out.length() > LOST * size {
+        return (out * (1.0 / out.length())).to_vector();
+    }
+    let along = Vec3::from_vector(along);
+    exact::tangent_normals(&balls)
+        .map(|[a, b]| if b.dot(along) > a.dot(along) { b } else { a })
+        .or_else(|| exact::cone_normal(&balls))
+        .map_or(Vector::Y, Vec3::to_vector)
 }
 
 fn holds(mesh: &MedialMesh, point: Vector) -> bool {

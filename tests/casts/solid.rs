@@ -134,6 +134,53 @@ fn points_are_projected_on_the_surface() {
     assert!(within > CASES / 4, "{within}");
 }
 
+/// Points in boxes, and on their faces, edges and corners, where spheres have no radius and so no direction of their own:
+/// the surface is as far away as the nearest face.
+#[test]
+fn points_in_and_on_boxes_are_projected_on_the_nearest_face() {
+    let mut rng = Rng::new(41);
+    let mut judged = 0;
+    for half in [
+        [0.5, 0.05, 0.55],
+        [0.3, 0.2, 0.1],
+        [0.5; 3],
+        [0.5, 0.001, 0.2],
+    ] {
+        let mesh = MedialMesh::cuboid(Vector::from(half)).expect("a box");
+        for case in 0..4_000 {
+            // In the box, or as far out as it goes along one axis, two or three.
+            let out = case % 4;
+            let first = rng.below(3);
+            let mut part = |k: usize| match (k + 3 - first) % 3 < out {
+                true => 1.0 - 2.0 * rng.below(2) as Real,
+                false => rng.range(-1.0, 1.0) as Real,
+            };
+            let point = Vector::from([0, 1, 2].map(&mut part)) * Vector::from(half);
+            let depth = (Vector::from(half) - point.abs()).min_element();
+            let p = mesh.project_local_point(point, false);
+            if out == 0 && !p.is_inside {
+                assert!(depth < 1.0e-6, "{half:?} {point:?} {p:?}");
+            }
+            let off = (Vector::from(half) - p.point.abs()).min_element().abs();
+            let far = (p.point - point).length();
+            assert!(
+                off < 2.0e-6 && (far - depth).abs() < 2.0e-6,
+                "{half:?} {point:?}: {p:?}, {off} off, {far} away, {depth} deep"
+            );
+            judged += 1;
+            // Straight out of it, a ray leaves under the face's normal.
+            if out == 0 && depth > 1.0e-5 {
+                let dir = (p.point - point).normalize();
+                let hit = mesh
+                    .cast_local_ray_and_get_normal(&Ray::new(point, dir), Real::MAX, false)
+                    .expect("a ray from within leaves");
+                assert!(hit.normal.dot(dir) < -0.9999, "{half:?} {point:?} {hit:?}");
+            }
+        }
+    }
+    assert_eq!(judged, 16_000);
+}
+
 /// Where a ray from outside enters a box, by its slabs in double precision: the time and the outward normal.
 fn enters_box(origin: [f64; 3], dir: [f64; 3], half: [f64; 3]) -> Option<(f64, [f64; 3])> {
     let (mut enter, mut leave) = ((f64::MIN, [0.0; 3]), f64::MAX);
