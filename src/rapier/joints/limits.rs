@@ -123,6 +123,12 @@ impl Limit {
         }
     }
 
+    /// Whether a joint that is `at` stands at a limit.
+    pub fn is_reached(&self, at: Real) -> bool {
+        let [min, max] = self.range;
+        at >= max - AT_LIMIT || at <= min + AT_LIMIT
+    }
+
     /// Whether a joint that is `at` stands at a limit, does not leave it at a rate, and is pushed on there.
     pub fn holds(&self, at: Real, rate: Real, push: Real) -> bool {
         let [min, max] = self.range;

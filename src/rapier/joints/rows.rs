@@ -38,6 +38,7 @@ impl Row {
 }
 
 /// Ends of a joint, world frame.
+#[derive(Clone, Copy)]
 pub struct Ends {
     /// Places of the bodies in what is tied together.
     pub bodies: [usize; 2],
@@ -49,17 +50,21 @@ pub struct Ends {
 
 impl Ends {
     /// Rows of the locked ones of six axes.
-    pub fn locked(&self, axes: u8) -> Vec<Row> {
+    pub fn locked(self, axes: u8) -> impl Iterator<Item = Row> {
         let [first, second] = self.frames;
-        let locked = |i: &u8| axes & (1 << i) != 0;
-        let axis = |i: u8| first.rotation * Vector::AXES[usize::from(i % 3)];
         let way = second.translation - first.translation;
-        let turned = turned(self.frames.map(|f| f.rotation), axes >> 3);
-        let linear = (0..3).filter(locked);
-        let linear = linear.map(|i| self.slide(axis(i), way.dot(axis(i))));
-        let angular = (3..6).filter(locked);
-        let angular = angular.map(|i| self.turn(axis(i), turned.dot(axis(i))));
-        linear.chain(angular).collect()
+        let turned = match axes >> 3 {
+            0 => Vector::ZERO,
+            angular => turned([first.rotation, second.rotation], angular),
+        };
+        let locked = (0..6).filter(move |i: &u8| axes & (1 << i) != 0);
+        locked.map(move |i| {
+            let axis = first.rotation * Vector::AXES[usize::from(i % 3)];
+            match i {
+                0..3 => self.slide(axis, way.dot(axis)),
+                _ => self.turn(axis, turned.dot(axis)),
+            }
+        })
     }
 
     /// The row of a limit.

@@ -1,33 +1,40 @@
 //! Cholesky's factorisation of a symmetric matrix of which each row is zero before its first entry, as the factor
 //! then is too (George and Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981, 4.2). The joints
-//! of a chain, in their order, give rows of a few entries, however long the chain is.
+//! of a chain, in their order, give rows of a few entries, however long the chain is; those of a tree do if the joints
+//! of the branches come before that of their stem.
 
-/// `A = L Lᵀ`, row by row.
+/// The lower half of a symmetric matrix `A`, or its factor `L` with `A = L Lᵀ`, row by row.
+#[derive(Default)]
 pub struct Skyline {
-    /// First column of each row.
-    first: Vec<usize>,
-    /// Rows, each from its first column to the diagonal.
-    rows: Vec<Vec<f64>>,
+    /// Rows after each other, each from its first column to the diagonal.
+    entries: Vec<f64>,
+    /// First column of each row, and where its diagonal is.
+    rows: Vec<(usize, usize)>,
 }
 
 impl Skyline {
-    /// Factors the lower half of a matrix: for each row its first column, and entries from there to the diagonal.
-    /// `None` where it is not positive definite.
-    pub fn factor(lower: Vec<(usize, Vec<f64>)>) -> Option<Self> {
-        let (first, rows): (Vec<usize>, Vec<Vec<f64>>) = lower.into_iter().unzip();
-        let mut factor = Self { first, rows };
-        for i in 0..factor.rows.len() {
-            let (done, rest) = factor.rows.split_at_mut(i);
-            let row = rest.first_mut()?;
-            let begin = factor.first[i];
-            for j in begin..i {
-                let common = begin.max(factor.first[j]);
-                let (diagonal, other) = done[j].split_last()?;
-                let both = row[common - begin..]
+    /// Adds a row of the lower half of a matrix, zero from its first column to the diagonal, and returns its entries.
+    pub fn push_row(&mut self, first: usize) -> &mut [f64] {
+        let begin = self.entries.len();
+        self.entries
+            .resize(begin + self.rows.len() + 1 - first, 0.0);
+        self.rows.push((first, self.entries.len() - 1));
+        &mut self.entries[begin..]
+    }
+
+    /// Factors a matrix. `None` where it is not positive definite.
+    pub fn factor(mut self) -> Option<Self> {
+        for (i, &(first, diagonal)) in self.rows.iter().enumerate() {
+            let (done, rest) = self.entries.split_at_mut(diagonal + first - i);
+            let row = &mut rest[..=i - first];
+            for j in first..i {
+                let (other, end) = self.rows[j];
+                let common = first.max(other);
+                let both = row[common - first..j - first]
                     .iter()
-                    .zip(&other[common - factor.first[j]..]);
+                    .zip(&done[end + common - j..end]);
                 let sum: f64 = both.map(|(x, y)| x * y).sum();
-                row[j - begin] = (row[j - begin] - sum) / diagonal;
+                row[j - first] = (row[j - first] - sum) / done[end];
             }
             let (diagonal, left) = row.split_last_mut()?;
             let square = *diagonal - left.iter().map(|x| x * x).sum::<f64>();
@@ -36,26 +43,26 @@ impl Skyline {
             }
             *diagonal = square.sqrt();
         }
-        Some(factor)
+        Some(self)
     }
 
-    /// The `x` of `A x = b`.
-    pub fn solve(&self, mut b: Vec<f64>) -> Vec<f64> {
-        let rows = self.rows.iter().zip(&self.first).enumerate();
-        for (i, (row, &begin)) in rows.clone() {
-            let (left, diagonal) = row.split_at(i - begin);
-            let sum: f64 = left.iter().zip(&b[begin..]).map(|(l, x)| l * x).sum();
-            b[i] = (b[i] - sum) / diagonal[0];
+    /// Replaces `b` by the `x` of `A x = b`, where this is the factor of `A`.
+    pub fn solve(&self, b: &mut [f64]) {
+        let rows = self.rows.iter().enumerate();
+        let left =
+            |i: usize, first: usize, diagonal: usize| &self.entries[diagonal + first - i..diagonal];
+        for (i, &(first, diagonal)) in rows.clone() {
+            let both = left(i, first, diagonal).iter().zip(&b[first..]);
+            let sum: f64 = both.map(|(l, x)| l * x).sum();
+            b[i] = (b[i] - sum) / self.entries[diagonal];
         }
-        for (i, (row, &begin)) in rows.rev() {
-            let (left, diagonal) = row.split_at(i - begin);
-            b[i] /= diagonal[0];
+        for (i, &(first, diagonal)) in rows.rev() {
+            b[i] /= self.entries[diagonal];
             let x = b[i];
-            for (b, l) in b[begin..].iter_mut().zip(left) {
+            for (b, l) in b[first..].iter_mut().zip(left(i, first, diagonal)) {
                 *b -= l * x;
             }
         }
-        b
     }
 }
 
@@ -77,16 +84,22 @@ mod tests {
             let both = 0..=i.min(j);
             both.map(|k| entry(i, k) * entry(j, k)).sum()
         };
-        let row = |i: usize| {
+        let mut matrix = Skyline::default();
+        for i in 0..n {
             let first = (0..i).find(|j| full(i, *j) != 0.0).unwrap_or(i);
-            (first, (first..=i).map(|j| full(i, j)).collect())
-        };
+            for (j, entry) in matrix.push_row(first).iter_mut().enumerate() {
+                *entry = full(i, first + j);
+            }
+        }
         let b = (0..n).map(|i| (0..n).map(|j| full(i, j) * planted[j]).sum());
-        let factor = Skyline::factor((0..n).map(row).collect()).expect("positive definite");
-        for (x, planted) in factor.solve(b.collect()).into_iter().zip(planted) {
+        let mut x: Vec<f64> = b.collect();
+        matrix.factor().expect("positive definite").solve(&mut x);
+        for (x, planted) in x.into_iter().zip(planted) {
             assert!((x - planted).abs() < 1.0e-12, "{x} for {planted}");
         }
-        let indefinite = vec![(0, vec![1.0]), (0, vec![2.0, 1.0])];
-        assert!(Skyline::factor(indefinite).is_none());
+        let mut indefinite = Skyline::default();
+        indefinite.push_row(0).copy_from_slice(&[1.0]);
+        indefinite.push_row(0).copy_from_slice(&[2.0, 1.0]);
+        assert!(indefinite.factor().is_none());
     }
 }

@@ -45,12 +45,18 @@ pub struct System<'a> {
     poses: Vec<Pose>,
     /// Ways of the centres of mass, and turns, since the start.
     moved: Vec<(Vector, Rotation)>,
-    joints: Vec<&'a Joint>,
-    /// Limits at which joints stop in a piece of the motion, and whose.
-    stops: Vec<(&'a Joint, Limit)>,
+    /// Joints with the places of their bodies.
+    joints: Vec<(&'a Joint, [usize; 2])>,
+    /// Limits at which joints stop in a piece of the motion, and places of these joints.
+    stops: Vec<(usize, Limit)>,
+    /// Rows of `G`, and of `G W`.
     rows: Vec<Row>,
-    /// Factor of `G W Gᵀ`.
+    weighted: Vec<[Twist; 2]>,
+    /// Factor of `G W Gᵀ`, and the order of its rows: those of branches before those of their stem, branch by branch.
     factor: Option<Skyline>,
+    order: Vec<usize>,
+    /// Ranks of the bodies in that order.
+    ranks: Vec<usize>,
 }
 
 impl<'a> System<'a> {
@@ -66,6 +72,9 @@ impl<'a> System<'a> {
         let relative = |pose: Pose| Pose::from_parts(pose.translation - origin, pose.rotation);
         let center = |b: &usize| view.bodies[*b].mass.local_com;
         let start: Vec<Pose> = bodies.iter().map(|b| relative(pose(b))).collect();
+        let place = |body: usize| bodies.iter().position(|o| *o == body);
+        let placed = |j: &'a Joint| Some((j, [place(j.bodies[0])?, place(j.bodies[1])?]));
+        let joints: Vec<_> = joints.into_iter().filter_map(placed).collect();
         let mut system = Self {
             inertias,
             centers: bodies.iter().map(center).collect(),
@@ -73,11 +82,14 @@ impl<'a> System<'a> {
             poses: start.clone(),
             start,
             moved: vec![(Vector::ZERO, Rotation::IDENTITY); bodies.len()],
-            bodies,
+            ranks: ranks(bodies.len(), &joints),
             joints,
+            bodies,
             stops: Vec::new(),
             rows: Vec::new(),
+            weighted: Vec::new(),
             factor: None,
+            order: Vec::new(),
         };
         system.factor();
         system
@@ -120,121 +132,126 @@ impl<'a> System<'a> {
 
     /// Takes from twists what joints do not let them have.
     pub fn hold(&self, twists: &mut [Twist]) {
-        let held = self.solve(self.rows.iter().map(|r| r.along(twists)).collect());
-        self.subtract(&held, twists);
+        let rates = self.rows.iter().map(|r| r.along(twists)).collect();
+        self.subtract(rates, twists);
     }
 
-    /// Takes `W Gᵀ λ` from twists.
-    fn subtract(&self, lambda: &[f64], twists: &mut [Twist]) {
-        for (row, lambda) in self.rows.iter().zip(lambda) {
-            for (k, jacobian) in row.bodies.into_iter().zip(row.jacobian) {
-                add(
-                    &mut twists[k],
-                    self.inertias[k].apply(jacobian),
-                    -*lambda as Real,
-                );
+    /// Takes `W Gᵀ (G W Gᵀ)⁻¹ b` from twists.
+    fn subtract(&self, b: Vec<f64>, twists: &mut [Twist]) {
+        let Some(factor) = &self.factor else {
+            return;
+        };
+        let mut lambda: Vec<f64> = self.order.iter().map(|i| b[*i]).collect();
+        factor.solve(&mut lambda);
+        let mut held = b;
+        for (i, lambda) in self.order.iter().zip(lambda) {
+            held[*i] = lambda;
+        }
+        for ((row, weighted), held) in self.rows.iter().zip(&self.weighted).zip(held) {
+            for (k, weighted) in row.bodies.into_iter().zip(weighted) {
+                add(&mut twists[k], *weighted, -held as Real);
             }
         }
     }
 
-    fn solve(&self, right: Vec<f64>) -> Vec<f64> {
-        match &self.factor {
-            Some(factor) => factor.solve(right),
-            None => vec![0.0; right.len()],
-        }
-    }
-
+    /// Finds the rows at the poses now, and factors `G W Gᵀ`.
     fn factor(&mut self) {
         self.rows = self.rows_now();
-        let mut of_body: Vec<Vec<(usize, Twist)>> = vec![Vec::new(); self.bodies.len()];
-        let mut lower = Vec::new();
-        for (i, row) in self.rows.iter().enumerate() {
-            let free = |k: &usize| !self.is_infinite(row.bodies[*k]);
-            for k in (0..2).filter(free) {
-                let weighted = self.inertias[row.bodies[k]].apply(row.jacobian[k]);
-                of_body[row.bodies[k]].push((i, weighted));
+        let inertias = &self.inertias;
+        let weighted = |r: &Row| [0, 1].map(|k| inertias[r.bodies[k]].apply(r.jacobian[k]));
+        self.weighted = self.rows.iter().map(weighted).collect();
+        self.order = (0..self.rows.len()).collect();
+        let rank = |i: &usize| {
+            self.rows[*i]
+                .bodies
+                .map(|k| self.ranks[k])
+                .into_iter()
+                .min()
+        };
+        self.order.sort_by_key(rank);
+        let mut matrix = Skyline::default();
+        // The first row that moves each body.
+        let mut firsts = vec![usize::MAX; self.bodies.len()];
+        for (at, &i) in self.order.iter().enumerate() {
+            let row = &self.rows[i];
+            let free = (0..2).filter(|k| !self.inertias[row.bodies[*k]].is_infinite());
+            for k in free.clone() {
+                firsts[row.bodies[k]] = firsts[row.bodies[k]].min(at);
             }
-            let near = || {
-                (0..2)
-                    .filter(free)
-                    .flat_map(|k| of_body[row.bodies[k]].iter().map(move |r| (k, r)))
-            };
-            let first = near().map(|(_, (j, _))| *j).min().unwrap_or(i);
-            let mut entries = vec![0.0; i + 1 - first];
-            for (k, (j, weighted)) in near() {
-                entries[j - first] += dot(row.jacobian[k], *weighted);
+            let first = free.clone().map(|k| firsts[row.bodies[k]]).min();
+            let first = first.unwrap_or(at);
+            let entries = matrix.push_row(first);
+            for (&j, entry) in self.order[first..=at].iter().zip(entries.iter_mut()) {
+                let (other, weighted) = (self.rows[j].bodies, &self.weighted[j]);
+                for k in free.clone() {
+                    for l in (0..2).filter(|l| other[*l] == row.bodies[k]) {
+                        *entry += dot(row.jacobian[k], weighted[l]);
+                    }
+                }
             }
-            entries[i - first] =
-                entries[i - first] * (1.0 + REGULAR) + f64::from(Real::MIN_POSITIVE);
-            lower.push((first, entries));
+            let diagonal = &mut entries[at - first];
+            *diagonal = *diagonal * (1.0 + REGULAR) + f64::from(Real::MIN_POSITIVE);
         }
-        self.factor = (!lower.is_empty())
-            .then(|| Skyline::factor(lower))
-            .flatten();
+        self.factor = (!self.rows.is_empty()).then(|| matrix.factor()).flatten();
     }
 
     /// The rows of all joints that hold what moves at the poses now, those of stops last.
     fn rows_now(&self) -> Vec<Row> {
-        let joints = self.joints.iter();
-        let ends = joints.filter_map(|j| Some((self.ends(j, &self.poses)?, j.locked)));
-        let locked = ends.flat_map(|(ends, locked)| ends.locked(locked));
+        let locked = (0..self.joints.len())
+            .flat_map(|j| self.ends(j, &self.poses).locked(self.joints[j].0.locked));
         let stops = self.stops.iter();
-        let stops = stops.filter_map(|(j, limit)| Some(self.ends(j, &self.poses)?.limited(limit)));
+        let stops = stops.map(|(j, limit)| self.ends(*j, &self.poses).limited(limit));
         let rows = locked.chain(stops);
         rows.filter(|r| self.is_movable(r)).collect()
     }
 
     /// Ends of a joint at some poses.
-    fn ends(&self, joint: &Joint, poses: &[Pose]) -> Option<Ends> {
-        let place = |body: usize| self.bodies.iter().position(|o| *o == body);
-        let bodies = [place(joint.bodies[0])?, place(joint.bodies[1])?];
-        Some(Ends {
+    fn ends(&self, joint: usize, poses: &[Pose]) -> Ends {
+        let (joint, bodies) = self.joints[joint];
+        Ends {
             bodies,
             frames: [0, 1].map(|k| poses[bodies[k]] * joint.frames[k]),
             centers: bodies.map(|k| poses[k] * self.centers[k]),
-        })
+        }
     }
 
     /// Makes joints that stand at a limit hold it where a push by some changes of velocity would take them past it.
     pub fn stand_at_limits(&mut self, twists: &[Twist], push: impl Fn(&Self) -> Vec<Twist>) {
+        let limits = self.limits(&self.poses);
+        let stands = |(_, limit, row): &(usize, Limit, Row)| limit.is_reached(row.opening);
+        let mut standing: Vec<_> = limits.filter(stands).collect();
         for _ in 0..STOPPING_ROUNDS {
-            let pushed = push(self);
-            let stops = self.more_stops(|_, _, limit, row| {
-                let [rate, push] = [twists, &pushed].map(|t| row.along(t) as Real);
-                limit.holds(row.opening, rate, push).then_some(())
-            });
-            if stops.is_empty() {
+            if standing.is_empty() {
                 break;
             }
+            let pushed = push(self);
+            let known = self.stops.len();
+            standing.retain(|(j, limit, row)| {
+                let [rate, push] = [twists, &pushed].map(|t| row.along(t) as Real);
+                let holds = limit.holds(row.opening, rate, push);
+                if holds {
+                    self.stops.push((*j, *limit));
+                }
+                !holds
+            });
+            if self.stops.len() == known {
+                break;
+            }
+            self.factor();
         }
     }
 
-    /// Adds the limits of which `stops` says so, and returns what it said.
-    fn more_stops<T>(
-        &mut self,
-        stops: impl Fn(&Self, &Joint, &Limit, &Row) -> Option<T>,
-    ) -> Vec<T> {
-        let (known, mut found) = (self.stops.len(), Vec::new());
-        for &joint in self.joints.iter().filter(|j| !j.limits.is_empty()) {
-            let Some(ends) = self.ends(joint, &self.poses) else {
-                continue;
-            };
-            for limit in &joint.limits {
-                let row = ends.limited(limit);
-                let is_this = |(j, l): &(&Joint, Limit)| std::ptr::eq(*j, joint) && l == limit;
-                if self.is_movable(&row)
-                    && !self.stops[..known].iter().any(is_this)
-                    && let Some(said) = stops(self, joint, limit, &row)
-                {
-                    self.stops.push((joint, *limit));
-                    found.push(said);
-                }
-            }
-        }
-        if !found.is_empty() {
-            self.factor();
-        }
-        found
+    /// Limits of joints that may move, with the places of these joints, and their rows at some poses.
+    fn limits<'b>(&'b self, poses: &'b [Pose]) -> impl Iterator<Item = (usize, Limit, Row)> + 'b {
+        let joints = self.joints.iter().enumerate();
+        let limited = joints.filter(|(_, (joint, bodies))| {
+            !joint.limits.is_empty() && !bodies.iter().all(|k| self.is_infinite(*k))
+        });
+        limited.flat_map(|(j, (joint, _))| {
+            let ends = self.ends(j, poses);
+            let limits = joint.limits.iter();
+            limits.map(move |limit| (j, *limit, ends.limited(limit)))
+        })
     }
 
     /// Makes joints stop at the limits that they would pass in some seconds at some velocities, and returns where.
@@ -247,14 +264,20 @@ impl<'a> System<'a> {
             self.displace(&held, seconds);
             let end = std::mem::replace(&mut self.poses, start.0);
             self.moved = start.1;
-            let stops = self.more_stops(|system, joint, limit, row| {
-                let next = system.ends(joint, &end)?.limited(limit).opening;
-                limit.stop(row.opening, next)
+            let known = self.stops.len();
+            let both = self.limits(&self.poses).zip(self.limits(&end));
+            let stops = both.filter_map(|((j, limit, now), (_, _, next))| {
+                let target = limit.stop(now.opening, next.opening)?;
+                let is_known = self.stops.contains(&(j, limit));
+                (!is_known).then_some(((j, limit), f64::from(target)))
             });
-            if stops.is_empty() {
+            let (stops, more): (Vec<_>, Vec<f64>) = stops.unzip();
+            self.stops.extend(stops);
+            targets.extend(more);
+            if self.stops.len() == known {
                 break;
             }
-            targets.extend(stops.into_iter().map(f64::from));
+            self.factor();
         }
         targets
     }
@@ -279,7 +302,7 @@ impl<'a> System<'a> {
             }
             changed = true;
             let mut moves = vec![[Vector::ZERO; 2]; self.bodies.len()];
-            self.subtract(&self.solve(left), &mut moves);
+            self.subtract(left, &mut moves);
             self.displace(&moves, 1.0);
         }
         if changed {
@@ -377,6 +400,36 @@ impl<'a> System<'a> {
             *moved = (moved.0 + *slide * seconds, (turn * moved.1).normalize());
         }
     }
+}
+
+/// Ranks of bodies that are placed after those from which joints reach them: a body's are above those of all that it
+/// carries, which come branch by branch.
+fn ranks(bodies: usize, joints: &[(&Joint, [usize; 2])]) -> Vec<usize> {
+    let mut carriers: Vec<Option<usize>> = vec![None; bodies];
+    for (_, [a, b]) in joints {
+        let [near, far] = [*a.min(b), *a.max(b)];
+        carriers[far].get_or_insert(near);
+    }
+    let mut carried = vec![1; bodies];
+    for far in (0..bodies).rev() {
+        if let Some(near) = carriers[far].filter(|near| *near != far) {
+            carried[near] += carried[far];
+        }
+    }
+    let mut next = vec![0; bodies];
+    let mut roots = 0;
+    let mut ranks = Vec::with_capacity(bodies);
+    for k in 0..bodies {
+        let begin = match carriers[k] {
+            Some(near) => &mut next[near],
+            None => &mut roots,
+        };
+        let first = *begin;
+        *begin += carried[k];
+        next[k] = first;
+        ranks.push(first + carried[k] - 1);
+    }
+    ranks
 }
 
 fn add(twist: &mut Twist, more: Twist, factor: Real) {
