@@ -4,7 +4,7 @@
 //! # Files
 //! - The mesh: `mesh.rs`, of `sphere.rs`, `primitive.rs` and `simplex.rs`; what is refused: `check.rs`.
 //! - Trees for queries: `tree.rs`, `rectangle.rs` and `proxy_hull.rs` (bounds), `leaf_order.rs`, `convex_pieces.rs`.
-//! - Geometry: `mass.rs`, `thickness.rs`, `chord.rs` (rays), `exact.rs`, `scaled.rs`; the surface as triangles:
+//! - Geometry: `mass.rs`, in closed form `cone_mass.rs` and `polyhedron_mass.rs`; `thickness.rs`, `chord.rs` (rays), `exact.rs`, `scaled.rs`; the surface as triangles:
 //!   `envelope.rs`.
 //! - Files: `asset.rs` (the layout of a baked mesh), `saved.rs` (serde), `ma_file.rs`.
 //! - Meshes that need no build: `solids.rs`, `boxes.rs`, `polygon.rs`.
@@ -13,6 +13,7 @@ pub mod asset;
 pub(crate) mod boxes;
 pub(crate) mod check;
 pub(crate) mod chord;
+mod cone_mass;
 pub mod convex_pieces;
 mod cover;
 pub(crate) mod envelope;
