@@ -2,6 +2,7 @@
 //! query: it chooses how each shape is searched, and turns the bracket of the first contact into parry's answer.
 
 use super::axisymmetric_toi;
+use super::cast_answer::hit;
 use super::distance;
 use super::folds;
 use super::initial_contacts::{AtStart, Touching, approach_of_rounding};
@@ -17,7 +18,7 @@ use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::ActivePrimitives;
 use crate::pair::{PrimitiveTree, nearest_spheres};
-use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
+use parry3d::query::{NonlinearRigidMotion, ShapeCastHit};
 use parry3d::shape::Shape;
 
 /// Largest part of its way by which a straight cast may seem to come nearer although it slides, so near the other shape that
@@ -144,10 +145,7 @@ impl Cast<'_> {
                     primitives,
                     ..toi
                 };
-                return Ok((
-                    Some(self.hit(&toi, [&motion1, &motion2], [start, 0.0])),
-                    counts,
-                ));
+                return Ok((Some(hit(&toi, [&motion1, &motion2], [start, 0.0])), counts));
             };
             options = further;
             let further = query(&options)?;
@@ -180,7 +178,7 @@ impl Cast<'_> {
             return Ok((None, counts));
         }
         let times = [start, toi.lower * seconds];
-        Ok((Some(self.hit(&toi, [&motion1, &motion2], times)), counts))
+        Ok((Some(hit(&toi, [&motion1, &motion2], times)), counts))
     }
 
     /// Length by which a straight cast that slides along the other shape seems to come nearer, for all that rounding does.
@@ -188,26 +186,6 @@ impl Cast<'_> {
         let places = motions.map(|m| m.start.translation.abs().max_element());
         let extent = self.mesh.aabb().extents().max_element();
         approach_of_rounding(places[0] + places[1] + extent + way.length())
-    }
-
-    /// The hit of an answer, from the start of the motions, in seconds, and the time since then.
-    fn hit(
-        &self,
-        toi: &Toi,
-        motions: [&NonlinearRigidMotion; 2],
-        [start, time]: [Real; 2],
-    ) -> ShapeCastHit {
-        let [pose1, pose2] = motions.map(|m| m.position_at_time(time));
-        ShapeCastHit {
-            time_of_impact: start + time,
-            witness1: pose1.inverse_transform_point(toi.points[0]),
-            witness2: pose2.inverse_transform_point(toi.points[1]),
-            normal1: pose1.rotation.inverse() * toi.normal,
-            normal2: pose2.rotation.inverse() * -toi.normal,
-            status: status(toi),
-            subshape1: toi.primitives[0],
-            subshape2: toi.primitives[1],
-        }
     }
 
     /// Thickness of the other shape where it is not medial, infinite where it is: a mesh knows its own.
@@ -385,14 +363,5 @@ impl Cast<'_> {
             toi.primitives = c.primitives;
         }
         toi
-    }
-}
-
-fn status(toi: &Toi) -> ShapeCastStatus {
-    match toi.status {
-        ToiStatus::Overlapping => ShapeCastStatus::PenetratingOrWithinTargetDist,
-        ToiStatus::Contact if toi.upper <= 0.0 => ShapeCastStatus::PenetratingOrWithinTargetDist,
-        ToiStatus::Unresolved => ShapeCastStatus::OutOfIterations,
-        ToiStatus::Contact | ToiStatus::Separated => ShapeCastStatus::Converged,
     }
 }

@@ -103,7 +103,7 @@ fn near(
 fn reach(mesh: &MedialMesh, other: &dyn Shape, pos21: &Pose, max_distance: Real) -> Real {
     let bounds = mesh.spheres().first().map(|s| {
         let center = pos21 * s.center;
-        let distance = other.distance_to_local_point(center, true) - s.radius;
+        let distance = inside::most_distance(other, center) - s.radius;
         let sizes = [center, pos21.translation, s.center].map(|p| p.abs().max_element());
         let size = sizes.into_iter().fold(s.radius, |sum, size| sum + size);
         SLACK * distance.max(0.0) + ROUNDING_ULPS as Real * Real::EPSILON * size

@@ -5,9 +5,10 @@
 //! for which this is smallest. (For a body that is not entirely inside, the way over an edge may be shorter; but a
 //! face is what a solver can push against.)
 
-use crate::math::{Real, Vector};
+use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
-use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, TypedShape};
+use parry3d::query::PointQuery;
+use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, SharedShape, Triangle, TypedShape};
 
 /// Whether a body given by its closed surface holds a point (in its own frame). Triangle meshes,
 /// height fields and polylines are surfaces: they hold nothing. Balls, capsules, cylinders and cones are
@@ -30,8 +31,70 @@ pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
             .shapes()
             .iter()
             .any(|(pose, s)| holds_point(s.as_ref(), pose.inverse_transform_point(point))),
+        // parry iterates for these, with tolerances in which bodies of centimetres vanish.
+        TypedShape::RoundCuboid(c) => beyond_cuboid(&c.inner_shape, point) <= c.border_radius,
+        TypedShape::ConvexPolyhedron(hull) => is_near_hull(hull, point, 0.0),
+        TypedShape::RoundConvexPolyhedron(c) => {
+            is_near_hull(&c.inner_shape, point, c.border_radius)
+        }
         _ => shape.contains_local_point(point),
     }
+}
+
+/// A length that is no less than the distance of a point to a shape: 0 inside.
+pub fn most_distance(shape: &dyn Shape, point: Vector) -> Real {
+    match shape.as_typed_shape() {
+        TypedShape::RoundCuboid(c) => {
+            let beyond = beyond_cuboid(&c.inner_shape, point);
+            (beyond - c.border_radius).max(0.0)
+        }
+        TypedShape::ConvexPolyhedron(hull) => to_corners(hull, point),
+        TypedShape::RoundConvexPolyhedron(c) => to_corners(&c.inner_shape, point),
+        TypedShape::RoundTriangle(t) => t.inner_shape.distance_to_local_point(point, true),
+        TypedShape::RoundCylinder(c) => c.inner_shape.distance_to_local_point(point, true),
+        TypedShape::RoundCone(c) => c.inner_shape.distance_to_local_point(point, true),
+        TypedShape::Compound(c) => {
+            let to_child = |(pose, child): &(Pose, SharedShape)| {
+                most_distance(child.as_ref(), pose.inverse_transform_point(point))
+            };
+            c.shapes().iter().map(to_child).fold(Real::MAX, Real::min)
+        }
+        _ => shape.distance_to_local_point(point, true),
+    }
+}
+
+/// Distance of a point to a cuboid.
+fn beyond_cuboid(cuboid: &Cuboid, point: Vector) -> Real {
+    let beyond = point.abs() - cuboid.half_extents;
+    beyond.max(Vector::ZERO).length()
+}
+
+/// Distance of a point to the nearest corner of a hull.
+fn to_corners(hull: &ConvexPolyhedron, point: Vector) -> Real {
+    let distances = hull.points().iter().map(|p| p.distance(point));
+    distances.fold(Real::MAX, Real::min)
+}
+
+/// Whether a point is in a hull, or no farther from it than a distance.
+fn is_near_hull(hull: &ConvexPolyhedron, point: Vector, distance: Real) -> bool {
+    let mut farthest = Real::NEG_INFINITY;
+    hull_faces(hull, 0.0, |n, offset| {
+        farthest = farthest.max(n.dot(point) - offset);
+    });
+    // Beyond one face, the nearest point may still be on an edge or at a corner of others.
+    farthest <= 0.0
+        || farthest <= distance
+            && hull.faces().iter().any(|face| {
+                let first = face.first_vertex_or_edge as usize;
+                let ring =
+                    &hull.vertices_adj_to_face()[first..][..face.num_vertices_or_edges as usize];
+                let corner = |k: usize| hull.points()[ring[k] as usize];
+                (2..ring.len()).any(|k| {
+                    let triangle = Triangle::new(corner(0), corner(k - 1), corner(k));
+                    let nearest = triangle.project_local_point(point, true).point;
+                    nearest.distance(point) <= distance
+                })
+            })
 }
 
 /// Shortest translation out of a closed body.
@@ -52,7 +115,7 @@ pub struct MinTranslation {
 /// of the centre furthest from the surface.
 pub fn min_translation(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<MinTranslation> {
     if let TypedShape::Compound(c) = shape.as_typed_shape() {
-        let of_child = |(pose, child): &(crate::math::Pose, parry3d::shape::SharedShape)| {
+        let of_child = |(pose, child): &(Pose, SharedShape)| {
             let local = |s: &MedialSphere| {
                 MedialSphere::new(pose.inverse_transform_point(s.center), s.radius)
             };

@@ -8,7 +8,7 @@
 //!   (`false_contacts.rs`) or left out (`inward_contacts.rs`), with voxels wrong normals are turned
 //!   (`voxel_normals.rs`), and of convex pieces deep in other shapes those are left out that push another way than the
 //!   shortest (`deep_pieces.rs`). `contact_reduction.rs` leaves the ones that bear the load.
-//! - Casts: `cast.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
+//! - Casts: `cast.rs`, parry's answer `cast_answer.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
 //!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
 //!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at. Triangles
 //!   on whose plane a body lies are treated by `sliding.rs`, normals at their edges corrected by `folds.rs`.
@@ -18,6 +18,7 @@
 pub(crate) mod axisymmetric;
 pub(crate) mod axisymmetric_toi;
 pub mod cast;
+mod cast_answer;
 pub(crate) mod conservative_advancement;
 mod contact_manifolds;
 pub mod contact_reduction;

@@ -17,6 +17,7 @@ mod shapes;
 mod solid;
 mod table;
 mod terrain;
+mod thin;
 mod touching;
 mod turns;
 mod way_out;

@@ -325,3 +325,44 @@ fn a_sliding_ball_gets_no_deeper_into_a_medial_wall_than_into_rapiers() {
         assert!(deep[1] > -0.01, "{speed}: it stops at {}", deep[1]);
     }
 }
+
+/// Characters walk 5 m over a flat floor however it is turned in place, with their own weight, also where the floor or the
+/// character is medial. On rapier's cuboid floor, turned by a quarter, they lose up to half of the way, and a cuboid all of it:
+/// the normals told there are shorter than 1 by rounding, from which rapier's controller concludes that they slip.
+#[test]
+fn flat_floors_turned_by_a_quarter_are_walked_on() {
+    let quarter = std::f32::consts::FRAC_PI_2;
+    let turns = [
+        Vector::X,
+        Vector::Y,
+        Vector::Z,
+        Vector::NEG_X,
+        Vector::NEG_Z,
+    ];
+    let turns = turns.map(|axis| axis * quarter);
+    let controller = KinematicCharacterController::default();
+    let floor = MedialMesh::cuboid(Vector::splat(20.0)).expect("a floor");
+    let medial = SharedShape::new(MedialMesh::cuboid(Vector::new(0.2, 0.5, 0.2)).expect("a box"));
+    let characters = [
+        ("ball", SharedShape::ball(0.5), true),
+        ("capsule", SharedShape::capsule_y(0.3, 0.2), true),
+        ("cuboid", SharedShape::cuboid(0.2, 0.5, 0.2), true),
+        ("cylinder", SharedShape::cylinder(0.5, 0.2), true),
+        ("medial", medial.clone(), true),
+        ("medial on a cuboid", medial, false),
+    ];
+    for turn in turns.into_iter().chain([Vector::ZERO, Vector::Y * 0.5]) {
+        for (name, shape, on_medial) in &characters {
+            let ground = match on_medial {
+                true => ColliderBuilder::medial_mesh(floor.clone()),
+                false => ColliderBuilder::cuboid(20.0, 20.0, 20.0),
+            };
+            let ground = ground.position(Pose::new(Vector::NEG_Y * 20.0, turn));
+            let start = Vector::new(0.0, 0.511, 0.0);
+            let wish = Vector::new(0.04, -0.03, 0.03);
+            let end = walk(ground, &**shape, &controller, start, wish, 100, |_| 1.0).end;
+            let way = Vector::new(end.x, 0.0, end.z).length();
+            assert!((way - 5.0).abs() < 0.05, "{name}, {turn:?}: {way}, {end:?}");
+        }
+    }
+}
