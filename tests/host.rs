@@ -1,6 +1,7 @@
 //! What rapier 0.36 does that this crate works round (docs/host.md). Each test is of rapier alone, or of rapier
 //! with a shape that it does not know: one that fails after an upgrade says that a workaround can go.
 
+use rapier3d::control::KinematicCharacterController;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
@@ -166,4 +167,39 @@ fn bodies_whose_pose_is_set_in_each_step_never_fall_asleep() {
         world.bodies[body].is_sleeping()
     };
     assert!(sleeps(false) && !sleeps(true));
+}
+
+/// A floor whose normal comes out straight up and shorter than 1 by rounding is a slope that characters slip on: they stand
+/// still for some of their moves. So the normals of hits that this crate tells are longer than 1.
+#[test]
+fn characters_stand_still_where_rounding_makes_normals_short() {
+    let way = |shape: &SharedShape, turn: Vector| {
+        let mut world = PhysicsWorld::new();
+        let pose = Pose::new(Vector::NEG_Y * 20.0, turn);
+        world.insert_collider(
+            ColliderBuilder::cuboid(20.0, 20.0, 20.0).position(pose),
+            None,
+        );
+        world.detect_collisions(&(), &());
+        let controller = KinematicCharacterController::default();
+        let mut at = Vector::new(0.0, 0.511, 0.0);
+        for _ in 0..100 {
+            let wish = Vector::new(0.04, -0.03, 0.03);
+            let (queries, pose) = (world.query_pipeline(), Pose::from_translation(at));
+            let moved = controller.move_shape(1.0 / 60.0, &queries, &**shape, &pose, wish, |_| ());
+            at += moved.translation;
+        }
+        Vector::new(at.x, 0.0, at.z).length()
+    };
+    let axes = [Vector::X, Vector::Y, Vector::Z, Vector::NEG_X];
+    let shapes = [
+        SharedShape::ball(0.5),
+        SharedShape::cuboid(0.2, 0.5, 0.2),
+        SharedShape::cylinder(0.5, 0.2),
+    ];
+    for shape in &shapes {
+        let turned = axes.map(|axis| way(shape, axis * std::f32::consts::FRAC_PI_2));
+        let least = turned.into_iter().fold(Real::MAX, Real::min);
+        assert!(least < 4.9, "{turned:?} m of 5");
+    }
 }

@@ -179,11 +179,7 @@ impl Job for ToiJob {
         })
     }
     fn free(&self) -> ToiResult {
-        ToiResult {
-            toi: Toi::separated(&self.options),
-            counts: Counts::default(),
-            deepest: f64::INFINITY,
-            met: None,
-        }
+        let toi = Toi::separated(&self.options);
+        ToiResult::of(toi, Counts::default(), f64::INFINITY)
     }
 }

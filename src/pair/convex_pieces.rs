@@ -347,7 +347,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 joined = joined.and(&patch);
             }
         }
-        met.patch = Some(joined);
+        met.joined = Some(joined);
         self.met = Some(met);
     }
 }

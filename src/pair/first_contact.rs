@@ -11,9 +11,9 @@ use super::primitive_tree::PrimitiveTree;
 use super::search::{LOOK, Search};
 use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
 use crate::elementary::{Paths, Toi, ToiOptions};
-use crate::math::Real;
 use crate::math::counters::counters;
 use crate::math::motion::RigidMotion;
+use crate::math::{Real, Vector};
 use crate::medial::MedialSphere;
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
@@ -98,6 +98,21 @@ pub struct ToiResult {
     pub deepest: f64,
     /// What met ([`Query::met`]).
     pub met: Option<Met>,
+    /// Where an impact acts ([`Query::middle`]).
+    pub middle: Option<Vector>,
+}
+
+impl ToiResult {
+    /// A first contact of which it is not known what met.
+    pub fn of(toi: Toi, counts: Counts, deepest: f64) -> Self {
+        Self {
+            toi,
+            counts,
+            deepest,
+            met: None,
+            middle: None,
+        }
+    }
 }
 
 /// The query of [`first_contact`], which can be interrupted and resumed, so that it is computed only as far as its
@@ -175,8 +190,10 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
     /// Continues the search to the end.
     pub fn settle(mut self) -> ToiResult {
         self.search(1.0);
+        let toi = self.toi();
         ToiResult {
-            toi: self.toi(),
+            middle: self.middle(&toi),
+            toi,
             counts: self.counts(),
             deepest: self.deepest(),
             met: self.met(),
@@ -233,11 +250,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
 
     /// The answer with what is known of two convex pieces that met.
     fn of_pieces(&self, toi: Toi, met: &PiecesMet) -> Toi {
-        let [first, second] = &self.motions;
-        // The motions' frame begins at the first body's origin and goes along with the second.
-        let origin = first.start.translation + second.linvel * (toi.lower * self.seconds);
         let nearest = (toi.points[0] + toi.points[1]) * 0.5;
-        let on_faces = |patch: Patch| origin + patch.middle().to_vector();
+        let on_faces = |patch: Patch| self.origin(&toi) + patch.middle().to_vector();
         let middle = met.patch.map_or(nearest, on_faces);
         let half = (met.normal * (0.5 * met.gap)).to_vector();
         Toi {
@@ -247,12 +261,26 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         }
     }
 
+    /// Origin of the motions' frame, which begins at the first body's and goes along with the second.
+    fn origin(&self, toi: &Toi) -> Vector {
+        let [first, second] = &self.motions;
+        first.start.translation + second.linvel * (toi.lower * self.seconds)
+    }
+
+    /// Middle of all faces that lie on each other in a contact of convex pieces, in the world frame, once the query is
+    /// settled: an impact acts there. It may be off both bodies, as between the legs of a table; `None` where no faces lie
+    /// on each other.
+    pub fn middle(&self, toi: &Toi) -> Option<Vector> {
+        let joined = self.search.as_ref()?.met.as_ref()?.joined?;
+        Some(self.origin(toi) + joined.middle().to_vector())
+    }
+
     /// What met, once the query is settled and has found a contact.
     pub fn met(&self) -> Option<Met> {
         let search = self.search.as_ref()?;
         let (_, found, primitives) = search.earliest.found?;
         if let Some(met) = &search.met
-            && let Some(patch) = met.patch
+            && let Some(patch) = met.joined
             && self.options.paths == Paths::Exact
         {
             let frames = [0, 1].map(|k| search.motions[k].frame(found.lower));

@@ -46,6 +46,8 @@ pub(super) struct PiecesMet {
     pub(super) of: usize,
     /// Where faces of them lie on each other, if they do.
     pub(super) patch: Option<Patch>,
+    /// The same of them and of all others that met with them.
+    pub(super) joined: Option<Patch>,
 }
 
 impl PiecesMet {
@@ -65,6 +67,7 @@ impl PiecesMet {
             normal: found.direction,
             of,
             patch,
+            joined: patch,
         }
     }
 }

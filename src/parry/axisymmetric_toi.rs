@@ -54,12 +54,8 @@ pub fn first_contact(
 ) -> ToiResult {
     let finite = motion_is_finite(motion1) && motion_is_finite(motion2) && seconds.is_finite();
     if !finite || !options.tolerance.is_finite() || !options.target_distance.is_finite() {
-        return ToiResult {
-            toi: Toi::bad_input(options),
-            counts: Counts::default(),
-            deepest: f64::INFINITY,
-            met: None,
-        };
+        let toi = Toi::bad_input(options);
+        return ToiResult::of(toi, Counts::default(), f64::INFINITY);
     }
     let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
     let mut search = Search {
@@ -85,12 +81,8 @@ pub fn first_contact(
     let elapsed = search.lower * f64::from(seconds);
     let origin = Vec3::<f64>::from_vector(motion1.start.translation)
         + Vec3::from_vector(motion2.linvel) * elapsed;
-    ToiResult {
-        toi: search.answer(bodies, origin),
-        counts: search.counts,
-        deepest: search.deepest,
-        met: None,
-    }
+    let toi = search.answer(bodies, origin);
+    ToiResult::of(toi, search.counts, search.deepest)
 }
 
 /// The state of one search for the first contact of a mesh with cylinders and cones.

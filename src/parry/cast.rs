@@ -81,12 +81,8 @@ impl Cast<'_> {
         let seconds = end - start;
         let finite = motions.iter().all(motion_is_finite);
         if !(finite && seconds >= 0.0 && seconds.is_finite()) {
-            return Ok(ToiResult {
-                toi: Toi::bad_input(options),
-                counts: Counts::default(),
-                deepest: f64::INFINITY,
-                met: None,
-            });
+            let toi = Toi::bad_input(options);
+            return Ok(ToiResult::of(toi, Counts::default(), f64::INFINITY));
         }
         // A contact is where the two are to within the tolerance.
         let target = options.target_distance + LIES_ABOVE * options.tolerance;
@@ -271,7 +267,7 @@ impl Cast<'_> {
             found.toi = axisymmetric_toi::earlier(found.toi, other.toi);
             // Of what met a cylinder or a cone the spheres alone do not tell the contact.
             if found.toi.lower == other.toi.lower {
-                found.met = None;
+                (found.met, found.middle) = (None, None);
             }
             found.deepest = found.deepest.min(other.deepest);
         }
@@ -279,7 +275,7 @@ impl Cast<'_> {
             && let Some(inside) = self.starts_inside(motion1, motion2, options)
         {
             found.toi = inside;
-            found.met = None;
+            (found.met, found.middle) = (None, None);
         }
         Ok(found)
     }

@@ -7,6 +7,7 @@ use crate::rng::Rng;
 use crate::rotating::{rotation, vector};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 use parry3d::math::{Pose, Real, Rotation, Vector};
+use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{NonlinearRigidMotion, QueryDispatcher};
 use parry3d::shape::{Cuboid, SharedShape};
 use rapier3d_medial::parry::MedialDispatcher;
@@ -284,4 +285,42 @@ fn a_face_far_from_its_own_origin_is_there() {
             );
         }
     }
+}
+
+/// A card that comes down flat on a ring, a link or a frame is told to touch it where both are, not in the hole between.
+#[test]
+fn witnesses_of_flat_contacts_are_on_both_bodies() {
+    let mut rng = Rng::new(73);
+    let dispatcher = MedialDispatcher::default();
+    let card = MedialMesh::cuboid(Vector::new(0.5, 0.01, 0.4)).expect("a card");
+    let bodies = [
+        MedialMesh::torus(0.5, 0.1, 24).expect("a ring"),
+        MedialMesh::rectangle_frame(0.5, 0.3, 0.08).expect("a link"),
+        MedialMesh::box_frame(Vector::new(0.4, 0.3, 0.4), 0.06).expect("a frame"),
+    ];
+    let off = |mesh: &MedialMesh, p: Vector| {
+        let distances = mesh.primitives().map(|q| q.signed_distance(p).distance);
+        distances.fold(Real::MAX, Real::min).abs()
+    };
+    let mut hits = 0;
+    for case in 0..600 {
+        let body = &bodies[case % 3];
+        let mut part = || rng.range(-1.0, 1.0) as Real;
+        let turn = Rotation::from_rotation_y(3.0 * part());
+        let at = Vector::new(0.4 * part(), 1.0, 0.4 * part());
+        let pose = Pose::from_parts(at, turn);
+        let velocity = Vector::new(0.2 * part(), -1.0, 0.2 * part());
+        let options = ShapeCastOptions::with_max_time_of_impact(3.0);
+        let hit = dispatcher
+            .cast_shapes(&pose, velocity, body, &card, options)
+            .expect("swept");
+        let Some(hit) = hit else { continue };
+        let off = [off(body, hit.witness1), off(&card, hit.witness2)];
+        assert!(
+            off[0] < 2.0e-4 && off[1] < 2.0e-4,
+            "{case}: {off:?}, {hit:?}"
+        );
+        hits += 1;
+    }
+    assert!(hits > 500, "{hits}");
 }

@@ -327,8 +327,8 @@ fn a_sliding_ball_gets_no_deeper_into_a_medial_wall_than_into_rapiers() {
 }
 
 /// Characters walk 5 m over a flat floor however it is turned in place, with their own weight, also where the floor or the
-/// character is medial. On rapier's cuboid floor, turned by a quarter, they lose up to half of the way, and a cuboid all of it:
-/// the normals told there are shorter than 1 by rounding, from which rapier's controller concludes that they slip.
+/// character is medial. On rapier's own floors they lose some of it (`tests/host.rs`), because rapier's controller takes a
+/// normal that is shorter than 1 by rounding for that of a slope.
 #[test]
 fn flat_floors_turned_by_a_quarter_are_walked_on() {
     let quarter = std::f32::consts::FRAC_PI_2;

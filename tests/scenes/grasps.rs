@@ -154,11 +154,12 @@ impl Grasp {
 /// Symptom: fingers of 50 and 100 g that pressed with 10 N on a rod of 0.5 kg lost their speed within a step, and with
 /// it the rod. Cause: an impact a billionth of a second before the step's end; what joints were open by was closed in
 /// what was left of the step, and the speed that took, from poses in single precision, went to the bodies.
-/// Which step jumps most hangs on rounding, for either shape: over masses, the mean must be no more than rapier's.
+/// Which step jumps most hangs on rounding, for either shape: over masses, the mean must be no more than rapier's, and the
+/// most no more than rapier's most.
 #[test]
 fn fingers_rise_as_their_base_does() {
-    let masses = (0..11).map(|k| 0.05 + 0.005 * k as Real);
-    let mut sums = [0.0; 2];
+    let masses = (0..41).map(|k| 0.05 + 0.00125 * k as Real);
+    let (mut sums, mut most): ([Real; 2], [Real; 2]) = ([0.0; 2], [0.0; 2]);
     for finger in masses {
         let grasp = Grasp {
             mass: 0.5,
@@ -169,17 +170,15 @@ fn fingers_rise_as_their_base_does() {
             to_position: false,
             force: 10.0,
         };
-        let [ours, rapiers] =
-            [As::Medial, As::Capsules].map(|made| grasp.lift(Thing::Rod, made).jump);
-        println!("fingers of {finger} kg jump by {ours} m/s in a step, rapier's own by {rapiers}");
-        assert!(
-            ours < 1.5 * rapiers,
-            "{finger} kg: {ours} m/s, rapier's own {rapiers}"
-        );
-        sums[0] += ours;
-        sums[1] += rapiers;
+        let jumps = [As::Medial, As::Capsules].map(|made| grasp.lift(Thing::Rod, made).jump);
+        for (k, jump) in jumps.into_iter().enumerate() {
+            sums[k] += jump;
+            most[k] = most[k].max(jump);
+        }
     }
-    let [ours, rapiers] = sums.map(|sum| sum / 11.0);
+    println!("fingers jump by {most:?} m/s in a step at most, medial and rapier's own");
+    assert!(most[0] <= most[1], "{most:?}");
+    let [ours, rapiers] = sums.map(|sum| sum / 41.0);
     assert!(
         ours <= rapiers,
         "{ours} m/s in the mean, rapier's own {rapiers}"

@@ -6,10 +6,11 @@
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::contact_point::ContactPoint;
+use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::impulse::Material;
 use crate::rapier::impacts::lost_gains::lose_gains;
 use crate::rapier::impacts::response::{Response, bodies};
-use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
+use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::impacts::way_out::way_out;
 use crate::rapier::joints::jointed_bodies::{Joints, settle};
 use crate::rapier::joints::rows::Twist;

@@ -1,8 +1,8 @@
 //! Point where two bodies meet: their motions there, and the effect of an impulse there.
 
 use crate::math::{Real, Vector};
+use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::impulse::{Impact, Material};
-use crate::rapier::impacts::toi_query::Hit;
 use crate::rapier::joints::rows::Twist;
 use crate::rapier::joints::tied_system::System;
 use crate::rapier::view::step_view::StepView;

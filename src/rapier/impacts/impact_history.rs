@@ -4,7 +4,8 @@
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
 use crate::pair::met::{Met, Touch};
-use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
+use crate::rapier::impacts::hit::Hit;
+use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 

@@ -6,9 +6,10 @@ use crate::math::Real;
 use crate::medial::MedialMesh;
 use crate::pair::first_contact::Query;
 use crate::pair::pair_list::PairList;
+use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::near_lists::NearLists;
 use crate::rapier::impacts::pair_culling::PairCulling;
-use crate::rapier::impacts::toi_query::{CcdPolicy, Hit, QueryOptions, Work};
+use crate::rapier::impacts::toi_query::{CcdPolicy, QueryOptions, Work};
 use crate::rapier::view::step_view::StepView;
 
 /// The medial meshes of both, where they are.
@@ -101,7 +102,11 @@ impl<'m> LazyToiQuery<'m> {
             work.counts += query.counts() - before;
             match free {
                 Some(share) => QueryProgress::FreeUntil(from + share * seconds),
-                None => Hit::of(&query.toi(), query.met(), from, seconds).into(),
+                None => {
+                    let toi = query.toi();
+                    let what = (query.met(), query.middle(&toi));
+                    Hit::of(&toi, what, from, seconds).into()
+                }
             }
         };
         let query_options = &self.query_options;

@@ -2,7 +2,7 @@
 //! does to bodies.
 //!
 //! - The loop: `event_loop.rs`, in the order of times of `event_queue.rs`; its result: `outcome.rs`.
-//! - When a pair first touches: `toi_query.rs` (what counts as contact), `lazy_toi_query.rs` (a search that pauses).
+//! - When a pair first touches: `toi_query.rs` (what counts as contact; its answer `hit.rs`), `lazy_toi_query.rs` (a search that pauses).
 //! - Which pairs are searched at all: `fast_parts.rs`, `deep_pairs.rs`, `initial_overlaps.rs`, `pinched.rs`; what spares a search:
 //!   `swept_boxes.rs`, `pair_culling.rs`, `near_lists.rs`.
 //! - What an impact does: `impulse.rs` is the law (Newton's restitution, Coulomb's friction), `contact_impulses.rs`
@@ -18,6 +18,7 @@ pub(crate) mod deep_pairs;
 pub(crate) mod event_loop;
 pub(crate) mod event_queue;
 pub(crate) mod fast_parts;
+pub(crate) mod hit;
 pub(crate) mod impact_history;
 pub(crate) mod impulse;
 pub(crate) mod initial_overlaps;

@@ -12,8 +12,9 @@
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::body_state::BodyImpactState;
+use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::impact_history::ImpactHistory;
-use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
+use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::joints::jointed_bodies::Joints;
 use crate::rapier::joints::pieces::Pieces;
 use crate::rapier::view::eligible_pairs::Rules;

@@ -10,17 +10,17 @@
 //! fast where parts of them that may meet are fast for how thin they are ([`FastParts`]).
 
 use crate::batch::ToiJob;
-use crate::elementary::{Cores, InitialContact, Paths, Toi, ToiOptions, ToiStatus};
+use crate::elementary::{Cores, InitialContact, Paths, ToiOptions};
 use crate::math::counters::counters;
 use crate::math::{Real, Vector};
 use crate::pair::first_contact::{Counts, Query, ToiResult};
-use crate::pair::met::Met;
 use crate::pair::outline::ActivePrimitives;
 use crate::parry::cast::Cast;
 use crate::parry::initial_contacts::AtStart;
 use crate::parry::sliding::Sinks;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::impacts::fast_parts::FastParts;
+use crate::rapier::impacts::hit::Hit;
 use crate::rapier::tuning::Tuning;
 use crate::rapier::view::step_view::StepView;
 use parry3d::query::NonlinearRigidMotion;
@@ -53,37 +53,6 @@ impl Work {
         self.queries += 1;
         let turning = motions.iter().any(|m| m.angvel != Vector::ZERO);
         self.rotating += u64::from(turning && options.paths == Paths::Exact);
-    }
-}
-
-/// First contact of two colliders.
-#[derive(Clone, Copy, Debug)]
-pub struct Hit {
-    /// Seconds into the step, at the contact's lower bound.
-    pub time: Real,
-    /// Unit normal from the first to the second, zero where unknown.
-    pub normal: Vector,
-    /// Middle of the nearest points, world frame.
-    pub point: Vector,
-    /// Depth below the surfaces, a length; < 0 above them.
-    pub depth: Real,
-    /// The primitives that meet; 0 of a shape that is not medial.
-    pub primitives: [u32; 2],
-    /// What of them meets, where it is known.
-    pub met: Option<Met>,
-}
-
-impl Hit {
-    /// The hit of a query over `seconds` from `time` on; `None` if it found none.
-    pub fn of(toi: &Toi, met: Option<Met>, time: Real, seconds: Real) -> Option<Self> {
-        (toi.status != ToiStatus::Separated).then(|| Self {
-            time: time + toi.lower * seconds,
-            normal: toi.normal,
-            point: (toi.points[0] + toi.points[1]) * 0.5,
-            depth: (toi.points[0] - toi.points[1]).dot(toi.normal),
-            primitives: toi.primitives,
-            met,
-        })
     }
 }
 
@@ -331,7 +300,7 @@ impl CcdPolicy<'_> {
             let found = known.or_else(asked)?;
             work.begin(&motions, options);
             work.counts += found.counts;
-            let hit = Hit::of(&found.toi, found.met, time, seconds);
+            let hit = Hit::of(&found.toi, (found.met, found.middle), time, seconds);
             Some((hit, found.deepest))
         };
         let (hit, deepest) = query(&query_options.first, known)?;

@@ -10,7 +10,8 @@
 //! between others would be thrown faster from impact to impact.
 
 use crate::math::Real;
-use crate::rapier::impacts::toi_query::{CcdPolicy, Hit};
+use crate::rapier::impacts::hit::Hit;
+use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::view::step_view::StepView;
 
 /// How fast the bodies of a hit are pushed apart, a length per second. Thin parts are kept as far from each other as the
