@@ -320,7 +320,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Adds to the pieces that met all others that lie on each other in the same plane then: triangles of one ground, blocks of
     /// one body.
     pub(super) fn join_pieces(&mut self) {
-        let (Some(mut met), Some((_, found, _))) = (self.met, self.earliest.found) else {
+        self.joined = None;
+        let (Some(met), Some((_, found, _))) = (self.met, self.earliest.found) else {
             return;
         };
         let Some(own) = met.patch else {
@@ -347,7 +348,6 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 joined = joined.and(&patch);
             }
         }
-        met.joined = Some(joined);
-        self.met = Some(met);
+        self.joined = Some(joined);
     }
 }

@@ -271,7 +271,9 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
     /// settled: an impact acts there. It may be off both bodies, as between the legs of a table; `None` where no faces lie
     /// on each other.
     pub fn middle(&self, toi: &Toi) -> Option<Vector> {
-        let joined = self.search.as_ref()?.met.as_ref()?.joined?;
+        let search = self.search.as_ref()?;
+        let met = search.met.as_ref()?;
+        let joined = search.joined.or(met.patch)?;
         Some(self.origin(toi) + joined.middle().to_vector())
     }
 
@@ -280,7 +282,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         let search = self.search.as_ref()?;
         let (_, found, primitives) = search.earliest.found?;
         if let Some(met) = &search.met
-            && let Some(patch) = met.joined
+            && let Some(patch) = search.joined.or(met.patch)
             && self.options.paths == Paths::Exact
         {
             let frames = [0, 1].map(|k| search.motions[k].frame(found.lower));

@@ -46,8 +46,6 @@ pub(super) struct PiecesMet {
     pub(super) of: usize,
     /// Where faces of them lie on each other, if they do.
     pub(super) patch: Option<Patch>,
-    /// The same of them and of all others that met with them.
-    pub(super) joined: Option<Patch>,
 }
 
 impl PiecesMet {
@@ -67,7 +65,6 @@ impl PiecesMet {
             normal: found.direction,
             of,
             patch,
-            joined: patch,
         }
     }
 }

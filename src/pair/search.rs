@@ -20,6 +20,7 @@
 //! On a device `walk` in `shaders/cull.wgsl` splits nodes in the same way, but looks at all that meet.
 
 use super::outline::ActivePrimitives;
+use super::patch::Patch;
 use super::piece_contact::{Look, Pieces, PiecesMet};
 use super::primitive_tree::PrimitiveTree;
 use super::queue::{Candidate, Entry, Open, Tested};
@@ -91,6 +92,8 @@ pub(super) struct Search<'a, A, B> {
     pub(super) convex: FastMap<[u32; 2], Option<Pieces>>,
     /// The convex pieces found, where the contact found is of such.
     pub(super) met: Option<PiecesMet>,
+    /// Where faces of these and of all others that meet with them lie on each other, once that is asked.
+    pub(super) joined: Option<Patch>,
 }
 
 /// How far a search came.
@@ -142,6 +145,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
             touching: Vec::new(),
             convex: FastMap::default(),
             met: None,
+            joined: None,
         }
     }
 

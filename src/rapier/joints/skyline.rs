@@ -66,6 +66,36 @@ impl Skyline {
     }
 }
 
+/// Ranks of bodies that are placed after those from which joints reach them: a body's are above those of all that it
+/// carries, which come branch by branch.
+pub fn ranks(bodies: usize, joints: impl Iterator<Item = [usize; 2]>) -> Vec<usize> {
+    let mut carriers: Vec<Option<usize>> = vec![None; bodies];
+    for [a, b] in joints {
+        let [near, far] = [a.min(b), a.max(b)];
+        carriers[far].get_or_insert(near);
+    }
+    let mut carried = vec![1; bodies];
+    for far in (0..bodies).rev() {
+        if let Some(near) = carriers[far].filter(|near| *near != far) {
+            carried[near] += carried[far];
+        }
+    }
+    let mut next = vec![0; bodies];
+    let mut roots = 0;
+    let mut ranks = Vec::with_capacity(bodies);
+    for k in 0..bodies {
+        let begin = match carriers[k] {
+            Some(near) => &mut next[near],
+            None => &mut roots,
+        };
+        let first = *begin;
+        *begin += carried[k];
+        next[k] = first;
+        ranks.push(first + carried[k] - 1);
+    }
+    ranks
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -12,7 +12,7 @@ use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::rapier::joints::limits::Limit;
 use crate::rapier::joints::rows::{Ends, Joint, Row, Twist, dot};
-use crate::rapier::joints::skyline::Skyline;
+use crate::rapier::joints::skyline::{Skyline, ranks};
 use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::link_angles::shortest;
 use crate::rapier::view::step_view::StepView;
@@ -23,9 +23,6 @@ const REGULAR: f64 = 1.0e-4;
 
 /// Times that joints are closed in a piece of a motion: each leaves about a quarter of the opening.
 const CLOSING_STEPS: usize = 8;
-
-/// Times that joints are asked whether they pass a limit, as a stop of one may have another pass.
-const STOPPING_ROUNDS: usize = 4;
 
 /// Opening that is left, a length or an angle in radians; of bodies far from each other more, by the rounding of their
 /// poses.
@@ -42,13 +39,13 @@ pub struct System<'a> {
     /// Point that is taken from all positions, which are the more exact for it.
     origin: Vector,
     start: Vec<Pose>,
-    poses: Vec<Pose>,
+    pub(super) poses: Vec<Pose>,
     /// Ways of the centres of mass, and turns, since the start.
-    moved: Vec<(Vector, Rotation)>,
+    pub(super) moved: Vec<(Vector, Rotation)>,
     /// Joints with the places of their bodies.
-    joints: Vec<(&'a Joint, [usize; 2])>,
+    pub(super) joints: Vec<(&'a Joint, [usize; 2])>,
     /// Limits at which joints stop in a piece of the motion, and places of these joints.
-    stops: Vec<(usize, Limit)>,
+    pub(super) stops: Vec<(usize, Limit)>,
     /// Rows of `G`, and of `G W`.
     rows: Vec<Row>,
     weighted: Vec<[Twist; 2]>,
@@ -82,7 +79,7 @@ impl<'a> System<'a> {
             poses: start.clone(),
             start,
             moved: vec![(Vector::ZERO, Rotation::IDENTITY); bodies.len()],
-            ranks: ranks(bodies.len(), &joints),
+            ranks: ranks(bodies.len(), joints.iter().map(|joint| joint.1)),
             joints,
             bodies,
             stops: Vec::new(),
@@ -155,7 +152,7 @@ impl<'a> System<'a> {
     }
 
     /// Finds the rows at the poses now, and factors `G W Gᵀ`.
-    fn factor(&mut self) {
+    pub(super) fn factor(&mut self) {
         self.rows = self.rows_now();
         let inertias = &self.inertias;
         let weighted = |r: &Row| [0, 1].map(|k| inertias[r.bodies[k]].apply(r.jacobian[k]));
@@ -206,80 +203,13 @@ impl<'a> System<'a> {
     }
 
     /// Ends of a joint at some poses.
-    fn ends(&self, joint: usize, poses: &[Pose]) -> Ends {
+    pub(super) fn ends(&self, joint: usize, poses: &[Pose]) -> Ends {
         let (joint, bodies) = self.joints[joint];
         Ends {
             bodies,
             frames: [0, 1].map(|k| poses[bodies[k]] * joint.frames[k]),
             centers: bodies.map(|k| poses[k] * self.centers[k]),
         }
-    }
-
-    /// Makes joints that stand at a limit hold it where a push by some changes of velocity would take them past it.
-    pub fn stand_at_limits(&mut self, twists: &[Twist], push: impl Fn(&Self) -> Vec<Twist>) {
-        let limits = self.limits(&self.poses);
-        let stands = |(_, limit, row): &(usize, Limit, Row)| limit.is_reached(row.opening);
-        let mut standing: Vec<_> = limits.filter(stands).collect();
-        for _ in 0..STOPPING_ROUNDS {
-            if standing.is_empty() {
-                break;
-            }
-            let pushed = push(self);
-            let known = self.stops.len();
-            standing.retain(|(j, limit, row)| {
-                let [rate, push] = [twists, &pushed].map(|t| row.along(t) as Real);
-                let holds = limit.holds(row.opening, rate, push);
-                if holds {
-                    self.stops.push((*j, *limit));
-                }
-                !holds
-            });
-            if self.stops.len() == known {
-                break;
-            }
-            self.factor();
-        }
-    }
-
-    /// Limits of joints that may move, with the places of these joints, and their rows at some poses.
-    fn limits<'b>(&'b self, poses: &'b [Pose]) -> impl Iterator<Item = (usize, Limit, Row)> + 'b {
-        let joints = self.joints.iter().enumerate();
-        let limited = joints.filter(|(_, (joint, bodies))| {
-            !joint.limits.is_empty() && !bodies.iter().all(|k| self.is_infinite(*k))
-        });
-        limited.flat_map(|(j, (joint, _))| {
-            let ends = self.ends(j, poses);
-            let limits = joint.limits.iter();
-            limits.map(move |limit| (j, *limit, ends.limited(limit)))
-        })
-    }
-
-    /// Makes joints stop at the limits that they would pass in some seconds at some velocities, and returns where.
-    pub fn stop_at_limits(&mut self, twists: &[Twist], seconds: Real) -> Vec<f64> {
-        let mut targets = Vec::new();
-        for _ in 0..STOPPING_ROUNDS {
-            let mut held = twists.to_vec();
-            self.hold(&mut held);
-            let start = (self.poses.clone(), self.moved.clone());
-            self.displace(&held, seconds);
-            let end = std::mem::replace(&mut self.poses, start.0);
-            self.moved = start.1;
-            let known = self.stops.len();
-            let both = self.limits(&self.poses).zip(self.limits(&end));
-            let stops = both.filter_map(|((j, limit, now), (_, _, next))| {
-                let target = limit.stop(now.opening, next.opening)?;
-                let is_known = self.stops.contains(&(j, limit));
-                (!is_known).then_some(((j, limit), f64::from(target)))
-            });
-            let (stops, more): (Vec<_>, Vec<f64>) = stops.unzip();
-            self.stops.extend(stops);
-            targets.extend(more);
-            if self.stops.len() == known {
-                break;
-            }
-            self.factor();
-        }
-        targets
     }
 
     /// Moves the bodies by some velocities for some seconds, until joints are open by `targets`, and returns the
@@ -390,7 +320,7 @@ impl<'a> System<'a> {
     }
 
     /// Moves all bodies by some twists for some seconds.
-    fn displace(&mut self, twists: &[Twist], seconds: Real) {
+    pub(super) fn displace(&mut self, twists: &[Twist], seconds: Real) {
         for (k, [slide, turn]) in twists.iter().enumerate() {
             let turn = Rotation::from_scaled_axis(*turn * seconds);
             let center = self.poses[k] * self.centers[k] + *slide * seconds;
@@ -400,36 +330,6 @@ impl<'a> System<'a> {
             *moved = (moved.0 + *slide * seconds, (turn * moved.1).normalize());
         }
     }
-}
-
-/// Ranks of bodies that are placed after those from which joints reach them: a body's are above those of all that it
-/// carries, which come branch by branch.
-fn ranks(bodies: usize, joints: &[(&Joint, [usize; 2])]) -> Vec<usize> {
-    let mut carriers: Vec<Option<usize>> = vec![None; bodies];
-    for (_, [a, b]) in joints {
-        let [near, far] = [*a.min(b), *a.max(b)];
-        carriers[far].get_or_insert(near);
-    }
-    let mut carried = vec![1; bodies];
-    for far in (0..bodies).rev() {
-        if let Some(near) = carriers[far].filter(|near| *near != far) {
-            carried[near] += carried[far];
-        }
-    }
-    let mut next = vec![0; bodies];
-    let mut roots = 0;
-    let mut ranks = Vec::with_capacity(bodies);
-    for k in 0..bodies {
-        let begin = match carriers[k] {
-            Some(near) => &mut next[near],
-            None => &mut roots,
-        };
-        let first = *begin;
-        *begin += carried[k];
-        next[k] = first;
-        ranks.push(first + carried[k] - 1);
-    }
-    ranks
 }
 
 fn add(twist: &mut Twist, more: Twist, factor: Real) {
