@@ -183,15 +183,21 @@ fn hull_faces(hull: &ConvexPolyhedron, border: Real, mut face: impl FnMut(Vector
     }
 }
 
+/// Distance by which a point on a surface is moved to find the side that is free, in units of the shape's size.
+const ASIDE: Real = 1.0e-4;
+
 fn by_projection(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<MinTranslation> {
     let way = |(sphere, s): (usize, &MedialSphere)| {
         if !holds_point(shape, s.center) {
             return None;
         }
         let out = shape.project_local_point(s.center, false).point - s.center;
+        let aside = ASIDE * shape.compute_local_aabb().extents().max_element();
+        let is_free = |way: &Vector| !holds_point(shape, s.center + *way * aside);
+        let free = || Vector::AXES.into_iter().flat_map(|a| [a, -a]).find(is_free);
         Some(MinTranslation {
             sphere,
-            direction: out.try_normalize()?,
+            direction: out.try_normalize().or_else(free)?,
             to_surface: out.length(),
             depth: out.length() + s.radius,
         })

@@ -81,6 +81,12 @@ impl RayCast for MedialMesh {
         max_time_of_impact: Real,
         solid: bool,
     ) -> Option<RayIntersection> {
+        // A ray without direction is a point, at which parry's ball tells a normal that is no number.
+        if ray.dir == Vector::ZERO {
+            let hits = solid && self.contains_local_point(ray.origin);
+            let hit = || RayIntersection::new(0.0, Vector::ZERO, FeatureId::Face(0));
+            return hits.then(hit);
+        }
         if !solid && let Some(exit) = rays::exit(self, ray) {
             return (exit.time_of_impact <= max_time_of_impact).then_some(exit);
         }

@@ -1,6 +1,6 @@
 //! A body that starts wholly inside a closed one touches no surface: only the inside test tells.
 
-use parry3d::math::{Pose, Vector};
+use parry3d::math::{IVector, Pose, Vector};
 use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{NonlinearRigidMotion, QueryDispatcher};
 use parry3d::shape::{Shape, SharedShape};
@@ -191,5 +191,25 @@ fn a_point_and_a_disk_are_hit_where_they_are() {
             hit.is_some_and(|h| (h.time_of_impact - 0.5).abs() < 1.0e-4),
             "{hit:?}"
         );
+    }
+}
+
+/// A ball whose centre is exactly on the top of a row of voxels gets out upwards.
+#[test]
+fn a_centre_on_the_face_of_a_voxel_has_a_way_out() {
+    let cells: Vec<_> = (-3..3).map(|x| IVector::new(x, 0, 0)).collect();
+    let voxels = SharedShape::voxels(Vector::ONE, &cells);
+    let mesh = MedialMesh::ball(0.25).expect("a ball");
+    let options = ShapeCastOptions {
+        compute_impact_geometry_on_penetration: true,
+        ..ShapeCastOptions::with_max_time_of_impact(1.0)
+    };
+    for x in [-0.5, 0.25, 0.5] {
+        let pose = Pose::translation(x, 1.0, 0.5);
+        let hit = MedialDispatcher::default()
+            .cast_shapes(&pose, Vector::NEG_Y, voxels.as_ref(), &mesh, options)
+            .expect("swept")
+            .expect("overlapping");
+        assert!(hit.normal1.dot(Vector::Y) > 0.99, "{x}: {hit:?}");
     }
 }

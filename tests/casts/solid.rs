@@ -268,6 +268,11 @@ fn rays_without_direction_hit_what_holds_them() {
         assert_eq!(time, own.cast_local_ray(&ray, LENGTH, true), "{ray:?}");
         held += usize::from(time == Some(0.0));
     }
+    let ball = MedialMesh::ball(0.5).expect("a ball");
+    let at_center =
+        ball.cast_local_ray_and_get_normal(&Ray::new(Vector::ZERO, Vector::ZERO), LENGTH, true);
+    let normal = at_center.expect("held").normal;
+    assert!(normal.is_finite(), "{normal:?}");
     // The box has a ninth of the volume of the ball.
     assert!((10..40).contains(&held), "{held} inside");
 }
