@@ -132,4 +132,10 @@ mod tests {
         indefinite.push_row(0).copy_from_slice(&[2.0, 1.0]);
         assert!(indefinite.factor().is_none());
     }
+    /// A trunk with two branches that have two twigs each: each branch after its twigs, and the trunk last.
+    #[test]
+    fn branches_come_before_their_stem() {
+        let joints = [[0, 1], [0, 2], [1, 3], [4, 1], [2, 5], [2, 6]];
+        assert_eq!(ranks(7, joints.into_iter()), [6, 2, 5, 0, 1, 3, 4]);
+    }
 }

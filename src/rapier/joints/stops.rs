@@ -1,7 +1,6 @@
 //! Stops: limits of joints at which a system of tied bodies ([`System`]) stands, or which it would pass as it moves on.
 
-use crate::math::Pose;
-use crate::math::Real;
+use crate::math::{Pose, Real};
 use crate::rapier::joints::limits::Limit;
 use crate::rapier::joints::rows::{Row, Twist};
 use crate::rapier::joints::tied_system::System;

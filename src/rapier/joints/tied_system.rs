@@ -158,13 +158,7 @@ impl<'a> System<'a> {
         let weighted = |r: &Row| [0, 1].map(|k| inertias[r.bodies[k]].apply(r.jacobian[k]));
         self.weighted = self.rows.iter().map(weighted).collect();
         self.order = (0..self.rows.len()).collect();
-        let rank = |i: &usize| {
-            self.rows[*i]
-                .bodies
-                .map(|k| self.ranks[k])
-                .into_iter()
-                .min()
-        };
+        let rank = |i: &usize| self.rows[*i].bodies.iter().map(|k| self.ranks[*k]).min();
         self.order.sort_by_key(rank);
         let mut matrix = Skyline::default();
         // The first row that moves each body.
