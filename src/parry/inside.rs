@@ -77,24 +77,27 @@ fn to_corners(hull: &ConvexPolyhedron, point: Vector) -> Real {
 
 /// Whether a point is in a hull, or no farther from it than a distance.
 fn is_near_hull(hull: &ConvexPolyhedron, point: Vector, distance: Real) -> bool {
-    let mut farthest = Real::NEG_INFINITY;
-    hull_faces(hull, 0.0, |n, offset| {
-        farthest = farthest.max(n.dot(point) - offset);
-    });
-    // Beyond one face, the nearest point may still be on an edge or at a corner of others.
-    farthest <= 0.0
-        || farthest <= distance
-            && hull.faces().iter().any(|face| {
-                let first = face.first_vertex_or_edge as usize;
-                let ring =
-                    &hull.vertices_adj_to_face()[first..][..face.num_vertices_or_edges as usize];
-                let corner = |k: usize| hull.points()[ring[k] as usize];
-                (2..ring.len()).any(|k| {
-                    let triangle = Triangle::new(corner(0), corner(k - 1), corner(k));
-                    let nearest = triangle.project_local_point(point, true).point;
-                    nearest.distance(point) <= distance
-                })
+    let ring = hull.vertices_adj_to_face();
+    let corner = |k: u32| hull.points()[ring[k as usize] as usize];
+    let mut is_inside = true;
+    for face in hull.faces() {
+        let height = face.normal.dot(point - corner(face.first_vertex_or_edge));
+        // About half of the faces look at a point outside, so that this soon ends.
+        if height > distance {
+            return false;
+        }
+        is_inside &= height <= 0.0;
+    }
+    // Beyond no face by more, its nearest point may still be farther, on an edge or at a corner.
+    is_inside
+        || hull.faces().iter().any(|face| {
+            let first = face.first_vertex_or_edge;
+            (first + 2..first + face.num_vertices_or_edges).any(|k| {
+                let triangle = Triangle::new(corner(first), corner(k - 1), corner(k));
+                let nearest = triangle.project_local_point(point, true).point;
+                nearest.distance(point) <= distance
             })
+        })
 }
 
 /// Shortest translation out of a closed body.
