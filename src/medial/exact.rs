@@ -71,18 +71,22 @@ pub fn tangent_normals_beyond(balls: &[Ball; 3], collinear_sq: f64) -> Option<[V
     Some([up - g, -up - g])
 }
 
-/// Outward unit normal of a plane that touches the first two of three spheres, one of all around their axis; `None` if
-/// one holds the other.
-pub fn cone_normal(balls: &[Ball; 3]) -> Option<Vec3<f64>> {
-    let [a, b, _] = *balls;
-    let along = b.center - a.center;
-    let length = along.length();
+/// Outward unit normal of a plane that touches two spheres, of all around their axis the one that faces `along` most; `None`
+/// if one sphere holds the other.
+pub fn cone_normal([a, b]: [Ball; 2], along: Vec3<f64>) -> Option<Vec3<f64>> {
+    let between = b.center - a.center;
+    let length = between.length();
     let sine = (a.radius - b.radius) / length;
     // Not for spheres of one centre, where the sine is not a number.
     (sine.abs() < 1.0).then(|| {
-        let along = along * (1.0 / length);
-        let across = Vec3::from_vector(along.to_vector().any_orthonormal_vector());
-        let across = across - along * across.dot(along);
-        along * sine + across * ((1.0 - sine * sine).sqrt() / across.length())
+        let axis = between * (1.0 / length);
+        let across = |v: Vec3<f64>| v - axis * v.dot(axis);
+        let aside = across(along);
+        let aside = if aside.length() > COLLINEAR_SIN_SQ.sqrt() * along.length() {
+            aside
+        } else {
+            across(Vec3::from_vector(axis.to_vector().any_orthonormal_vector()))
+        };
+        axis * sine + aside * ((1.0 - sine * sine).sqrt() / aside.length())
     })
 }

@@ -33,9 +33,12 @@ pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
             .any(|(pose, s)| holds_point(s.as_ref(), pose.inverse_transform_point(point))),
         // parry iterates for these, with tolerances in which bodies of centimetres vanish.
         TypedShape::RoundCuboid(c) => beyond_cuboid(&c.inner_shape, point) <= c.border_radius,
-        TypedShape::ConvexPolyhedron(hull) => is_near_hull(hull, point, 0.0),
+        TypedShape::ConvexPolyhedron(hull) => {
+            shape.contains_local_point(point) && !is_beyond_hull(hull, point, 0.0)
+        }
         TypedShape::RoundConvexPolyhedron(c) => {
-            is_near_hull(&c.inner_shape, point, c.border_radius)
+            shape.contains_local_point(point)
+                && !is_beyond_hull(&c.inner_shape, point, c.border_radius)
         }
         _ => shape.contains_local_point(point),
     }
@@ -48,8 +51,8 @@ pub fn most_distance(shape: &dyn Shape, point: Vector) -> Real {
             let beyond = beyond_cuboid(&c.inner_shape, point);
             (beyond - c.border_radius).max(0.0)
         }
-        TypedShape::ConvexPolyhedron(hull) => to_corners(hull, point),
-        TypedShape::RoundConvexPolyhedron(c) => to_corners(&c.inner_shape, point),
+        TypedShape::ConvexPolyhedron(hull) => most_to_hull(shape, hull, point),
+        TypedShape::RoundConvexPolyhedron(c) => most_to_hull(shape, &c.inner_shape, point),
         TypedShape::RoundTriangle(t) => t.inner_shape.distance_to_local_point(point, true),
         TypedShape::RoundCylinder(c) => c.inner_shape.distance_to_local_point(point, true),
         TypedShape::RoundCone(c) => c.inner_shape.distance_to_local_point(point, true),
@@ -69,34 +72,50 @@ fn beyond_cuboid(cuboid: &Cuboid, point: Vector) -> Real {
     beyond.max(Vector::ZERO).length()
 }
 
-/// Distance of a point to the nearest corner of a hull.
-fn to_corners(hull: &ConvexPolyhedron, point: Vector) -> Real {
+/// A length that is no less than the distance of a point to a hull or a rounded one.
+fn most_to_hull(shape: &dyn Shape, hull: &ConvexPolyhedron, point: Vector) -> Real {
+    let told = shape.distance_to_local_point(point, true);
+    if told > 0.0 || holds_point(shape, point) {
+        return told;
+    }
     let distances = hull.points().iter().map(|p| p.distance(point));
     distances.fold(Real::MAX, Real::min)
 }
 
-/// Whether a point is in a hull, or no farther from it than a distance.
-fn is_near_hull(hull: &ConvexPolyhedron, point: Vector, distance: Real) -> bool {
+/// Whether a point is proven to be farther from a hull than a distance: along the normal of a face, or straight away from the
+/// hull's middle, or because no face is that near. Of faces of round sides parry keeps one normal for many, so that the
+/// normal is a direction to look along, not the side of a plane.
+fn is_beyond_hull(hull: &ConvexPolyhedron, point: Vector, distance: Real) -> bool {
     let ring = hull.vertices_adj_to_face();
     let corner = |k: u32| hull.points()[ring[k as usize] as usize];
+    let is_apart = |n: Vector| {
+        let heights = hull.points().iter().map(|p| n.dot(point - *p));
+        heights.fold(Real::MAX, Real::min) > distance
+    };
+    let count = hull.points().len() as Real;
+    let middle = hull.points().iter().fold(Vector::ZERO, |sum, p| sum + *p) / count;
+    if is_apart((point - middle).normalize_or_zero()) {
+        return true;
+    }
     let mut is_inside = true;
     for face in hull.faces() {
         let height = face.normal.dot(point - corner(face.first_vertex_or_edge));
-        // About half of the faces look at a point outside, so that this soon ends.
-        if height > distance {
-            return false;
+        if height > distance && is_apart(face.normal) {
+            return true;
         }
         is_inside &= height <= 0.0;
     }
     // Beyond no face by more, its nearest point may still be farther, on an edge or at a corner.
-    is_inside
-        || hull.faces().iter().any(|face| {
+    let is_near = |triangle: Triangle| {
+        let nearest = triangle.project_local_point(point, true).point;
+        nearest.distance(point) <= distance
+    };
+    distance > 0.0
+        && !is_inside
+        && !hull.faces().iter().any(|face| {
             let first = face.first_vertex_or_edge;
-            (first + 2..first + face.num_vertices_or_edges).any(|k| {
-                let triangle = Triangle::new(corner(first), corner(k - 1), corner(k));
-                let nearest = triangle.project_local_point(point, true).point;
-                nearest.distance(point) <= distance
-            })
+            let mut others = first + 2..first + face.num_vertices_or_edges;
+            others.any(|k| is_near(Triangle::new(corner(first), corner(k - 1), corner(k))))
         })
 }
 

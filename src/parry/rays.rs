@@ -67,19 +67,35 @@ pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> 
 
 /// Unit direction straight out of a primitive from a point in it: away from the centre of the nearest sphere. Where the
 /// point is that centre, to rounding, it is across a plane that touches the sphere and its neighbours, which on a sharp rim or at
-/// a tip passes through the point; of the two planes of a slab the one that faces `along` more.
+/// a tip passes through the point; of several such planes it is one that faces `along` more.
 fn way_out(part: &MedialPrimitive, point: Vector, along: Vector) -> Vector {
     let balls = exact::balls(part.as_slab());
-    let out = -exact::nearest_to_point(&balls, Vec3::from_vector(point)).y;
+    let nearest = exact::nearest_to_point(&balls, Vec3::from_vector(point));
+    let out = -nearest.y;
     let [a, b, c] = balls.map(|ball| ball.center);
     let size = (b - a).length().max((c - a).length());
     if out.length() > LOST * size {
         return (out * (1.0 / out.length())).to_vector();
     }
     let along = Vec3::from_vector(along);
-    exact::tangent_normals(&balls)
-        .map(|[a, b]| if b.dot(along) > a.dot(along) { b } else { a })
-        .or_else(|| exact::cone_normal(&balls))
+    let of_slab = exact::tangent_normals(&balls);
+    let of_slab = of_slab.map(|[a, b]| if b.dot(along) > a.dot(along) { b } else { a });
+    // A slab without such planes is the cones of its edges: that on which the point is.
+    let weights = [
+        1.0 - nearest.alpha - nearest.beta,
+        nearest.alpha,
+        nearest.beta,
+    ];
+    let mut without = [2, 0, 1];
+    without.sort_by(|i: &usize, j| weights[*i].total_cmp(&weights[*j]));
+    let of_cone = |k: usize| {
+        let [near, far] = [balls[(k + 1) % 3], balls[(k + 2) % 3]];
+        let normal = exact::cone_normal([near, far], along)?;
+        let reach = |ball: Ball| normal.dot(ball.center) + ball.radius;
+        (reach(balls[k]) <= reach(near) + LOST * size).then_some(normal)
+    };
+    of_slab
+        .or_else(|| without.into_iter().find_map(of_cone))
         .map_or(Vector::Y, Vec3::to_vector)
 }
 

@@ -276,3 +276,43 @@ fn rays_without_direction_hit_what_holds_them() {
     // The box has a ninth of the volume of the ball.
     assert!((10..40).contains(&held), "{held} inside");
 }
+
+/// A slab without flat sides, a cone with a ball in it: its tip is where it is, and a ray leaves there with a normal that points
+/// back. Points on the axes of three balls in a row get out across the cone that they are in.
+#[test]
+fn slabs_without_flat_sides_are_left_across_their_cones() {
+    let ball = |x: Real, y: Real, radius: Real| MedialSphere::new(Vector::new(x, y, 0.0), radius);
+    let slab = |balls: [MedialSphere; 3]| {
+        MedialMesh::new(balls.to_vec(), vec![], vec![[0, 1, 2]]).expect("a slab")
+    };
+    let held = [
+        ball(0.0, 0.0, 0.5),
+        ball(0.05, -0.2, 0.2),
+        ball(0.0, -1.3, 0.0),
+    ];
+    for turn in 0..3 {
+        let balls = [0, 1, 2].map(|k| held[(k + turn) % 3]);
+        let mesh = slab(balls);
+        let tip = Vector::new(0.0, -1.3, 0.0);
+        let p = mesh.project_local_point(tip, false).point;
+        assert!(p.distance(tip) < 1.0e-6, "{turn}: {p:?}");
+        let ray = Ray::new(Vector::new(0.0, -0.5, 0.0), Vector::NEG_Y);
+        let hit = mesh.cast_local_ray_and_get_normal(&ray, LENGTH, false);
+        let hit = hit.expect("a ray from within leaves");
+        assert!(hit.normal.y > 0.0, "{turn}: {hit:?}");
+    }
+    let row = slab([
+        ball(0.0, 0.0, 0.1),
+        ball(1.0, 0.0, 0.5),
+        ball(2.0, 0.0, 0.1),
+    ]);
+    for x in [0.7 as Real, 1.3] {
+        // The sine of the cones' slope is .4, so that at a height of 0 the depth is (r₀ + .4 x₀) along the normal.
+        let depth = 0.1 + 0.4 * x.min(2.0 - x);
+        let p = row
+            .project_local_point(Vector::new(x, 0.0, 0.0), false)
+            .point;
+        let far = p.distance(Vector::new(x, 0.0, 0.0));
+        assert!((far - depth).abs() < 1.0e-4, "{x}: {far} for {depth}");
+    }
+}
