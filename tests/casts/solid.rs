@@ -306,7 +306,7 @@ fn slabs_without_flat_sides_are_left_across_their_cones() {
         ball(1.0, 0.0, 0.5),
         ball(2.0, 0.0, 0.1),
     ]);
-    for x in [0.7 as Real, 1.3] {
+    for x in [0.7_f32, 1.3] {
         // The sine of the cones' slope is .4, so that at a height of 0 the depth is (r₀ + .4 x₀) along the normal.
         let depth = 0.1 + 0.4 * x.min(2.0 - x);
         let p = row
