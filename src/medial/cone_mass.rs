@@ -35,7 +35,7 @@ pub(super) fn moments(balls: &[Ball; 3]) -> Option<Moments> {
     let across = Vec3::from_vector(along.to_vector().any_orthonormal_vector());
     let across = across - along * across.dot(along);
     let across = across * (1.0 / across.length());
-    let mut moments = Moments::zero(a.center).turned([across, along.cross(across), along]);
+    let mut moments = Moments::in_axes(a.center, [across, along.cross(across), along]);
     let [from, to] = [a.radius * sine, length + b.radius * sine];
     let first = |z: f64| a.radius * a.radius - z * z;
     let frustum = |z: f64| (a.radius - sine * z).powi(2) / (1.0 - sine * sine);

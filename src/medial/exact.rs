@@ -16,6 +16,9 @@ use crate::math::sphere::Ball;
 /// as that is its longest cone, to rounding.
 const COLLINEAR_SIN_SQ: f64 = 1e-26;
 
+/// Share of a direction that is across an axis (a sine) up to which it counts as along the axis: its rounding in `f32`.
+const ALONG_AXIS: f64 = 1e-6;
+
 /// The three spheres of a primitive as [`as_slab`](super::MedialPrimitive::as_slab) gives them; exact.
 pub fn balls(slab: [MedialSphere; 3]) -> [Ball; 3] {
     slab.map(|s| Ball {
@@ -82,7 +85,7 @@ pub fn cone_normal([a, b]: [Ball; 2], along: Vec3<f64>) -> Option<Vec3<f64>> {
         let axis = between * (1.0 / length);
         let across = |v: Vec3<f64>| v - axis * v.dot(axis);
         let aside = across(along);
-        let aside = if aside.length() > COLLINEAR_SIN_SQ.sqrt() * along.length() {
+        let aside = if aside.length() > ALONG_AXIS * along.length() {
             aside
         } else {
             across(Vec3::from_vector(axis.to_vector().any_orthonormal_vector()))

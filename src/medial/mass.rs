@@ -100,18 +100,18 @@ impl Moments {
             let one = |i: usize| if i == k { 1.0 } else { 0.0 };
             Vec3::new(one(0), one(1), one(2))
         };
+        Self::in_axes(center, [0, 1, 2].map(axis))
+    }
+
+    /// Of nothing, about a point, in some orthonormal axes.
+    pub(super) fn in_axes(center: Vec3<f64>, axes: [Vec3<f64>; 3]) -> Self {
         Self {
             center,
-            axes: [0, 1, 2].map(axis),
+            axes,
             volume: 0.0,
             first: Vec3::zero(),
             second: [[0.0; 3]; 3],
         }
-    }
-
-    /// The same of nothing in other axes.
-    pub(super) fn turned(self, axes: [Vec3<f64>; 3]) -> Self {
-        Self { axes, ..self }
     }
 
     /// Adds a disc across the third axis, around it.
@@ -158,13 +158,7 @@ impl Moments {
             .filter(|b| b.iter().any(|s| s.radius > 0.0))
             .map(|b| Outline::new(b.map(|s| in_frame(s, center, &axes))))
             .collect();
-        let mut moments = Self {
-            center,
-            axes,
-            volume: 0.0,
-            first: Vec3::zero(),
-            second: [[0.0; 3]; 3],
-        };
+        let mut moments = Self::in_axes(center, axes);
         let spacing = spacing(&outlines);
         let first_row = |o: &Outline| (o.rows[0] / spacing).ceil().max(-INDEX_LIMIT);
         outlines.sort_by(|a, b| a.rows[0].total_cmp(&b.rows[0]));

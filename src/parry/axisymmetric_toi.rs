@@ -189,7 +189,7 @@ impl Search<'_> {
         let limits = Limits {
             start: time,
             horizon: self.upper,
-            // What a primitive below counts as contact may be more than a negative target.
+            // A primitive below raises a negative target, to 0 at most.
             target: self.options.target_distance.max(0.0).into(),
             tolerance: self.tolerance + NODE_TOLERANCE * f64::from(radius),
             steps: NODE_STEPS,
@@ -216,12 +216,12 @@ impl Search<'_> {
             thinner = thinner.min(cores.at_most);
         }
         let cap = CAP.saturating_mul(self.options.max_iterations);
-        let thinnest = |all: &[Ball]| all.iter().map(|b| b.1).fold(f64::INFINITY, f64::min);
+        let thinnest = all[..len].iter().map(|b| b.1).fold(f64::INFINITY, f64::min);
         let mut limits = Limits {
             start: entry.time,
             horizon: self.upper,
-            // A place is in a cylinder or cone by no more than its thickness, as distances are told here.
-            target: f64::from(self.options.target_distance).max(-thinnest(&all[..len])),
+            // No sphere is deeper in a cylinder or cone than by its radius: a target below that would never be met.
+            target: f64::from(self.options.target_distance).max(-thinnest),
             tolerance: self.tolerance,
             steps: SLICE.min(cap - entry.spent),
         };
@@ -249,7 +249,6 @@ impl Search<'_> {
                 let depth = deeper / f64::from(thinner.max(Real::MIN_POSITIVE));
                 self.deepest = self.deepest.min(depth);
                 limits.start = if entry.spent == 0 { 0.0 } else { entry.time };
-                let thinnest = thinnest(&all);
                 let tolerance = limits.tolerance;
                 let axis = all.map(|(center, _)| (center, 0.0));
                 let axes = || self.advance(body, &axis[..len], &at_start).near.distance();

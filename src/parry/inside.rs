@@ -82,9 +82,9 @@ fn most_to_hull(shape: &dyn Shape, hull: &ConvexPolyhedron, point: Vector) -> Re
     distances.fold(Real::MAX, Real::min)
 }
 
-/// Whether a point is proven to be farther from a hull than a distance: along the normal of a face, or straight away from the
-/// hull's middle, or because no face is that near. Of faces of round sides parry keeps one normal for many, so that the
-/// normal is a direction to look along, not the side of a plane.
+/// Whether a point is proven to be farther from a hull than a distance, by a direction along which all corners are: the normal
+/// of a face, or away from the hull's middle, or from the nearest point of a face. Of faces of round sides parry keeps one
+/// for many, so that a normal is a direction to look along, not the side of a plane.
 fn is_beyond_hull(hull: &ConvexPolyhedron, point: Vector, distance: Real) -> bool {
     let ring = hull.vertices_adj_to_face();
     let corner = |k: u32| hull.points()[ring[k as usize] as usize];
@@ -92,9 +92,10 @@ fn is_beyond_hull(hull: &ConvexPolyhedron, point: Vector, distance: Real) -> boo
         let heights = hull.points().iter().map(|p| n.dot(point - *p));
         heights.fold(Real::MAX, Real::min) > distance
     };
+    let away_from = |from: Vector| is_apart((point - from).normalize_or_zero());
     let count = hull.points().len() as Real;
     let middle = hull.points().iter().fold(Vector::ZERO, |sum, p| sum + *p) / count;
-    if is_apart((point - middle).normalize_or_zero()) {
+    if away_from(middle) {
         return true;
     }
     let mut is_inside = true;
@@ -105,18 +106,18 @@ fn is_beyond_hull(hull: &ConvexPolyhedron, point: Vector, distance: Real) -> boo
         }
         is_inside &= height <= 0.0;
     }
-    // Beyond no face by more, its nearest point may still be farther, on an edge or at a corner.
-    let is_near = |triangle: Triangle| {
-        let nearest = triangle.project_local_point(point, true).point;
-        nearest.distance(point) <= distance
-    };
-    distance > 0.0
-        && !is_inside
-        && !hull.faces().iter().any(|face| {
-            let first = face.first_vertex_or_edge;
-            let mut others = first + 2..first + face.num_vertices_or_edges;
-            others.any(|k| is_near(Triangle::new(corner(first), corner(k - 1), corner(k))))
-        })
+    if is_inside || distance <= 0.0 {
+        return false;
+    }
+    // Beyond no face by more, it may still be farther from an edge or a corner.
+    let triangles = hull.faces().iter().flat_map(|face| {
+        let first = face.first_vertex_or_edge;
+        let others = first + 2..first + face.num_vertices_or_edges;
+        others.map(move |k| Triangle::new(corner(first), corner(k - 1), corner(k)))
+    });
+    let on = triangles.map(|t| t.project_local_point(point, true).point);
+    let nearest = on.min_by(|a, b| a.distance(point).total_cmp(&b.distance(point)));
+    nearest.is_some_and(away_from)
 }
 
 /// Shortest translation out of a closed body.
@@ -205,16 +206,17 @@ fn hull_faces(hull: &ConvexPolyhedron, border: Real, mut face: impl FnMut(Vector
     }
 }
 
-/// Distance by which a point on a surface is moved to find the side that is free, in units of the shape's size.
-const ASIDE: Real = 1.0e-4;
-
 fn by_projection(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<MinTranslation> {
     let way = |(sphere, s): (usize, &MedialSphere)| {
         if !holds_point(shape, s.center) {
             return None;
         }
         let out = shape.project_local_point(s.center, false).point - s.center;
-        let aside = ASIDE * shape.compute_local_aabb().extents().max_element();
+        // On a voxel's face any side that is free is as near.
+        let aside = match shape.as_typed_shape() {
+            TypedShape::Voxels(voxels) => 0.5 * voxels.voxel_size().min_element(),
+            _ => 0.0,
+        };
         let is_free = |way: &Vector| !holds_point(shape, s.center + *way * aside);
         let free = || Vector::AXES.into_iter().flat_map(|a| [a, -a]).find(is_free);
         Some(MinTranslation {

@@ -81,18 +81,18 @@ impl RayCast for MedialMesh {
         max_time_of_impact: Real,
         solid: bool,
     ) -> Option<RayIntersection> {
-        // A ray without direction is a point, at which parry's ball tells a normal that is no number.
-        if ray.dir == Vector::ZERO {
-            let hits = solid && self.contains_local_point(ray.origin);
-            let hit = || RayIntersection::new(0.0, Vector::ZERO, FeatureId::Face(0));
-            return hits.then(hit);
-        }
         if !solid && let Some(exit) = rays::exit(self, ray) {
             return (exit.time_of_impact <= max_time_of_impact).then_some(exit);
         }
         CompositeShapeRef(self)
             .cast_local_ray_and_get_normal(ray, max_time_of_impact, solid)
-            .map(|(part, hit)| hit.with_subshape(part))
+            .map(|(part, mut hit)| {
+                // From the centre of parry's ball it is no number.
+                if !hit.normal.is_finite() {
+                    hit.normal = Vector::ZERO;
+                }
+                hit.with_subshape(part)
+            })
     }
 }
 

@@ -167,9 +167,9 @@ fn points_in_and_on_boxes_are_projected_on_the_nearest_face() {
                 off < 2.0e-6 && (far - depth).abs() < 2.0e-6,
                 "{half:?} {point:?}: {p:?}, {off} off, {far} away, {depth} deep"
             );
-            judged += 1;
             // Straight out of it, a ray leaves under the face's normal.
             if out == 0 && depth > 1.0e-5 {
+                judged += 1;
                 let dir = (p.point - point).normalize();
                 let hit = mesh
                     .cast_local_ray_and_get_normal(&Ray::new(point, dir), Real::MAX, false)
@@ -178,7 +178,7 @@ fn points_in_and_on_boxes_are_projected_on_the_nearest_face() {
             }
         }
     }
-    assert_eq!(judged, 16_000);
+    assert!(judged > 3_000, "{judged}");
 }
 
 /// Where a ray from outside enters a box, by its slabs in double precision: the time and the outward normal.
@@ -271,8 +271,12 @@ fn rays_without_direction_hit_what_holds_them() {
     let ball = MedialMesh::ball(0.5).expect("a ball");
     let at_center =
         ball.cast_local_ray_and_get_normal(&Ray::new(Vector::ZERO, Vector::ZERO), LENGTH, true);
-    let normal = at_center.expect("held").normal;
-    assert!(normal.is_finite(), "{normal:?}");
+    let down = Ray::new(Vector::ZERO, Vector::NEG_Y);
+    let along = ball.cast_local_ray_and_get_normal(&down, LENGTH, true);
+    for hit in [at_center, along] {
+        let normal = hit.expect("held").normal;
+        assert!(normal.is_finite(), "{normal:?}");
+    }
     // The box has a ninth of the volume of the ball.
     assert!((10..40).contains(&held), "{held} inside");
 }

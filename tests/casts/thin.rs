@@ -168,27 +168,36 @@ fn hulls_of_round_and_flat_bodies_hold_what_is_in_them() {
         let told = dispatcher.intersection_test(&pose, &mesh, &**other);
         told.expect("known").intersecting
     };
-    for sides in [16, 200, 256, 300, 500] {
+    for (sides, border) in [16, 200, 256, 300, 500]
+        .into_iter()
+        .flat_map(|sides| [(sides, 0.0), (sides, 0.05)])
+    {
         let (radius, half) = (0.4, 0.3);
         let rim = |k: u16| {
             let (sin, cos) = (std::f32::consts::TAU * Real::from(k) / Real::from(sides)).sin_cos();
             [-half, half].map(|y| Vector::new(radius * cos, y, radius * sin))
         };
         let corners: Vec<Vector> = (0..sides).flat_map(rim).collect();
-        let hull = SharedShape::convex_hull(&corners).expect("a drum");
+        let hull = match border {
+            0.0 => SharedShape::convex_hull(&corners),
+            _ => SharedShape::round_convex_hull(&corners, border),
+        };
+        let hull = hull.expect("a drum");
         let mut judged = [0; 2];
         for case in 0..600 {
             let size = [1.0, 5.0][case % 2];
             let at = vector(rng.in_ball()) * size;
             let aside = Vector::new(at.x, 0.0, at.z).length();
             let beyond = [aside - radius, at.y.abs() - half];
-            let gap = beyond[0].max(0.0).hypot(beyond[1].max(0.0)) - 0.02;
+            let outside = beyond[0].max(0.0).hypot(beyond[1].max(0.0));
+            let inside = beyond[0].max(beyond[1]).min(0.0);
+            let gap = outside - 0.02 - border;
             // Between the drum and the cylinder around it either may be told.
             if gap > 1.0e-3 {
-                assert!(!meets(&hull, at), "{sides} sides, {at:?}, {gap} apart");
+                assert!(!meets(&hull, at), "{sides}, {border}: {at:?}, {gap} apart");
                 judged[0] += 1;
-            } else if beyond[0] < -0.01 && beyond[1] < -0.01 {
-                assert!(meets(&hull, at), "{sides} sides, {at:?}");
+            } else if outside + inside < border - 0.01 {
+                assert!(meets(&hull, at), "{sides}, {border}: {at:?}");
                 judged[1] += 1;
             }
         }
@@ -196,10 +205,10 @@ fn hulls_of_round_and_flat_bodies_hold_what_is_in_them() {
     }
     let corner = |x: Real, z: Real| Vector::new(0.5 * x, 0.0, 0.4 * z);
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-    if let Some(flat) = SharedShape::convex_hull(&corners.map(|(x, z)| corner(x, z))) {
-        for x in [0.6, 0.9, 5.0, 100.0] {
-            assert!(!meets(&flat, Vector::new(x, 0.0, 0.1)), "{x}");
-        }
-        assert!(meets(&flat, Vector::new(0.3, 0.0, 0.1)));
+    let flat = SharedShape::convex_hull(&corners.map(|(x, z)| corner(x, z)));
+    let flat = flat.expect("a flat hull");
+    for x in [0.6, 0.9, 5.0, 100.0] {
+        assert!(!meets(&flat, Vector::new(x, 0.0, 0.1)), "{x}");
     }
+    assert!(meets(&flat, Vector::new(0.3, 0.0, 0.1)));
 }

@@ -14,6 +14,7 @@ pub struct Skyline {
 
 impl Skyline {
     /// Adds a row of the lower half of a matrix, zero from its first column to the diagonal, and returns its entries.
+    /// The first column is no farther than the diagonal.
     pub fn push_row(&mut self, first: usize) -> &mut [f64] {
         let begin = self.entries.len();
         self.entries
@@ -132,6 +133,7 @@ mod tests {
         indefinite.push_row(0).copy_from_slice(&[2.0, 1.0]);
         assert!(indefinite.factor().is_none());
     }
+
     /// A trunk with two branches that have two twigs each: each branch after its twigs, and the trunk last.
     #[test]
     fn branches_come_before_their_stem() {

@@ -161,7 +161,7 @@ impl<'a> System<'a> {
         let rank = |i: &usize| self.rows[*i].bodies.iter().map(|k| self.ranks[*k]).min();
         self.order.sort_by_key(rank);
         let mut matrix = Skyline::default();
-        // The first row that moves each body.
+        // The first row in that order that moves each body, if there was one yet.
         let mut firsts = vec![usize::MAX; self.bodies.len()];
         for (at, &i) in self.order.iter().enumerate() {
             let row = &self.rows[i];
