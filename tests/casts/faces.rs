@@ -317,7 +317,7 @@ fn witnesses_of_flat_contacts_are_on_both_bodies() {
         let Some(hit) = hit else { continue };
         let off = [off(body, hit.witness1), off(&card, hit.witness2)];
         assert!(
-            off[0] < 2.0e-4 && off[1] < 2.0e-4,
+            off[0] < 1.0e-4 && off[1] < 1.0e-4,
             "{case}: {off:?}, {hit:?}"
         );
         hits += 1;

@@ -81,9 +81,9 @@ fn cylinders_and_cones_do_not_pass_sheets_on_a_slant() {
                 assert!(hit.is_none(), "{name}: {hit:?} for {time}");
             } else if time < 2.99 {
                 let found = hit.unwrap_or_else(|| panic!("{name}: passed, {time}"));
-                // Within a thousandth of the size of the place.
+                // Within the tolerance, 1e-4 for metres.
                 let off = (f64::from(found.time_of_impact) - time) * f64::from(velocity.y);
-                assert!(off.abs() < 1.0e-3 * f64::from(scale), "{name}: {off}");
+                assert!(off.abs() < 1.0e-4 * f64::from(scale), "{name}: {off}");
                 hits += 1;
             }
         }
