@@ -16,10 +16,6 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::query::{Ray, RayIntersection};
 use parry3d::shape::FeatureId;
 
-/// Distance of a point of a primitive's surface from the centre of its sphere, in units of the distance to the ray's
-/// origin, below which it has no direction: what rounding leaves of it.
-const FLAT: f64 = 1.0e-12;
-
 /// The point where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back inside, as in
 /// parry, and the time is in units of the length of the ray's direction.
 pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
@@ -41,7 +37,9 @@ pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
     let Stretch { to, primitive, .. } = end?;
     let time = (to / length) as Real;
     let part = mesh.primitive(primitive as usize);
-    let normal = -way_out(&part, ray.point_at(time), ray.dir);
+    let balls = exact::balls(part.as_slab());
+    let [at, along] = [ray.point_at(time), ray.dir].map(Vec3::from_vector);
+    let normal = -way_out(&balls, at, along).to_vector();
     Some(RayIntersection::new(time, normal, FeatureId::Face(0)).with_subshape(primitive))
 }
 
@@ -50,10 +48,9 @@ pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
 pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> {
     let inside = |i: &u32| mesh.primitive(*i as usize).signed_distance(point).distance <= 0.0;
     let ways = holding(mesh, point).filter(inside).filter_map(|i| {
-        let ray = Ray::new(
-            point,
-            way_out(&mesh.primitive(i as usize), point, Vector::ZERO),
-        );
+        let balls = exact::balls(mesh.primitive(i as usize).as_slab());
+        let out = way_out(&balls, Vec3::from_vector(point), Vec3::zero());
+        let ray = Ray::new(point, out.to_vector());
         let hit = exit(mesh, &ray)?;
         Some((
             hit.time_of_impact,
@@ -68,17 +65,15 @@ pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> 
 /// Unit direction straight out of a primitive from a point in it: away from the centre of the nearest sphere. Where the
 /// point is that centre, to rounding, it is across a plane that touches the sphere and its neighbours, which on a sharp rim or at
 /// a tip passes through the point; of several such planes it is one that faces `along` more.
-fn way_out(part: &MedialPrimitive, point: Vector, along: Vector) -> Vector {
-    let balls = exact::balls(part.as_slab());
-    let nearest = exact::nearest_to_point(&balls, Vec3::from_vector(point));
+fn way_out(balls: &[Ball; 3], point: Vec3<f64>, along: Vec3<f64>) -> Vec3<f64> {
+    let nearest = exact::nearest_to_point(balls, point);
     let out = -nearest.y;
     let [a, b, c] = balls.map(|ball| ball.center);
     let size = (b - a).length().max((c - a).length());
     if out.length() > LOST * size {
-        return (out * (1.0 / out.length())).to_vector();
+        return out * (1.0 / out.length());
     }
-    let along = Vec3::from_vector(along);
-    let of_slab = exact::tangent_normals(&balls);
+    let of_slab = exact::tangent_normals(balls);
     let of_slab = of_slab.map(|[a, b]| if b.dot(along) > a.dot(along) { b } else { a });
     // A slab without such planes is the cones of its edges: that on which the point is.
     let weights = [
@@ -96,7 +91,11 @@ fn way_out(part: &MedialPrimitive, point: Vector, along: Vector) -> Vector {
     };
     of_slab
         .or_else(|| without.into_iter().find_map(of_cone))
-        .map_or(Vector::Y, Vec3::to_vector)
+        // A point alone is left any way.
+        .unwrap_or_else(|| match along.length() > 0.0 {
+            true => along * (1.0 / along.length()),
+            false => Vec3::new(0.0, 1.0, 0.0),
+        })
 }
 
 fn holds(mesh: &MedialMesh, point: Vector) -> bool {
@@ -208,18 +207,9 @@ pub fn enter(
         return None;
     }
     let point = Vec3::new(0.0, 0.0, at);
-    let out = -exact::nearest_to_point(&balls, point).y;
-    // On a part without thickness the point is its own nearest sphere.
-    let flat = || {
-        exact::tangent_normals(&balls)?
-            .into_iter()
-            .find(|n| n.z <= 0.0)
-    };
-    let size = balls.iter().map(|b| b.radius).fold(at.abs(), f64::max);
-    let out = match out.length() > FLAT * size {
-        true => out,
-        false => flat().unwrap_or(Vec3::new(0.0, 0.0, -1.0)),
-    };
+    // Outward along the ray where it leaves, against it where it enters.
+    let along = Vec3::new(0.0, 0.0, if inside { 1.0 } else { -1.0 });
+    let out = way_out(&balls, point, along);
     let out = frame.unit(out);
     let normal = if inside { -out } else { out };
     Some(RayIntersection::new(
