@@ -7,6 +7,7 @@ use super::distance;
 use super::folds;
 use super::initial_contacts::{AtStart, Touching, approach_of_rounding};
 use super::inside;
+use super::shape_faces::for_each_flat_face;
 use super::sliding::{Sinks, Sliding};
 use super::swept_region::{started, swept_region};
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
@@ -246,6 +247,11 @@ impl Cast<'_> {
             seconds,
             options.target_distance,
         );
+        if let Some(sliding) = &mut parts.sliding {
+            for_each_flat_face(self.other, &Pose::IDENTITY, &region, &mut |face| {
+                sliding.look(face);
+            });
+        }
         if !swept_sphere_parts::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {
             return Err(Unsweepable);
         }

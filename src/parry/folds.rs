@@ -5,6 +5,7 @@
 //! just below the surface, is then the edge straight ahead, with a normal against the motion. A rounded part has its middle
 //! above the surface and its normal is right, but for what the part has sunk in: only within a flat surface is it corrected.
 
+use super::shape_faces::Face;
 use super::sliding::ALIKE;
 use super::swept_sphere_parts::Parts;
 use crate::elementary::ToiStatus;
@@ -93,8 +94,13 @@ pub fn correct_normal(
         middle: pose * mesh.aabb().center(),
         size: mesh.aabb().extents().max_element(),
     };
-    let corners = |k: u32| parts.primitives.primitive(k).0.map(|s| s.center);
+    let spheres = |k: u32| parts.primitives.primitive(k).0;
+    let corners = |k: u32| spheres(k).map(|s| s.center);
     let face = corners(toi.primitives[1]);
+    let of_surface = Face {
+        border: spheres(toi.primitives[1])[0].radius,
+        ..Face::of_surface(&face)
+    };
     let others = || {
         let all = (0..parts.primitives.len() as u32).map(corners);
         all.chain(parts.left_out.iter().copied())
@@ -109,7 +115,7 @@ pub fn correct_normal(
     let normal = known
         .map(|(_, n)| *n)
         .or_else(at_fold)
-        .or_else(|| sliding.comes_to_lie(&face, mesh, &pose));
+        .or_else(|| sliding.comes_to_lie(of_surface, mesh, &pose));
     if let Some(n) = normal {
         toi.normal = poses[1].rotation * -n;
         found.met = None;

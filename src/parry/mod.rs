@@ -36,6 +36,7 @@ pub(crate) mod medial_part;
 pub(crate) mod narrow_phase_plan;
 pub(crate) mod rays;
 pub(crate) mod shape;
+mod shape_faces;
 pub(crate) mod sliding;
 mod swept_region;
 pub(crate) mod swept_sphere_parts;

@@ -1,8 +1,9 @@
-//! Triangles of a ground, and faces of voxels, over which a mesh slides.
+//! Flat faces of a ground over which a mesh slides: of triangles, voxels, cuboids, hulls and compounds.
 //!
 //! A flat ground is cut into triangles, and a body that lies on it is within the contact distance of each that it comes
 //! over. Its nearest point is then on an edge in front of the body, with a normal against the motion, and a body stopped
-//! there would trip over nothing. But what stays above a plane crosses no triangle in it, nor below it, as that of a cliff:
+//! there would trip over nothing. So it would over the edge of a table from which it slides, whose side faces it meets
+//! from inside. But what stays above a plane crosses no triangle in it, nor below it, as that of a cliff:
 //! such triangles are no obstacle. And what sinks in there is thrown back along the plane's normal. For another triangle on
 //! whose own plane the body lies this holds where it faces about the same way as the ground: beside a ledge, with nothing
 //! below, a body may meet an edge from any side.
@@ -11,12 +12,13 @@
 //! A point that turns with the mesh by `ω₁` at `r`, seen from a ground that turns by `ω₂`, `d` from its axis, has up to
 //! `ω₁² r + ω₂² d + 2 ω₂ v`.
 
+use super::shape_faces::{Face, has_flat_faces};
 use crate::math::lane::Vec3;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 use parry3d::query::NonlinearRigidMotion;
-use parry3d::shape::{Shape, TypedShape};
+use parry3d::shape::Shape;
 
 /// How deep a mesh may be in the plane that it slides along, lengths.
 #[derive(Clone, Copy, Debug)]
@@ -66,10 +68,10 @@ pub struct Lying {
 const CORNERS: Real = 8.0 * Real::EPSILON;
 
 impl Lying {
-    /// Whether a point is in the plane or below it, rounding apart.
-    fn is_above(&self, point: Vector) -> bool {
-        let way = Vec3::from_vector(point) - self.place;
-        self.normal.dot(way) <= self.rounding
+    /// Whether a ball is in the plane or below it, rounding apart.
+    fn is_above(&self, center: Vector, radius: Real) -> bool {
+        let way = Vec3::from_vector(center) - self.place;
+        self.normal.dot(way) + f64::from(radius) <= self.rounding
     }
 }
 
@@ -77,8 +79,8 @@ impl Lying {
 pub const ALIKE: f64 = 0.5;
 
 impl Sliding {
-    /// For a mesh over a ground of triangles or voxels. It counts as lying on a plane up to the distance `target`. `None` for
-    /// other shapes.
+    /// For a mesh over a ground. It counts as lying on a plane up to the distance `target`. `None` for shapes without flat
+    /// faces.
     pub fn new(
         (mesh, ground): (&MedialMesh, &dyn Shape),
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
@@ -86,10 +88,7 @@ impl Sliding {
         target: Real,
         sinks: Sinks,
     ) -> Option<Self> {
-        if !matches!(
-            ground.as_typed_shape(),
-            TypedShape::TriMesh(_) | TypedShape::HeightField(_) | TypedShape::Voxels(_)
-        ) {
+        if !has_flat_faces(ground) {
             return None;
         }
         let poses = [0.0, seconds].map(|t| {
@@ -125,7 +124,7 @@ impl Sliding {
     }
 
     /// Remembers a face if it is a ground of the mesh. All faces have to be looked at before [`Self::treats`].
-    pub fn look(&mut self, face: &[Vector]) {
+    pub fn look(&mut self, face: Face) {
         if self.ground_above(face).is_none() {
             self.grounds
                 .extend(self.lies_on(face).filter(|l| l.is_over));
@@ -134,10 +133,11 @@ impl Sliding {
 
     /// How the mesh lies on the plane of a face, or on that of a ground above it, where it can meet the face along the plane's
     /// normal only, or not at all.
-    pub fn treats(&self, face: &[Vector]) -> Option<Lying> {
+    pub fn treats(&self, face: Face) -> Option<Lying> {
         let own = || {
             let is_alike = |l: &Lying| self.grounds.iter().any(|g| g.normal.dot(l.normal) > ALIKE);
-            self.lies_on(face).filter(|l| l.slides || is_alike(l))
+            let lying = self.lies_on(face);
+            lying.filter(|l| l.slides || is_alike(l))
         };
         self.ground_above(face).copied().or_else(own)
     }
@@ -145,7 +145,7 @@ impl Sliding {
     /// The normal of a face's plane, to the side of the mesh, if the mesh lies on it once it is at `pose` in the ground's frame,
     /// and it faces about the same way as a ground on which the mesh lies now. There the mesh comes from a ground up a
     /// slope, and its nearest point is on the fold between the two, straight ahead.
-    pub fn comes_to_lie(&self, face: &[Vector], mesh: &MedialMesh, pose: &Pose) -> Option<Vector> {
+    pub fn comes_to_lie(&self, face: Face, mesh: &MedialMesh, pose: &Pose) -> Option<Vector> {
         let spheres = placed(mesh, pose);
         let there = Self {
             spheres: [spheres.clone(), spheres],
@@ -167,29 +167,38 @@ impl Sliding {
         spheres.iter().all(|s| s.radius >= self.sinks.lies)
     }
 
-    /// A ground in or below whose plane a face is.
-    fn ground_above(&self, face: &[Vector]) -> Option<&Lying> {
-        let is_below = |g: &&Lying| face.iter().all(|p| g.is_above(*p));
-        self.grounds.iter().find(is_below)
+    /// A ground in or below whose plane a face is, one along which the mesh slides if there is one.
+    fn ground_above(&self, face: Face) -> Option<&Lying> {
+        let is_below = |p: &Vector, g: &Lying| g.is_above(*p, face.border);
+        let above = self.grounds.iter();
+        let above = above.filter(|g| face.corners.iter().all(|p| is_below(p, g)));
+        above.max_by_key(|g| g.slides)
     }
 
-    /// How the mesh lies on the plane of a face, if it does. The face is convex; its first three corners make the plane.
-    fn lies_on(&self, face: &[Vector]) -> Option<Lying> {
-        let corner = |k: usize| Vec3::<f64>::from_vector(face[k]);
+    /// How the mesh lies on the plane of a face, if it does. The face is convex.
+    fn lies_on(&self, face: Face) -> Option<Lying> {
+        let corner = |k: usize| Vec3::<f64>::from_vector(face.corners[k]);
         let across = (corner(1) - corner(0)).cross(corner(2) - corner(0));
         let length = across.length();
         if length <= 0.0 {
             return None;
         }
         let across = across * (1.0 / length);
-        let mut sides = [1.0, -1.0].into_iter();
-        sides.find_map(|side| self.lies_on_side(face, across, side))
+        let sides: &[f64] = if face.is_of_solid {
+            &[1.0]
+        } else {
+            &[1.0, -1.0]
+        };
+        let mut sides = sides.iter();
+        sides.find_map(|side| self.lies_on_side(face, across, *side))
     }
 
     /// The same on one side: that of the normal (1), about which the corners turn to the left, or the other (-1).
-    fn lies_on_side(&self, face: &[Vector], across: Vec3<f64>, side: f64) -> Option<Lying> {
-        let corner = |k: usize| Vec3::<f64>::from_vector(face[k % face.len()]);
-        let (n, a) = (across * side, corner(0));
+    fn lies_on_side(&self, face: Face, across: Vec3<f64>, side: f64) -> Option<Lying> {
+        let corners = face.corners;
+        let corner = |k: usize| Vec3::<f64>::from_vector(corners[k % corners.len()]);
+        let n = across * side;
+        let a = corner(0) + n * f64::from(face.border);
         let height = |(center, radius): &(Vec3<f64>, f64)| n.dot(*center - a) - radius;
         // The lowest point of the mesh, unless one is below `least`; of most triangles one of the first spheres is.
         let lowest = |k: usize, least: f64| {
@@ -208,9 +217,9 @@ impl Sliding {
                 let beyond = across.dot(along.cross(sphere.0 - corner(k)));
                 beyond >= -sphere.1 * along.length()
             };
-            height(sphere) <= self.target && (0..face.len()).all(is_left_of)
+            height(sphere) <= self.target && (0..corners.len()).all(is_left_of)
         });
-        let coordinates = face.iter().map(|p| p.abs().max_element());
+        let coordinates = corners.iter().map(|p| p.abs().max_element());
         Some(Lying {
             normal: n,
             place: a,

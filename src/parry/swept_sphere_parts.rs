@@ -6,15 +6,14 @@
 //! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::axisymmetric_toi`].
 
 use super::axisymmetric::Axisymmetric;
+use super::shape_faces::{Face, all_faces, face_corners, for_each_triangle, free_faces};
 use super::sliding::{Lying, Sliding};
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::PrimitiveList;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::shape::{
-    ConvexPolyhedron, Cuboid, HalfSpace, Shape, Triangle, TypedShape, VoxelState,
-};
+use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
 
 /// Inner radius of a half-space's stand-in, in units of the reach of the motion: a slab of radius 0 in the
 /// half-space's plane, larger than anything the body can reach.
@@ -37,7 +36,7 @@ pub struct Parts {
     /// parry's subshape of each primitive: child, triangle, segment, cell or voxel.
     primitive_subshapes: Vec<u32>,
     axisymmetric_subshapes: Vec<u32>,
-    /// What leaves triangles and faces of voxels out.
+    /// What leaves flat faces out.
     pub(super) sliding: Option<Sliding>,
     /// What it left out.
     pub(super) left_out: Vec<[Vector; 3]>,
@@ -46,7 +45,7 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// No parts yet; triangles, and faces of voxels, along which the mesh that is searched only slides, will be left out.
+    /// No parts yet; flat faces along which the mesh that is searched only slides will be left out.
     pub fn under(sliding: Option<Sliding>) -> Self {
         Self {
             sliding,
@@ -68,17 +67,18 @@ impl Parts {
 
     /// Adds a triangle of a mesh or height field.
     fn add_triangle(&mut self, corners: [Vector; 3], subshape: u32) {
-        self.add_unless_slid(&corners, |primitives| {
+        self.add_unless_slid(Face::of_surface(&corners), |primitives| {
             primitives.push(&corners.map(|p| MedialSphere::new(p, 0.0)));
         });
         self.name(subshape);
     }
 
     /// Adds what `add` does for a flat face, unless it is no obstacle.
-    fn add_unless_slid(&mut self, face: &[Vector], add: impl FnOnce(&mut PrimitiveList)) {
+    fn add_unless_slid(&mut self, face: Face, add: impl FnOnce(&mut PrimitiveList)) {
         let lying = self.sliding.as_ref().and_then(|s| s.treats(face));
         if lying.is_some_and(|lying| lying.slides) {
-            self.left_out.push([face[0], face[1], face[2]]);
+            let corners = face.corners;
+            self.left_out.push([corners[0], corners[1], corners[2]]);
             return;
         }
         let first = self.primitives.len() as u32;
@@ -119,7 +119,6 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
         return true;
     }
     let primitives = &mut parts.primitives;
-    let local = || seen_from(pose, region);
     let point = |p: Vector| pose * p;
     let ball = |p: Vector, radius: Real| MedialSphere::new(point(p), radius);
     match shape.as_typed_shape() {
@@ -133,17 +132,16 @@ pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &A
             let i = &t.inner_shape;
             primitives.push(&[i.a, i.b, i.c].map(|p| ball(p, t.border_radius)));
         }
-        TypedShape::Cuboid(c) => add_cuboid(primitives, c, pose, 0.0, &local()),
+        TypedShape::Cuboid(c) => add_cuboid(parts, c, pose, 0.0, region),
         TypedShape::RoundCuboid(c) => {
-            add_cuboid(primitives, &c.inner_shape, pose, c.border_radius, &local());
+            add_cuboid(parts, &c.inner_shape, pose, c.border_radius, region);
         }
-        TypedShape::ConvexPolyhedron(c) => add_polyhedron(primitives, c, pose, 0.0, region),
+        TypedShape::ConvexPolyhedron(c) => add_polyhedron(parts, c, pose, 0.0, region),
         TypedShape::RoundConvexPolyhedron(c) => {
-            add_polyhedron(primitives, &c.inner_shape, pose, c.border_radius, region);
+            add_polyhedron(parts, &c.inner_shape, pose, c.border_radius, region);
         }
         TypedShape::HalfSpace(plane) => {
-            let local = local();
-            add_plane(primitives, plane, pose, &local);
+            add_plane(primitives, plane, pose, &seen_from(pose, region));
         }
         TypedShape::Compound(c) => {
             for (i, (child, s)) in c.shapes().iter().enumerate() {
@@ -168,14 +166,8 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
     let flat = |p: Vector| MedialSphere::new(pose * p, 0.0);
     match shape.as_typed_shape() {
         TypedShape::TriMesh(m) => {
-            let corners = |i: u32| m.triangle(i).vertices().map(|p| pose * p);
-            if let Some(sliding) = &mut parts.sliding {
-                for i in m.bvh().intersect_aabb(&local) {
-                    sliding.look(&corners(i));
-                }
-            }
             for i in m.bvh().intersect_aabb(&local) {
-                parts.add_triangle(corners(i), i);
+                parts.add_triangle(m.triangle(i).vertices().map(|p| pose * p), i);
             }
         }
         TypedShape::Polyline(l) => {
@@ -186,36 +178,16 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
             }
         }
         TypedShape::HeightField(h) => {
-            let corners = |t: &Triangle| t.vertices().map(|p| pose * p);
-            if let Some(sliding) = &mut parts.sliding {
-                h.map_elements_in_local_aabb(&local, &mut |_, t| sliding.look(&corners(t)));
-            }
-            h.map_elements_in_local_aabb(&local, &mut |i, t| parts.add_triangle(corners(t), i));
+            h.map_elements_in_local_aabb(&local, &mut |i, t| {
+                parts.add_triangle(t.vertices().map(|p| pose * p), i);
+            });
         }
         TypedShape::Voxels(v) => {
             let cube = Cuboid::new(v.voxel_size() * 0.5);
-            let full = || {
-                v.voxels_intersecting_local_aabb(&local)
-                    .filter(|v| !v.state.is_empty())
-            };
-            let at = |center: Vector| pose * Pose::from_translation(center);
-            if let Some(sliding) = &mut parts.sliding {
-                for voxel in full() {
-                    for face in free_faces(voxel.state) {
-                        sliding.look(&face_corners(&cube, face, &at(voxel.center)));
-                    }
-                }
-            }
-            for voxel in full() {
-                let pose = at(voxel.center);
-                let region = seen_from(&pose, region);
-                for face in free_faces(voxel.state) {
-                    parts.add_unless_slid(&face_corners(&cube, face, &pose), |primitives| {
-                        let (axis, sign) = face;
-                        let side = sign * cube.half_extents[axis];
-                        add_face(primitives, &cube, (axis, side), &pose, 0.0, &region);
-                    });
-                }
+            for voxel in v.voxels_intersecting_local_aabb(&local) {
+                let pose = pose * Pose::from_translation(voxel.center);
+                let faces = free_faces(voxel.state);
+                add_faces(parts, &cube, faces, &pose, 0.0, region);
                 parts.name(voxel.linear_id.flat_id() as u32);
             }
         }
@@ -226,43 +198,35 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
 }
 
 /// A box of the parts' frame in that of `pose`, with what rounding may take from it.
-fn seen_from(pose: &Pose, region: &Aabb) -> Aabb {
+pub fn seen_from(pose: &Pose, region: &Aabb) -> Aabb {
     let sizes = [pose.translation, region.mins, region.maxs].map(|p| p.abs().max_element());
     let size: Real = sizes.into_iter().sum();
     let seen = region.transform_by(&pose.inverse());
     Aabb::new(seen.mins - size * ROUNDING, seen.maxs + size * ROUNDING)
 }
 
-/// The faces of a cuboid, as far as `region` (in its frame) meets them.
-fn add_cuboid(
-    primitives: &mut PrimitiveList,
+/// The faces of a cuboid, as far as `region` (in the parts' frame) meets them.
+fn add_cuboid(parts: &mut Parts, cuboid: &Cuboid, pose: &Pose, border: Real, region: &Aabb) {
+    add_faces(parts, cuboid, all_faces(), pose, border, region);
+}
+
+/// Some faces of a cuboid, each by axis and side, as far as `region` (in the parts' frame) meets them.
+fn add_faces(
+    parts: &mut Parts,
     cuboid: &Cuboid,
+    faces: impl Iterator<Item = (usize, Real)>,
     pose: &Pose,
     border: Real,
     region: &Aabb,
 ) {
-    let h = cuboid.half_extents;
-    for axis in 0..3 {
-        for side in [-h[axis], h[axis]] {
-            add_face(primitives, cuboid, (axis, side), pose, border, region);
-        }
+    let region = seen_from(pose, region);
+    for (axis, sign) in faces {
+        let corners = face_corners(cuboid, (axis, sign), pose);
+        parts.add_unless_slid(Face::of_solid(&corners, border), |primitives| {
+            let side = sign * cuboid.half_extents[axis];
+            add_face(primitives, cuboid, (axis, side), pose, border, &region);
+        });
     }
-}
-
-/// Axis and side (1 or -1) of each face of a voxel that is not inside the solid.
-pub fn free_faces(state: VoxelState) -> impl Iterator<Item = (usize, Real)> {
-    let bits = state.free_faces().bits();
-    let faces = (0..6).filter(move |k| bits & (1 << k) != 0);
-    faces.map(|k| (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 }))
-}
-
-/// The corners of a cuboid's face, in their order around it.
-fn face_corners(cuboid: &Cuboid, (axis, sign): (usize, Real), pose: &Pose) -> [Vector; 4] {
-    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| {
-        let mut local = Vector::splat(sign);
-        (local[(axis + 1) % 3], local[(axis + 2) % 3]) = (x, y);
-        pose * (local * cuboid.half_extents)
-    })
 }
 
 /// The face of a cuboid at `side` along an axis, as far as `region` (in its frame) meets it.
@@ -340,29 +304,24 @@ fn add_rectangle(
 
 /// The faces of a hull as triangles, as far as `region` (in the parts' frame) meets their boxes.
 fn add_polyhedron(
-    primitives: &mut PrimitiveList,
+    parts: &mut Parts,
     hull: &ConvexPolyhedron,
     pose: &Pose,
     border: Real,
     region: &Aabb,
 ) {
-    let ring = hull.vertices_adj_to_face();
-    for face in hull.faces() {
-        let first = face.first_vertex_or_edge as usize;
-        let n = face.num_vertices_or_edges as usize;
-        let at = |k: usize| pose * hull.points()[ring[first + k] as usize];
-        for k in 1..n.saturating_sub(1) {
-            let corners = [at(0), at(k), at(k + 1)];
-            let face = Aabb::from_points(corners);
-            let sizes = [pose.translation, face.mins, face.maxs].map(|p| p.abs().max_element());
-            let face = face.loosened(border + ROUNDING * sizes.into_iter().sum::<Real>());
-            // A region that is not a number holds everything.
-            let apart = face.mins.cmpgt(region.maxs) | region.mins.cmpgt(face.maxs);
-            if !apart.any() {
+    for_each_triangle(hull, pose, |corners| {
+        let face = Aabb::from_points(corners);
+        let sizes = [pose.translation, face.mins, face.maxs].map(|p| p.abs().max_element());
+        let face = face.loosened(border + ROUNDING * sizes.into_iter().sum::<Real>());
+        // A region that is not a number holds everything.
+        let apart = face.mins.cmpgt(region.maxs) | region.mins.cmpgt(face.maxs);
+        if !apart.any() {
+            parts.add_unless_slid(Face::of_solid(&corners, border), |primitives| {
                 primitives.push(&corners.map(|p| MedialSphere::new(p, border)));
-            }
+            });
         }
-    }
+    });
 }
 
 /// A triangle of the half-space's plane that `region` (in its frame) cannot look past.

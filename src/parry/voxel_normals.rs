@@ -4,7 +4,7 @@
 //! one between theirs. Of rounded parts GJK sees what is within their surface, which does not touch.
 
 use super::contact_reduction::places;
-use super::swept_sphere_parts::free_faces;
+use super::shape_faces::free_faces;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use parry3d::bounding_volume::Aabb;

@@ -168,3 +168,48 @@ fn ragdolls_of_fifteen_bodies_are_struck_as_rapiers_are() {
         }
     }
 }
+
+/// Most impacts in a step, and bodies stopped after too many, of a pelvis and a chest that fall, `turn` radians a second:
+/// held end to end by a ball joint, whose contacts are on.
+fn fallen_trunk(turn: Vector, multibody: bool) -> (usize, usize) {
+    let mut world = PhysicsWorld::new();
+    let mut pipeline = attached(&mut world);
+    let floor = ColliderBuilder::cuboid(10.0, 0.5, 10.0).translation(Vector::Y * -0.5);
+    world.insert_collider(floor, None);
+    let [lower, upper] = [0, 1].map(|k| parts()[k]);
+    let [pelvis, chest] = [lower, upper].map(|(center, end, radius, _)| {
+        let body = RigidBodyBuilder::dynamic().translation(center).angvel(turn);
+        let mesh = MedialMesh::capsule(-end, end, radius).expect("a bar");
+        world
+            .insert(body, ColliderBuilder::medial_mesh(mesh).density(1000.0))
+            .0
+    });
+    let joint = SphericalJointBuilder::new()
+        .local_anchor1(Vector::Y * 0.12)
+        .local_anchor2(Vector::Y * -0.23);
+    if multibody {
+        _ = world.insert_multibody_joint(pelvis, chest, joint);
+    } else {
+        _ = world.insert_impulse_joint(pelvis, chest, joint);
+    }
+    let (mut most, mut frozen) = (0, 0);
+    for _ in 0..120 {
+        let report = pipeline.step(&mut world);
+        most = most.max(report.events);
+        frozen += report.frozen;
+    }
+    (most, frozen)
+}
+
+/// Where a joint holds two parts end to end, no impulse parts them: they meet once in a step, not until they are stopped.
+#[test]
+fn parts_that_a_joint_holds_end_to_end_meet_once() {
+    for multibody in [false, true] {
+        for k in 0..12 {
+            let angle = k as Real * 0.53;
+            let turn = Vector::new(angle.cos(), 0.2, angle.sin()) * 3.0;
+            let (most, frozen) = fallen_trunk(turn, multibody);
+            println!("multibody {multibody}, {turn:?}: {most} impacts in a step, {frozen} stopped");
+        }
+    }
+}

@@ -51,7 +51,12 @@ impl Response {
         let own = point.impact(&system, material, is_driven);
         let (mut moved, mut impact) = (system, own);
         let free = both.map(|b| unlocked(view, both, b));
-        if own.resistance() >= HELD * resistance_alone(free, &point, hit.normal) {
+        let alone = resistance_alone(free, &point, hit.normal);
+        if own.resistance() < HELD * alone {
+            if rules.are_jointed(view, pair) {
+                self.held.insert(pair);
+            }
+        } else {
             if let Some(j) = own.impulse(approach, 0.0) {
                 let poses = pair.map(|k| view.motion(k, hit.time).start);
                 let contact = (hit.point, hit.normal, -hit.depth);
