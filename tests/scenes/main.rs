@@ -85,6 +85,7 @@ mod spawned;
 mod stairs;
 mod still;
 mod strained_joints;
+mod table_edges;
 mod tapered;
 #[allow(dead_code)]
 #[path = "../../examples/factory/thread.rs"]

