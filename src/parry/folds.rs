@@ -22,6 +22,9 @@ const ON_LINE: Real = 1.0e-3;
 /// Cosine of the normals of neighbours up to which they make one flat surface (2.5°).
 const FLAT: Real = 0.999;
 
+/// Cosine of a normal and the one that takes its place from which the two are one (a quarter of a degree).
+const SAME: Real = 0.99999;
+
 /// How a mesh meets a triangle, in the ground's frame.
 struct Met {
     /// Nearest point of the triangle.
@@ -118,7 +121,8 @@ pub fn correct_normal(
         .or_else(|| sliding.comes_to_lie(of_surface, mesh, &pose));
     if let Some(n) = normal {
         toi.normal = poses[1].rotation * -n;
-        found.met = None;
+        // What met is along another normal.
+        found.met = found.met.filter(|_| n.dot(met.normal) >= SAME);
     }
 }
 

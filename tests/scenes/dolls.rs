@@ -169,47 +169,54 @@ fn ragdolls_of_fifteen_bodies_are_struck_as_rapiers_are() {
     }
 }
 
-/// Most impacts in a step, and bodies stopped after too many, of a pelvis and a chest that fall, `turn` radians a second:
-/// held end to end by a ball joint, whose contacts are on.
-fn fallen_trunk(turn: Vector, multibody: bool) -> (usize, usize) {
+/// Impacts and bodies stopped after too many, of a ragdoll that falls, turning by `turn` radians a second; the contacts of
+/// its parts are on.
+fn fallen(turn: Vector) -> (usize, usize) {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
     let floor = ColliderBuilder::cuboid(10.0, 0.5, 10.0).translation(Vector::Y * -0.5);
     world.insert_collider(floor, None);
-    let [lower, upper] = [0, 1].map(|k| parts()[k]);
-    let [pelvis, chest] = [lower, upper].map(|(center, end, radius, _)| {
-        let body = RigidBodyBuilder::dynamic().translation(center).angvel(turn);
-        let mesh = MedialMesh::capsule(-end, end, radius).expect("a bar");
-        world
+    let parts = parts();
+    let mut links: Vec<RigidBodyHandle> = Vec::new();
+    for (center, end, radius, on) in &parts {
+        let arm = *center - Vector::Y;
+        let body = RigidBodyBuilder::dynamic()
+            .translation(*center + Vector::Y * 0.5)
+            .linvel(turn.cross(arm))
+            .angvel(turn);
+        let mesh = MedialMesh::capsule(-*end, *end, *radius).expect("a bar");
+        let link = world
             .insert(body, ColliderBuilder::medial_mesh(mesh).density(1000.0))
-            .0
-    });
-    let joint = SphericalJointBuilder::new()
-        .local_anchor1(Vector::Y * 0.12)
-        .local_anchor2(Vector::Y * -0.23);
-    if multibody {
-        _ = world.insert_multibody_joint(pelvis, chest, joint);
-    } else {
-        _ = world.insert_impulse_joint(pelvis, chest, joint);
+            .0;
+        if let Some((parent, joint)) = on {
+            let joint = SphericalJointBuilder::new()
+                .local_anchor1(*joint - parts[*parent].0)
+                .local_anchor2(*joint - *center);
+            world.insert_impulse_joint(links[*parent], link, joint);
+        }
+        links.push(link);
     }
-    let (mut most, mut frozen) = (0, 0);
-    for _ in 0..120 {
+    let (mut impacts, mut frozen) = (0, 0);
+    for _ in 0..180 {
         let report = pipeline.step(&mut world);
-        most = most.max(report.events);
+        impacts += report.events;
         frozen += report.frozen;
     }
-    (most, frozen)
+    (impacts, frozen)
 }
 
-/// Where a joint holds two parts end to end, no impulse parts them: they meet once in a step, not until they are stopped.
+/// Symptom: parts that a joint presses end to end met sixteen times in a step, and were stopped. Cause: no impulse parts what
+/// the joint between them holds.
 #[test]
-fn parts_that_a_joint_holds_end_to_end_meet_once() {
-    for multibody in [false, true] {
-        for k in 0..12 {
-            let angle = k as Real * 0.53;
-            let turn = Vector::new(angle.cos(), 0.2, angle.sin()) * 3.0;
-            let (most, frozen) = fallen_trunk(turn, multibody);
-            println!("multibody {multibody}, {turn:?}: {most} impacts in a step, {frozen} stopped");
-        }
+fn parts_that_their_joint_holds_are_not_stopped() {
+    let mut sum = (0, 0);
+    for k in 0..12 {
+        let angle = k as Real * 0.53;
+        let turn = Vector::new(angle.cos(), 0.2, angle.sin()) * 3.0;
+        let (impacts, frozen) = fallen(turn);
+        println!("{turn:?}: {impacts} impacts, {frozen} stopped");
+        sum = (sum.0 + impacts, sum.1 + frozen);
     }
+    // 2,837 and 116 while they met again and again.
+    assert!(sum.0 < 2300 && sum.1 < 50, "{sum:?} impacts, stopped");
 }

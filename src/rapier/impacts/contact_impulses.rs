@@ -53,7 +53,8 @@ impl Response {
         let free = both.map(|b| unlocked(view, both, b));
         let alone = resistance_alone(free, &point, hit.normal);
         if own.resistance() < HELD * alone {
-            if rules.are_jointed(view, pair) {
+            let tied = joints.between(view, both, hit.time, |b| inertia(view, both, b));
+            if point.impact(&tied, material, is_driven).resistance() < HELD * alone {
                 self.held.insert(pair);
             }
         } else {
