@@ -128,6 +128,10 @@ impl Cast<'_> {
             let further = if !self.stop_approach {
                 touching.sinking(self.at_start, self.foreign_thickness(), seconds, &options)
             } else if !touching.approaches(seconds) {
+                if self.are_convex() {
+                    // In straight motion the signed distance of convex bodies is convex in time.
+                    return Ok((None, counts));
+                }
                 touching.unless_nearer(seconds, &options)
             } else {
                 let Touching {
@@ -176,6 +180,13 @@ impl Cast<'_> {
         }
         let times = [start, toi.lower * seconds];
         Ok((Some(hit(&toi, [&motion1, &motion2], times)), counts))
+    }
+
+    /// Whether both shapes are convex: then their deepest contact is all that counts of what touches.
+    fn are_convex(&self) -> bool {
+        let is_convex = |mesh: &MedialMesh| PrimitiveTree::is_convex(mesh, 0);
+        let other = self.other.as_shape::<MedialMesh>();
+        is_convex(self.mesh) && other.map_or_else(|| self.other.is_convex(), is_convex)
     }
 
     /// Length by which a straight cast that slides along the other shape seems to come nearer, for all that rounding does.

@@ -1,10 +1,13 @@
 //! The flat faces of parry's shapes: of cuboids and hulls, rounded or not, of triangle meshes, height fields and voxels,
 //! and of compounds of these.
 
-use super::swept_sphere_parts::seen_from;
+use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use parry3d::bounding_volume::Aabb;
 use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, Triangle, TypedShape, VoxelState};
+
+/// Rounding error of the coordinates of a box put in another frame, in units of the coordinates.
+pub const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// A flat face of a shape.
 #[derive(Clone, Copy, Debug)]
@@ -141,4 +144,12 @@ pub fn face_corners(cuboid: &Cuboid, (axis, sign): (usize, Real), pose: &Pose) -
         (local[(axis + 1) % 3], local[(axis + 2) % 3]) = (x, y * sign);
         pose * (local * cuboid.half_extents)
     })
+}
+
+/// A box of the parts' frame in that of `pose`, with what rounding may take from it.
+pub fn seen_from(pose: &Pose, region: &Aabb) -> Aabb {
+    let sizes = [pose.translation, region.mins, region.maxs].map(|p| p.abs().max_element());
+    let size: Real = sizes.into_iter().sum();
+    let seen = region.transform_by(&pose.inverse());
+    Aabb::new(seen.mins - size * ROUNDING, seen.maxs + size * ROUNDING)
 }

@@ -6,9 +6,10 @@
 //! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::axisymmetric_toi`].
 
 use super::axisymmetric::Axisymmetric;
-use super::shape_faces::{Face, all_faces, face_corners, for_each_triangle, free_faces};
+use super::shape_faces::{
+    Face, ROUNDING, all_faces, face_corners, for_each_triangle, free_faces, seen_from,
+};
 use super::sliding::{Lying, Sliding};
-use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::PrimitiveList;
@@ -18,9 +19,6 @@ use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
 /// Inner radius of a half-space's stand-in, in units of the reach of the motion: a slab of radius 0 in the
 /// half-space's plane, larger than anything the body can reach.
 const PLANE_REACH: Real = 2.0;
-
-/// Rounding error of the coordinates of a box put in another frame, in units of the coordinates.
-const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// Error: the other shape is neither medial nor one of parry's own, so it cannot be swept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,14 +193,6 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
     }
     parts.name(0);
     true
-}
-
-/// A box of the parts' frame in that of `pose`, with what rounding may take from it.
-pub fn seen_from(pose: &Pose, region: &Aabb) -> Aabb {
-    let sizes = [pose.translation, region.mins, region.maxs].map(|p| p.abs().max_element());
-    let size: Real = sizes.into_iter().sum();
-    let seen = region.transform_by(&pose.inverse());
-    Aabb::new(seen.mins - size * ROUNDING, seen.maxs + size * ROUNDING)
 }
 
 /// The faces of a cuboid, as far as `region` (in the parts' frame) meets them.

@@ -366,3 +366,52 @@ fn flat_floors_turned_by_a_quarter_are_walked_on() {
         }
     }
 }
+
+/// How far a character gets of the 0.5 m that it means to go along `way`, put `deep` into a wall of 2 m that stands on a floor.
+fn leaves_wall(wall: &SharedShape, character: &SharedShape, deep: Real, way: Vector) -> Real {
+    let mut world = PhysicsWorld::new();
+    let mut pipeline = attached(&mut world);
+    let floor = ColliderBuilder::cuboid(10.0, 0.5, 10.0).translation(Vector::Y * -0.5);
+    world.insert_collider(floor, None);
+    let wall = ColliderBuilder::new(wall.clone()).translation(Vector::new(0.5, 1.0, 0.0));
+    world.insert_collider(wall, None);
+    pipeline.step(&mut world);
+    let controller = KinematicCharacterController {
+        offset: CharacterLength::Absolute(0.01),
+        ..KinematicCharacterController::default()
+    };
+    let start = Vector::new(-0.2 + deep, 0.51, 0.1);
+    let mut at = start;
+    for _ in 0..20 {
+        let queries = world.query_pipeline();
+        let pose = Pose::from_translation(at);
+        let wish = way * 0.025 + Vector::NEG_Y * 0.003;
+        let moved = controller.move_shape(1.0 / 60.0, &queries, &*character.0, &pose, wish, |_| {});
+        at += moved.translation;
+    }
+    (at - start).dot(way)
+}
+
+/// Symptom: cuboids that were deeper in a medial wall than they stood above its lower edge could move nowhere. Cause: each face
+/// of the cuboid was asked alone, and its lower one came nearer by any step upwards.
+#[test]
+fn characters_leave_walls_that_were_put_into_them() {
+    let half = Vector::new(0.5, 1.0, 2.0);
+    let medial = SharedShape::new(MedialMesh::cuboid(half).expect("a wall"));
+    let own = SharedShape::cuboid(half.x, half.y, half.z);
+    let characters = [
+        SharedShape::cuboid(0.2, 0.5, 0.2),
+        SharedShape::cylinder(0.5, 0.2),
+        SharedShape::capsule_y(0.3, 0.2),
+    ];
+    for (k, character) in characters.iter().enumerate() {
+        for deep in [0.01, 0.03, 0.1] {
+            for way in [Vector::NEG_X, Vector::Z] {
+                let [ours, own] = [&medial, &own].map(|w| leaves_wall(w, character, deep, way));
+                let name = format!("character {k}, {deep} m deep, along {way:?}");
+                assert!(own > 0.4, "{name}: rapier's own gets {own} m");
+                assert!(ours > own - 0.05, "{name}: {ours} m, rapier's own {own} m");
+            }
+        }
+    }
+}

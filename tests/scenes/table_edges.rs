@@ -131,15 +131,16 @@ fn over_the_edge(table: &SharedShape, slider: &Slider, medial: bool, speed: Real
 fn what_slides_off_a_table_keeps_its_speed() {
     for (table_name, table) in tables() {
         for slider in sliders() {
-            if (slider.name, table_name) == ("capsule", "octagon") {
-                // `known_issues`.
-                continue;
-            }
-            for k in 0..12 {
+            // `known_issues`.
+            let trips = (slider.name, table_name) == ("capsule", "octagon");
+            for k in if trips { 0..0 } else { 0..12 } {
                 let speed = 1.0 + 0.87 * k as Real;
                 let name = format!("{} at {speed} m/s off the {table_name}", slider.name);
                 let [own, own_up] = over_the_edge(&table, &slider, false, speed);
-                assert!(own > 0.99 * speed && own_up < 0.05, "rapier's own {name}: {own}, {own_up}");
+                assert!(
+                    own > 0.99 * speed && own_up < 0.05,
+                    "rapier's own {name}: {own}, {own_up}"
+                );
                 let [least, up] = over_the_edge(&table, &slider, true, speed);
                 assert!(least > 0.995 * speed, "{name}: {least} m/s");
                 assert!(up < 0.25, "{name}: {up} m/s up");

@@ -51,13 +51,7 @@ impl Response {
         let own = point.impact(&system, material, is_driven);
         let (mut moved, mut impact) = (system, own);
         let free = both.map(|b| unlocked(view, both, b));
-        let alone = resistance_alone(free, &point, hit.normal);
-        if own.resistance() < HELD * alone {
-            let tied = joints.between(view, both, hit.time, |b| inertia(view, both, b));
-            if point.impact(&tied, material, is_driven).resistance() < HELD * alone {
-                self.held.insert(pair);
-            }
-        } else {
+        if own.resistance() >= HELD * resistance_alone(free, &point, hit.normal) {
             if let Some(j) = own.impulse(approach, 0.0) {
                 let poses = pair.map(|k| view.motion(k, hit.time).start);
                 let contact = (hit.point, hit.normal, -hit.depth);

@@ -9,7 +9,6 @@
 //! between two of them would not end, and their friction would hold what they press out. No contact is taken for granted
 //! afterwards: all pairs of the bodies that changed are searched again.
 
-use crate::math::fast_hash::FastSet;
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::body_state::BodyImpactState;
@@ -37,8 +36,6 @@ pub struct Response {
     /// Between two colliders, those of one normal summed.
     pub impulses: BTreeMap<Pair, Vec<ReportedImpulse>>,
     met: ImpactHistory,
-    /// Pairs that met whose contact a joint of theirs holds, so that no impulse parts them.
-    pub(super) held: FastSet<Pair>,
     /// Joints, once something was struck.
     pub(crate) joints: Option<Joints>,
     pub(crate) pieces: Pieces,
@@ -56,7 +53,6 @@ impl Response {
             courses: vec![BodyImpactState::default(); bodies],
             impulses: BTreeMap::new(),
             met: ImpactHistory::default(),
-            held: FastSet::default(),
             joints: None,
             pieces: Pieces::default(),
         }
@@ -69,11 +65,10 @@ impl Response {
 
     /// Whether an impact could still change the motion of either.
     pub fn is_movable(&self, view: &StepView, policy: &CcdPolicy, pair: Pair) -> bool {
-        !self.held.contains(&pair)
-            && bodies(view, pair).iter().any(|&b| {
-                view.bodies[b].kind == Kind::Free
-                    && self.courses[b].events <= policy.tuning.max_carried()
-            })
+        bodies(view, pair).iter().any(|&b| {
+            view.bodies[b].kind == Kind::Free
+                && self.courses[b].events <= policy.tuning.max_carried()
+        })
     }
 
     /// Lets two colliders meet; returns the bodies whose pairs are to be asked again.
@@ -186,7 +181,6 @@ impl Response {
         for round in 0..ROUNDS {
             let mut next = Vec::new();
             let pairs = self.met.of(view, &last).into_iter();
-            let pairs = pairs.filter(|pair| !self.held.contains(pair));
             let all = pairs.flat_map(|pair| (0..self.met.places(pair)).map(move |k| (pair, k)));
             for (pair, place) in all.collect::<Vec<_>>() {
                 let own = undisturbed.filter(|_| pair == struck);

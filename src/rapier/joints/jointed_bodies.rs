@@ -130,21 +130,6 @@ impl Joints {
         System::new(view, time, (bodies, inertias), joints)
     }
 
-    /// The system of two bodies alone and the joints between them, struck at `time`, with the inertia of each.
-    pub fn between(
-        &self,
-        view: &StepView,
-        both: [usize; 2],
-        time: Real,
-        inertia: impl Fn(usize) -> Inertia,
-    ) -> System<'_> {
-        let of_first = self.of_body.get(&both[0]).into_iter().flatten();
-        let of_first = of_first.map(|j| &self.all[*j]);
-        let joints = of_first.filter(|joint| joint.bodies.contains(&both[1]));
-        let inertias = both.iter().map(|b| inertia(*b)).collect();
-        System::new(view, time, (both.to_vec(), inertias), joints.collect())
-    }
-
     /// All bodies that joints tie to some bodies, these first.
     pub fn tied_to(&self, view: &StepView, from: &[usize]) -> Vec<usize> {
         self.tied(view, from).0

@@ -74,7 +74,7 @@ impl Rules<'_> {
             return false;
         };
         let mut joints = self.impulse_joints.joints_between(first, second);
-        joints.next().is_some() || self.multibody_joints.joint_between(first, second).is_some()
+        joints.next().is_some()
     }
 
     /// Whether the user's filters, if any, let them push each other.
