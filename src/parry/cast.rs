@@ -70,7 +70,7 @@ impl Cast<'_> {
         self.toi_sliding(options, left, None)
     }
 
-    /// The same; triangles on whose plane the mesh lies, with so much room to sink, are treated by `sliding.rs`.
+    /// The same; flat faces on whose plane the mesh lies, with so much room to sink, are treated by `sliding.rs`.
     pub(crate) fn toi_sliding(
         &self,
         options: &ToiOptions,
@@ -128,7 +128,7 @@ impl Cast<'_> {
             let further = if !self.stop_approach {
                 touching.sinking(self.at_start, self.foreign_thickness(), seconds, &options)
             } else if !touching.approaches(seconds) {
-                if self.are_convex() {
+                if touching.is_sure && self.are_convex() {
                     // In straight motion the signed distance of convex bodies is convex in time.
                     return Ok((None, counts));
                 }
@@ -182,7 +182,7 @@ impl Cast<'_> {
         Ok((Some(hit(&toi, [&motion1, &motion2], times)), counts))
     }
 
-    /// Whether both shapes are convex: then their deepest contact is all that counts of what touches.
+    /// Whether both shapes are known to be convex: then what touches at the start counts by its deepest contact alone.
     fn are_convex(&self) -> bool {
         let is_convex = |mesh: &MedialMesh| PrimitiveTree::is_convex(mesh, 0);
         let other = self.other.as_shape::<MedialMesh>();
@@ -216,6 +216,10 @@ impl Cast<'_> {
         let reach = self.target_distance + tolerance;
         let pos12 = start1.inverse() * start2;
         let (nearest, _) = distance::nearest(self.mesh, self.other, &pos12, reach)?;
+        let least = |mesh: &MedialMesh| mesh.thicknesses().least();
+        let other = self.other.as_shape::<MedialMesh>();
+        let least = other.map_or(Real::MAX, least).min(least(self.mesh));
+        let is_sure = nearest.is_some_and(|c| c.distance > -least);
         let (gap, normal, points, primitives) = match nearest {
             Some(c) => {
                 let points = [start1 * c.points[0], start2 * c.points[1]];
@@ -234,6 +238,7 @@ impl Cast<'_> {
             normal,
             points,
             primitives,
+            is_sure,
             slip: velocity(0) - velocity(1),
             size: sizes.into_iter().map(|p| p.abs().max_element()).sum(),
         })
@@ -260,7 +265,7 @@ impl Cast<'_> {
         );
         if let Some(sliding) = &mut parts.sliding {
             for_each_flat_face(self.other, &Pose::IDENTITY, &region, &mut |face| {
-                sliding.look(face);
+                sliding.look(face)
             });
         }
         if !swept_sphere_parts::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {

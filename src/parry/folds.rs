@@ -23,7 +23,7 @@ const ON_LINE: Real = 1.0e-3;
 const FLAT: Real = 0.999;
 
 /// Cosine of a normal and the one that takes its place from which the two are one (a quarter of a degree).
-const SAME: Real = 0.99999;
+const SAME_NORMAL: Real = 0.99999;
 
 /// How a mesh meets a triangle, in the ground's frame.
 struct Met {
@@ -100,6 +100,7 @@ pub fn correct_normal(
     let spheres = |k: u32| parts.primitives.primitive(k).0;
     let corners = |k: u32| spheres(k).map(|s| s.center);
     let face = corners(toi.primitives[1]);
+    // Of a solid too: its triangles turn either way.
     let of_surface = Face {
         border: spheres(toi.primitives[1])[0].radius,
         ..Face::of_surface(&face)
@@ -121,8 +122,8 @@ pub fn correct_normal(
         .or_else(|| sliding.comes_to_lie(of_surface, mesh, &pose));
     if let Some(n) = normal {
         toi.normal = poses[1].rotation * -n;
-        // What met is along another normal.
-        found.met = found.met.filter(|_| n.dot(met.normal) >= SAME);
+        // The spheres that met tell of another normal.
+        found.met = found.met.filter(|_| n.dot(met.normal) >= SAME_NORMAL);
     }
 }
 

@@ -6,7 +6,7 @@ use crate::math::{Pose, Real, Vector};
 use parry3d::bounding_volume::Aabb;
 use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, Triangle, TypedShape, VoxelState};
 
-/// Rounding error of the coordinates of a box put in another frame, in units of the coordinates.
+/// Rounding error of coordinates put in another frame, in units of the coordinates.
 pub const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// A flat face of a shape.
@@ -16,12 +16,12 @@ pub struct Face<'a> {
     pub corners: &'a [Vector],
     /// Radius by which it is rounded, a length.
     pub border: Real,
-    /// Whether it is one of a solid, which can be met from outside only: from there its corners turn to the left.
+    /// Whether it is one of a convex solid: a mesh lies on it only outside, from where its corners turn to the left.
     pub is_of_solid: bool,
 }
 
 impl<'a> Face<'a> {
-    /// The face of a solid.
+    /// The face of a convex solid.
     pub fn of_solid(corners: &'a [Vector], border: Real) -> Self {
         Self {
             corners,
@@ -30,7 +30,7 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// A face with two sides.
+    /// A face of a surface of many, each with two sides.
     pub fn of_surface(corners: &'a [Vector]) -> Self {
         Self {
             corners,
@@ -89,7 +89,7 @@ pub fn for_each_flat_face(
             for voxel in v.voxels_intersecting_local_aabb(&local()) {
                 let pose = pose * Pose::from_translation(voxel.center);
                 for face in free_faces(voxel.state) {
-                    see(Face::of_solid(&face_corners(&cube, face, &pose), 0.0));
+                    see(Face::of_surface(&face_corners(&cube, face, &pose)));
                 }
             }
         }
@@ -146,7 +146,7 @@ pub fn face_corners(cuboid: &Cuboid, (axis, sign): (usize, Real), pose: &Pose) -
     })
 }
 
-/// A box of the parts' frame in that of `pose`, with what rounding may take from it.
+/// A box of the frame in which `pose` is placed, seen from the frame of `pose`, with what rounding may take from it.
 pub fn seen_from(pose: &Pose, region: &Aabb) -> Aabb {
     let sizes = [pose.translation, region.mins, region.maxs].map(|p| p.abs().max_element());
     let size: Real = sizes.into_iter().sum();

@@ -2,8 +2,8 @@
 //!
 //! A flat ground is cut into triangles, and a body that lies on it is within the contact distance of each that it comes
 //! over. Its nearest point is then on an edge in front of the body, with a normal against the motion, and a body stopped
-//! there would trip over nothing. So it would over the edge of a table from which it slides, whose side faces it meets
-//! from inside. But what stays above a plane crosses no triangle in it, nor below it, as that of a cliff:
+//! there would trip over nothing. It would trip over the edge of a table that it slides off, too: it meets the table's
+//! sides from inside. But what stays above a plane crosses no triangle in it, nor below it, as that of a cliff:
 //! such triangles are no obstacle. And what sinks in there is thrown back along the plane's normal. For another triangle on
 //! whose own plane the body lies this holds where it faces about the same way as the ground: beside a ledge, with nothing
 //! below, a body may meet an edge from any side.
@@ -25,7 +25,7 @@ use parry3d::shape::Shape;
 pub struct Sinks {
     /// Deepest at the start, if it is to count as lying on the plane.
     pub lies: Real,
-    /// Deepest in the step, if the triangle is to be no obstacle.
+    /// Deepest in the step, if the face is to be no obstacle.
     pub to: Real,
     /// The same, from the depth at the start on.
     pub by: Real,
@@ -68,6 +68,13 @@ pub struct Lying {
 const CORNERS: Real = 8.0 * Real::EPSILON;
 
 impl Lying {
+    /// Whether a face that is in the plane or below it is in the plane, rounding apart.
+    fn is_in_plane(&self, face: Face) -> bool {
+        let height = |p: &Vector| self.normal.dot(Vec3::from_vector(*p) - self.place);
+        let least = -self.rounding - f64::from(face.border);
+        face.corners.iter().all(|p| height(p) >= least)
+    }
+
     /// Whether a ball is in the plane or below it, rounding apart.
     fn is_above(&self, center: Vector, radius: Real) -> bool {
         let way = Vec3::from_vector(center) - self.place;
@@ -132,14 +139,25 @@ impl Sliding {
     }
 
     /// How the mesh lies on the plane of a face, or on that of a ground above it, where it can meet the face along the plane's
-    /// normal only, or not at all.
+    /// normal only, or not at all. Of solids the face on which the mesh lies stays an obstacle: others are left out for it.
     pub fn treats(&self, face: Face) -> Option<Lying> {
-        let own = || {
-            let is_alike = |l: &Lying| self.grounds.iter().any(|g| g.normal.dot(l.normal) > ALIKE);
+        let Some(ground) = self.ground_above(face) else {
             let lying = self.lies_on(face);
-            lying.filter(|l| l.slides || is_alike(l))
+            return lying.filter(|l| l.slides || self.is_like_a_ground(l));
         };
-        self.ground_above(face).copied().or_else(own)
+        if !face.is_of_solid {
+            return Some(*ground);
+        }
+        let is_ground = ground.is_in_plane(face);
+        (is_ground || ground.slides).then_some(Lying {
+            slides: !is_ground,
+            ..*ground
+        })
+    }
+
+    fn is_like_a_ground(&self, lying: &Lying) -> bool {
+        let is_alike = |g: &Lying| g.normal.dot(lying.normal) > ALIKE;
+        self.grounds.iter().any(is_alike)
     }
 
     /// The normal of a face's plane, to the side of the mesh, if the mesh lies on it once it is at `pose` in the ground's frame,
@@ -155,11 +173,8 @@ impl Sliding {
             ..*self
         };
         let lying = there.lies_on(face)?;
-        let is_alike = self
-            .grounds
-            .iter()
-            .any(|g| g.normal.dot(lying.normal) > ALIKE);
-        is_alike.then(|| lying.normal.to_vector())
+        self.is_like_a_ground(&lying)
+            .then(|| lying.normal.to_vector())
     }
 
     /// Whether the centres of spheres stay above a plane on which they lie.
@@ -184,8 +199,8 @@ impl Sliding {
             return None;
         }
         let across = across * (1.0 / length);
-        let sides: &[f64] = if face.is_of_solid {
-            &[1.0]
+        let sides = if face.is_of_solid {
+            &[1.0][..]
         } else {
             &[1.0, -1.0]
         };
@@ -210,6 +225,8 @@ impl Sliding {
             return None;
         }
         let start = lowest(0, -lies).filter(|h| *h <= self.target)?;
+        // A solid's own face stays an obstacle, so that how far the mesh sinks in does not matter for what is below.
+        let by = if face.is_of_solid { to } else { by };
         let least = (start.min(0.0) - by).max(-to) + self.bend;
         let is_over = self.spheres[0].iter().any(|sphere| {
             let is_left_of = |k: usize| {

@@ -76,7 +76,9 @@ impl Parts {
         let lying = self.sliding.as_ref().and_then(|s| s.treats(face));
         if lying.is_some_and(|lying| lying.slides) {
             let corners = face.corners;
-            self.left_out.push([corners[0], corners[1], corners[2]]);
+            let triangles =
+                (1..corners.len() - 1).map(|k| [corners[0], corners[k], corners[k + 1]]);
+            self.left_out.extend(triangles);
             return;
         }
         let first = self.primitives.len() as u32;
@@ -185,7 +187,7 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
             for voxel in v.voxels_intersecting_local_aabb(&local) {
                 let pose = pose * Pose::from_translation(voxel.center);
                 let faces = free_faces(voxel.state);
-                add_faces(parts, &cube, faces, &pose, 0.0, region);
+                add_faces(parts, &cube, faces, &pose, Face::of_surface(&[]), region);
                 parts.name(voxel.linear_id.flat_id() as u32);
             }
         }
@@ -197,24 +199,29 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
 
 /// The faces of a cuboid, as far as `region` (in the parts' frame) meets them.
 fn add_cuboid(parts: &mut Parts, cuboid: &Cuboid, pose: &Pose, border: Real, region: &Aabb) {
-    add_faces(parts, cuboid, all_faces(), pose, border, region);
+    let kind = Face::of_solid(&[], border);
+    add_faces(parts, cuboid, all_faces(), pose, kind, region);
 }
 
-/// Some faces of a cuboid, each by axis and side, as far as `region` (in the parts' frame) meets them.
+/// Some faces of a cuboid, each by axis and side, as far as `region` (in the parts' frame) meets them. `kind` has no corners.
 fn add_faces(
     parts: &mut Parts,
     cuboid: &Cuboid,
     faces: impl Iterator<Item = (usize, Real)>,
     pose: &Pose,
-    border: Real,
+    kind: Face,
     region: &Aabb,
 ) {
     let region = seen_from(pose, region);
     for (axis, sign) in faces {
         let corners = face_corners(cuboid, (axis, sign), pose);
-        parts.add_unless_slid(Face::of_solid(&corners, border), |primitives| {
+        let face = Face {
+            corners: &corners,
+            ..kind
+        };
+        parts.add_unless_slid(face, |primitives| {
             let side = sign * cuboid.half_extents[axis];
-            add_face(primitives, cuboid, (axis, side), pose, border, &region);
+            add_face(primitives, cuboid, (axis, side), pose, face.border, &region);
         });
     }
 }

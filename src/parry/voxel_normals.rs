@@ -63,11 +63,8 @@ pub fn correct<M, C>(
 fn faces(voxels: &Voxels, at: Vector, within: Real) -> Vec<(usize, Real)> {
     let half = 0.5 * voxels.voxel_size();
     let around = Aabb::from_half_extents(at, Vector::splat(within));
-    let full = voxels
-        .voxels_intersecting_local_aabb(&around)
-        .filter(|v| !v.state.is_empty());
     let mut found = Vec::new();
-    for voxel in full {
+    for voxel in voxels.voxels_intersecting_local_aabb(&around) {
         for (axis, sign) in free_faces(voxel.state) {
             let off = (at - voxel.center)[axis] * sign - half[axis];
             if off.abs() <= within && !found.contains(&(axis, sign)) {

@@ -63,8 +63,8 @@ pub struct Tuning {
     /// Speed up to which nothing bounces where no force pulls, in units of rapier's length unit per second. Far below what
     /// can be seen; ten times as large, and boxes of elastic bodies lose a hundredth of their energy.
     pub least_bounce: Real,
-    /// Depth up to which a body lies on the plane of a triangle, in units of rapier's length unit, beyond what gravity presses
-    /// it in: bodies that slide are not that deep, and what is deeper beside a triangle may strike its edge.
+    /// Depth up to which a body lies on the plane of a face, in units of rapier's length unit, beyond what gravity presses
+    /// it in: bodies that slide are not that deep, and what is deeper beside a face may strike its edge.
     pub lies: Real,
     /// Depth from which bodies in an impact are pushed apart, in units of the thickness.
     pub push_from: Real,

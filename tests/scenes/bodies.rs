@@ -134,3 +134,13 @@ pub fn plateau() -> ColliderBuilder {
     let plateau = ColliderBuilder::trimesh_with_flags(vertices, triangles, flags);
     plateau.expect("a plateau")
 }
+
+/// A table of eight sides, 1 m high about the origin, with an edge at x = 4 m.
+pub fn octagon() -> Vec<Vector> {
+    let corners = (0..8).flat_map(|k| {
+        let (z, x) = ((k as Real + 0.5) * std::f32::consts::FRAC_PI_4).sin_cos();
+        let out = 4.0 / (0.5 * std::f32::consts::FRAC_PI_4).cos();
+        [-0.5, 0.5].map(|y| Vector::new(out * x, y, out * z))
+    });
+    corners.collect()
+}

@@ -2,7 +2,7 @@
 //! rapier's own shapes keep their speed there.
 
 use crate::blocks::l_shape;
-use crate::bodies::attached;
+use crate::bodies::{attached, octagon};
 use rapier3d::parry::shape::{ConvexPolyhedron, Cuboid};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
@@ -10,21 +10,13 @@ use rapier3d_medial::prelude::*;
 /// Tables whose top is 0.5 m above their centre, and ends at 4 m from it.
 fn tables() -> Vec<(&'static str, SharedShape)> {
     let (points, _) = Cuboid::new(Vector::new(4.0, 0.5, 4.0)).to_trimesh();
-    // With an edge at x = 4.
-    let rim = (0..8).flat_map(|k| {
-        let (z, x) = ((k as Real + 0.5) * std::f32::consts::FRAC_PI_4).sin_cos();
-        let out = 4.0 / (0.5 * std::f32::consts::FRAC_PI_4).cos();
-        [-0.5, 0.5].map(|y| Vector::new(out * x, y, out * z))
-    });
-    let rim: Vec<Vector> = rim.collect();
     let hull = |points: &[Vector]| {
         SharedShape::new(ConvexPolyhedron::from_convex_hull(points).expect("a hull"))
     };
-    let half = |x: Real| {
-        (
-            Pose::translation(x, 0.0, 0.0),
-            SharedShape::cuboid(2.0, 0.5, 4.0),
-        )
+    // rapier's own cuboids stumble over its seam, so that is not on the way.
+    let part = |x: Real, half: Real| {
+        let part = SharedShape::cuboid(half, 0.5, 4.0);
+        (Pose::translation(x, 0.0, 0.0), part)
     };
     let rounded = |points: &[Vector]| {
         let inner = points.iter().map(|p| *p * Vector::new(0.975, 0.8, 0.975));
@@ -34,7 +26,7 @@ fn tables() -> Vec<(&'static str, SharedShape)> {
     vec![
         ("cuboid", SharedShape::cuboid(4.0, 0.5, 4.0)),
         ("hull", hull(&points)),
-        ("octagon", hull(&rim)),
+        ("octagon", hull(&octagon())),
         (
             "rounded cuboid",
             SharedShape::round_cuboid(3.9, 0.4, 3.9, 0.1),
@@ -42,7 +34,7 @@ fn tables() -> Vec<(&'static str, SharedShape)> {
         ("rounded hull", rounded(&points)),
         (
             "compound",
-            SharedShape::compound(vec![half(-2.0), half(2.0)]),
+            SharedShape::compound(vec![part(-2.0, 2.0), part(2.0, 2.0)]),
         ),
     ]
 }
@@ -102,7 +94,7 @@ fn sliders() -> Vec<Slider> {
     ]
 }
 
-/// The least speed along the way and the largest upwards of a body that slides over the edge, until its middle is beyond.
+/// The least speed along the way and the largest upwards of a body that slides over the edge, until its middle is there.
 fn over_the_edge(table: &SharedShape, slider: &Slider, medial: bool, speed: Real) -> [Real; 2] {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
@@ -116,11 +108,10 @@ fn over_the_edge(table: &SharedShape, slider: &Slider, medial: bool, speed: Real
     };
     let (body, _) = world.insert(body, collider.friction(0.0));
     let (mut least, mut up): (Real, Real) = (speed, 0.0);
-    while world.bodies[body].translation().x < 4.0 {
+    for _ in 0..(1.2 / speed * 60.0) as usize {
         pipeline.step(&mut world);
         let velocity = world.bodies[body].linvel();
         (least, up) = (least.min(velocity.x), up.max(velocity.y));
-        assert!(least > 0.0, "{} stops at {speed} m/s", slider.name);
     }
     [least, up]
 }

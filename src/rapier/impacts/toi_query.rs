@@ -64,7 +64,7 @@ pub struct QueryOptions {
     pub floor: Option<ToiOptions>,
     /// All of both that may come as near as is asked, where that is known.
     pub left: Option<[ActivePrimitives; 2]>,
-    /// Of a body that slides over triangles.
+    /// Of a body that slides over flat faces.
     pub sinks: Sinks,
 }
 
