@@ -145,12 +145,9 @@ impl Sliding {
             let lying = self.lies_on(face);
             return lying.filter(|l| l.slides || self.is_like_a_ground(l));
         };
-        if !face.is_of_solid {
-            return Some(*ground);
-        }
-        let is_ground = ground.is_in_plane(face);
-        (is_ground || ground.slides).then_some(Lying {
-            slides: !is_ground,
+        let stays = face.is_of_solid && ground.is_in_plane(face);
+        Some(Lying {
+            slides: ground.slides && !stays,
             ..*ground
         })
     }
