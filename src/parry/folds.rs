@@ -97,14 +97,8 @@ pub fn correct_normal(
         middle: pose * mesh.aabb().center(),
         size: mesh.aabb().extents().max_element(),
     };
-    let spheres = |k: u32| parts.primitives.primitive(k).0;
-    let corners = |k: u32| spheres(k).map(|s| s.center);
+    let corners = |k: u32| parts.primitives.primitive(k).0.map(|s| s.center);
     let face = corners(toi.primitives[1]);
-    // Of a solid too: its triangles turn either way.
-    let of_surface = Face {
-        border: spheres(toi.primitives[1])[0].radius,
-        ..Face::of_surface(&face)
-    };
     let others = || {
         let all = (0..parts.primitives.len() as u32).map(corners);
         all.chain(parts.left_out.iter().copied())
@@ -116,14 +110,16 @@ pub fn correct_normal(
         true => normal(face, others(), &met).filter(|n| met.is_within(face, *n, others())),
         false => normal(face, others(), &met),
     };
-    let normal = known
-        .map(|(_, n)| *n)
-        .or_else(at_fold)
-        .or_else(|| sliding.comes_to_lie(of_surface, mesh, &pose));
+    let comes_to_lie = || sliding.comes_to_lie(Face::of_surface(&face), mesh, &pose);
+    let normal = known.map(|(_, n)| *n).or_else(|| {
+        let may_fold = !sliding.is_over_solids;
+        may_fold.then(|| at_fold().or_else(comes_to_lie))?
+    });
     if let Some(n) = normal {
         toi.normal = poses[1].rotation * -n;
         // The spheres that met tell of another normal.
-        found.met = found.met.filter(|_| n.dot(met.normal) >= SAME_NORMAL);
+        let same = |_: &_| sliding.is_over_solids && n.dot(met.normal) >= SAME_NORMAL;
+        found.met = found.met.filter(same);
     }
 }
 

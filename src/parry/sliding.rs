@@ -46,6 +46,8 @@ pub struct Sliding {
     sinks: Sinks,
     /// Planes of the faces below the mesh on which it lies.
     grounds: Vec<Lying>,
+    /// Whether the ground is made of convex solids: no two of their faces make a fold.
+    pub is_over_solids: bool,
 }
 
 /// How a mesh lies on the plane of a face.
@@ -127,11 +129,13 @@ impl Sliding {
             target: target.into(),
             sinks,
             grounds: Vec::new(),
+            is_over_solids: false,
         })
     }
 
     /// Remembers a face if it is a ground of the mesh. All faces have to be looked at before [`Self::treats`].
     pub fn look(&mut self, face: Face) {
+        self.is_over_solids = face.is_of_solid;
         if self.ground_above(face).is_none() {
             self.grounds
                 .extend(self.lies_on(face).filter(|l| l.is_over));
@@ -139,15 +143,15 @@ impl Sliding {
     }
 
     /// How the mesh lies on the plane of a face, or on that of a ground above it, where it can meet the face along the plane's
-    /// normal only, or not at all. Of solids the face on which the mesh lies stays an obstacle: others are left out for it.
+    /// normal only, or not at all. A ground of a solid stays an obstacle, met along its normal: others are left out for it.
     pub fn treats(&self, face: Face) -> Option<Lying> {
         let Some(ground) = self.ground_above(face) else {
             let lying = self.lies_on(face);
             return lying.filter(|l| l.slides || self.is_like_a_ground(l));
         };
-        let stays = face.is_of_solid && ground.is_in_plane(face);
+        let is_ground = face.is_of_solid && ground.is_in_plane(face);
         Some(Lying {
-            slides: ground.slides && !stays,
+            slides: ground.slides && !is_ground,
             ..*ground
         })
     }
