@@ -335,7 +335,7 @@ fn rear_legs_meet_the_edge_of_a_cliff_from_behind() {
     assert!(own > 7.9 && ours < 7.5, "{ours} m/s, rapier's {own}");
 }
 
-/// A capsule sinks a centimetre into the top of a hull of eight sides, rapier's own too (of a cuboid it does not). That is too
+/// A capsule sinks a centimetre into the top of a hull of eight sides, rapier's own too (into a cuboid neither does). That is too
 /// deep to lie on the top, so that it meets the hull's side from inside where it slides off; rapier's own goes on.
 #[test]
 fn capsules_that_sank_into_a_hull_trip_over_its_edge() {

@@ -72,8 +72,9 @@ impl Met {
     }
 }
 
-/// Gives a hit on one of `parts` the normal along which the mesh can be thrown back there: where it lies on the plane of a
-/// face, comes to lie there, or meets it at a fold. The motions, over `seconds`, are those of the mesh and of the ground.
+/// Gives a hit on one of `parts` the normal along which the mesh can be thrown back there: where it lies on the plane
+/// of a face, or, on surfaces, comes to lie there or meets it at a fold. The motions, over `seconds`, are those of the
+/// mesh and of the ground.
 pub fn correct_normal(
     found: &mut ToiResult,
     parts: &Parts,
@@ -117,7 +118,8 @@ pub fn correct_normal(
     });
     if let Some(n) = normal {
         toi.normal = poses[1].rotation * -n;
-        // The spheres that met tell of another normal.
+        // The spheres that met tell of another normal. Where that of a solid's face stays as it is they are kept: heaps hand
+        // impulses on through them.
         let same = |_: &_| sliding.is_over_solids && n.dot(met.normal) >= SAME_NORMAL;
         found.met = found.met.filter(same);
     }

@@ -1,5 +1,5 @@
-//! The flat faces of parry's shapes: of cuboids and hulls, rounded or not, of triangle meshes, height fields and voxels,
-//! and of compounds of these.
+//! The flat faces of parry's shapes: of cuboids and hulls, rounded or not, also in compounds, and of triangle meshes, height
+//! fields and voxels.
 
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};

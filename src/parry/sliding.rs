@@ -1,12 +1,12 @@
-//! Flat faces of a ground over which a mesh slides: of triangles, voxels, cuboids, hulls and compounds.
+//! Flat faces of a ground over which a mesh slides: triangles, and faces of voxels, cuboids and hulls, in compounds too.
 //!
 //! A flat ground is cut into triangles, and a body that lies on it is within the contact distance of each that it comes
-//! over. Its nearest point is then on an edge in front of the body, with a normal against the motion, and a body stopped
-//! there would trip over nothing. It would trip over the edge of a table that it slides off, too: it meets the table's
-//! sides from inside. But what stays above a plane crosses no triangle in it, nor below it, as that of a cliff:
-//! such triangles are no obstacle. And what sinks in there is thrown back along the plane's normal. For another triangle on
-//! whose own plane the body lies this holds where it faces about the same way as the ground: beside a ledge, with nothing
-//! below, a body may meet an edge from any side.
+//! over. Its nearest point is then on an edge in front of the body, with a normal against the motion, and a body
+//! stopped there would trip over nothing. It would trip over the edge of a table that it slides off, too: it meets the
+//! table's sides from inside. But what stays above a plane crosses no face in it, nor below it, as that of a cliff:
+//! such faces are no obstacle, but for a solid's in the plane itself, which are met along its normal. And what sinks in
+//! there is thrown back along the plane's normal. For another face on whose own plane the body lies this holds where it
+//! faces about the same way as the ground: beside a ledge, with nothing below, a body may meet an edge from any side.
 //!
 //! Along a chord a height is linear in time, and a path of an acceleration up to `a` is off its chord by `a t² / 8` at most.
 //! A point that turns with the mesh by `ω₁` at `r`, seen from a ground that turns by `ω₂`, `d` from its axis, has up to
@@ -27,7 +27,7 @@ pub struct Sinks {
     pub lies: Real,
     /// Deepest in the step, if the face is to be no obstacle.
     pub to: Real,
-    /// The same, from the depth at the start on.
+    /// The same, from the depth at the start on; not asked of solids.
     pub by: Real,
 }
 
@@ -46,7 +46,7 @@ pub struct Sliding {
     sinks: Sinks,
     /// Planes of the faces below the mesh on which it lies.
     grounds: Vec<Lying>,
-    /// Whether the ground is made of convex solids: no two of their faces make a fold.
+    /// Whether no face of a surface (a mesh, height field or voxel) was looked at: folds are between those only.
     pub is_over_solids: bool,
 }
 
@@ -59,7 +59,7 @@ pub struct Lying {
     place: Vec3<f64>,
     /// Rounding of the face's corners, a length.
     rounding: f64,
-    /// Whether what is in the plane or below it is no obstacle.
+    /// Whether what is in the plane or below it is no obstacle; of a solid what is below.
     pub slides: bool,
     /// Whether the mesh is near the plane over the face itself, not only beside it.
     is_over: bool,
@@ -129,7 +129,7 @@ impl Sliding {
             target: target.into(),
             sinks,
             grounds: Vec::new(),
-            is_over_solids: false,
+            is_over_solids: true,
         })
     }
 

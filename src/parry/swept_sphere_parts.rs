@@ -36,9 +36,9 @@ pub struct Parts {
     axisymmetric_subshapes: Vec<u32>,
     /// What leaves flat faces out.
     pub(super) sliding: Option<Sliding>,
-    /// What it left out.
+    /// The faces of surfaces that it left out, as triangles.
     pub(super) left_out: Vec<[Vector; 3]>,
-    /// Primitives in or below a plane on which that mesh lies, and its unit normal, to the side of the mesh.
+    /// Primitives that the searched mesh can meet along a plane's normal only, and that unit normal, to the side of the mesh.
     pub(super) normals: Vec<(u32, Vector)>,
 }
 
@@ -75,10 +75,12 @@ impl Parts {
     fn add_unless_slid(&mut self, face: Face, add: impl FnOnce(&mut PrimitiveList)) {
         let lying = self.sliding.as_ref().and_then(|s| s.treats(face));
         if lying.is_some_and(|lying| lying.slides) {
-            let corners = face.corners;
-            let triangles =
-                (1..corners.len() - 1).map(|k| [corners[0], corners[k], corners[k + 1]]);
-            self.left_out.extend(triangles);
+            if !face.is_of_solid {
+                let corners = face.corners;
+                let others = corners[1..].windows(2);
+                self.left_out
+                    .extend(others.map(|pair| [corners[0], pair[0], pair[1]]));
+            }
             return;
         }
         let first = self.primitives.len() as u32;
