@@ -16,7 +16,7 @@ use rapier3d::parry::query::QueryDispatcher;
 use rapier3d::prelude::*;
 use rapier3d_medial::MedialDispatcher;
 use rapier3d_medial::prelude::*;
-use scenes::bodies::{boxes, octagon, plateau};
+use scenes::bodies::{attached, boxes, octagon, plateau};
 use scenes::combs::Dropped;
 use scenes::eulers_disc::euler;
 use scenes::let_go::let_go;
@@ -339,7 +339,6 @@ fn rear_legs_meet_the_edge_of_a_cliff_from_behind() {
 /// deep to lie on the top, so that it meets the hull's side from inside where it slides off; rapier's own goes on.
 #[test]
 fn capsules_that_sank_into_a_hull_trip_over_its_edge() {
-    let rim = octagon();
     let ends = [Vector::Z * -0.2, Vector::Z * 0.2];
     let medial = MedialMesh::capsule(ends[0], ends[1], 0.1).expect("a capsule");
     let bodies = [
@@ -348,9 +347,8 @@ fn capsules_that_sank_into_a_hull_trip_over_its_edge() {
     ];
     let trips = |collider: &ColliderBuilder, speed: Real| {
         let mut world = PhysicsWorld::new();
-        let mut pipeline = MedialPipeline::default();
-        pipeline.attach(&mut world);
-        let table = ColliderBuilder::convex_hull(&rim).expect("a hull");
+        let mut pipeline = attached(&mut world);
+        let table = ColliderBuilder::convex_hull(&octagon()).expect("a hull");
         world.insert_collider(table.friction(0.0), None);
         let body = RigidBodyBuilder::dynamic()
             .translation(Vector::new(2.8, 0.6001, 0.03))

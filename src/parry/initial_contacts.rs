@@ -4,8 +4,8 @@
 //! - In straight motion the distance of two primitives is convex in time: if they do not come nearer at once, they
 //!   never do. So each pair of primitives that comes nearer is a hit at time 0, and one that does not is none.
 //!   Pairs that start farther apart are hit at the target distance. parry treats the parts of a compound in the
-//!   same way. Of two convex bodies the deepest contact alone counts, where it is
-//!   sure: if it does not come nearer, nothing is hit.
+//!   same way. Of two convex bodies the deepest contact alone counts, where it is sure: if it does not come nearer,
+//!   nothing is hit.
 //! - In turning motion, bodies that touch may stay as deep in each other as they are, and get deeper by the speed
 //!   at which their deepest contact closes. No other place may get deeper than that: so the next facet of a floor
 //!   stops nobody, and a wall stops everybody. And no place may get deeper than half way to the medial axes there,

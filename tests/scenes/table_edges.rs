@@ -14,9 +14,9 @@ fn tables() -> Vec<(&'static str, SharedShape)> {
         SharedShape::new(ConvexPolyhedron::from_convex_hull(points).expect("a hull"))
     };
     // rapier's own cuboids stumble over its seam, so that is not on the way.
-    let part = |x: Real, half: Real| {
-        let part = SharedShape::cuboid(half, 0.5, 4.0);
-        (Pose::translation(x, 0.0, 0.0), part)
+    let half = |x: Real| {
+        let half = SharedShape::cuboid(2.0, 0.5, 4.0);
+        (Pose::translation(x, 0.0, 0.0), half)
     };
     let rounded = |points: &[Vector]| {
         let inner = points.iter().map(|p| *p * Vector::new(0.975, 0.8, 0.975));
@@ -34,7 +34,7 @@ fn tables() -> Vec<(&'static str, SharedShape)> {
         ("rounded hull", rounded(&points)),
         (
             "compound",
-            SharedShape::compound(vec![part(-2.0, 2.0), part(2.0, 2.0)]),
+            SharedShape::compound(vec![half(-2.0), half(2.0)]),
         ),
     ]
 }
@@ -122,9 +122,11 @@ fn over_the_edge(table: &SharedShape, slider: &Slider, medial: bool, speed: Real
 fn what_slides_off_a_table_keeps_its_speed() {
     for (table_name, table) in tables() {
         for slider in sliders() {
-            // `known_issues`.
-            let trips = (slider.name, table_name) == ("capsule", "octagon");
-            for k in if trips { 0..0 } else { 0..12 } {
+            if (slider.name, table_name) == ("capsule", "octagon") {
+                // `known_issues`.
+                continue;
+            }
+            for k in 0..12 {
                 let speed = 1.0 + 0.87 * k as Real;
                 let name = format!("{} at {speed} m/s off the {table_name}", slider.name);
                 let [own, own_up] = over_the_edge(&table, &slider, false, speed);
