@@ -111,7 +111,7 @@ pub fn correct_normal(
         true => normal(face, others(), &met).filter(|n| met.is_within(face, *n, others())),
         false => normal(face, others(), &met),
     };
-    let comes_to_lie = || sliding.comes_to_lie(Face::of_surface(&face), mesh, &pose);
+    let comes_to_lie = || sliding.comes_to_lie(Face::of_surface(&face), &pose);
     let normal = known.map(|(_, n)| *n).or_else(|| {
         let may_fold = !sliding.is_over_solids;
         may_fold.then(|| at_fold().or_else(comes_to_lie))?

@@ -31,11 +31,12 @@ pub struct Sinks {
     pub by: Real,
 }
 
-/// The spheres of a mesh at the start and at the end of a step, in the frame of the ground.
+/// A mesh at the start and at the end of a step, in the frame of the ground.
 #[derive(Clone, Debug)]
-pub struct Sliding {
-    spheres: [Vec<(Vec3<f64>, f64)>; 2],
-    /// A ball that holds the spheres at the start.
+pub struct Sliding<'a> {
+    mesh: &'a MedialMesh,
+    poses: [Placed; 2],
+    /// A ball that holds the mesh at the start.
     bound: (Vec3<f64>, f64),
     /// How far paths are off their chords, rounding included, a length.
     bend: f64,
@@ -48,6 +49,31 @@ pub struct Sliding {
     grounds: Vec<Lying>,
     /// Whether no face of a surface (a mesh, height field or voxel) was looked at: folds are between those only.
     pub is_over_solids: bool,
+}
+
+/// The frame of the mesh in that of the ground.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    /// Columns of its rotation.
+    columns: [Vec3<f64>; 3],
+    origin: Vec3<f64>,
+}
+
+impl Placed {
+    fn new(pose: &Pose) -> Self {
+        let columns = [Vector::X, Vector::Y, Vector::Z];
+        Self {
+            columns: columns.map(|axis| Vec3::from_vector(pose.rotation * axis)),
+            origin: Vec3::from_vector(pose.translation),
+        }
+    }
+
+    /// Height of points of the mesh's frame over a place of the ground's, along `n`.
+    fn heights(&self, n: Vec3<f64>, place: Vec3<f64>) -> impl Fn(Vector) -> f64 + use<> {
+        let [x, y, z] = self.columns.map(|column| column.dot(n));
+        let (n, offset) = (Vec3::new(x, y, z), n.dot(self.origin - place));
+        move |p| n.dot(Vec3::from_vector(p)) + offset
+    }
 }
 
 /// How a mesh lies on the plane of a face.
@@ -87,11 +113,11 @@ impl Lying {
 /// Cosine from which two faces face about the same way (60°).
 pub const ALIKE: f64 = 0.5;
 
-impl Sliding {
+impl<'a> Sliding<'a> {
     /// For a mesh over a ground. It counts as lying on a plane up to the distance `target`. `None` for shapes without flat
     /// faces.
     pub fn new(
-        (mesh, ground): (&MedialMesh, &dyn Shape),
+        (mesh, ground): (&'a MedialMesh, &dyn Shape),
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
         seconds: Real,
         target: Real,
@@ -104,11 +130,8 @@ impl Sliding {
             let [pose1, pose2] = [motion1, motion2].map(|m| m.position_at_time(t));
             pose2.inverse() * pose1
         });
-        let farthest = |pose: &Pose, from: Vector| {
-            let distances = mesh.spheres().iter();
-            let distances = distances.map(|s| (pose * s.center).distance(from) + s.radius);
-            distances.fold(0.0, Real::max)
-        };
+        let ball = mesh.compute_local_bounding_sphere();
+        let farthest = |pose: &Pose, from| (pose * ball.center).distance(from) + ball.radius;
         let arm = farthest(&Pose::IDENTITY, motion1.local_center);
         let [w1, w2] = [motion1, motion2].map(|m| m.angvel.length());
         let v = (motion1.linvel - motion2.linvel).length() + w1 * arm;
@@ -116,13 +139,13 @@ impl Sliding {
         let acceleration = w1 * w1 * arm + w2 * w2 * from_axis + 2.0 * w2 * v;
         let sizes = poses.map(|p| p.translation.abs().max_element());
         let rounding = ROUNDING_ULPS as Real * Real::EPSILON * (sizes[0] + sizes[1] + arm);
-        let middle = poses[0] * mesh.aabb().center();
         let bound = (
-            Vec3::from_vector(middle),
-            farthest(&poses[0], middle).into(),
+            Vec3::from_vector(poses[0] * ball.center),
+            (ball.radius + rounding).into(),
         );
         Some(Self {
-            spheres: poses.map(|pose| placed(mesh, &pose)),
+            mesh,
+            poses: poses.map(|pose| Placed::new(&pose)),
             bound,
             bend: (0.125 * acceleration * seconds * seconds + rounding).into(),
             rounding: rounding.into(),
@@ -164,10 +187,9 @@ impl Sliding {
     /// The normal of a face's plane, to the side of the mesh, if the mesh lies on it once it is at `pose` in the ground's frame,
     /// and it faces about the same way as a ground on which the mesh lies now. There the mesh comes from a ground up a
     /// slope, and its nearest point is on the fold between the two, straight ahead.
-    pub fn comes_to_lie(&self, face: Face, mesh: &MedialMesh, pose: &Pose) -> Option<Vector> {
-        let spheres = placed(mesh, pose);
+    pub fn comes_to_lie(&self, face: Face, pose: &Pose) -> Option<Vector> {
         let there = Self {
-            spheres: [spheres.clone(), spheres],
+            poses: [Placed::new(pose); 2],
             bound: (self.bound.0, f64::MAX),
             bend: self.rounding,
             grounds: Vec::new(),
@@ -215,27 +237,36 @@ impl Sliding {
         let corner = |k: usize| Vec3::<f64>::from_vector(corners[k % corners.len()]);
         let n = across * side;
         let a = corner(0) + n * f64::from(face.border);
-        let height = |(center, radius): &(Vec3<f64>, f64)| n.dot(*center - a) - radius;
         // The lowest point of the mesh, unless one is below `least`; of most triangles one of the first spheres is.
+        let spheres = self.mesh.spheres();
+        let height = self.poses.map(|pose| pose.heights(n, a));
         let lowest = |k: usize, least: f64| {
-            let mut heights = self.spheres[k].iter().map(height);
+            let heights = spheres.iter();
+            let mut heights = heights.map(|s| height[k](s.center) - f64::from(s.radius));
             heights.try_fold(f64::MAX, |low, h| (h >= least).then_some(low.min(h)))
         };
         let [lies, to, by] = [self.sinks.lies, self.sinks.to, self.sinks.by].map(f64::from);
-        if height(&self.bound) > self.target {
+        let (center, radius) = self.bound;
+        if n.dot(center - a) - radius > self.target {
             return None;
         }
         let start = lowest(0, -lies).filter(|h| *h <= self.target)?;
         // A solid's own face stays an obstacle, so that how far the mesh sinks in does not matter for what is below.
         let by = if face.is_of_solid { to } else { by };
         let least = (start.min(0.0) - by).max(-to) + self.bend;
-        let is_over = self.spheres[0].iter().any(|sphere| {
-            let is_left_of = |k: usize| {
-                let along = corner(k + 1) - corner(k);
-                let beyond = across.dot(along.cross(sphere.0 - corner(k)));
-                beyond >= -sphere.1 * along.length()
-            };
-            height(sphere) <= self.target && (0..corners.len()).all(is_left_of)
+        let sides = (0..corners.len()).map(|k| {
+            let along = corner(k + 1) - corner(k);
+            let inward = self.poses[0].heights(across.cross(along), corner(k));
+            (inward, along.length())
+        });
+        let sides: Vec<_> = sides.collect();
+        let is_over = spheres.iter().any(|s| {
+            let radius = f64::from(s.radius);
+            let is_near = height[0](s.center) - radius <= self.target;
+            is_near
+                && sides
+                    .iter()
+                    .all(|(inward, l)| inward(s.center) >= -radius * l)
         });
         let coordinates = corners.iter().map(|p| p.abs().max_element());
         Some(Lying {
@@ -246,10 +277,4 @@ impl Sliding {
             is_over,
         })
     }
-}
-
-/// The spheres of a mesh at a pose.
-fn placed(mesh: &MedialMesh, pose: &Pose) -> Vec<(Vec3<f64>, f64)> {
-    let place = |s: &MedialSphere| (Vec3::from_vector(pose * s.center), s.radius.into());
-    mesh.spheres().iter().map(place).collect()
 }

@@ -26,7 +26,7 @@ pub struct Unsweepable;
 
 /// A shape as swept spheres, cylinders and cones, in the shape's frame.
 #[derive(Clone, Debug, Default)]
-pub struct Parts {
+pub struct Parts<'a> {
     /// Swept spheres.
     pub primitives: PrimitiveList,
     /// Cylinders and cones.
@@ -35,16 +35,16 @@ pub struct Parts {
     primitive_subshapes: Vec<u32>,
     axisymmetric_subshapes: Vec<u32>,
     /// What leaves flat faces out.
-    pub(super) sliding: Option<Sliding>,
+    pub(super) sliding: Option<Sliding<'a>>,
     /// The faces of surfaces that it left out, as triangles.
     pub(super) left_out: Vec<[Vector; 3]>,
     /// Primitives that the searched mesh can meet along a plane's normal only, and that unit normal, to the side of the mesh.
     pub(super) normals: Vec<(u32, Vector)>,
 }
 
-impl Parts {
+impl<'a> Parts<'a> {
     /// No parts yet; flat faces along which the mesh that is searched only slides will be left out.
-    pub fn under(sliding: Option<Sliding>) -> Self {
+    pub fn under(sliding: Option<Sliding<'a>>) -> Self {
         Self {
             sliding,
             ..Self::default()
