@@ -7,8 +7,10 @@ use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
 use super::flat_face;
+use super::ghost_contacts::{Seen, ghosts};
 use super::inward_contacts;
 use super::manifolds::{self, ensure_workspace, write_one_point};
+use super::touching_normals;
 use super::voxel_normals;
 use crate::batch::PairJob;
 use crate::math::{Pose, Real};
@@ -93,9 +95,13 @@ impl MedialDispatcher {
                     voxel_normals::correct(manifolds, (mesh, side), (voxels, &pose), prediction);
                 }
                 _ if goes_on.is_none() => {
+                    touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
                     deep_pieces::leave_out(manifolds, (mesh, side), (other, &pose));
                 }
                 _ => {}
+            }
+            if goes_on.is_none() {
+                leave_out_ghosts(manifolds, (mesh, side));
             }
             if goes_on != Some(true) {
                 contact_reduction::transfer_impulses(manifolds, &previous, prediction, side);
@@ -116,6 +122,29 @@ impl MedialDispatcher {
         contact_reduction::choose(manifolds, center, prediction, &previous, side);
         self.count_manifolds(manifolds.len());
         Ok(())
+    }
+}
+
+/// Leaves out contacts that nothing can meet ([`ghosts`]). The mesh is body `side` of the manifolds.
+fn leave_out_ghosts<M, C>(
+    manifolds: &mut [ContactManifold<M, C>],
+    (mesh, side): (&MedialMesh, usize),
+) {
+    let seen = |m: &ContactManifold<M, C>, i: usize| {
+        let [primitive, other] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
+        Seen {
+            primitive,
+            other,
+            place: contact_reduction::places(m, i)[side],
+            normal: [m.local_n1, m.local_n2][side],
+            gap: m.points[i].dist,
+        }
+    };
+    let all = manifolds.iter();
+    let all = all.flat_map(|m| (0..m.points.len()).map(move |i| seen(m, i)));
+    let mut ghosts = ghosts(mesh, &all.collect::<Vec<_>>()).into_iter();
+    for m in manifolds {
+        m.points.retain(|_| ghosts.next() != Some(true));
     }
 }
 

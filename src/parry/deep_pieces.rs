@@ -5,13 +5,14 @@
 //! slabs are out sooner above it and others below: these pull the box to and fro, and throw it in the end. parry's EPA
 //! algorithm, asked for the piece as a whole, tells the way out of all of it.
 
+use super::touching_normals::convex_part;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::{DEEP, Support};
 use parry3d::query::ContactManifold;
 use parry3d::query::details::contact_support_map_support_map;
-use parry3d::shape::{Shape, TypedShape};
+use parry3d::shape::Shape;
 
 /// Cosine of the angle with the way out up to which a contact helps. No other was tried.
 const HELPS: Real = 0.5;
@@ -60,13 +61,7 @@ pub fn leave_out<M, C>(
 
 /// The direction into a convex part of the other shape along which a piece is least deep in it.
 fn way_out(piece: &Support, (other, pose): (&dyn Shape, &Pose), part: u32) -> Option<Vector> {
-    let (pose, other) = match other.as_typed_shape() {
-        TypedShape::Compound(compound) => {
-            let (own, shape) = compound.shapes().get(part as usize)?;
-            (*pose * *own, &**shape)
-        }
-        _ => (*pose, other),
-    };
+    let (other, pose) = convex_part((other, pose), part)?;
     let contact = contact_support_map_support_map(&pose, piece, other.as_support_map()?, 0.0)?;
     Some(contact.normal1)
 }

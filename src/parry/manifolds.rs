@@ -5,6 +5,7 @@
 //! manifold for each pair of primitives, so that each keeps its own normal. (With one manifold for each pair of
 //! colliders a chain of rings falls apart.)
 
+use super::ghost_contacts::{Seen, ghosts, part_number};
 use crate::math::tolerance::ONE_DIRECTION;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -40,7 +41,8 @@ pub fn write_manifolds<M, C>(
 {
     let old = std::mem::take(manifolds);
     let near = contacts.iter().filter(|c| c.distance <= prediction);
-    let mut near = deepest_of_each_patch(near, meshes);
+    let near = without_ghosts(near.collect(), meshes, pos12);
+    let mut near = deepest_of_each_patch(near.into_iter(), meshes);
     near.sort_by(|a, b| {
         a.primitives
             .cmp(&b.primitives)
@@ -131,6 +133,33 @@ pub fn write_one_point<M, C>(
     }
     manifold.points.push(point);
     manifolds.push(manifold);
+}
+
+/// The contacts that something can meet ([`ghosts`]).
+fn without_ghosts<'a>(
+    contacts: Vec<&'a SpherePair>,
+    meshes: [&MedialMesh; 2],
+    pos12: &Pose,
+) -> Vec<&'a SpherePair> {
+    let inverse = pos12.rotation.inverse();
+    let of = [0, 1].map(|k| {
+        let seen = contacts.iter().map(|c| Seen {
+            primitive: c.primitives[k],
+            other: part_number(meshes[1 - k], c.primitives[1 - k]),
+            place: c.points[k],
+            normal: if k == 0 {
+                c.normal
+            } else {
+                inverse * -c.normal
+            },
+            gap: c.distance,
+        });
+        ghosts(meshes[k], &seen.collect::<Vec<_>>())
+    });
+    let all = contacts.into_iter().enumerate();
+    all.filter(|(i, _)| !(of[0][*i] || of[1][*i]))
+        .map(|(_, c)| c)
+        .collect()
 }
 
 /// The contacts that have no deeper one of about the same normal within the thickness of the thinner mesh. Those of two

@@ -28,6 +28,7 @@ pub(crate) mod distance;
 mod false_contacts;
 pub(crate) mod flat_face;
 mod folds;
+mod ghost_contacts;
 pub mod initial_contacts;
 pub(crate) mod inside;
 mod inward_contacts;
@@ -40,6 +41,7 @@ mod shape_faces;
 pub(crate) mod sliding;
 mod swept_region;
 pub(crate) mod swept_sphere_parts;
+mod touching_normals;
 mod voxel_normals;
 
 pub use dispatcher::MedialDispatcher;

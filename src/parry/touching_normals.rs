@@ -1,0 +1,110 @@
+//! Normals of contacts of a mesh with a convex shape along which the two are not as far apart as the contact says. Where
+//! sharp edges just touch a face, the direction that parry's iterative algorithms find is noise: a slab that stands on a
+//! table has normals to its sides, and trips over them.
+//!
+//! The gap of two convex bodies is their largest gap along any direction, so a normal is right if the gap along it is that of
+//! the contact. Where it is not, but that along the normal of a flat face of either body is, it is turned to that.
+
+use super::contact_reduction::places;
+use super::ghost_contacts::{BEHIND, part_number, part_of};
+use super::shape_faces::for_each_flat_face;
+use crate::math::{Pose, Real, Vector};
+use crate::medial::{MedialMesh, MedialSphere};
+use parry3d::bounding_volume::Aabb;
+use parry3d::query::ContactManifold;
+use parry3d::shape::{Shape, TypedShape};
+
+/// Turns wrong normals to those of faces. The mesh is body `side` (0 or 1) of the manifolds; `other` is the other shape, and
+/// where it is in the mesh's frame.
+pub fn correct<M, C>(
+    manifolds: &mut [ContactManifold<M, C>],
+    (mesh, side): (&MedialMesh, usize),
+    (other, pose): (&dyn Shape, &Pose),
+    prediction: Real,
+) {
+    let ids = |m: &ContactManifold<M, C>| {
+        let [own, others] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
+        [part_number(mesh, own), others]
+    };
+    let gap =
+        |m: &ContactManifold<M, C>| m.points.iter().map(|p| p.dist).fold(Real::MAX, Real::min);
+    let gaps: Vec<_> = manifolds.iter().map(|m| (ids(m), gap(m))).collect();
+    let behind = BEHIND * mesh.aabb().extents().max_element();
+    for m in manifolds.iter_mut().filter(|m| !m.points.is_empty()) {
+        let [own, others] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
+        let Some((part, pose)) = convex_part((other, pose), others) else {
+            continue;
+        };
+        let Some(solid) = part.as_support_map() else {
+            continue;
+        };
+        // Other contacts of the same two parts may be deeper.
+        let same = gaps.iter().filter(|(of, _)| *of == ids(m));
+        let least = same.map(|(_, gap)| *gap).fold(Real::MAX, Real::min) - behind;
+        let primitives = part_of(mesh, own);
+        let along = |n: Vector| {
+            let nearest = solid.support_point(&pose, -n);
+            n.dot(nearest) - height(primitives.spheres(), n)
+        };
+        let normal = [m.local_n1, m.local_n2][side];
+        if along(normal) >= least {
+            continue;
+        }
+        let mut best = (least, None);
+        let mut see = |n: Vector| {
+            let gap = along(n);
+            if gap >= best.0 {
+                best = (gap, Some(n));
+            }
+        };
+        primitives.normals().for_each(&mut see);
+        flat_normals(part, &pose, |n| see(-n));
+        let Some(normal) = best.1 else { continue };
+        for i in 0..m.points.len() {
+            let at = places(m, i);
+            m.points[i].dist = (pose * at[1 - side] - at[side]).dot(normal);
+        }
+        m.points.retain(|point| point.dist < prediction);
+        let from_other = pose.rotation.inverse() * -normal;
+        [m.local_n1, m.local_n2] = match side {
+            0 => [normal, from_other],
+            _ => [from_other, normal],
+        };
+    }
+}
+
+/// The convex part of a shape that a subshape of a manifold is, and where it is in the mesh's frame.
+pub fn convex_part<'a>(
+    (other, pose): (&'a dyn Shape, &Pose),
+    part: u32,
+) -> Option<(&'a dyn Shape, Pose)> {
+    match other.as_typed_shape() {
+        TypedShape::Compound(compound) => {
+            let (own, shape) = compound.shapes().get(part as usize)?;
+            Some((&**shape, *pose * *own))
+        }
+        _ => Some((other, *pose)),
+    }
+}
+
+/// How far spheres reach along a unit direction, a length.
+fn height(spheres: &[MedialSphere], n: Vector) -> Real {
+    let heights = spheres.iter().map(|s| n.dot(s.center) + s.radius);
+    heights.fold(Real::MIN, Real::max)
+}
+
+/// Calls `see` on the outward unit normals of a convex shape's flat faces.
+fn flat_normals(shape: &dyn Shape, pose: &Pose, mut see: impl FnMut(Vector)) {
+    if let TypedShape::Cylinder(_) = shape.as_typed_shape() {
+        let axis = pose.rotation * Vector::Y;
+        [axis, -axis].into_iter().for_each(see);
+        return;
+    }
+    let everywhere = Aabb::new(Vector::splat(Real::MIN), Vector::splat(Real::MAX));
+    for_each_flat_face(shape, pose, &everywhere, &mut |face| {
+        let [a, b, c] = [0, 1, 2].map(|k| face.corners[k]);
+        if let Some(n) = (b - a).cross(c - a).try_normalize() {
+            see(n);
+        }
+    });
+}
