@@ -86,6 +86,9 @@ impl MedialDispatcher {
             };
             let other = [g2, g1][side];
             let pose = [*pos12, pos12.inverse()][side];
+            if goes_on.is_none() {
+                leave_out_ghosts(manifolds, (mesh, side));
+            }
             match other.as_typed_shape() {
                 TypedShape::TriMesh(_) | TypedShape::HeightField(_) => {
                     false_contacts::correct(manifolds, (mesh, side), (other, &pose), prediction);
@@ -99,9 +102,6 @@ impl MedialDispatcher {
                     deep_pieces::leave_out(manifolds, (mesh, side), (other, &pose));
                 }
                 _ => {}
-            }
-            if goes_on.is_none() {
-                leave_out_ghosts(manifolds, (mesh, side));
             }
             if goes_on != Some(true) {
                 contact_reduction::transfer_impulses(manifolds, &previous, prediction, side);

@@ -14,6 +14,10 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::query::ContactManifold;
 use parry3d::shape::{Shape, TypedShape};
 
+/// How much smaller the gap along a face's normal may be than that of the contact where that along the contact's own is
+/// smaller still, in units of the prediction distance.
+const ROOM: Real = 0.02;
+
 /// Turns wrong normals to those of faces. The mesh is body `side` (0 or 1) of the manifolds; `other` is the other shape, and
 /// where it is in the mesh's frame.
 pub fn correct<M, C>(
@@ -32,7 +36,7 @@ pub fn correct<M, C>(
     let behind = BEHIND * mesh.aabb().extents().max_element();
     for m in manifolds.iter_mut().filter(|m| !m.points.is_empty()) {
         let [own, others] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
-        let Some((part, pose)) = convex_part((other, pose), others) else {
+        let Some((part, placed)) = convex_part((other, pose), others) else {
             continue;
         };
         let Some(solid) = part.as_support_map() else {
@@ -43,13 +47,20 @@ pub fn correct<M, C>(
         let least = same.map(|(_, gap)| *gap).fold(Real::MAX, Real::min) - behind;
         let primitives = part_of(mesh, own);
         let along = |n: Vector| {
-            let nearest = solid.support_point(&pose, -n);
+            let nearest = solid.support_point(&placed, -n);
             n.dot(nearest) - height(primitives.spheres(), n)
         };
-        let normal = [m.local_n1, m.local_n2][side];
-        if along(normal) >= least {
+        let told = along([m.local_n1, m.local_n2][side]);
+        if told >= least {
             continue;
         }
+        // A body that lies aslant on the end of a table is lower beside it.
+        let room = ROOM * prediction;
+        let least = if told < least - room {
+            least - room
+        } else {
+            least
+        };
         let mut best = (least, None);
         let mut see = |n: Vector| {
             let gap = along(n);
@@ -58,14 +69,14 @@ pub fn correct<M, C>(
             }
         };
         primitives.normals().for_each(&mut see);
-        flat_normals(part, &pose, |n| see(-n));
+        flat_normals(part, &placed, |n| see(-n));
         let Some(normal) = best.1 else { continue };
         for i in 0..m.points.len() {
             let at = places(m, i);
             m.points[i].dist = (pose * at[1 - side] - at[side]).dot(normal);
         }
         m.points.retain(|point| point.dist < prediction);
-        let from_other = pose.rotation.inverse() * -normal;
+        let from_other = placed.rotation.inverse() * -normal;
         [m.local_n1, m.local_n2] = match side {
             0 => [normal, from_other],
             _ => [from_other, normal],
