@@ -49,6 +49,7 @@ mod impact_laws;
 mod impacts;
 mod knots;
 mod let_go;
+mod level_grounds;
 mod limits;
 mod linking;
 mod local_thickness;

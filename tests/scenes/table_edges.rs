@@ -40,14 +40,14 @@ fn tables() -> Vec<(&'static str, SharedShape)> {
 }
 
 /// A body, as medial mesh and in rapier's own shapes, and the height of its lowest point in its own frame.
-struct Slider {
-    name: &'static str,
-    mesh: MedialMesh,
+pub struct Slider {
+    pub name: &'static str,
+    pub mesh: MedialMesh,
     own: SharedShape,
-    low: Real,
+    pub low: Real,
 }
 
-fn sliders() -> Vec<Slider> {
+pub fn sliders() -> Vec<Slider> {
     let cuboid = |name, half: Vector| Slider {
         name,
         mesh: MedialMesh::cuboid(half).expect("a cuboid"),
