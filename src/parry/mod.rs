@@ -4,10 +4,11 @@
 //! # Files
 //! - The entry: `dispatcher.rs`; the shape: `shape.rs`, of convex parts: `medial_part.rs`; rays: `rays.rs`.
 //! - Contact manifolds: `contact_manifolds.rs` is what parry calls; it takes those of two meshes from `manifolds.rs`,
-//!   those on a flat face from `flat_face.rs`, and others from parry; of those with triangles wrong ones are replaced
-//!   (`false_contacts.rs`) or left out (`inward_contacts.rs`), with voxels wrong normals are turned
-//!   (`voxel_normals.rs`), and of convex pieces deep in other shapes those are left out that push another way than the
-//!   shortest (`deep_pieces.rs`). `contact_reduction.rs` leaves the ones that bear the load.
+//!   those on a flat face from `flat_face.rs`, and others from parry. Contacts of primitives that their neighbours hide are
+//!   left out (`ghost_contacts.rs`). Of parry's, those with triangles are replaced where they are wrong (`false_contacts.rs`)
+//!   or left out (`inward_contacts.rs`), wrong normals are turned (`touching_normals.rs`, `voxel_normals.rs`), and of
+//!   convex pieces deep in other shapes those are left out that push another way than the shortest (`deep_pieces.rs`).
+//!   `contact_reduction.rs` leaves the ones that bear the load.
 //! - Casts: `cast.rs`, parry's answer `cast_answer.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
 //!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
 //!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at. Flat faces

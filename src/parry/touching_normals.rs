@@ -8,6 +8,7 @@
 use super::contact_reduction::places;
 use super::ghost_contacts::{BEHIND, part_number, part_of};
 use super::shape_faces::for_each_flat_face;
+use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 use parry3d::bounding_volume::Aabb;
@@ -28,23 +29,25 @@ pub fn correct<M, C>(
 ) {
     let ids = |m: &ContactManifold<M, C>| {
         let [own, others] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
-        [part_number(mesh, own), others]
+        (own, others, [part_number(mesh, own), others])
     };
-    let gap =
-        |m: &ContactManifold<M, C>| m.points.iter().map(|p| p.dist).fold(Real::MAX, Real::min);
-    let gaps: Vec<_> = manifolds.iter().map(|m| (ids(m), gap(m))).collect();
+    // Of each two parts, whose contacts are several.
+    let mut gaps: FastMap<[u32; 2], Real> = FastMap::default();
+    for m in manifolds.iter() {
+        let gap = m.points.iter().map(|p| p.dist).fold(Real::MAX, Real::min);
+        let least = gaps.entry(ids(m).2).or_insert(gap);
+        *least = least.min(gap);
+    }
     let behind = BEHIND * mesh.aabb().extents().max_element();
     for m in manifolds.iter_mut().filter(|m| !m.points.is_empty()) {
-        let [own, others] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
+        let (own, others, parts) = ids(m);
         let Some((part, placed)) = convex_part((other, pose), others) else {
             continue;
         };
-        let Some(solid) = part.as_support_map() else {
+        let (Some(solid), Some(least)) = (part.as_support_map(), gaps.get(&parts)) else {
             continue;
         };
-        // Other contacts of the same two parts may be deeper.
-        let same = gaps.iter().filter(|(of, _)| *of == ids(m));
-        let least = same.map(|(_, gap)| *gap).fold(Real::MAX, Real::min) - behind;
+        let least = least - behind;
         let primitives = part_of(mesh, own);
         let along = |n: Vector| {
             let nearest = solid.support_point(&placed, -n);
