@@ -49,7 +49,9 @@ impl Seen {
 /// Whether each contact is one that nothing can meet.
 pub fn ghosts(mesh: &MedialMesh, contacts: &[Seen]) -> Vec<bool> {
     let mut ghosts = vec![false; contacts.len()];
-    if mesh.primitive_count() < 2 {
+    let first = contacts.first().map_or(Vector::ZERO, |seen| seen.normal);
+    let is_first = |seen: &Seen| seen.normal.dot(first) >= ONE_NORMAL;
+    if mesh.primitive_count() < 2 || contacts.iter().all(is_first) {
         return ghosts;
     }
     let behind = BEHIND * mesh.aabb().extents().max_element();

@@ -31,29 +31,41 @@ pub fn correct<M, C>(
         let [own, others] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
         (own, others, [part_number(mesh, own), others])
     };
-    // Of each two parts, whose contacts are several.
-    let mut gaps: FastMap<[u32; 2], Real> = FastMap::default();
-    for m in manifolds.iter() {
-        let gap = m.points.iter().map(|p| p.dist).fold(Real::MAX, Real::min);
-        let least = gaps.entry(ids(m).2).or_insert(gap);
-        *least = least.min(gap);
-    }
+    let gap =
+        |m: &ContactManifold<M, C>| m.points.iter().map(|p| p.dist).fold(Real::MAX, Real::min);
     let behind = BEHIND * mesh.aabb().extents().max_element();
-    for m in manifolds.iter_mut().filter(|m| !m.points.is_empty()) {
+    // The least gap of each two parts, which may have several contacts.
+    let mut gaps: Option<FastMap<[u32; 2], Real>> = None;
+    for k in 0..manifolds.len() {
+        if manifolds[k].points.is_empty() {
+            continue;
+        }
+        let m = &manifolds[k];
         let (own, others, parts) = ids(m);
         let Some((part, placed)) = convex_part((other, pose), others) else {
             continue;
         };
-        let (Some(solid), Some(least)) = (part.as_support_map(), gaps.get(&parts)) else {
+        let Some(solid) = part.as_support_map() else {
             continue;
         };
-        let least = least - behind;
         let primitives = part_of(mesh, own);
         let along = |n: Vector| {
             let nearest = solid.support_point(&placed, -n);
             n.dot(nearest) - height(primitives.spheres(), n)
         };
         let told = along([m.local_n1, m.local_n2][side]);
+        if told >= gap(m) - behind {
+            continue;
+        }
+        let gaps = gaps.get_or_insert_with(|| {
+            let mut gaps = FastMap::default();
+            for m in manifolds.iter() {
+                let least = gaps.entry(ids(m).2).or_insert(Real::MAX);
+                *least = least.min(gap(m));
+            }
+            gaps
+        });
+        let least = gaps.get(&parts).map_or(Real::MAX, |least| least - behind);
         if told >= least {
             continue;
         }
@@ -74,6 +86,7 @@ pub fn correct<M, C>(
         primitives.normals().for_each(&mut see);
         flat_normals(part, &placed, |n| see(-n));
         let Some(normal) = best.1 else { continue };
+        let m = &mut manifolds[k];
         for i in 0..m.points.len() {
             let at = places(m, i);
             m.points[i].dist = (pose * at[1 - side] - at[side]).dot(normal);
