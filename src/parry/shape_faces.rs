@@ -122,7 +122,7 @@ pub fn for_each_triangle(hull: &ConvexPolyhedron, pose: &Pose, mut see: impl FnM
 }
 
 /// Axis and side (1 or -1) of each face of a cuboid.
-pub fn all_faces() -> impl Iterator<Item = (usize, Real)> {
+pub fn all_faces() -> impl Iterator<Item = (usize, Real)> + Clone {
     (0..6).map(|k| (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 }))
 }
 

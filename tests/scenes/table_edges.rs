@@ -122,10 +122,6 @@ fn over_the_edge(table: &SharedShape, slider: &Slider, medial: bool, speed: Real
 fn what_slides_off_a_table_keeps_its_speed() {
     for (table_name, table) in tables() {
         for slider in sliders() {
-            if (slider.name, table_name) == ("capsule", "octagon") {
-                // `known_issues`.
-                continue;
-            }
             for k in 0..12 {
                 let speed = 1.0 + 0.87 * k as Real;
                 let name = format!("{} at {speed} m/s off the {table_name}", slider.name);
