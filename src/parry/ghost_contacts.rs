@@ -17,7 +17,7 @@ const ONE_NORMAL: Real = 0.9999;
 
 /// How far a part may reach beyond a plane and count as behind it, in units of the mesh's largest extent: rounding, and what
 /// parry's iterations leave.
-pub const BEHIND: Real = 1.0e-5;
+pub const BEHIND: Real = 1.0e-6;
 
 /// Contacts, the deepest first, with which each other is compared.
 const COMPARED: usize = 16;

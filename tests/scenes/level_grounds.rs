@@ -157,3 +157,49 @@ fn sharp_bodies_keep_their_speed_over_level_solids() {
         }
     }
 }
+
+/// Two boxes as one mesh: a floor of 100 m, and a step of 0.8 mm on it.
+fn floor_with_step() -> MedialMesh {
+    let [floor, step] = [Vector::new(50.0, 0.5, 2.0), Vector::new(0.1, 0.1, 2.0)];
+    let [floor, step] = [floor, step].map(|half| MedialMesh::cuboid(half).expect("a cuboid"));
+    let moved = |mesh: &MedialMesh, by: Vector| -> Vec<MedialSphere> {
+        let spheres = mesh.spheres().iter();
+        spheres
+            .map(|s| MedialSphere::new(s.center + by, s.radius))
+            .collect()
+    };
+    let mut spheres = moved(&floor, Vector::Y * -0.5);
+    let first = spheres.len() as u32;
+    spheres.extend(moved(&step, Vector::new(0.1, 0.0008 - 0.1, 0.0)));
+    let shifted = step.faces().iter().map(|f| f.map(|k| k + first));
+    let faces = floor.faces().iter().copied().chain(shifted).collect();
+    MedialMesh::new(spheres, Vec::new(), faces).expect("a floor with a step")
+}
+
+/// A step that is low for the size of the mesh is met: a box that comes slowly stays in front of it, as rapier's own does.
+#[test]
+fn low_steps_on_large_meshes_stop_boxes() {
+    let (mesh, half) = (floor_with_step(), Vector::splat(0.025));
+    let bodies = [
+        ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a cuboid")),
+        ColliderBuilder::cuboid(half.x, half.y, half.z),
+    ];
+    for body in bodies {
+        let mut world = PhysicsWorld::new();
+        let mut pipeline = attached(&mut world);
+        world.insert_collider(
+            ColliderBuilder::medial_mesh(mesh.clone()).friction(0.0),
+            None,
+        );
+        let at = Vector::new(-0.075, half.y, 0.0);
+        let moving = RigidBodyBuilder::dynamic()
+            .translation(at)
+            .linvel(Vector::X * 0.3);
+        let (body, _) = world.insert(moving, body.friction(0.0));
+        for _ in 0..120 {
+            pipeline.step(&mut world);
+        }
+        let front = world.bodies[body].translation().x + half.x;
+        assert!(front < 0.001, "{front} m past the step");
+    }
+}
