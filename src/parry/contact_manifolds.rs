@@ -1,13 +1,14 @@
 //! Contact manifolds with medial meshes, as parry asks for them from step to step: the entry. It takes those of two
-//! meshes from the batch's answers (`manifolds.rs`), those of a mesh and a flat face from our own clipping
+//! meshes from the batch's answers (`manifolds.rs`), those of a mesh and a flat face from our own code
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
 use super::contact_reduction;
+use super::convex_parts::slack;
 use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
 use super::flat_face;
-use super::ghost_contacts::{Seen, ghosts};
+use super::ghost_contacts::{MeshContact, ghosts};
 use super::inward_contacts;
 use super::manifolds::{self, ensure_workspace, write_one_point};
 use super::touching_normals;
@@ -86,18 +87,19 @@ impl MedialDispatcher {
             };
             let other = [g2, g1][side];
             let pose = [*pos12, pos12.inverse()][side];
-            if goes_on.is_none() {
-                leave_out_ghosts(manifolds, (mesh, side));
-            }
             match other.as_typed_shape() {
                 TypedShape::TriMesh(_) | TypedShape::HeightField(_) => {
                     false_contacts::correct(manifolds, (mesh, side), (other, &pose), prediction);
                     inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
+                    leave_out_ghosts(manifolds, (mesh, side), &pose);
                 }
                 TypedShape::Voxels(voxels) => {
                     voxel_normals::correct(manifolds, (mesh, side), (voxels, &pose), prediction);
+                    leave_out_ghosts(manifolds, (mesh, side), &pose);
                 }
                 _ if goes_on.is_none() => {
+                    // First, so that none is turned to the normal of one that it is a ghost of.
+                    leave_out_ghosts(manifolds, (mesh, side), &pose);
                     touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
                     deep_pieces::leave_out(manifolds, (mesh, side), (other, &pose));
                 }
@@ -125,14 +127,15 @@ impl MedialDispatcher {
     }
 }
 
-/// Leaves out contacts that nothing can meet ([`ghosts`]). The mesh is body `side` of the manifolds.
+/// Leaves out ghost contacts. The mesh is body `side` of the manifolds, and the other shape at `pose` in its frame.
 fn leave_out_ghosts<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
+    pose: &Pose,
 ) {
     let seen = |m: &ContactManifold<M, C>, i: usize| {
         let [primitive, other] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
-        Seen {
+        MeshContact {
             primitive,
             other,
             place: contact_reduction::places(m, i)[side],
@@ -142,7 +145,8 @@ fn leave_out_ghosts<M, C>(
     };
     let all = manifolds.iter();
     let all = all.flat_map(|m| (0..m.points.len()).map(move |i| seen(m, i)));
-    let mut ghosts = ghosts(mesh, &all.collect::<Vec<_>>()).into_iter();
+    let ghosts = ghosts(mesh, &all.collect::<Vec<_>>(), slack(mesh, pose));
+    let mut ghosts = ghosts.into_iter();
     for m in manifolds {
         m.points.retain(|_| ghosts.next() != Some(true));
     }

@@ -5,7 +5,7 @@
 //! slabs are out sooner above it and others below: these pull the box to and fro, and throw it in the end. parry's EPA
 //! algorithm, asked for the piece as a whole, tells the way out of all of it.
 
-use super::touching_normals::convex_part;
+use super::convex_parts::child_of;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -61,7 +61,7 @@ pub fn leave_out<M, C>(
 
 /// The direction into a convex part of the other shape along which a piece is least deep in it.
 fn way_out(piece: &Support, (other, pose): (&dyn Shape, &Pose), part: u32) -> Option<Vector> {
-    let (other, pose) = convex_part((other, pose), part)?;
+    let (other, pose) = child_of((other, pose), part)?;
     let contact = contact_support_map_support_map(&pose, piece, other.as_support_map()?, 0.0)?;
     Some(contact.normal1)
 }

@@ -1,9 +1,8 @@
 //! Contacts of a medial mesh with a flat face: a half-space, or a side of a cuboid, hull or cylinder that the mesh cannot
-//! reach past. The
-//! point of a hull of spheres that is nearest to a plane lies on one of the spheres, so the contacts are those of the
-//! spheres themselves, all with one normal. parry would run its iterative GJK algorithm for each primitive.
+//! reach past. The point of a hull of spheres that is nearest to a plane lies on one of the spheres, so the contacts are
+//! those of the spheres themselves, all with one normal. parry would run its iterative GJK algorithm for each primitive.
 
-use super::shape_faces::{ROUNDING, all_faces};
+use super::shape_faces::{ROUNDING, flat_sides};
 use crate::math::lane::Vec3;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -12,9 +11,6 @@ use crate::pair::PrimitiveTree;
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{ConvexPolyhedron, PackedFeatureId, Shape, TypedShape};
-
-/// Depth below a hull's face from which a corner is none of it, in units of the rounding of its height.
-const BELOW: Real = 1.0e3;
 
 /// A plane with all of a mesh that can touch it above it or in it, in the mesh's frame.
 #[derive(Clone, Copy)]
@@ -31,30 +27,20 @@ pub fn face(mesh: &MedialMesh, other: &dyn Shape, pose: &Pose, prediction: Real)
     let region = || mesh.aabb().transform_by(&pose.inverse());
     let (normal, height) = match other.as_typed_shape() {
         TypedShape::HalfSpace(plane) => (plane.normal, 0.0),
-        TypedShape::Cuboid(cuboid) => {
-            let sides = all_faces().map(|(axis, sign)| {
-                let mut normal = Vector::ZERO;
-                normal[axis] = sign;
-                (normal, cuboid.half_extents[axis])
-            });
-            side(sides, &region(), (prediction, Real::MAX))?
+        TypedShape::Cuboid(_) => {
+            let sides = flat_sides(other);
+            sides[side(&sides, &region(), (prediction, Real::MAX))?]
         }
         TypedShape::ConvexPolyhedron(hull) => {
-            let ring = hull.vertices_adj_to_face();
-            let sides = hull.faces().iter().map(|face| {
-                let corner = hull.points()[ring[face.first_vertex_or_edge as usize] as usize];
-                (face.normal, face.normal.dot(corner))
-            });
-            let found = side(sides, &region(), (prediction, Real::MAX))?;
-            is_flat(hull, found).then_some(found)?
+            let sides = flat_sides(other);
+            let face = side(&sides, &region(), (prediction, Real::MAX))?;
+            is_flat(hull, face, sides[face]).then_some(sides[face])?
         }
         TypedShape::Cylinder(cylinder) => {
-            let ends = [Vector::Y, Vector::NEG_Y].map(|n| (n, cylinder.half_height));
-            let region = region();
-            let [least, most] = [region.mins, region.maxs].map(Vector::abs);
-            let farthest = least.max(most);
+            let (sides, region) = (flat_sides(other), region());
+            let farthest = region.mins.abs().max(region.maxs.abs());
             let room = cylinder.radius - farthest.x.hypot(farthest.z);
-            side(ends.into_iter(), &region, (prediction, room))?
+            sides[side(&sides, &region, (prediction, room))?]
         }
         _ => return None,
     };
@@ -65,32 +51,39 @@ pub fn face(mesh: &MedialMesh, other: &dyn Shape, pose: &Pose, prediction: Real)
     })
 }
 
-/// Of the sides of a convex solid, each by its outward normal and its height along it, the one above which `region` is:
-/// further from the planes of all others, and from what else bounds the solid (`room`), than from the plane of this one.
+/// Of the sides of a convex solid the one above which `region` is: further from the planes of all others, and from what else
+/// bounds the solid (`room`), than from the plane of this one.
 fn side(
-    sides: impl Iterator<Item = (Vector, Real)> + Clone,
+    sides: &[(Vector, Real)],
     region: &Aabb,
     (prediction, room): (Real, Real),
-) -> Option<(Vector, Real)> {
+) -> Option<usize> {
     let (at, size) = (region.center(), region.half_extents());
     let half = |n: Vector| n.abs().dot(size);
-    let depths = sides.clone();
-    let depths = depths.map(|(n, height)| height - (n.dot(at) - half(n)));
+    let depths = sides
+        .iter()
+        .map(|(n, height)| height - (n.dot(at) - half(*n)));
     let (k, depth) = depths.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let others = sides.clone().enumerate().filter(|(i, _)| *i != k);
-    let rooms = others.map(|(_, (n, height))| height - (n.dot(at) + half(n)));
+    let others = sides.iter().enumerate().filter(|(i, _)| *i != k);
+    let rooms = others.map(|(_, (n, height))| height - (n.dot(at) + half(*n)));
+    let inside = rooms.fold(room, Real::min);
     // Not a number is not inside.
-    let inside = rooms.fold(room, Real::min) >= depth.max(prediction);
-    sides.clone().nth(k).filter(|_| inside)
+    (inside >= depth && inside >= prediction).then_some(k)
 }
 
-/// Whether no corner of a hull is above one of its faces: parry merges faces that are nearly in a plane.
-fn is_flat(hull: &ConvexPolyhedron, (normal, height): (Vector, Real)) -> bool {
-    let heights = || hull.points().iter().map(|p| normal.dot(*p) - height);
-    let size = hull.points().iter().map(|p| p.abs().max_element());
+/// Whether a hull's face is flat, and nothing of the hull above it: parry merges faces that are nearly in a plane.
+fn is_flat(hull: &ConvexPolyhedron, face: usize, (normal, height): (Vector, Real)) -> bool {
+    let points = hull.points();
+    let size = points.iter().map(|p| p.abs().max_element());
     let rounding = ROUNDING * size.fold(0.0, Real::max);
-    // Where a corner is a little below, it is not clear whether it belongs to the face.
-    heights().all(|h| h <= rounding && (h.abs() <= rounding || h < -BELOW * rounding))
+    let above = |p: &Vector| normal.dot(*p) - height;
+    let face = &hull.faces()[face];
+    let first = face.first_vertex_or_edge as usize;
+    let ring = &hull.vertices_adj_to_face()[first..first + face.num_vertices_or_edges as usize];
+    points.iter().all(|p| above(p) <= rounding)
+        && ring
+            .iter()
+            .all(|i| above(&points[*i as usize]) >= -rounding)
 }
 
 /// Writes the contacts of `mesh` with a face within `prediction`: a manifold for each primitive that

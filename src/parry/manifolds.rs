@@ -5,7 +5,8 @@
 //! manifold for each pair of primitives, so that each keeps its own normal. (With one manifold for each pair of
 //! colliders a chain of rings falls apart.)
 
-use super::ghost_contacts::{Seen, ghosts, part_number};
+use super::convex_parts::{part_number, slack};
+use super::ghost_contacts::{MeshContact, ghosts};
 use crate::math::tolerance::ONE_DIRECTION;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -135,15 +136,15 @@ pub fn write_one_point<M, C>(
     manifolds.push(manifold);
 }
 
-/// The contacts that something can meet ([`ghosts`]).
+/// The contacts that are ghosts on neither side ([`ghosts`]).
 fn without_ghosts<'a>(
-    contacts: Vec<&'a SpherePair>,
+    mut contacts: Vec<&'a SpherePair>,
     meshes: [&MedialMesh; 2],
     pos12: &Pose,
 ) -> Vec<&'a SpherePair> {
     let inverse = pos12.rotation.inverse();
-    let of = [0, 1].map(|k| {
-        let seen = contacts.iter().map(|c| Seen {
+    for k in [0, 1] {
+        let seen = contacts.iter().map(|c| MeshContact {
             primitive: c.primitives[k],
             other: part_number(meshes[1 - k], c.primitives[1 - k]),
             place: c.points[k],
@@ -154,12 +155,15 @@ fn without_ghosts<'a>(
             },
             gap: c.distance,
         });
-        ghosts(meshes[k], &seen.collect::<Vec<_>>())
-    });
-    let all = contacts.into_iter().enumerate();
-    all.filter(|(i, _)| !(of[0][*i] || of[1][*i]))
-        .map(|(_, c)| c)
-        .collect()
+        let ghosts = ghosts(
+            meshes[k],
+            &seen.collect::<Vec<_>>(),
+            slack(meshes[k], pos12),
+        );
+        let mut ghosts = ghosts.into_iter();
+        contacts.retain(|_| ghosts.next() != Some(true));
+    }
+    contacts
 }
 
 /// The contacts that have no deeper one of about the same normal within the thickness of the thinner mesh. Those of two

@@ -8,7 +8,7 @@
 //!   left out (`ghost_contacts.rs`). Of parry's, those with triangles are replaced where they are wrong (`false_contacts.rs`)
 //!   or left out (`inward_contacts.rs`), wrong normals are turned (`touching_normals.rs`, `voxel_normals.rs`), and of
 //!   convex pieces deep in other shapes those are left out that push another way than the shortest (`deep_pieces.rs`).
-//!   `contact_reduction.rs` leaves the ones that bear the load.
+//!   `contact_reduction.rs` leaves the ones that bear the load. Between which convex parts: `convex_parts.rs`.
 //! - Casts: `cast.rs`, parry's answer `cast_answer.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
 //!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
 //!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at. Flat faces
@@ -23,6 +23,7 @@ mod cast_answer;
 pub(crate) mod conservative_advancement;
 mod contact_manifolds;
 pub mod contact_reduction;
+mod convex_parts;
 mod deep_pieces;
 pub(crate) mod dispatcher;
 pub(crate) mod distance;

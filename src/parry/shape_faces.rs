@@ -55,6 +55,37 @@ pub fn has_flat_faces(shape: &dyn Shape) -> bool {
     )
 }
 
+/// The flat sides of a convex solid in its frame: outward unit normals, and heights along them.
+pub fn flat_sides(shape: &dyn Shape) -> Vec<(Vector, Real)> {
+    let of_cuboid = |cuboid: &Cuboid, border: Real| {
+        let sides = all_faces().map(|(axis, sign)| {
+            let mut normal = Vector::ZERO;
+            normal[axis] = sign;
+            (normal, cuboid.half_extents[axis] + border)
+        });
+        sides.collect()
+    };
+    let of_hull = |hull: &ConvexPolyhedron, border: Real| {
+        let ring = hull.vertices_adj_to_face();
+        let sides = hull.faces().iter().map(|face| {
+            let corner = hull.points()[ring[face.first_vertex_or_edge as usize] as usize];
+            (face.normal, face.normal.dot(corner) + border)
+        });
+        sides.collect()
+    };
+    match shape.as_typed_shape() {
+        TypedShape::Cuboid(c) => of_cuboid(c, 0.0),
+        TypedShape::RoundCuboid(c) => of_cuboid(&c.inner_shape, c.border_radius),
+        TypedShape::ConvexPolyhedron(c) => of_hull(c, 0.0),
+        TypedShape::RoundConvexPolyhedron(c) => of_hull(&c.inner_shape, c.border_radius),
+        TypedShape::Cylinder(c) => [Vector::Y, Vector::NEG_Y]
+            .map(|n| (n, c.half_height))
+            .to_vec(),
+        TypedShape::Cone(c) => vec![(Vector::NEG_Y, c.half_height)],
+        _ => Vec::new(),
+    }
+}
+
 /// Calls `see` on each flat face of `shape`, placed at `pose`. Of meshes, height fields and voxels those that `region` (in the
 /// frame that it is placed in) meets.
 pub fn for_each_flat_face(
@@ -122,7 +153,7 @@ pub fn for_each_triangle(hull: &ConvexPolyhedron, pose: &Pose, mut see: impl FnM
 }
 
 /// Axis and side (1 or -1) of each face of a cuboid.
-pub fn all_faces() -> impl Iterator<Item = (usize, Real)> + Clone {
+pub fn all_faces() -> impl Iterator<Item = (usize, Real)> {
     (0..6).map(|k| (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 }))
 }
 

@@ -3,20 +3,20 @@
 //! table has normals to its sides, and trips over them.
 //!
 //! The gap of two convex bodies is their largest gap along any direction, so a normal is right if the gap along it is that of
-//! the contact. Where it is not, but that along the normal of a flat face of either body is, it is turned to that.
+//! the contact. Where it is not, but that along the normal of a flat face of either body nearly is ([`ROOM`]), it is turned
+//! to that.
 
 use super::contact_reduction::places;
-use super::ghost_contacts::{BEHIND, part_number, part_of};
-use super::shape_faces::for_each_flat_face;
+use super::convex_parts::{Part, child_of, part_number, slack};
+use super::shape_faces::flat_sides;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
-use crate::medial::{MedialMesh, MedialSphere};
-use parry3d::bounding_volume::Aabb;
+use crate::medial::MedialMesh;
 use parry3d::query::ContactManifold;
-use parry3d::shape::{Shape, TypedShape};
+use parry3d::shape::Shape;
 
-/// How much smaller the gap along a face's normal may be than that of the contact where that along the contact's own is
-/// smaller still, in units of the prediction distance.
+/// How much smaller than the contact's gap that along a face's normal may be, in units of the prediction distance, if that
+/// along the contact's own normal is smaller still. With none, bodies that lie aslant over the end of a table stumble there.
 const ROOM: Real = 0.02;
 
 /// Turns wrong normals to those of faces. The mesh is body `side` (0 or 1) of the manifolds; `other` is the other shape, and
@@ -27,65 +27,47 @@ pub fn correct<M, C>(
     (other, pose): (&dyn Shape, &Pose),
     prediction: Real,
 ) {
-    let ids = |m: &ContactManifold<M, C>| {
-        let [own, others] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
-        (own, others, [part_number(mesh, own), others])
+    let ids =
+        |m: &ContactManifold<M, C>| [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
+    let parts = |m: &ContactManifold<M, C>| {
+        let [own, others] = ids(m);
+        [part_number(mesh, own), others]
     };
     let gap =
         |m: &ContactManifold<M, C>| m.points.iter().map(|p| p.dist).fold(Real::MAX, Real::min);
-    let behind = BEHIND * mesh.aabb().extents().max_element();
+    let slack = slack(mesh, pose);
     // The least gap of each two parts, which may have several contacts.
     let mut gaps: Option<FastMap<[u32; 2], Real>> = None;
     for k in 0..manifolds.len() {
-        if manifolds[k].points.is_empty() {
-            continue;
-        }
         let m = &manifolds[k];
-        let (own, others, parts) = ids(m);
-        let Some((part, placed)) = convex_part((other, pose), others) else {
+        let [own, others] = ids(m);
+        let Some((child, placed)) = child_of((other, pose), others) else {
             continue;
         };
-        let Some(solid) = part.as_support_map() else {
+        let two = (Part::of(mesh, own), (child, &placed));
+        let Some(told) = gap_along(&two, [m.local_n1, m.local_n2][side]) else {
             continue;
         };
-        let primitives = part_of(mesh, own);
-        let along = |n: Vector| {
-            let nearest = solid.support_point(&placed, -n);
-            n.dot(nearest) - height(primitives.spheres(), n)
-        };
-        let told = along([m.local_n1, m.local_n2][side]);
-        if told >= gap(m) - behind {
+        if m.points.is_empty() || told >= gap(m) - slack {
             continue;
         }
         let gaps = gaps.get_or_insert_with(|| {
             let mut gaps = FastMap::default();
             for m in manifolds.iter() {
-                let least = gaps.entry(ids(m).2).or_insert(Real::MAX);
+                let least = gaps.entry(parts(m)).or_insert(Real::MAX);
                 *least = least.min(gap(m));
             }
             gaps
         });
-        let least = gaps.get(&parts).map_or(Real::MAX, |least| least - behind);
+        let least = gaps.get(&parts(m)).copied().unwrap_or(Real::MAX) - slack;
         if told >= least {
             continue;
         }
-        // A body that lies aslant on the end of a table is lower beside it.
         let room = ROOM * prediction;
-        let least = if told < least - room {
-            least - room
-        } else {
-            least
+        let room = if told < least - room { room } else { 0.0 };
+        let Some(normal) = flat_normal(&two, least - room) else {
+            continue;
         };
-        let mut best = (least, None);
-        let mut see = |n: Vector| {
-            let gap = along(n);
-            if gap >= best.0 {
-                best = (gap, Some(n));
-            }
-        };
-        primitives.normals().for_each(&mut see);
-        flat_normals(part, &placed, |n| see(-n));
-        let Some(normal) = best.1 else { continue };
         let m = &mut manifolds[k];
         for i in 0..m.points.len() {
             let at = places(m, i);
@@ -100,38 +82,23 @@ pub fn correct<M, C>(
     }
 }
 
-/// The convex part of a shape that a subshape of a manifold is, and where it is in the mesh's frame.
-pub fn convex_part<'a>(
-    (other, pose): (&'a dyn Shape, &Pose),
-    part: u32,
-) -> Option<(&'a dyn Shape, Pose)> {
-    match other.as_typed_shape() {
-        TypedShape::Compound(compound) => {
-            let (own, shape) = compound.shapes().get(part as usize)?;
-            Some((&**shape, *pose * *own))
-        }
-        _ => Some((other, *pose)),
-    }
+/// A part of the mesh, and a convex shape at a pose in the mesh's frame.
+type Two<'a> = (Part<'a>, (&'a dyn Shape, &'a Pose));
+
+/// The gap of two along a unit direction out of the mesh, negative where they overlap along it. `None` for what has no
+/// support map.
+fn gap_along((part, (shape, pose)): &Two, n: Vector) -> Option<Real> {
+    let nearest = shape.as_support_map()?.support_point(pose, -n);
+    Some(n.dot(nearest) - part.reach(n))
 }
 
-/// How far spheres reach along a unit direction, a length.
-fn height(spheres: &[MedialSphere], n: Vector) -> Real {
-    let heights = spheres.iter().map(|s| n.dot(s.center) + s.radius);
-    heights.fold(Real::MIN, Real::max)
-}
-
-/// Calls `see` on the outward unit normals of a convex shape's flat faces.
-fn flat_normals(shape: &dyn Shape, pose: &Pose, mut see: impl FnMut(Vector)) {
-    if let TypedShape::Cylinder(_) = shape.as_typed_shape() {
-        let axis = pose.rotation * Vector::Y;
-        [axis, -axis].into_iter().for_each(see);
-        return;
-    }
-    let everywhere = Aabb::new(Vector::splat(Real::MIN), Vector::splat(Real::MAX));
-    for_each_flat_face(shape, pose, &everywhere, &mut |face| {
-        let [a, b, c] = [0, 1, 2].map(|k| face.corners[k]);
-        if let Some(n) = (b - a).cross(c - a).try_normalize() {
-            see(n);
-        }
-    });
+/// Of the normals of flat faces of either, the one of the largest gap, if that is `least` or more.
+fn flat_normal(two: &Two, least: Real) -> Option<Vector> {
+    let (part, (shape, pose)) = two;
+    let of_shape = flat_sides(*shape).into_iter();
+    let of_shape = of_shape.map(|(n, _)| pose.rotation * -n);
+    let all = part.flat_normals().chain(of_shape);
+    let gaps = all.filter_map(|n| Some((gap_along(two, n)?, n)));
+    let (gap, n) = gaps.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (gap >= least).then_some(n)
 }

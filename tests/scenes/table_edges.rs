@@ -43,7 +43,7 @@ fn tables() -> Vec<(&'static str, SharedShape)> {
 pub struct Slider {
     pub name: &'static str,
     pub mesh: MedialMesh,
-    own: SharedShape,
+    pub own: SharedShape,
     pub low: Real,
 }
 

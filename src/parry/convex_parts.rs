@@ -1,0 +1,76 @@
+//! The convex parts between which contacts are computed: of a medial mesh its convex pieces and lone primitives, of another
+//! shape itself or, of a compound, its children.
+
+use crate::math::{Pose, Real, Vector};
+use crate::medial::convex_pieces::ConvexPiece;
+use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
+use parry3d::shape::{Shape, TypedShape};
+
+/// Slack of heights that are compared, in units of the sizes in play: about eight ulps of `f32`.
+const SLACK: Real = 1.0e-6;
+
+/// A convex part of a mesh.
+pub enum Part<'a> {
+    Piece(&'a ConvexPiece),
+    Primitive(MedialPrimitive),
+}
+
+impl<'a> Part<'a> {
+    /// The one that a primitive of a mesh belongs to.
+    pub fn of(mesh: &'a MedialMesh, primitive: u32) -> Self {
+        let pieces = mesh.convex_pieces();
+        let piece = pieces.node_of(primitive);
+        match piece.and_then(|node| pieces.of_node(node)) {
+            Some(piece) => Self::Piece(piece),
+            None => Self::Primitive(mesh.primitive(primitive as usize)),
+        }
+    }
+
+    /// The spheres of whose hull it is.
+    fn spheres(&self) -> &[MedialSphere] {
+        match self {
+            Self::Piece(piece) => &piece.spheres,
+            Self::Primitive(primitive) => primitive.spheres(),
+        }
+    }
+
+    /// How far it reaches along a unit direction, a length.
+    pub fn reach(&self, n: Vector) -> Real {
+        let heights = self.spheres().iter().map(|s| n.dot(s.center) + s.radius);
+        heights.fold(Real::MIN, Real::max)
+    }
+
+    /// Outward unit normals of a piece's flat faces; of a lone primitive none.
+    pub fn flat_normals(&self) -> impl Iterator<Item = Vector> {
+        let faces = match self {
+            Self::Piece(piece) => &piece.faces[..],
+            Self::Primitive(_) => &[],
+        };
+        faces.iter().map(|face| face.normal)
+    }
+}
+
+/// A number of the convex part that a primitive of a mesh belongs to.
+pub fn part_number(mesh: &MedialMesh, primitive: u32) -> u32 {
+    let node = mesh.convex_pieces().node_of(primitive);
+    node.map_or(primitive, |node| mesh.primitive_count() as u32 + node)
+}
+
+/// The child of a compound that a subshape of a manifold is, and its pose, or the shape itself.
+pub fn child_of<'a>(
+    (shape, pose): (&'a dyn Shape, &Pose),
+    subshape: u32,
+) -> Option<(&'a dyn Shape, Pose)> {
+    match shape.as_typed_shape() {
+        TypedShape::Compound(compound) => {
+            let (own, child) = compound.shapes().get(subshape as usize)?;
+            Some((&**child, *pose * *own))
+        }
+        _ => Some((shape, *pose)),
+    }
+}
+
+/// Slack of heights of a mesh's parts, a length, where the other shape is at `pose` in the mesh's frame.
+pub fn slack(mesh: &MedialMesh, pose: &Pose) -> Real {
+    SLACK * (mesh.aabb().extents().max_element() + pose.translation.abs().max_element())
+}
