@@ -39,7 +39,7 @@ pub fn face(mesh: &MedialMesh, other: &dyn Shape, pose: &Pose, prediction: Real)
         TypedShape::Cylinder(cylinder) => {
             let (sides, region) = (flat_sides(other), region());
             let farthest = region.mins.abs().max(region.maxs.abs());
-            let room = cylinder.radius - farthest.x.hypot(farthest.z);
+            let room = cylinder.radius - (farthest * Vector::new(1.0, 0.0, 1.0)).length();
             sides[side(&sides, &region, (prediction, room))?]
         }
         _ => return None,
