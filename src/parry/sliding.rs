@@ -158,7 +158,7 @@ impl<'a> Sliding<'a> {
 
     /// Remembers a face if it is a ground of the mesh. All faces have to be looked at before [`Self::treats`].
     pub fn look(&mut self, face: Face) {
-        self.is_over_solids = face.is_of_solid;
+        self.is_over_solids &= face.is_of_solid;
         if self.ground_above(face).is_none() {
             self.grounds
                 .extend(self.lies_on(face).filter(|l| l.is_over));
