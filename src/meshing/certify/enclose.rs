@@ -8,16 +8,16 @@
 //!
 //! # Certificate
 //! Balls, cones and slabs are convex. A triangle whose three corners lie in one primitive therefore
-//! lies in it whole. Other triangles are cut where a slab touches their plane (`outline.rs`), or halved; a
+//! lies in it whole. Other triangles are cut where one primitive's part of them ends (`seams.rs`), or halved; a
 //! piece of the smallest size that no primitive contains makes the one that needs least grow by its worst
 //! corner. The certificate is complete when a pass over all triangles finds no such piece; it holds up to
 //! rounding.
 
 use crate::error::BuildError;
 use crate::meshing::certify::primitive_tree::PrimitiveTree;
-use crate::meshing::certify::slab_footprint::{Cut, cut_along_outline};
+use crate::meshing::certify::seams::{Cut, cut_at_seam};
 use crate::meshing::draft::{Draft, Signed};
-use crate::meshing::geometry::bounds::{Point, direction};
+use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::random::Random;
 use crate::meshing::geometry::subdivide::{halve, longest_edge_sq};
 use crate::meshing::surface::checked_surface::Surface;
@@ -32,17 +32,15 @@ const POINTS: usize = 30_000;
 /// three passes settle nearly all.
 const DILATION_PASSES: usize = 8;
 
-/// Longest edge of the smallest pieces of the certificate (longest side 1), up to 500 primitives. A
-/// piece across the seam of two primitives costs up to this much growth; halving it doubles the time
-/// along seams. More primitives have smaller errors: it shrinks as their own size does.
-const FINEST: f64 = 0.003;
+/// Longest edge of the smallest pieces of the certificate (longest side 1), up to 500 primitives. A piece that needs
+/// two primitives costs up to this much growth. More primitives have smaller errors: it shrinks as their own size does.
+const FINEST: f64 = 0.002;
 const FINEST_UP_TO: f64 = 500.0;
 
 /// Passes of the certificate before all balls grow alike. Measured: 2 to 5 are needed.
 const CERTIFICATE_PASSES: usize = 12;
 
-/// A piece that a primitive misses by no more than this (longest side 1) makes it grow instead of being cut. Along a
-/// peg all slabs of its mantle nearly coincide: each covers slivers of each facet, and a seam is everywhere. With less
+/// A piece that a primitive misses by no more than this (longest side 1) makes it grow instead of being cut. With less
 /// more pieces are cut; errors of fits are above a hundred times this.
 const NEGLIGIBLE: f64 = 1e-5;
 
@@ -131,11 +129,7 @@ fn dilate(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(),
 fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(), BuildError> {
     let triangles = surface.all_corners().chain(surface.needle_corners());
     let triangles = triangles.chain(surface.lids.iter().map(|lid| lid.0));
-    let with_normal = |triangle: [Point; 3]| {
-        let [a, b, c] = triangle;
-        (triangle, direction((b - a).cross(c - a)))
-    };
-    let mut open: Vec<Piece> = triangles.map(with_normal).collect();
+    let mut open: Vec<[Point; 3]> = triangles.collect();
     let crowd = (draft.primitives().len() as f64 / FINEST_UP_TO).max(1.0);
     for pass in 0..CERTIFICATE_PASSES {
         let mut growth = Growth::none(draft);
@@ -171,9 +165,6 @@ fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<()
     Ok(())
 }
 
-/// A piece of a face, and the unit normal of all of it.
-type Piece = ([Point; 3], Point);
-
 struct Prover<'a> {
     tree: &'a PrimitiveTree<'a>,
     /// The primitive that held the piece before.
@@ -186,7 +177,7 @@ struct Prover<'a> {
 
 impl Prover<'_> {
     /// Asks for growth where a piece is not covered, and puts the parts of which that is so on the list.
-    fn prove(&mut self, (piece, normal): Piece, growth: &mut Growth, left: &mut Vec<Piece>) {
+    fn prove(&mut self, piece: [Point; 3], growth: &mut Growth, left: &mut Vec<[Point; 3]>) {
         let mut pieces = vec![piece];
         while let Some(piece) = pieces.pop() {
             let (primitive, worst, at_middle) = self.tightest(&piece);
@@ -194,13 +185,12 @@ impl Prover<'_> {
                 continue;
             }
             let large = worst.distance > NEGLIGIBLE && longest_edge_sq(&piece) > self.finest_sq;
-            let cut = |by: u32| Some((by, self.cut(&piece, normal, by)?));
-            if large && let Some((by, cut)) = cut(primitive).or_else(|| cut(at_middle)) {
+            if large && let Some((by, cut)) = self.cut(&piece, [primitive, at_middle]) {
                 for part in cut.inner {
                     let worst = self.worst_corner(by, &part);
                     if worst.distance > 0.0 {
                         self.ask(by, &worst, growth);
-                        left.push((part, normal));
+                        left.push(part);
                     }
                 }
                 pieces.extend(cut.outer);
@@ -211,7 +201,7 @@ impl Prover<'_> {
                 continue;
             }
             self.ask(primitive, &worst, growth);
-            left.push((piece, normal));
+            left.push(piece);
         }
     }
 
@@ -221,11 +211,12 @@ impl Prover<'_> {
         growth.ask(self.tree.primitives()[primitive as usize], worst);
     }
 
-    /// Cuts a piece where a slab touches the piece's plane.
-    fn cut(&self, piece: &[Point; 3], normal: Point, primitive: u32) -> Option<Cut> {
-        let corners = self.tree.primitives()[primitive as usize];
-        let is_slab = corners[1] != corners[2];
-        is_slab.then(|| cut_along_outline(piece, normal, self.tree.balls(corners)))?
+    /// Cuts a piece along what one of two primitives covers of it.
+    fn cut(&self, piece: &[Point; 3], primitives: [u32; 2]) -> Option<(u32, Cut)> {
+        primitives.into_iter().find_map(|by| {
+            let cut = cut_at_seam(piece, |p| self.tree.distance_to(by, p).distance)?;
+            Some((by, cut))
+        })
     }
 
     /// Among the primitives nearest to the middle and the corners, the one whose worst corner is
@@ -265,7 +256,7 @@ mod tests {
 
     /// Rest of a strip from `x = 0` to 1 at `z = top`, of the width of a peg's facets, beside a cone along it of radius
     /// .1, which ends at `end`.
-    fn left_of_strip(top: f64, end: f64) -> Vec<Piece> {
+    fn left_of_strip(top: f64, end: f64) -> Vec<[Point; 3]> {
         let ball = |x: f64| Ball {
             center: Point::new(x, 0.0, 0.0),
             radius: 0.1,
@@ -286,7 +277,7 @@ mod tests {
         let strip = strip.map(|(x, y)| Point::new(x, y, top));
         let mut left = Vec::new();
         let mut growth = Growth::none(&draft);
-        prover.prove((strip, Point::new(0.0, 0.0, 1.0)), &mut growth, &mut left);
+        prover.prove(strip, &mut growth, &mut left);
         left
     }
 
@@ -300,7 +291,7 @@ mod tests {
     fn only_the_parts_that_are_missed_are_left() {
         let left = left_of_strip(0.09, 0.95);
         assert!(!left.is_empty());
-        let nearest = left.iter().flat_map(|(piece, _)| piece).map(|p| p.x);
+        let nearest = left.iter().flatten().map(|p| p.x);
         let nearest = nearest.fold(f64::INFINITY, f64::min);
         // The last ball is that high up to `x = .95 + √(.1² − .09²)`.
         let end = 0.95 + (0.1f64.powi(2) - 0.09f64.powi(2)).sqrt();

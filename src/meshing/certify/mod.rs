@@ -10,4 +10,4 @@ pub(crate) mod largest;
 pub(crate) mod mass;
 pub(crate) mod prepared_primitives;
 pub(crate) mod primitive_tree;
-pub(crate) mod slab_footprint;
+mod seams;

@@ -93,11 +93,6 @@ impl<'a> PrimitiveTree<'a> {
         tree
     }
 
-    /// The balls of a primitive.
-    pub fn balls(&self, corners: Corners) -> [Ball; 3] {
-        self.draft.balls_of(corners)
-    }
-
     /// The primitives, as [`Draft::primitives`] lists them.
     pub fn primitives(&self) -> &[Corners] {
         &self.primitives
