@@ -3,18 +3,18 @@
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
 use super::contact_reduction;
-use super::convex_parts::slack;
+use super::convex_parts::{Part, child_reach, slack};
 use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
 use super::flat_face;
-use super::ghost_contacts::{MeshContact, ghosts};
+use super::ghost_contacts::{PartContact, ghosts};
 use super::inward_contacts;
 use super::manifolds::{self, ensure_workspace, write_one_point};
 use super::touching_normals;
 use super::voxel_normals;
 use crate::batch::PairJob;
-use crate::math::{Pose, Real};
+use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
@@ -91,15 +91,15 @@ impl MedialDispatcher {
                 TypedShape::TriMesh(_) | TypedShape::HeightField(_) => {
                     false_contacts::correct(manifolds, (mesh, side), (other, &pose), prediction);
                     inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
-                    leave_out_ghosts(manifolds, (mesh, side), &pose);
+                    leave_out_ghosts(manifolds, (mesh, side), (other, &pose));
                 }
                 TypedShape::Voxels(voxels) => {
                     voxel_normals::correct(manifolds, (mesh, side), (voxels, &pose), prediction);
-                    leave_out_ghosts(manifolds, (mesh, side), &pose);
+                    leave_out_ghosts(manifolds, (mesh, side), (other, &pose));
                 }
                 _ if goes_on.is_none() => {
                     // First, so that none is turned to the normal of one that it is a ghost of.
-                    leave_out_ghosts(manifolds, (mesh, side), &pose);
+                    leave_out_ghosts(manifolds, (mesh, side), (other, &pose));
                     touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
                     deep_pieces::leave_out(manifolds, (mesh, side), (other, &pose));
                 }
@@ -127,26 +127,46 @@ impl MedialDispatcher {
     }
 }
 
-/// Leaves out ghost contacts. The mesh is body `side` of the manifolds, and the other shape at `pose` in its frame.
+/// Leaves out ghost contacts: of the mesh's parts, and of a compound's children. The mesh is body `side` of the manifolds,
+/// and the other shape at `pose` in its frame.
 fn leave_out_ghosts<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
-    pose: &Pose,
+    (other, pose): (&dyn Shape, &Pose),
+) {
+    let slack = slack(mesh, pose);
+    let reach = |part, n| Part::of(mesh, part).reach(n);
+    leave_out_ghosts_of(manifolds, side, reach, slack);
+    if let TypedShape::Compound(compound) = other.as_typed_shape() {
+        leave_out_ghosts_of(
+            manifolds,
+            1 - side,
+            |child, n| child_reach(compound, child, n),
+            slack,
+        );
+    }
+}
+
+/// Leaves out ghost contacts of the parts of body `side`, which reach as far as `reach` tells.
+fn leave_out_ghosts_of<M, C>(
+    manifolds: &mut [ContactManifold<M, C>],
+    side: usize,
+    reach: impl Fn(u32, Vector) -> Real,
+    slack: Real,
 ) {
     let seen = |m: &ContactManifold<M, C>, i: usize| {
-        let [primitive, other] = [[m.subshape1, m.subshape2], [m.subshape2, m.subshape1]][side];
-        MeshContact {
-            primitive,
-            other,
+        let parts = [m.subshape1, m.subshape2];
+        PartContact {
+            part: parts[side],
+            other: parts[1 - side],
             place: contact_reduction::places(m, i)[side],
-            normal: [m.local_n1, m.local_n2][side],
+            normal: contact_reduction::normals(m)[side],
             gap: m.points[i].dist,
         }
     };
     let all = manifolds.iter();
     let all = all.flat_map(|m| (0..m.points.len()).map(move |i| seen(m, i)));
-    let ghosts = ghosts(mesh, &all.collect::<Vec<_>>(), slack(mesh, pose));
-    let mut ghosts = ghosts.into_iter();
+    let mut ghosts = ghosts(&all.collect::<Vec<_>>(), reach, slack).into_iter();
     for m in manifolds {
         m.points.retain(|_| ghosts.next() != Some(true));
     }

@@ -76,14 +76,12 @@ pub fn previous<M, C: Copy>(
         .collect()
 }
 
-/// Makes parry compute all contacts anew. It would otherwise go on from those in the manifolds, from which some were
-/// removed.
+/// Makes parry compute all contacts anew. It would otherwise go on from those in the manifolds, of which some were removed
+/// and some turned.
 pub fn force_full_update<M, C: Default + Copy>(manifolds: &mut [ContactManifold<M, C>]) {
-    if manifolds.iter().map(|m| m.points.len()).sum::<usize>() >= SOLVED {
-        manifolds
-            .iter_mut()
-            .for_each(ContactManifold::mark_shapes_deformed);
-    }
+    manifolds
+        .iter_mut()
+        .for_each(ContactManifold::mark_shapes_deformed);
 }
 
 /// Passes the data (impulses) of contacts of the step before to the nearest new contacts of the same subshapes, each
@@ -127,21 +125,27 @@ pub fn choose<M, C: Copy>(
 ) {
     let prediction = f64::from(prediction);
     let equal = EQUAL * prediction;
-    let mut normals: Vec<(Vector, Vec<Seen>)> = Vec::new();
-    for (m, manifold) in manifolds.iter().enumerate() {
-        if manifold.points.is_empty() {
-            continue;
-        }
-        let n = normal(manifold);
-        let known = normals
+    // What touches first: rapier's normal of a group would be that of its first manifold, however far its contacts are.
+    let is_apart = |m: &usize| {
+        let mut gaps = manifolds[*m].points.iter().map(|p| f64::from(p.dist));
+        !gaps.any(|gap| gap <= equal)
+    };
+    let mut order: Vec<usize> = (0..manifolds.len()).collect();
+    order.retain(|m| !manifolds[*m].points.is_empty());
+    order.sort_by_key(is_apart);
+    let mut groups: Vec<([Vector; 2], Vec<Seen>)> = Vec::new();
+    for m in order {
+        let manifold = &manifolds[m];
+        let n = normals(manifold);
+        let known = groups
             .iter()
-            .position(|(first, _)| first.dot(n) >= ONE_NORMAL);
+            .position(|(first, _)| first[0].dot(n[0]) >= ONE_NORMAL);
         let group = known.unwrap_or_else(|| {
-            normals.push((n, Vec::new()));
-            normals.len() - 1
+            groups.push((n, Vec::new()));
+            groups.len() - 1
         });
-        let (first, seen) = &mut normals[group];
-        let [x, y] = first.any_orthonormal_pair().into();
+        let (first, seen) = &mut groups[group];
+        let [x, y] = first[0].any_orthonormal_pair().into();
         for (i, point) in manifold.points.iter().enumerate() {
             let points = places(manifold, i);
             let from = points[0] - center;
@@ -157,7 +161,7 @@ pub fn choose<M, C: Copy>(
         }
     }
     let mut left_out = Vec::new();
-    for (_, seen) in &mut normals {
+    for (_, seen) in &mut groups {
         left_out.extend(without_doubles(seen, SAME_PLACE * prediction));
         if seen.iter().filter(|s| s.gap <= prediction).count() <= SOLVED {
             continue;
@@ -182,6 +186,19 @@ pub fn choose<M, C: Copy>(
     for [m, i] in left_out.into_iter().rev() {
         manifolds[m].points.remove(i);
     }
+    for (n, seen) in groups {
+        let first = seen.iter().map(|s| s.contact[0]);
+        if let Some(first) = first.filter(|m| !manifolds[*m].points.is_empty()).min() {
+            turn_to(&mut manifolds[first], n);
+        }
+    }
+}
+
+/// Gives a manifold these normals out of both bodies, each in its body's frame.
+fn turn_to<M, C>(manifold: &mut ContactManifold<M, C>, [n1, n2]: [Vector; 2]) {
+    let in_part = |pose: Option<&Pose>, n: Vector| pose.map_or(n, |p| p.rotation.inverse() * n);
+    manifold.local_n1 = in_part(manifold.subshape_pos1(), n1);
+    manifold.local_n2 = in_part(manifold.subshape_pos2(), n2);
 }
 
 /// Takes out the contacts that have a deeper one within `radius`: neighbours meet in the sphere they
@@ -322,8 +339,11 @@ pub fn places<M, C>(manifold: &ContactManifold<M, C>, i: usize) -> [Vector; 2] {
     ]
 }
 
-/// The normal in the first body's frame.
-fn normal<M, C>(manifold: &ContactManifold<M, C>) -> Vector {
-    let n = manifold.local_n1;
-    manifold.subshape_pos1().map_or(n, |pose| pose.rotation * n)
+/// The normals out of both bodies, each in its body's frame.
+pub fn normals<M, C>(manifold: &ContactManifold<M, C>) -> [Vector; 2] {
+    let in_body = |pose: Option<&Pose>, n: Vector| pose.map_or(n, |pose| pose.rotation * n);
+    [
+        in_body(manifold.subshape_pos1(), manifold.local_n1),
+        in_body(manifold.subshape_pos2(), manifold.local_n2),
+    ]
 }

@@ -4,7 +4,7 @@
 use crate::math::{Pose, Real, Vector};
 use crate::medial::convex_pieces::ConvexPiece;
 use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
-use parry3d::shape::{Shape, TypedShape};
+use parry3d::shape::{Compound, Shape, TypedShape};
 
 /// Slack of heights that are compared, in units of the sizes in play: about eight ulps of `f32`.
 const SLACK: Real = 1.0e-6;
@@ -68,6 +68,14 @@ pub fn child_of<'a>(
         }
         _ => Some((shape, *pose)),
     }
+}
+
+/// How far a child of a compound reaches along a unit direction of the compound's frame, a length; infinitely far where no
+/// support map tells.
+pub fn child_reach(compound: &Compound, child: u32, n: Vector) -> Real {
+    let (pose, shape) = &compound.shapes()[child as usize];
+    let support = shape.as_support_map();
+    support.map_or(Real::MAX, |map| n.dot(map.support_point(pose, n)))
 }
 
 /// Slack of heights of a mesh's parts, a length, where the other shape is at `pose` in the mesh's frame.

@@ -5,8 +5,8 @@
 //! manifold for each pair of primitives, so that each keeps its own normal. (With one manifold for each pair of
 //! colliders a chain of rings falls apart.)
 
-use super::convex_parts::{part_number, slack};
-use super::ghost_contacts::{MeshContact, ghosts};
+use super::convex_parts::{Part, part_number, slack};
+use super::ghost_contacts::{PartContact, ghosts};
 use crate::math::tolerance::ONE_DIRECTION;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -144,8 +144,8 @@ fn without_ghosts<'a>(
 ) -> Vec<&'a SpherePair> {
     let inverse = pos12.rotation.inverse();
     for k in [0, 1] {
-        let seen = contacts.iter().map(|c| MeshContact {
-            primitive: c.primitives[k],
+        let seen = contacts.iter().map(|c| PartContact {
+            part: c.primitives[k],
             other: part_number(meshes[1 - k], c.primitives[1 - k]),
             place: c.points[k],
             normal: if k == 0 {
@@ -155,11 +155,9 @@ fn without_ghosts<'a>(
             },
             gap: c.distance,
         });
-        let ghosts = ghosts(
-            meshes[k],
-            &seen.collect::<Vec<_>>(),
-            slack(meshes[k], pos12),
-        );
+        let seen: Vec<PartContact> = seen.collect();
+        let reach = |part: u32, n: Vector| Part::of(meshes[k], part).reach(n);
+        let ghosts = ghosts(&seen, reach, slack(meshes[k], pos12));
         let mut ghosts = ghosts.into_iter();
         contacts.retain(|_| ghosts.next() != Some(true));
     }

@@ -123,3 +123,21 @@ fn deep_contacts_stay_where_the_body_tips_over() {
         assert!(kept.any(|p| p.dist < deepest + 0.026), "{case}: {deepest}");
     }
 }
+
+/// rapier solves contacts under normals within 5° as one group, under the normal of its first manifold. Contacts that touch
+/// give it theirs.
+#[test]
+fn what_touches_gives_its_normal_to_the_group() {
+    let tilted = Vector::new(0.07, 1.0, 0.0).normalize();
+    for (gap, expected) in [(0.015, Vector::Y), (-0.001, tilted)] {
+        let mut all = manifolds(&[[0.4, 0.0, gap], [0.1, 0.0, 0.0], [-0.1, 0.1, 0.0]]);
+        let [points, rest] = [0..1, 1..3].map(|part| all[0].points[part].to_vec());
+        all.push(all[0].clone());
+        (all[0].points, all[0].local_n1, all[0].local_n2) = (points, tilted, -tilted);
+        (all[1].points, all[1].subshape2) = (rest, 1);
+        choose(&mut all, Vector::ZERO, 0.02, &[], 0);
+        assert!(all[0].local_n1.distance(expected) < 1.0e-6, "{gap}");
+        assert_eq!(all[0].local_n2, -all[0].local_n1);
+        assert_eq!(all[1].local_n1, Vector::Y);
+    }
+}
