@@ -1,6 +1,6 @@
 //! Tree that a query searches: a hierarchy of bounding spheres with primitives of 1 to 3 spheres at its leaves. A
-//! medial mesh is one; a few loose primitives (the faces of a cuboid, a capsule, the triangles of a terrain near the
-//! body) are another.
+//! medial mesh is one; loose primitives (the faces of a cuboid, a capsule, the triangles of a terrain near the body) are
+//! another.
 
 use crate::elementary::test_list::OwnedFeatures;
 use crate::math::{Real, Vector};
@@ -20,6 +20,11 @@ fn hull_of([a, b, c]: [MedialSphere; 3], len: usize) -> Hull {
     ([a, b, c, c], len)
 }
 
+/// A sphere as a hull.
+fn sphere_of((center, radius): (Vector, Real)) -> Hull {
+    ([MedialSphere::new(center, radius); 4], 1)
+}
+
 /// A body made of primitives, in its own frame.
 pub trait PrimitiveTree {
     /// Number of root nodes; they are the nodes `0..roots()`.
@@ -31,8 +36,7 @@ pub trait PrimitiveTree {
     /// One to four spheres whose hull holds what is below a node, a tighter bound than its sphere: those of its
     /// primitive, or the corners of a swept rectangle. By default the node's sphere.
     fn hull(&self, node: u32) -> Hull {
-        let (center, radius) = self.bound(node);
-        ([MedialSphere::new(center, radius); 4], 1)
+        sphere_of(self.bound(node))
     }
     /// Spheres of a primitive (unused entries repeat the last one), and which edges and spheres it tests.
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], OwnedFeatures);
@@ -116,11 +120,19 @@ impl PrimitiveTree for MedialMesh {
     }
 }
 
-/// A list of loose primitives without a hierarchy.
+/// Loose primitives from which on a list has a hierarchy of nodes: fewer are looked at one by one.
+const TREE_FROM: usize = 8;
+
+/// A node of a list: its bounding sphere, and what is below it.
+type ListNode = (Vector, Real, NodeKind);
+
+/// A list of loose primitives, with a hierarchy if it is asked for ([`Self::build_tree`]).
 #[derive(Clone, Debug, Default)]
 pub struct PrimitiveList {
     primitives: Vec<([MedialSphere; 3], usize)>,
-    bounds: Vec<(Vector, Real)>,
+    /// A node for each primitive; in a hierarchy the root, and all below it.
+    nodes: Vec<ListNode>,
+    has_tree: bool,
     /// Range of primitives of the part, for each primitive of a part that has ended: its first and the one behind its
     /// last.
     parts: Vec<[u32; 2]>,
@@ -138,15 +150,47 @@ impl PrimitiveList {
             .iter()
             .fold(Vector::ZERO, |sum, s| sum + s.center)
             / spheres.len().min(3) as Real;
-        let reach = all
-            .iter()
-            .map(|s| (s.center - center).length() + s.radius)
-            .fold(0.0, Real::max);
-        // Rounding of the centre and of the distances: a few ulps of the coordinates.
-        let size = reach + center.abs().max_element();
+        let radius = radius_around(center, all.map(|s| (s.center, s.radius)));
+        let kind = NodeKind::Primitive(self.primitives.len() as u32);
         self.primitives.push((all, spheres.len().min(3)));
-        self.bounds
-            .push((center, reach + 8.0 * Real::EPSILON * size));
+        self.nodes.push((center, radius, kind));
+    }
+
+    /// Puts the primitives under one root, if they are many. None can be added after that.
+    pub fn build_tree(&mut self) {
+        if self.has_tree || self.primitives.len() < TREE_FROM {
+            return;
+        }
+        self.has_tree = true;
+        let mut leaves = std::mem::take(&mut self.nodes);
+        self.nodes = Vec::with_capacity(2 * leaves.len());
+        self.nodes.push(leaves[0]);
+        self.fill(0, &mut leaves);
+    }
+
+    /// Makes a node one that holds these leaves, halved at the median of their longest spread.
+    fn fill(&mut self, node: usize, leaves: &mut [ListNode]) {
+        if let [only] = leaves {
+            self.nodes[node] = *only;
+            return;
+        }
+        let mins = leaves.iter().fold(Vector::MAX, |mins, l| mins.min(l.0));
+        let maxs = leaves.iter().fold(Vector::MIN, |maxs, l| maxs.max(l.0));
+        let (center, spread) = ((mins + maxs) * 0.5, (maxs - mins).to_array());
+        let radius = radius_around(center, leaves.iter().map(|l| (l.0, l.1)));
+        let first = self.nodes.len();
+        self.nodes[node] = (
+            center,
+            radius,
+            NodeKind::Nodes(first as u32, first as u32 + 1),
+        );
+        self.nodes.extend([leaves[0]; 2]);
+        let axis = (0..3).fold(0, |a, k| if spread[k] > spread[a] { k } else { a });
+        let middle = leaves.len() / 2;
+        leaves.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
+        let (low, high) = leaves.split_at_mut(middle);
+        self.fill(first, low);
+        self.fill(first + 1, high);
     }
 
     /// Ends a part: the primitives added since the last call bound one convex body.
@@ -166,19 +210,36 @@ impl PrimitiveList {
     }
 }
 
+/// Radius of the sphere about `center` that holds these spheres, and a few ulps of the coordinates for rounding.
+fn radius_around(center: Vector, spheres: impl IntoIterator<Item = (Vector, Real)>) -> Real {
+    let reaches = spheres.into_iter();
+    let reaches = reaches.map(|(place, radius)| (place - center).length() + radius);
+    let reach = reaches.fold(0.0, Real::max);
+    reach + 8.0 * Real::EPSILON * (reach + center.abs().max_element())
+}
+
 impl PrimitiveTree for PrimitiveList {
     fn roots(&self) -> u32 {
-        self.primitives.len() as u32
+        match self.has_tree {
+            true => 1,
+            false => self.primitives.len() as u32,
+        }
     }
     fn bound(&self, node: u32) -> (Vector, Real) {
-        self.bounds[node as usize]
+        let (center, radius, _) = self.nodes[node as usize];
+        (center, radius)
     }
     fn kind(&self, node: u32) -> NodeKind {
-        NodeKind::Primitive(node)
+        self.nodes[node as usize].2
     }
     fn hull(&self, node: u32) -> Hull {
-        let (spheres, len) = self.primitives[node as usize];
-        hull_of(spheres, len)
+        match self.kind(node) {
+            NodeKind::Primitive(index) => {
+                let (spheres, len) = self.primitives[index as usize];
+                hull_of(spheres, len)
+            }
+            NodeKind::Nodes(..) => sphere_of(self.bound(node)),
+        }
     }
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], OwnedFeatures) {
         let (spheres, n) = self.primitives[index as usize];
@@ -187,5 +248,61 @@ impl PrimitiveTree for PrimitiveList {
     fn convex_part(&self, index: u32) -> Range<u32> {
         let part = self.parts.get(index as usize);
         part.map_or(index..index + 1, |&[first, end]| first..end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A hundred triangles with rounded edges, spread out along a curve.
+    fn list() -> PrimitiveList {
+        let mut list = PrimitiveList::default();
+        for i in 0..100 {
+            let t = i as Real * 0.37;
+            let at = Vector::new(t.sin() * 5.0, t * 0.1, (1.7 * t).cos());
+            let corner = |k: u32| at + Vector::new(0.3, 0.1 * k as Real, 0.2 * (k * k) as Real);
+            list.push(&[0, 1, 2].map(|k| MedialSphere::new(corner(k), 0.01 * k as Real)));
+        }
+        list
+    }
+
+    /// The primitives below a node, whose spheres all lie in the spheres of the nodes above them.
+    fn below(list: &PrimitiveList, node: u32, above: &[(Vector, Real)]) -> Vec<u32> {
+        let mut bounds = above.to_vec();
+        bounds.push(list.bound(node));
+        match list.kind(node) {
+            NodeKind::Nodes(a, b) => [a, b].map(|n| below(list, n, &bounds)).concat(),
+            NodeKind::Primitive(index) => {
+                for s in list.primitive(index).0 {
+                    let holds = |b: &(Vector, Real)| (s.center - b.0).length() + s.radius <= b.1;
+                    assert!(bounds.iter().all(holds), "primitive {index}");
+                }
+                vec![index]
+            }
+        }
+    }
+
+    #[test]
+    fn a_tree_holds_every_primitive_once_and_encloses_it() {
+        let mut list = list();
+        assert_eq!(list.roots(), 100);
+        list.build_tree();
+        assert_eq!(list.roots(), 1);
+        let mut found = below(&list, 0, &[]);
+        found.sort_unstable();
+        assert_eq!(found, (0..100).collect::<Vec<u32>>());
+    }
+
+    #[test]
+    fn few_primitives_and_those_at_one_place_are_fine() {
+        let sphere = MedialSphere::new(Vector::X, 1.0);
+        for n in [0, 1, TREE_FROM - 1, TREE_FROM, 50] {
+            let mut list = PrimitiveList::default();
+            (0..n).for_each(|_| list.push(&[sphere]));
+            list.build_tree();
+            let found: usize = (0..list.roots()).map(|r| below(&list, r, &[]).len()).sum();
+            assert_eq!(found, n);
+        }
     }
 }

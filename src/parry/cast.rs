@@ -268,7 +268,7 @@ impl Cast<'_> {
                 sliding.look(face)
             });
         }
-        if !swept_sphere_parts::add_surface(&mut parts, self.other, &Pose::IDENTITY, &region) {
+        if !swept_sphere_parts::add_shape(&mut parts, self.other, &region) {
             return Err(Unsweepable);
         }
         let axisymmetric = &parts.axisymmetric;

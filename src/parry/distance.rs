@@ -73,7 +73,7 @@ fn near(
             .transform_by(&pos21)
             .loosened(reach(mesh, other, &pos21, max_distance));
     let mut parts = Parts::default();
-    if !swept_sphere_parts::add_surface(&mut parts, other, &Pose::IDENTITY, &region) {
+    if !swept_sphere_parts::add_shape(&mut parts, other, &region) {
         return Err(Unsweepable);
     }
     let (mut best, mut counts) = near_spheres(mesh, &parts.primitives, pos12, max_distance, wanted);

@@ -112,9 +112,16 @@ pub fn thickness(shape: &dyn Shape) -> Real {
     }
 }
 
-/// Adds the surface of `shape`, placed at `pose` in the parts' frame, as far as it meets `region`
-/// (in the parts' frame). Returns `false` for a shape that has no such surface: a custom one.
-pub fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
+/// Adds the surface of `shape`, in whose frame the parts are, as far as it meets `region`, and gives the parts a hierarchy.
+/// Returns `false` for a shape that has no such surface: a custom one.
+pub fn add_shape(parts: &mut Parts, shape: &dyn Shape, region: &Aabb) -> bool {
+    let added = add_surface(parts, shape, &Pose::IDENTITY, region);
+    parts.primitives.build_tree();
+    added
+}
+
+/// Adds the surface of `shape`, placed at `pose` in the parts' frame, as [`add_shape`] does.
+fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
     if let Some(body) = Axisymmetric::new(shape, pose) {
         parts.axisymmetric.push(body);
         parts.name(0);
