@@ -15,6 +15,7 @@ use crate::meshing::axis::shrinking_ball::shrink;
 use crate::meshing::axis::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
+use crate::meshing::geometry::chunks::map_each;
 use crate::meshing::geometry::random::Random;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
@@ -120,27 +121,10 @@ pub struct Clipper<'a> {
 impl Clipper<'_> {
     fn add_balls(&mut self, points: &[Point], watch: &mut Watch) -> Result<(), BuildError> {
         let bounds = Bounds::of(self.samples.iter().map(|s| s.point));
-        let all = self.delaunay.tetrahedra.len();
-        for t in 0..all {
-            if t % 256 == 0 {
-                watch.at(t as f64 / all as f64)?;
-            }
-            let corners = self.delaunay.tetrahedra[t];
-            if corners.iter().any(|&v| v as usize >= self.samples.len()) {
-                continue;
-            }
-            let Some(ball) = circumsphere(corners.map(|v| points[v as usize])) else {
-                continue;
-            };
-            let around = corners.map(|v| self.samples[v as usize]);
-            let inside = || match vote(&ball, around) {
-                Some(inside) => inside,
-                None => self.faces.tree.winding(ball.center) > INSIDE,
-            };
-            if bounds.distance_sq(ball.center) > 0.0 || !inside() {
-                continue;
-            }
-            if let Some(tangent) = self.settle(ball, corners) {
+        let all: Vec<u32> = (0..self.delaunay.tetrahedra.len() as u32).collect();
+        let tangents = map_each(&all, watch, |&t| self.ball_in(t, points, &bounds))?;
+        for (t, tangent) in tangents.into_iter().enumerate() {
+            if let Some(tangent) = tangent {
                 self.ball_of[t] = self.mesh.push(tangent);
             }
         }
@@ -153,6 +137,22 @@ impl Clipper<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The ball of a tetrahedron whose circumcentre is inside the solid and near its surface's `bounds`.
+    fn ball_in(&self, tetrahedron: u32, points: &[Point], bounds: &Bounds) -> Option<Tangent> {
+        let corners = self.delaunay.tetrahedra[tetrahedron as usize];
+        if corners.iter().any(|&v| v as usize >= self.samples.len()) {
+            return None;
+        }
+        let ball = circumsphere(corners.map(|v| points[v as usize]))?;
+        let around = corners.map(|v| self.samples[v as usize]);
+        let inside = || match vote(&ball, around) {
+            Some(inside) => inside,
+            None => self.faces.tree.winding(ball.center) > INSIDE,
+        };
+        let is_in = bounds.distance_sq(ball.center) <= 0.0 && inside();
+        is_in.then(|| self.settle(ball, corners))?
     }
 
     /// The ball of four samples, tangent to their faces if that can be; `None` where it is far from touching
