@@ -29,6 +29,10 @@ fn sphere_of((center, radius): (Vector, Real)) -> Hull {
 pub trait PrimitiveTree {
     /// Number of root nodes; they are the nodes `0..roots()`.
     fn roots(&self) -> u32;
+    /// Number of primitives that were put together for the search; 1 of a body with a hierarchy of its own.
+    fn loose_primitives(&self) -> u32 {
+        1
+    }
     /// Bounding sphere of a node.
     fn bound(&self, node: u32) -> (Vector, Real);
     /// Contents of a node.
@@ -120,8 +124,9 @@ impl PrimitiveTree for MedialMesh {
     }
 }
 
-/// Loose primitives from which on a list has a hierarchy of nodes: fewer are looked at one by one.
-const TREE_FROM: usize = 8;
+/// Loose primitives from which on a list has a hierarchy of nodes: fewer are looked at one by one, which costs less in a
+/// search of many pieces, as each begins at the root.
+const TREE_FROM: usize = 64;
 
 /// A node of a list: its bounding sphere, and what is below it.
 type ListNode = (Vector, Real, NodeKind);
@@ -222,8 +227,11 @@ impl PrimitiveTree for PrimitiveList {
     fn roots(&self) -> u32 {
         match self.has_tree {
             true => 1,
-            false => self.primitives.len() as u32,
+            false => self.loose_primitives(),
         }
+    }
+    fn loose_primitives(&self) -> u32 {
+        self.primitives.len() as u32
     }
     fn bound(&self, node: u32) -> (Vector, Real) {
         let (center, radius, _) = self.nodes[node as usize];
@@ -297,7 +305,7 @@ mod tests {
     #[test]
     fn few_primitives_and_those_at_one_place_are_fine() {
         let sphere = MedialSphere::new(Vector::X, 1.0);
-        for n in [0, 1, TREE_FROM - 1, TREE_FROM, 50] {
+        for n in [0, 1, TREE_FROM - 1, TREE_FROM, 200] {
             let mut list = PrimitiveList::default();
             (0..n).for_each(|_| list.push(&[sphere]));
             list.build_tree();

@@ -125,44 +125,29 @@ pub fn choose<M, C: Copy>(
 ) {
     let prediction = f64::from(prediction);
     let equal = EQUAL * prediction;
-    // What touches first: rapier's normal of a group would be that of its first manifold, however far its contacts are.
-    let is_apart = |m: &usize| {
-        let mut gaps = manifolds[*m].points.iter().map(|p| f64::from(p.dist));
-        !gaps.any(|gap| gap <= equal)
-    };
-    let mut order: Vec<usize> = (0..manifolds.len()).collect();
-    order.retain(|m| !manifolds[*m].points.is_empty());
-    order.sort_by_key(is_apart);
-    let mut groups: Vec<([Vector; 2], Vec<Seen>)> = Vec::new();
-    for m in order {
-        let manifold = &manifolds[m];
-        let n = normals(manifold);
-        let known = groups
-            .iter()
-            .position(|(first, _)| first[0].dot(n[0]) >= ONE_NORMAL);
-        let group = known.unwrap_or_else(|| {
-            groups.push((n, Vec::new()));
-            groups.len() - 1
+    let mut left_out = Vec::new();
+    for group in groups(manifolds, equal) {
+        let [n, _] = normals(&manifolds[group[0]]);
+        let [x, y] = n.any_orthonormal_pair().into();
+        let of_group = group.iter().flat_map(|&m| {
+            let points = 0..manifolds[m].points.len();
+            points.map(move |i| [m, i])
         });
-        let (first, seen) = &mut groups[group];
-        let [x, y] = first[0].any_orthonormal_pair().into();
-        for (i, point) in manifold.points.iter().enumerate() {
-            let points = places(manifold, i);
+        let see = |[m, i]: [usize; 2]| {
+            let points = places(&manifolds[m], i);
             let from = points[0] - center;
             let bore = previous
                 .iter()
                 .any(|b| f64::from(b.place.distance(points[side])) < SAME_PLACE * prediction);
-            seen.push(Seen {
+            Seen {
                 contact: [m, i],
                 at: [from.dot(x).into(), from.dot(y).into()],
-                gap: f64::from(point.dist) - if bore { equal } else { 0.0 },
+                gap: f64::from(manifolds[m].points[i].dist) - if bore { equal } else { 0.0 },
                 bore,
-            });
-        }
-    }
-    let mut left_out = Vec::new();
-    for (_, seen) in &mut groups {
-        left_out.extend(without_doubles(seen, SAME_PLACE * prediction));
+            }
+        };
+        let mut seen: Vec<Seen> = of_group.map(see).collect();
+        left_out.extend(without_doubles(&mut seen, SAME_PLACE * prediction));
         if seen.iter().filter(|s| s.gap <= prediction).count() <= SOLVED {
             continue;
         }
@@ -177,7 +162,7 @@ pub fn choose<M, C: Copy>(
         for s in seen.iter_mut() {
             s.gap -= equal * square(s.at) / size;
         }
-        let bear = bearing(seen, prediction);
+        let bear = bearing(&seen, prediction);
         let others = (0..seen.len()).filter(|i| !bear.contains(i));
         left_out.extend(others.map(|i| seen[i].contact));
     }
@@ -186,19 +171,50 @@ pub fn choose<M, C: Copy>(
     for [m, i] in left_out.into_iter().rev() {
         manifolds[m].points.remove(i);
     }
-    for (n, seen) in groups {
-        let first = seen.iter().map(|s| s.contact[0]);
-        if let Some(first) = first.filter(|m| !manifolds[*m].points.is_empty()).min() {
+    for group in groups(manifolds, equal) {
+        let n = normals(&manifolds[group[0]]);
+        if let Some(first) = group.into_iter().min() {
             turn_to(&mut manifolds[first], n);
         }
     }
 }
 
-/// Gives a manifold these normals out of both bodies, each in its body's frame.
+/// The manifolds that have contacts, in groups of about one normal, as rapier makes them. Its normal of a group is that of
+/// the first manifold, however far apart that is; here those that touch, up to a gap of `equal`, come first in each.
+fn groups<M, C>(manifolds: &[ContactManifold<M, C>], equal: f64) -> Vec<Vec<usize>> {
+    let is_apart = |m: &usize| {
+        let mut gaps = manifolds[*m].points.iter().map(|p| f64::from(p.dist));
+        !gaps.any(|gap| gap <= equal)
+    };
+    let mut order: Vec<usize> = (0..manifolds.len()).collect();
+    order.retain(|m| !manifolds[*m].points.is_empty());
+    order.sort_by_key(is_apart);
+    let mut groups: Vec<(Vector, Vec<usize>)> = Vec::new();
+    for m in order {
+        let [n, _] = normals(&manifolds[m]);
+        match groups
+            .iter_mut()
+            .find(|(first, _)| first.dot(n) >= ONE_NORMAL)
+        {
+            Some((_, group)) => group.push(m),
+            None => groups.push((n, vec![m])),
+        }
+    }
+    groups.into_iter().map(|(_, group)| group).collect()
+}
+
+/// Turns a manifold to these normals out of both bodies, each in its body's frame; gaps are told along them.
 fn turn_to<M, C>(manifold: &mut ContactManifold<M, C>, [n1, n2]: [Vector; 2]) {
+    let turn = normals(manifold)[0].dot(n1);
     let in_part = |pose: Option<&Pose>, n: Vector| pose.map_or(n, |p| p.rotation.inverse() * n);
-    manifold.local_n1 = in_part(manifold.subshape_pos1(), n1);
-    manifold.local_n2 = in_part(manifold.subshape_pos2(), n2);
+    let [to1, to2] = [
+        in_part(manifold.subshape_pos1(), n1),
+        in_part(manifold.subshape_pos2(), n2),
+    ];
+    if manifold.local_n1 != to1 {
+        (manifold.local_n1, manifold.local_n2) = (to1, to2);
+        manifold.points.iter_mut().for_each(|p| p.dist *= turn);
+    }
 }
 
 /// Takes out the contacts that have a deeper one within `radius`: neighbours meet in the sphere they
