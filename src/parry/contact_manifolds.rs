@@ -3,7 +3,7 @@
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
 use super::contact_reduction;
-use super::convex_parts::{Part, child_reach, slack};
+use super::convex_parts::{Part, child_reach, part_number, slack};
 use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
@@ -20,7 +20,7 @@ use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     Unsupported,
 };
-use parry3d::shape::{Shape, TypedShape};
+use parry3d::shape::{Compound, Shape, TypedShape};
 
 impl MedialDispatcher {
     fn count_manifolds(&self, manifolds: usize) {
@@ -91,16 +91,19 @@ impl MedialDispatcher {
                 TypedShape::TriMesh(_) | TypedShape::HeightField(_) => {
                     false_contacts::correct(manifolds, (mesh, side), (other, &pose), prediction);
                     inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
-                    leave_out_ghosts(manifolds, (mesh, side), (other, &pose));
+                    leave_out_ghosts(manifolds, (mesh, side), &pose);
                 }
                 TypedShape::Voxels(voxels) => {
                     voxel_normals::correct(manifolds, (mesh, side), (voxels, &pose), prediction);
-                    leave_out_ghosts(manifolds, (mesh, side), (other, &pose));
+                    leave_out_ghosts(manifolds, (mesh, side), &pose);
                 }
                 _ if goes_on.is_none() => {
                     // First, so that none is turned to the normal of one that it is a ghost of.
-                    leave_out_ghosts(manifolds, (mesh, side), (other, &pose));
+                    leave_out_ghosts(manifolds, (mesh, side), &pose);
                     touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
+                    if let TypedShape::Compound(compound) = other.as_typed_shape() {
+                        leave_out_childrens_ghosts(manifolds, (mesh, side), (compound, &pose));
+                    }
                     deep_pieces::leave_out(manifolds, (mesh, side), (other, &pose));
                 }
                 _ => {}
@@ -127,38 +130,42 @@ impl MedialDispatcher {
     }
 }
 
-/// Leaves out ghost contacts: of the mesh's parts, and of a compound's children. The mesh is body `side` of the manifolds,
-/// and the other shape at `pose` in its frame.
+/// Leaves out ghost contacts of the mesh's parts. The mesh is body `side` of the manifolds, and the other shape at `pose` in
+/// its frame.
 fn leave_out_ghosts<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
-    (other, pose): (&dyn Shape, &Pose),
+    pose: &Pose,
 ) {
-    let slack = slack(mesh, pose);
     let reach = |part, n| Part::of(mesh, part).reach(n);
-    leave_out_ghosts_of(manifolds, side, reach, slack);
-    if let TypedShape::Compound(compound) = other.as_typed_shape() {
-        leave_out_ghosts_of(
-            manifolds,
-            1 - side,
-            |child, n| child_reach(compound, child, n),
-            slack,
-        );
-    }
+    leave_out_ghosts_of(manifolds, (side, reach), |child| child, slack(mesh, pose));
 }
 
-/// Leaves out ghost contacts of the parts of body `side`, which reach as far as `reach` tells.
+/// Leaves out ghost contacts of a compound's children, as [`leave_out_ghosts`] does of the mesh's parts. Level neighbours are
+/// told by normals that are right.
+fn leave_out_childrens_ghosts<M, C>(
+    manifolds: &mut [ContactManifold<M, C>],
+    (mesh, side): (&MedialMesh, usize),
+    (compound, pose): (&Compound, &Pose),
+) {
+    let reach = |child, n| child_reach(compound, child, n);
+    let number = |primitive| part_number(mesh, primitive);
+    leave_out_ghosts_of(manifolds, (1 - side, reach), number, slack(mesh, pose));
+}
+
+/// Leaves out ghost contacts of the parts of body `side`, which reach as far as `reach` tells; `number` is that of the other
+/// shape's convex part.
 fn leave_out_ghosts_of<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
-    side: usize,
-    reach: impl Fn(u32, Vector) -> Real,
+    (side, reach): (usize, impl Fn(u32, Vector) -> Real),
+    number: impl Fn(u32) -> u32,
     slack: Real,
 ) {
     let seen = |m: &ContactManifold<M, C>, i: usize| {
         let parts = [m.subshape1, m.subshape2];
         PartContact {
             part: parts[side],
-            other: parts[1 - side],
+            other: number(parts[1 - side]),
             place: contact_reduction::places(m, i)[side],
             normal: contact_reduction::normals(m)[side],
             gap: m.points[i].dist,

@@ -139,7 +139,7 @@ fn what_runs_over_medial_plates_keeps_its_speed() {
 ///
 /// Symptom: cubes, bricks, cards and L's that slid over a level hull, cylinder or compound, far from any edge, or over the end
 /// of a cuboid, were thrown up by as much as 1.8 m/s. Cause: where a sharp edge just touches a face, the normals that parry's
-/// iterations find are noise.
+/// iterations find are noise. On a compound of tiles the next tile's side had contacts ahead.
 #[test]
 fn sharp_bodies_keep_their_speed_over_level_solids() {
     let below = |shape| (Vector::Y * -0.5, shape);
@@ -154,6 +154,14 @@ fn sharp_bodies_keep_their_speed_over_level_solids() {
     };
     let parts = [-2.0, 2.0].map(|z| (Pose::translation(0.0, 0.0, z), half(z).1));
     let (points, _) = Cuboid::new(Vector::new(4.0, 0.5, 4.0)).to_trimesh();
+    let tile = |k: usize| {
+        Pose::translation(
+            0.25 * (k / 8) as Real - 3.0,
+            0.0,
+            0.25 * (k % 8) as Real - 0.875,
+        )
+    };
+    let tiles = (0..200).map(|k| (tile(k), SharedShape::cuboid(0.125, 0.5, 0.125)));
     let grounds = [
         ("hull", vec![below(hull(&points))]),
         ("octagon", vec![below(hull(&octagon()))]),
@@ -161,6 +169,10 @@ fn sharp_bodies_keep_their_speed_over_level_solids() {
         (
             "compound",
             vec![below(SharedShape::compound(parts.to_vec()))],
+        ),
+        (
+            "compound of tiles",
+            vec![below(SharedShape::compound(tiles.collect()))],
         ),
         ("two cuboids", vec![half(-2.0), half(2.0)]),
         ("beam", vec![below(SharedShape::cuboid(4.0, 0.5, 0.1))]),
@@ -171,6 +183,10 @@ fn sharp_bodies_keep_their_speed_over_level_solids() {
             for speed in [0.5, 2.0, 6.0] {
                 // On the beam rapier's own L tips over, and what comes slowly wanders off its side.
                 if ground == "beam" && (slider.name == "L" || speed == 0.5) {
+                    continue;
+                }
+                // There rapier's own capsule is thrown up by 0.43 m/s, too.
+                if ground == "compound of tiles" && slider.name == "capsule" {
                     continue;
                 }
                 for turned in [0.0, 0.4, 2.0] {
