@@ -21,7 +21,7 @@ pub struct Node {
 }
 
 /// The children of a [`Node`], or its primitive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NodeKind {
     /// One primitive.
     Primitive(u32),

@@ -21,7 +21,7 @@ fn hull_of([a, b, c]: [MedialSphere; 3], len: usize) -> Hull {
 }
 
 /// A sphere as a hull.
-fn sphere_of((center, radius): (Vector, Real)) -> Hull {
+fn hull_of_sphere((center, radius): (Vector, Real)) -> Hull {
     ([MedialSphere::new(center, radius); 4], 1)
 }
 
@@ -29,10 +29,6 @@ fn sphere_of((center, radius): (Vector, Real)) -> Hull {
 pub trait PrimitiveTree {
     /// Number of root nodes; they are the nodes `0..roots()`.
     fn roots(&self) -> u32;
-    /// Number of primitives that were put together for the search; 1 of a body with a hierarchy of its own.
-    fn loose_primitives(&self) -> u32 {
-        1
-    }
     /// Bounding sphere of a node.
     fn bound(&self, node: u32) -> (Vector, Real);
     /// Contents of a node.
@@ -40,7 +36,7 @@ pub trait PrimitiveTree {
     /// One to four spheres whose hull holds what is below a node, a tighter bound than its sphere: those of its
     /// primitive, or the corners of a swept rectangle. By default the node's sphere.
     fn hull(&self, node: u32) -> Hull {
-        sphere_of(self.bound(node))
+        hull_of_sphere(self.bound(node))
     }
     /// Spheres of a primitive (unused entries repeat the last one), and which edges and spheres it tests.
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], OwnedFeatures);
@@ -146,6 +142,7 @@ pub struct PrimitiveList {
 impl PrimitiveList {
     /// Adds a primitive of 1 to 3 spheres; others are ignored.
     pub fn push(&mut self, spheres: &[MedialSphere]) {
+        debug_assert!(!self.has_tree, "a primitive after the tree was built");
         let &[a, ..] = spheres else { return };
         let get = |i: usize| spheres.get(i).copied();
         let b = get(1).unwrap_or(a);
@@ -192,7 +189,9 @@ impl PrimitiveList {
         self.nodes.extend([leaves[0]; 2]);
         let axis = (0..3).fold(0, |a, k| if spread[k] > spread[a] { k } else { a });
         let middle = leaves.len() / 2;
-        leaves.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
+        leaves.select_nth_unstable_by(middle, |a, b| {
+            a.0[axis].total_cmp(&b.0[axis]).then(a.2.cmp(&b.2))
+        });
         let (low, high) = leaves.split_at_mut(middle);
         self.fill(first, low);
         self.fill(first + 1, high);
@@ -227,11 +226,8 @@ impl PrimitiveTree for PrimitiveList {
     fn roots(&self) -> u32 {
         match self.has_tree {
             true => 1,
-            false => self.loose_primitives(),
+            false => self.primitives.len() as u32,
         }
-    }
-    fn loose_primitives(&self) -> u32 {
-        self.primitives.len() as u32
     }
     fn bound(&self, node: u32) -> (Vector, Real) {
         let (center, radius, _) = self.nodes[node as usize];
@@ -246,7 +242,7 @@ impl PrimitiveTree for PrimitiveList {
                 let (spheres, len) = self.primitives[index as usize];
                 hull_of(spheres, len)
             }
-            NodeKind::Nodes(..) => sphere_of(self.bound(node)),
+            NodeKind::Nodes(..) => hull_of_sphere(self.bound(node)),
         }
     }
     fn primitive(&self, index: u32) -> ([MedialSphere; 3], OwnedFeatures) {

@@ -42,8 +42,8 @@ const WORK: u64 = 1 << 19;
 /// Work of one look at two convex pieces, in elementary tests.
 pub(super) const LOOK: u64 = 16;
 
-/// Pieces whose pairs of loose primitives do not count as work. As above.
-const LOOSE_PIECES: u64 = 64;
+/// Pieces whose pairs of roots do not count as work. As above.
+const ROOT_PIECES: u64 = 64;
 
 /// Angle in radians that a piece of the search turns at most: the sagitta is then below 3 % of the
 /// lever arm. Larger pieces cull worse, smaller ones repeat the walk down the trees.
@@ -170,11 +170,10 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
     fn begin(&mut self) -> bool {
         let fastest = self.motions[0].angle().max(self.motions[1].angle());
         self.all_pieces = (fastest / PIECE_ANGLE).ceil().max(1.0);
-        let (one, other) = (self.sides.0.body, self.sides.1.body);
-        // Bodies of many loose primitives, such as terrain, pay for them in each piece.
-        let loose = [one.loose_primitives(), other.loose_primitives()].map(u64::from);
-        self.budget = WORK + LOOSE_PIECES * loose[0] * loose[1];
-        let any = one.roots() > 0 && other.roots() > 0;
+        let roots = [self.sides.0.body.roots(), self.sides.1.body.roots()].map(u64::from);
+        // Bodies of many roots pay for them in each piece.
+        self.budget = WORK + ROOT_PIECES * roots[0] * roots[1];
+        let any = !roots.contains(&0);
         if any {
             self.next_piece();
         }

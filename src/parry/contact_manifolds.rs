@@ -3,7 +3,7 @@
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
 use super::contact_reduction;
-use super::convex_parts::{Part, child_reach, part_number, slack};
+use super::convex_parts::{Part, child_reach, part_number, slack, slack_of};
 use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
@@ -111,7 +111,7 @@ impl MedialDispatcher {
             if goes_on != Some(true) {
                 contact_reduction::transfer_impulses(manifolds, &previous, prediction, side);
             }
-            contact_reduction::choose(manifolds, center, prediction, &previous, side);
+            contact_reduction::choose(manifolds, (pos12, center), prediction, &previous, side);
             if goes_on.is_some() {
                 manifolds.retain(|m| !m.points.is_empty());
             }
@@ -124,7 +124,7 @@ impl MedialDispatcher {
             let contacts = &found.contacts;
             manifolds::write_manifolds(meshes, contacts, pos12, prediction, manifolds);
         });
-        contact_reduction::choose(manifolds, center, prediction, &previous, side);
+        contact_reduction::choose(manifolds, (pos12, center), prediction, &previous, side);
         self.count_manifolds(manifolds.len());
         Ok(())
     }
@@ -141,8 +141,8 @@ fn leave_out_ghosts<M, C>(
     leave_out_ghosts_of(manifolds, (side, reach), |child| child, slack(mesh, pose));
 }
 
-/// Leaves out ghost contacts of a compound's children, as [`leave_out_ghosts`] does of the mesh's parts. Level neighbours are
-/// told by normals that are right.
+/// Leaves out ghost contacts of a compound's children, as [`leave_out_ghosts`] does of the mesh's parts. Call it once
+/// normals are corrected: wrong ones hide that neighbours are level.
 fn leave_out_childrens_ghosts<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
@@ -150,7 +150,8 @@ fn leave_out_childrens_ghosts<M, C>(
 ) {
     let reach = |child, n| child_reach(compound, child, n);
     let number = |primitive| part_number(mesh, primitive);
-    leave_out_ghosts_of(manifolds, (1 - side, reach), number, slack(mesh, pose));
+    let slack = slack(mesh, pose) + slack_of(compound);
+    leave_out_ghosts_of(manifolds, (1 - side, reach), number, slack);
 }
 
 /// Leaves out ghost contacts of the parts of body `side`, which reach as far as `reach` tells; `number` is that of the other

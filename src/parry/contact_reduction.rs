@@ -118,7 +118,7 @@ pub fn transfer_impulses<M, C: Default + Copy>(
 /// (in the first body's frame). `previous` are the contacts that did so in the step before, on body `side`.
 pub fn choose<M, C: Copy>(
     manifolds: &mut [ContactManifold<M, C>],
-    center: Vector,
+    (pos12, center): (&Pose, Vector),
     prediction: Real,
     previous: &[PreviousContact<C>],
     side: usize,
@@ -173,14 +173,15 @@ pub fn choose<M, C: Copy>(
     }
     for group in groups(manifolds, equal) {
         let n = normals(&manifolds[group[0]]);
-        if let Some(first) = group.into_iter().min() {
-            turn_to(&mut manifolds[first], n);
+        let first = group.iter().copied().fold(group[0], usize::min);
+        if first != group[0] {
+            turn_to(&mut manifolds[first], n, pos12);
         }
     }
 }
 
-/// The manifolds that have contacts, in groups of about one normal, as rapier makes them. Its normal of a group is that of
-/// the first manifold, however far apart that is; here those that touch, up to a gap of `equal`, come first in each.
+/// The manifolds that have contacts, in groups of about one normal, much as rapier makes them. Its normal of a group is that
+/// of the first manifold, however far apart that is; here those that touch, up to a gap of `equal`, come first in each.
 fn groups<M, C>(manifolds: &[ContactManifold<M, C>], equal: f64) -> Vec<Vec<usize>> {
     let is_apart = |m: &usize| {
         let mut gaps = manifolds[*m].points.iter().map(|p| f64::from(p.dist));
@@ -204,16 +205,13 @@ fn groups<M, C>(manifolds: &[ContactManifold<M, C>], equal: f64) -> Vec<Vec<usiz
 }
 
 /// Turns a manifold to these normals out of both bodies, each in its body's frame; gaps are told along them.
-fn turn_to<M, C>(manifold: &mut ContactManifold<M, C>, [n1, n2]: [Vector; 2]) {
-    let turn = normals(manifold)[0].dot(n1);
+fn turn_to<M, C>(manifold: &mut ContactManifold<M, C>, [n1, n2]: [Vector; 2], pos12: &Pose) {
     let in_part = |pose: Option<&Pose>, n: Vector| pose.map_or(n, |p| p.rotation.inverse() * n);
-    let [to1, to2] = [
-        in_part(manifold.subshape_pos1(), n1),
-        in_part(manifold.subshape_pos2(), n2),
-    ];
-    if manifold.local_n1 != to1 {
-        (manifold.local_n1, manifold.local_n2) = (to1, to2);
-        manifold.points.iter_mut().for_each(|p| p.dist *= turn);
+    manifold.local_n1 = in_part(manifold.subshape_pos1(), n1);
+    manifold.local_n2 = in_part(manifold.subshape_pos2(), n2);
+    for i in 0..manifold.points.len() {
+        let [p1, p2] = places(manifold, i);
+        manifold.points[i].dist = n1.dot(pos12 * p2 - p1);
     }
 }
 

@@ -73,9 +73,15 @@ pub fn child_of<'a>(
 /// How far a child of a compound reaches along a unit direction of the compound's frame, a length; infinitely far where no
 /// support map tells.
 pub fn child_reach(compound: &Compound, child: u32, n: Vector) -> Real {
-    let (pose, shape) = &compound.shapes()[child as usize];
-    let support = shape.as_support_map();
-    support.map_or(Real::MAX, |map| n.dot(map.support_point(pose, n)))
+    let support = compound.shapes().get(child as usize);
+    let support = support.and_then(|(pose, shape)| Some((pose, shape.as_support_map()?)));
+    support.map_or(Real::MAX, |(pose, map)| n.dot(map.support_point(pose, n)))
+}
+
+/// Slack of heights of a compound's children, a length.
+pub fn slack_of(compound: &Compound) -> Real {
+    let bounds = compound.local_aabb();
+    SLACK * bounds.mins.abs().max(bounds.maxs.abs()).max_element()
 }
 
 /// Slack of heights of a mesh's parts, a length, where the other shape is at `pose` in the mesh's frame.

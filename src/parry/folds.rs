@@ -117,7 +117,11 @@ pub fn correct_normal(
         may_fold.then(|| at_fold().or_else(comes_to_lie))?
     });
     if let Some(n) = normal {
-        toi.normal = poses[1].rotation * -n;
+        let turned = poses[1].rotation * -n;
+        // The points stay below the sphere that meets the ground: beside it they would turn a ball that rolls.
+        let by = (turned - toi.normal) * toi.spheres[0].radius;
+        toi.normal = turned;
+        toi.points = toi.points.map(|p| p + by);
         // The spheres that met tell of another normal. Where that of a solid's face stays as it is they are kept: heaps hand
         // impulses on through them.
         let same = |_: &_| sliding.is_over_solids && n.dot(met.normal) >= SAME_NORMAL;

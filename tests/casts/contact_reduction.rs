@@ -3,7 +3,7 @@
 
 use rapier3d::parry::query::{ContactManifold, TrackedContact};
 use rapier3d::parry::shape::PackedFeatureId;
-use rapier3d_medial::math::{Real, Vector};
+use rapier3d_medial::math::{Pose, Real, Vector};
 use rapier3d_medial::parry::contact_reduction::{choose, previous};
 
 type Manifold = ContactManifold<(), ()>;
@@ -77,7 +77,13 @@ fn the_facet_under_the_load_bears() {
             .collect();
         let mut all = manifolds(&contacts);
         let before = previous(&all[..0], 0);
-        choose(&mut all, Vector::ZERO, prediction, &before, 0);
+        choose(
+            &mut all,
+            (&Pose::IDENTITY, Vector::ZERO),
+            prediction,
+            &before,
+            0,
+        );
         let kept: Vec<[Real; 3]> = all
             .iter()
             .flat_map(|m| &m.points)
@@ -117,7 +123,7 @@ fn deep_contacts_stay_where_the_body_tips_over() {
             .collect();
         let deepest = contacts.iter().map(|c| c[2]).fold(0.0, Real::min);
         let mut all = manifolds(&contacts);
-        choose(&mut all, Vector::ZERO, 0.002, &[], 0);
+        choose(&mut all, (&Pose::IDENTITY, Vector::ZERO), 0.002, &[], 0);
         let mut kept = all.iter().flat_map(|m| &m.points);
         // The contacts are within 1.3 m of the load.
         assert!(kept.any(|p| p.dist < deepest + 0.026), "{case}: {deepest}");
@@ -135,9 +141,14 @@ fn what_touches_gives_its_normal_to_the_group() {
         all.push(all[0].clone());
         (all[0].points, all[0].local_n1, all[0].local_n2) = (points, tilted, -tilted);
         (all[1].points, all[1].subshape2) = (rest, 1);
-        choose(&mut all, Vector::ZERO, 0.02, &[], 0);
+        choose(&mut all, (&Pose::IDENTITY, Vector::ZERO), 0.02, &[], 0);
         assert!(all[0].local_n1.distance(expected) < 1.0e-6, "{gap}");
         assert_eq!(all[0].local_n2, -all[0].local_n1);
         assert_eq!(all[1].local_n1, Vector::Y);
+        let told = all[0].points[0];
+        let along = all[0].local_n1.dot(told.local_p2 - told.local_p1);
+        // What touches is left as it was.
+        let expected = if gap > 0.0 { along } else { gap };
+        assert!((told.dist - expected).abs() < 1.0e-7, "{gap}");
     }
 }

@@ -185,14 +185,19 @@ fn sharp_bodies_keep_their_speed_over_level_solids() {
                 if ground == "beam" && (slider.name == "L" || speed == 0.5) {
                     continue;
                 }
-                // There rapier's own capsule is thrown up by 0.43 m/s, too.
-                if ground == "compound of tiles" && slider.name == "capsule" {
-                    continue;
-                }
                 for turned in [0.0, 0.4, 2.0] {
                     let run = (speed, Vector::ZERO);
                     let ground_of = (shapes.clone(), 0.0);
                     let run = along(&ground_of, (&body, slider.low), run, turned);
+                    // Over the tiles rapier's own capsule trips.
+                    if ground == "compound of tiles" && slider.name == "capsule" {
+                        let own = ColliderBuilder::new(slider.own.clone());
+                        let velocity = (speed, Vector::ZERO);
+                        let own = along(&ground_of, (&own, slider.low), velocity, turned);
+                        let is_better = run.least >= own.least && run.up <= own.up;
+                        assert!(is_better, "{run:?} at {speed} m/s, rapier's own {own:?}");
+                        continue;
+                    }
                     assert!(
                         run.is_level(speed),
                         "{} over a {ground} at {speed} m/s, turned by {turned}: {run:?}",

@@ -15,7 +15,7 @@ use crate::meshing::axis::shrinking_ball::shrink;
 use crate::meshing::axis::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
-use crate::meshing::geometry::chunks::map_each;
+use crate::meshing::geometry::chunks::{COSTLY, map_each};
 use crate::meshing::geometry::random::Random;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
@@ -35,6 +35,9 @@ const FAR: f64 = 2.0;
 
 /// Tetrahedra around an edge at most; more are of samples on a circle, in the jitter's order.
 const LONGEST_RING: usize = 400;
+
+/// Tetrahedra between two reports of progress.
+const AT_A_TIME: usize = 4096;
 
 /// Samples of one group, at a crease that fades within it, differ by more than this cosine.
 const FADING: f64 = 0.9;
@@ -122,10 +125,13 @@ impl Clipper<'_> {
     fn add_balls(&mut self, points: &[Point], watch: &mut Watch) -> Result<(), BuildError> {
         let bounds = Bounds::of(self.samples.iter().map(|s| s.point));
         let all: Vec<u32> = (0..self.delaunay.tetrahedra.len() as u32).collect();
-        let tangents = map_each(&all, watch, |&t| self.ball_in(t, points, &bounds))?;
-        for (t, tangent) in tangents.into_iter().enumerate() {
-            if let Some(tangent) = tangent {
-                self.ball_of[t] = self.mesh.push(tangent);
+        for part in all.chunks(AT_A_TIME) {
+            watch.at(f64::from(part[0]) / all.len() as f64)?;
+            let tangents = map_each(COSTLY, part, watch, |&t| self.ball_in(t, points, &bounds))?;
+            for (t, tangent) in part.iter().zip(tangents) {
+                if let Some(tangent) = tangent {
+                    self.ball_of[*t as usize] = self.mesh.push(tangent);
+                }
             }
         }
         for (t, neighbors) in self.delaunay.neighbors.iter().enumerate() {
@@ -139,7 +145,7 @@ impl Clipper<'_> {
         Ok(())
     }
 
-    /// The ball of a tetrahedron whose circumcentre is inside the solid and near its surface's `bounds`.
+    /// The ball of a tetrahedron whose circumcentre is inside the solid, and inside the bounds of the samples.
     fn ball_in(&self, tetrahedron: u32, points: &[Point], bounds: &Bounds) -> Option<Tangent> {
         let corners = self.delaunay.tetrahedra[tetrahedron as usize];
         if corners.iter().any(|&v| v as usize >= self.samples.len()) {

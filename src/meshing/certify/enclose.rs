@@ -8,14 +8,14 @@
 //!
 //! # Certificate
 //! Balls, cones and slabs are convex. A triangle whose three corners lie in one primitive therefore
-//! lies in it whole. Other triangles are cut where one primitive's part of them ends (`seams.rs`), or halved; a
+//! lies in it whole. Other triangles are cut where one primitive's part of them ends (`coverage_cuts.rs`), or halved; a
 //! piece of the smallest size that no primitive contains makes the one that needs least grow by its worst
 //! corner. The certificate is complete when a pass over all triangles finds no such piece; it holds up to
 //! rounding.
 
 use crate::error::BuildError;
+use crate::meshing::certify::coverage_cuts::{Cut, cut_covered};
 use crate::meshing::certify::primitive_tree::PrimitiveTree;
-use crate::meshing::certify::seams::{Cut, cut_at_seam};
 use crate::meshing::draft::{Draft, Signed};
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::random::Random;
@@ -213,8 +213,9 @@ impl Prover<'_> {
 
     /// Cuts a piece along what one of two primitives covers of it.
     fn cut(&self, piece: &[Point; 3], primitives: [u32; 2]) -> Option<(u32, Cut)> {
-        primitives.into_iter().find_map(|by| {
-            let cut = cut_at_seam(piece, |p| self.tree.distance_to(by, p).distance)?;
+        let tried = if primitives[0] == primitives[1] { 1 } else { 2 };
+        primitives[..tried].iter().find_map(|&by| {
+            let cut = cut_covered(piece, |p| self.tree.distance_to(by, p).distance)?;
             Some((by, cut))
         })
     }

@@ -17,9 +17,9 @@ const CHUNK: usize = 512;
 /// on one core, below the 0.2 s within which a cancelled build returns.
 const BATCH: usize = 16;
 
-/// Items of a chunk that take ten times as long each as a look-up, and a hundred times.
-const SOME: usize = 32;
-const FEW: usize = 2;
+/// Items of a chunk that take some ten times as long each as a look-up, and some hundred times.
+pub const COSTLY: usize = 32;
+pub const VERY_COSTLY: usize = 2;
 
 /// Joins what `map` makes of each chunk of `items`, in order.
 pub fn map_chunks<T: Sync, R: Send>(
@@ -30,22 +30,16 @@ pub fn map_chunks<T: Sync, R: Send>(
     map_chunks_of(CHUNK, items, watch, map)
 }
 
-/// What `map` makes of each item, in order, where each takes several look-ups.
+/// What `map` makes of each item, in order, in chunks of [`COSTLY`] or [`VERY_COSTLY`] items.
 pub fn map_each<T: Sync, R: Send>(
+    chunk: usize,
     items: &[T],
     watch: &mut Watch,
     map: impl Fn(&T) -> R + Sync,
 ) -> Result<Vec<R>, BuildError> {
-    map_chunks_of(SOME, items, watch, |chunk| chunk.iter().map(&map).collect())
-}
-
-/// The same where each takes long.
-pub fn map_long<T: Sync, R: Send>(
-    items: &[T],
-    watch: &mut Watch,
-    map: impl Fn(&T) -> R + Sync,
-) -> Result<Vec<R>, BuildError> {
-    map_chunks_of(FEW, items, watch, |chunk| chunk.iter().map(&map).collect())
+    map_chunks_of(chunk, items, watch, |chunk| {
+        chunk.iter().map(&map).collect()
+    })
 }
 
 fn map_chunks_of<T: Sync, R: Send>(

@@ -13,7 +13,7 @@ use crate::meshing::certify::inside::Solid;
 use crate::meshing::certify::prepared_primitives::Prepared;
 use crate::meshing::draft::{Ball, Corners, Signed};
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::geometry::chunks::map_long;
+use crate::meshing::geometry::chunks::{VERY_COSTLY, map_each};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::refine::residuals::GUESS;
 use crate::meshing::simplify::collapse::Simplifier;
@@ -164,7 +164,7 @@ impl<'a> Measure<'a> {
         accepted: f64,
         watch: &mut Watch,
     ) -> Result<Vec<Candidate>, BuildError> {
-        map_long(edges, watch, |&edge| {
+        map_each(VERY_COSTLY, edges, watch, |&edge| {
             let (measured, _) = self.best(s, edge, accepted);
             let (quadric, _) = s.merge(edge[0], edge[1]);
             Candidate {

@@ -1,8 +1,10 @@
 //! Cuts a piece of a face where the part that one primitive covers ends.
 //!
-//! Primitives are convex, so their signed distance is convex along an edge of a piece: what is covered of it is one interval,
-//! and the polygon through the ends of the intervals is covered whole. Halves of halves would go on along the whole seam at
-//! which one primitive's part ends and the next one's begins.
+//! The signed distance to a primitive is the least `|p − c| − r` over its balls. That is convex in the point and the ball's
+//! weights together, so its minimum over the weights is convex in the point (Boyd and Vandenberghe, *Convex Optimization*,
+//! 2004, §3.2.5). What a primitive covers of an edge of a piece is therefore one interval, and the polygon through the ends
+//! of the intervals is covered whole. Halves of halves would go on along the whole line at which one primitive's part ends
+//! and the next one's begins.
 
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::subdivide::longest_edge_sq;
@@ -33,7 +35,7 @@ pub struct Cut {
 
 /// Cuts a piece along what the primitive of this signed distance covers of its edges; `None` where that is hardly
 /// anything of the piece.
-pub fn cut_at_seam(t: &[Point; 3], distance: impl Fn(Point) -> f64) -> Option<Cut> {
+pub fn cut_covered(t: &[Point; 3], distance: impl Fn(Point) -> f64) -> Option<Cut> {
     if 2.0 * area(t) < LEAST_HEIGHT * longest_edge_sq(t).sqrt() {
         return None;
     }
@@ -54,7 +56,7 @@ pub fn cut_at_seam(t: &[Point; 3], distance: impl Fn(Point) -> f64) -> Option<Cu
             polygon.extend([(k, at(start)), (k, at(end))]);
         }
     }
-    let inner: Vec<[Point; 3]> = fan(polygon.iter().map(|corner| corner.1).collect());
+    let mut inner: Vec<[Point; 3]> = fan(polygon.iter().map(|corner| corner.1).collect());
     if inner.iter().map(area).sum::<f64>() < LEAST_SHARE * area(t) {
         return None;
     }
@@ -69,6 +71,7 @@ pub fn cut_at_seam(t: &[Point; 3], distance: impl Fn(Point) -> f64) -> Option<Cu
             .chain([start])
             .collect()));
     }
+    inner.retain(|part| area(part) > 0.0);
     outer.retain(|part| area(part) > 0.0);
     Some(Cut { inner, outer })
 }
@@ -162,15 +165,16 @@ mod tests {
 
     fn holds(&[a, b, c]: &[Point; 3], p: Point) -> bool {
         let normal = (b - a).cross(c - a);
-        [(a, b), (b, c), (c, a)]
-            .iter()
-            .all(|&(from, to)| normal.dot((to - from).cross(p - from)) >= -1e-12)
+        let is_left =
+            |(from, to): (Point, Point)| normal.dot((to - from).cross(p - from)) >= -1e-12;
+        assert!(normal.length() > 1e-9, "a part without area");
+        [(a, b), (b, c), (c, a)].into_iter().all(is_left)
     }
 
     /// Cuts where a ball ends; the parts are the whole, and the inner ones lie in the ball.
     fn cut_by_ball(piece: [Point; 3], center: Point, radius: f64) -> Option<Cut> {
         let distance = |p: Point| (p - center).length() - radius;
-        let cut = cut_at_seam(&piece, distance)?;
+        let cut = cut_covered(&piece, distance)?;
         let whole: f64 = cut.inner.iter().chain(&cut.outer).map(area).sum();
         assert!((whole / area(&piece) - 1.0).abs() < 1e-9, "{whole}");
         for corner in cut.inner.iter().flatten() {
