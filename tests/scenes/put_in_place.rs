@@ -65,22 +65,20 @@ fn heap(seed: u64) -> Heap {
 const SEEDS: u64 = 24;
 
 /// Symptom: a pair that was deep because a body had got another shape was held by the event loop for ever, two or three bodies
-/// in each step. In the same heaps rapier's own are 1.0 to 6.9 mm in each other in the end, one of these 24 more than 5, and 1.87
-/// in the mean; they are not stepped here because rapier panics in debug builds when a compound in contact gets another shape (`tests/known_issues.rs`).
+/// in each step. In the same heaps rapier's own are 1.0 to 6.9 mm in each other in the end, 1.87 in the mean of these seeds;
+/// they are not stepped here because rapier panics in debug builds when a compound in contact gets another shape (`tests/known_issues.rs`).
 #[test]
 fn bodies_that_get_another_shape_in_each_other_come_apart() {
-    let (mut sum, mut deep) = (0.0, 0);
+    let mut sum = 0.0;
     for seed in 0..SEEDS {
         let Heap { depth, frozen } = heap(seed);
         println!("seed {seed}: {depth} m deep, held {frozen} times");
-        assert!(depth < 0.008, "seed {seed}: {depth} m deep");
-        deep += usize::from(depth > 0.005);
+        assert!(depth < 0.0069, "seed {seed}: {depth} m deep");
         assert!(frozen < 10, "seed {seed}: held {frozen} times");
         sum += depth;
     }
     let mean = sum / SEEDS as Real;
     assert!(mean < 0.00187, "{mean} m deep in the mean");
-    assert!(deep < 2, "{deep} heaps deeper than 5 mm");
 }
 
 /// Symptom: what a joint without contacts had held in each other was held so by the event loop once the joint was gone.
