@@ -150,7 +150,10 @@ fn leave_out_childrens_ghosts<M, C>(
 ) {
     let reach = |child, n| child_reach(compound, child, n);
     let number = |primitive| part_number(mesh, primitive);
-    let slack = slack(mesh, pose) + slack_of(compound);
+    let children = manifolds
+        .iter()
+        .map(|m| [m.subshape1, m.subshape2][1 - side]);
+    let slack = slack(mesh, pose) + slack_of(compound, children);
     leave_out_ghosts_of(manifolds, (1 - side, reach), number, slack);
 }
 

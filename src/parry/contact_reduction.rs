@@ -232,11 +232,16 @@ fn without_doubles(seen: &mut Vec<Seen>, radius: f64) -> Vec<[usize; 2]> {
     doubles
 }
 
-/// Four of the contacts: the facet above the origin, and those that make the area over which the body stands largest,
-/// or are farthest from the others where none makes it larger.
+/// Four of the contacts: the facet above the origin, or what of it there is and the deepest, to which the body tips over;
+/// and those that make the area over which the body stands largest, or are farthest from the others where none makes it
+/// larger.
 fn bearing(seen: &[Seen], prediction: f64) -> Vec<usize> {
     let (corners, plane) = facet(seen);
     let mut bear: Vec<usize> = corners.into_iter().flatten().collect();
+    let deepest = (0..seen.len()).min_by(|i, j| seen[*i].gap.total_cmp(&seen[*j].gap));
+    if bear.len() < corners.len() {
+        bear.extend(deepest.filter(|i| !bear.contains(i)));
+    }
     let least = WIDER * seen.iter().map(|s| square(s.at)).fold(0.0, f64::max);
     while bear.len() < SOLVED {
         let chosen: Vec<[f64; 2]> = bear.iter().map(|b| seen[*b].at).collect();

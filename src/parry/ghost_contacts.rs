@@ -13,8 +13,12 @@ use crate::math::{Real, Vector};
 /// Cosine from which two normals are one (0.8°).
 const PARALLEL: Real = 0.9999;
 
-/// Each contact is compared with at most so many deeper ones that are no ghosts.
-const COMPARED: usize = 16;
+/// Distance from which two normals are one.
+const SAME_NORMAL: Real = 1.0e-5;
+
+/// Each contact is compared with at most so many deeper ones that are no ghosts, of those of one part under one normal with
+/// the first: a body that lies on tiles has several contacts with each, and may meet a wall besides.
+const COMPARED: usize = 128;
 
 /// A contact in the frame of a body of convex parts.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +67,12 @@ pub fn ghosts(
                     && beyond(deeper, c.part) <= slack
                     && beyond(c, deeper.part) > c.gap.max(0.0) + slack
             });
-            if !ghosts[i] && kept.len() < COMPARED {
+            let is_known = |k: &&PartContact| {
+                k.part == c.part
+                    && k.normal.distance(c.normal) <= SAME_NORMAL
+                    && k.normal.dot(c.place - k.place).abs() <= slack
+            };
+            if !ghosts[i] && kept.len() < COMPARED && !kept.iter().any(is_known) {
                 kept.push(c);
             }
         }

@@ -139,7 +139,8 @@ fn what_runs_over_medial_plates_keeps_its_speed() {
 ///
 /// Symptom: cubes, bricks, cards and L's that slid over a level hull, cylinder or compound, far from any edge, or over the end
 /// of a cuboid, were thrown up by as much as 1.8 m/s. Cause: where a sharp edge just touches a face, the normals that parry's
-/// iterations find are noise. On a compound of tiles the next tile's side had contacts ahead.
+/// iterations find are noise. On a compound of tiles the next tile's side had contacts ahead, for capsules where a normal was
+/// off by a ten-thousandth. rapier's own capsule trips there.
 #[test]
 fn sharp_bodies_keep_their_speed_over_level_solids() {
     let below = |shape| (Vector::Y * -0.5, shape);
@@ -189,15 +190,6 @@ fn sharp_bodies_keep_their_speed_over_level_solids() {
                     let run = (speed, Vector::ZERO);
                     let ground_of = (shapes.clone(), 0.0);
                     let run = along(&ground_of, (&body, slider.low), run, turned);
-                    // Over the tiles rapier's own capsule trips.
-                    if ground == "compound of tiles" && slider.name == "capsule" {
-                        let own = ColliderBuilder::new(slider.own.clone());
-                        let velocity = (speed, Vector::ZERO);
-                        let own = along(&ground_of, (&own, slider.low), velocity, turned);
-                        let is_better = run.least >= own.least && run.up <= own.up;
-                        assert!(is_better, "{run:?} at {speed} m/s, rapier's own {own:?}");
-                        continue;
-                    }
                     assert!(
                         run.is_level(speed),
                         "{} over a {ground} at {speed} m/s, turned by {turned}: {run:?}",
@@ -235,6 +227,60 @@ fn balls_roll_straight_over_tiles() {
         );
         assert!(at.z.abs() < 0.005, "{} m to the side, at {v} m/s", at.z);
     }
+}
+
+/// A body that slides along a wall of tiles, on a floor of tiles, without friction, keeps its speed.
+///
+/// Symptom: blocks and planks lost two thirds of it (rapier's own nearly all). Cause: they had so many contacts with the
+/// floor that those with the wall were not compared with each other.
+#[test]
+fn bodies_slide_along_tiled_walls() {
+    let half = 0.1;
+    let tile = |at: Vector| {
+        (
+            Pose::from_translation(at),
+            SharedShape::cuboid(half, half, half),
+        )
+    };
+    let places = (0..40 * 12).map(|k| {
+        let (x, across) = (0.2 * (k % 40) as Real - 3.0, 0.2 * (k / 40) as Real + half);
+        [
+            Vector::new(x, -half, across - 0.4),
+            Vector::new(x, across, -0.3),
+        ]
+    });
+    let ground = SharedShape::compound(places.flatten().map(tile).collect());
+    let mut worst: (Real, Real) = (1.0, 1.0);
+    for half in [Vector::new(0.2, 0.08, 0.12), Vector::new(0.5, 0.03, 0.12)] {
+        let bodies = [
+            ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a cuboid")),
+            ColliderBuilder::cuboid(half.x, half.y, half.z),
+        ];
+        for (k, body) in bodies.into_iter().enumerate() {
+            for seed in 0..6 {
+                let mut world = PhysicsWorld::new();
+                let mut pipeline = attached(&mut world);
+                world.insert_collider(ColliderBuilder::new(ground.clone()).friction(0.0), None);
+                let at = Vector::new(0.017 * seed as Real - 2.0, half.y + 0.001, half.z - 0.199);
+                let moving = RigidBodyBuilder::dynamic()
+                    .translation(at)
+                    .linvel(Vector::new(1.0, 0.0, -0.2));
+                let (handle, _) = world.insert(moving, body.clone().friction(0.0));
+                for _ in 0..150 {
+                    pipeline.step(&mut world);
+                    let speed = world.bodies[handle].linvel().x;
+                    let least = if k == 0 { &mut worst.0 } else { &mut worst.1 };
+                    *least = least.min(speed);
+                }
+            }
+        }
+    }
+    assert!(
+        worst.0 > 0.95,
+        "{} of the speed is left, of rapier's own {}",
+        worst.0,
+        worst.1
+    );
 }
 
 /// Two boxes as one mesh: a floor of 100 m, and a step of 0.8 mm on it.

@@ -102,7 +102,7 @@ fn press(medial: bool, seed: u64, gap: Real) -> Pressed {
 #[test]
 fn pressed_bodies_come_out_as_rapiers() {
     for gap in [0.15, 0.08, 0.02] {
-        let seeds = 0..6;
+        let seeds = 0..24;
         // One that leaves the ground, as some of rapier's do, falls for as long as the scene lasts: it counts as thrown to the
         // ground's corner.
         let corner = Real::hypot(5.0, 5.0);
@@ -120,7 +120,7 @@ fn pressed_bodies_come_out_as_rapiers() {
             assert!(p.depth < 0.002, "to {gap} m, seed {seed}: {p:?}");
             assert!(p.queries < 2000, "to {gap} m, seed {seed}: {p:?}");
         }
-        // The mean of six scatters by a fifth.
+        // The mean of six of them scatters by half.
         assert!(thrown[0] < 1.5 * thrown[1], "to {gap} m: {thrown:?}");
     }
 }
