@@ -23,9 +23,6 @@ use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
 use std::collections::BinaryHeap;
 
-/// Slack on the first bound of the distance (a ratio): parry's projections are off by less.
-const SLACK: Real = 1.01;
-
 /// The nearest pair of spheres of `mesh` and `other`, if they are within `max_distance` (a length) of each other.
 /// `pos12` is the pose of `other` in the frame of the mesh; the second primitive index is the subshape of `other`.
 /// If a centre of the mesh is inside `other`, the distance is minus the length of the shortest way out.
@@ -106,7 +103,7 @@ fn reach(mesh: &MedialMesh, other: &dyn Shape, pos21: &Pose, max_distance: Real)
         let distance = inside::most_distance(other, center) - s.radius;
         let sizes = [center, pos21.translation, s.center].map(|p| p.abs().max_element());
         let size = sizes.into_iter().fold(s.radius, |sum, size| sum + size);
-        SLACK * distance.max(0.0) + ROUNDING_ULPS as Real * Real::EPSILON * size
+        inside::PROJECTION_SLACK * distance.max(0.0) + ROUNDING_ULPS as Real * Real::EPSILON * size
     });
     let bound = bounds.filter(|b| b.is_finite()).unwrap_or(Real::MAX);
     // Infinite boxes do not survive transformations.

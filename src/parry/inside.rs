@@ -5,10 +5,15 @@
 //! for which this is smallest. (For a body that is not entirely inside, the way over an edge may be shorter; but a
 //! face is what a solver can push against.)
 
+use super::compound_children::{children_in, least_over_children};
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
+use parry3d::bounding_volume::Aabb;
 use parry3d::query::PointQuery;
 use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, SharedShape, Triangle, TypedShape};
+
+/// Factor by which a distance may exceed the one that parry's projections give: they are off by less.
+pub const PROJECTION_SLACK: Real = 1.01;
 
 /// Whether a body given by its closed surface holds a point (in its own frame). Triangle meshes,
 /// height fields and polylines are surfaces: they hold nothing. Balls, capsules, cylinders and cones are
@@ -27,9 +32,9 @@ pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
         | TypedShape::Cone(_)
         | TypedShape::RoundCylinder(_)
         | TypedShape::RoundCone(_) => false,
-        TypedShape::Compound(c) => c
-            .shapes()
-            .iter()
+        TypedShape::Compound(c) => children_in(c, &Aabb::new(point, point))
+            .into_iter()
+            .map(|child| &c.shapes()[child as usize])
             .any(|(pose, s)| holds_point(s.as_ref(), pose.inverse_transform_point(point))),
         // parry iterates for these, with tolerances in which bodies of centimetres vanish.
         TypedShape::RoundCuboid(c) => beyond_cuboid(&c.inner_shape, point) <= c.border_radius,
@@ -57,10 +62,11 @@ pub fn most_distance(shape: &dyn Shape, point: Vector) -> Real {
         TypedShape::RoundCylinder(c) => c.inner_shape.distance_to_local_point(point, true),
         TypedShape::RoundCone(c) => c.inner_shape.distance_to_local_point(point, true),
         TypedShape::Compound(c) => {
-            let to_child = |(pose, child): &(Pose, SharedShape)| {
-                most_distance(child.as_ref(), pose.inverse_transform_point(point))
+            let to_child = |child: u32| {
+                let (pose, s) = &c.shapes()[child as usize];
+                most_distance(s.as_ref(), pose.inverse_transform_point(point))
             };
-            c.shapes().iter().map(to_child).fold(Real::MAX, Real::min)
+            least_over_children(c, point, PROJECTION_SLACK, to_child)
         }
         _ => shape.distance_to_local_point(point, true),
     }
@@ -149,7 +155,10 @@ pub fn min_translation(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<Mi
                 ..way
             })
         };
-        let ways = c.shapes().iter().filter_map(of_child);
+        let mut centers = Aabb::new_invalid();
+        spheres.iter().for_each(|s| centers.take_point(s.center));
+        let children = children_in(c, &centers).into_iter();
+        let ways = children.filter_map(|child| of_child(&c.shapes()[child as usize]));
         return ways.max_by(|a, b| a.depth.total_cmp(&b.depth));
     }
     if !spheres.iter().any(|s| holds_point(shape, s.center)) {

@@ -1,6 +1,7 @@
 //! The flat faces of parry's shapes: of cuboids and hulls, rounded or not, also in compounds, and of triangle meshes, height
 //! fields and voxels.
 
+use super::compound_children::children_in;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use parry3d::bounding_volume::Aabb;
@@ -87,7 +88,7 @@ pub fn flat_sides(shape: &dyn Shape) -> Vec<(Vector, Real)> {
 }
 
 /// Calls `see` on each flat face of `shape`, placed at `pose`. Of meshes, height fields and voxels those that `region` (in the
-/// frame that it is placed in) meets.
+/// frame that it is placed in) meets; of compounds those of the children in or near it.
 pub fn for_each_flat_face(
     shape: &dyn Shape,
     pose: &Pose,
@@ -125,7 +126,12 @@ pub fn for_each_flat_face(
             }
         }
         TypedShape::Compound(c) => {
-            for (child, s) in c.shapes() {
+            // A mesh counts as over a face up to its radius beyond each side, so that past a corner, and above, it may be
+            // √3 times as far off.
+            let half = region.half_extents();
+            let beyond = Aabb::new(region.mins - half, region.maxs + half);
+            for i in children_in(c, &seen_from(pose, &beyond)) {
+                let (child, s) = &c.shapes()[i as usize];
                 for_each_flat_face(s.as_ref(), &(pose * child), region, see);
             }
         }

@@ -6,6 +6,7 @@
 //! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::axisymmetric_toi`].
 
 use super::axisymmetric::Axisymmetric;
+use super::compound_children::children_in;
 use super::shape_faces::{
     Face, ROUNDING, all_faces, face_corners, for_each_triangle, free_faces, seen_from,
 };
@@ -113,7 +114,7 @@ pub fn thickness(shape: &dyn Shape) -> Real {
 }
 
 /// Adds the surface of `shape`, in whose frame the parts are, as far as it meets `region`, and gives the parts a hierarchy.
-/// Returns `false` for a shape that has no such surface: a custom one.
+/// Returns `false` for a shape that has no such surface: a custom one, or a compound with one in the region.
 pub fn add_shape(parts: &mut Parts, shape: &dyn Shape, region: &Aabb) -> bool {
     let added = add_surface(parts, shape, &Pose::IDENTITY, region);
     parts.primitives.build_tree();
@@ -153,14 +154,15 @@ fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb)
             add_plane(primitives, plane, pose, &seen_from(pose, region));
         }
         TypedShape::Compound(c) => {
-            for (i, (child, s)) in c.shapes().iter().enumerate() {
+            for i in children_in(c, &seen_from(pose, region)) {
+                let (child, s) = &c.shapes()[i as usize];
                 let (primitives, axisymmetric) = (parts.primitives.len(), parts.axisymmetric.len());
                 if !add_surface(parts, s.as_ref(), &(pose * child), region) {
                     return false;
                 }
                 parts.primitive_subshapes.truncate(primitives);
                 parts.axisymmetric_subshapes.truncate(axisymmetric);
-                parts.name(i as u32);
+                parts.name(i);
             }
         }
         _ => return add_elements(parts, shape, pose, region),

@@ -1,6 +1,7 @@
 //! Shape casts of medial meshes against every built-in shape, by [`oracle`], which shares no code with
 //! them.
 
+mod compounds;
 mod contact_reduction;
 mod faces;
 mod flat;
