@@ -3,7 +3,7 @@
 
 use crate::rng::Rng;
 use rapier3d::parry::query::{NonlinearRigidMotion, QueryDispatcher};
-use rapier3d::parry::shape::{Compound, SharedShape};
+use rapier3d::parry::shape::{Compound, Shape, SharedShape};
 use rapier3d_medial::math::{Pose, Real, Vector};
 use rapier3d_medial::{MedialDispatcher, MedialMesh};
 
@@ -45,11 +45,12 @@ fn distances_and_casts_to_a_heap_are_those_to_its_nearest_child() {
         let heap = heap(&mut rng);
         for _ in 0..20 {
             let pose = Pose::new(vector(&mut rng, 6.0), vector(&mut rng, 3.0));
-            let to = |child: &Pose, shape: &dyn rapier3d::parry::shape::Shape| {
+            let to = |child: &Pose, shape: &dyn Shape| {
                 let pos12 = pose.inverse() * *child;
                 dispatcher
                     .distance(&pos12, &mesh, shape)
                     .expect("a distance")
+                    .distance
             };
             let whole = to(&Pose::IDENTITY, &heap);
             let least = heap.shapes().iter().map(|(child, s)| to(child, &**s));
@@ -65,7 +66,7 @@ fn distances_and_casts_to_a_heap_are_those_to_its_nearest_child() {
                 angvel: vector(&mut rng, 2.0),
                 ..NonlinearRigidMotion::constant_position(pose)
             };
-            let cast = |child: &Pose, shape: &dyn rapier3d::parry::shape::Shape| {
+            let cast = |child: &Pose, shape: &dyn Shape| {
                 let still = NonlinearRigidMotion::constant_position(*child);
                 let hit = dispatcher
                     .cast_shapes_nonlinear(&motion, &mesh, &still, shape, 0.0, 0.5, true)
