@@ -11,7 +11,7 @@ use crate::math::fast_hash::FastMap;
 use crate::meshing::axis::crease_samples::CreaseSamples;
 use crate::meshing::axis::delaunay::{Delaunay, NONE};
 use crate::meshing::axis::inner_balls::{INSIDE, JITTER, buried, circumsphere, vote};
-use crate::meshing::axis::shrinking_ball::shrink;
+use crate::meshing::axis::shrinking_ball::shrink_from;
 use crate::meshing::axis::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
@@ -28,6 +28,9 @@ const TRUE_RADIUS: f64 = 0.7;
 
 /// Step beyond the medial axis, over the radius there.
 const BEYOND: f64 = 0.05;
+
+/// The surface is nearer to a ball's centre than this many of its radii, but for what samples are shifted.
+const ABOUT: f64 = 1.01;
 
 /// Half the side of the cube whose corners are added to the samples, so that no Voronoi polygon of a
 /// sample is unbounded (longest side 1).
@@ -173,23 +176,27 @@ impl Clipper<'_> {
         }
         // Samples of one plane leave the sphere free: its centre may be on the surface.
         let tree = self.faces.tree;
-        let (nearest, triangle) = tree.closest_from(ball.center, 0);
+        let (nearest, triangle) = tree.closest_triangle(ball.center, ABOUT * ball.radius);
         let radius = (nearest - ball.center).length();
-        if radius < TRUE_RADIUS * ball.radius {
-            return None;
-        }
-        triangles.push(tree.given(triangle));
         let inward = direction(ball.center - nearest);
-        let grown = shrink(tree, nearest, inward);
-        // Beyond the medial axis the nearest face is the other that the grown ball touches.
-        let beyond = grown.center + inward * (BEYOND * grown.radius);
-        triangles.push(tree.given(tree.closest_from(beyond, 0).1));
+        let grown = shrink_from(tree, nearest, inward, radius + reach);
         let near = (grown.center - ball.center).length() < reach;
         if near && tree.winding(grown.center) > INSIDE {
+            // Beyond the medial axis the nearest face is the other that the grown ball touches.
+            let step = BEYOND * grown.radius;
+            let reached = ABOUT * (grown.radius + step);
+            let beyond = tree.closest_triangle(grown.center + inward * step, reached);
+            let both = [triangle, beyond.1].map(|t| tree.given(t));
+            triangles.extend(both);
             let tangent = self.faces.tangent(grown, &triangles, reach);
+            // The samples may be of more faces than a ball touches.
+            let tangent = tangent.or_else(|| self.faces.tangent(grown, &both, reach));
             if tangent.is_some() {
                 return tangent;
             }
+        }
+        if radius < TRUE_RADIUS * ball.radius {
+            return None;
         }
         let ball = Ball { radius, ..ball };
         let plane = |s: &Sample| {

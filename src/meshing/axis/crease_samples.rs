@@ -173,7 +173,7 @@ impl Sampler<'_> {
         let farther = |x: Point, y: Point| if y.length_sq() > x.length_sq() { y } else { x };
         let inward = direction(ways.into_iter().fold(Point::zero(), farther));
         let wanted = place + inward * offset;
-        let (point, nearest) = self.tree.closest_from(wanted, 0);
+        let (point, nearest) = self.tree.closest_triangle(wanted, offset);
         let nearest = self.tree.given(nearest);
         let group = |t: u32| self.creases.group[t as usize];
         let on_face = (point - wanted).length() < OFF_FACE * offset;

@@ -125,7 +125,10 @@ impl Refiner<'_> {
         tangent(&of_both)
             .or_else(|| tangent(&of_either))
             .or_else(|| {
-                let (point, triangle) = self.faces.tree.closest_from(start.center, 0);
+                let (point, triangle) = self
+                    .faces
+                    .tree
+                    .closest_triangle(start.center, between.radius);
                 let normal = direction(point - start.center);
                 Some(Tangent {
                     ball: start,

@@ -150,12 +150,8 @@ impl TriangleTree {
         }
     }
 
-    /// Point of the surface at the distance of [`Self::distance_from`].
-    pub fn closest_from(&self, p: Point, hint: u32) -> (Point, u32) {
-        self.closest_counted(p, hint, &mut 0)
-    }
-
-    /// Does the same as [`Self::closest_from`]; adds the number of nodes and triangles that were looked at to `work`.
+    /// Point of the surface at the distance of [`Self::distance_from`]; adds the number of nodes and triangles that were
+    /// looked at to `work`.
     pub fn closest_counted(&self, p: Point, hint: u32, work: &mut u64) -> (Point, u32) {
         let (_, triangle) = self.distance_counted(p, hint, work);
         let corners = &self.nearest.corners()[triangle as usize];
@@ -189,17 +185,25 @@ impl TriangleTree {
 
     /// The point of the surface nearest to `p`, if it is within `limit`.
     pub fn closest_within(&self, p: Point, limit: f64) -> Option<Point> {
-        let (distance_sq, triangle) = self.nearest.search(p, limit * limit, false);
-        (distance_sq < f64::INFINITY)
-            .then(|| closest_on_triangle(p, &self.nearest.corners()[triangle as usize]))
+        let (_, triangle) = self.nearest_within(p, limit)?;
+        Some(closest_on_triangle(
+            p,
+            &self.nearest.corners()[triangle as usize],
+        ))
     }
 
     /// The point of the surface nearest to `p`; `guess` is its likely distance, and only the time
     /// depends on it.
     pub fn closest(&self, p: Point, guess: f64) -> Point {
-        self.closest_within(p, guess)
-            .or_else(|| self.closest_within(p, f64::INFINITY))
-            .unwrap_or(p)
+        self.closest_triangle(p, guess).0
+    }
+
+    /// Does the same as [`Self::closest`], and gives the triangle that the point is of.
+    pub fn closest_triangle(&self, p: Point, guess: f64) -> (Point, u32) {
+        let within = |limit: f64| self.nearest_within(p, limit).map(|found| found.1);
+        let nearest = within(guess).or_else(|| within(f64::INFINITY)).unwrap_or(0);
+        let corners = &self.nearest.corners()[nearest as usize];
+        (closest_on_triangle(p, corners), nearest)
     }
 
     /// Signed distance to the surface: negative behind the nearest triangle. Near an edge several
