@@ -8,8 +8,8 @@ use parry3d::partitioning::BvhNode;
 use parry3d::query::PointQuery;
 use parry3d::shape::Compound;
 
-/// Box that holds what is below a node of a compound's hierarchy. parry rounds the boxes of children, by parts of their
-/// coordinates, and so does what puts a child in its compound's frame.
+/// Box around what is below a node of a compound's hierarchy, loosened by what parry's rounding of boxes and poses may take off.
+/// A child whose corners are far from its own origin, and moved back by its pose, may be off by more.
 fn holding(node: &BvhNode) -> Aabb {
     let aabb = node.aabb();
     let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();

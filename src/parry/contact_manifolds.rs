@@ -138,7 +138,8 @@ fn leave_out_ghosts<M, C>(
     pose: &Pose,
 ) {
     let reach = |part, n| Part::of(mesh, part).reach(n);
-    leave_out_ghosts_of(manifolds, (side, reach), |child| child, slack(mesh, pose));
+    let slack = slack(mesh, pose);
+    leave_out_ghosts_of(manifolds, (side, reach), |child| child, |_| slack);
 }
 
 /// Leaves out ghost contacts of a compound's children, as [`leave_out_ghosts`] does of the mesh's parts. Call it once
@@ -150,20 +151,18 @@ fn leave_out_childrens_ghosts<M, C>(
 ) {
     let reach = |child, n| child_reach(compound, child, n);
     let number = |primitive| part_number(mesh, primitive);
-    let children = manifolds
-        .iter()
-        .map(|m| [m.subshape1, m.subshape2][1 - side]);
-    let slack = slack(mesh, pose) + slack_of(compound, children);
+    let of_mesh = slack(mesh, pose);
+    let slack = |child| of_mesh + slack_of(compound, child, mesh);
     leave_out_ghosts_of(manifolds, (1 - side, reach), number, slack);
 }
 
-/// Leaves out ghost contacts of the parts of body `side`, which reach as far as `reach` tells; `number` is that of the other
-/// shape's convex part.
+/// Leaves out ghost contacts of the parts of body `side`, which reach as far as `reach` tells, up to their `slack`; `number` is
+/// that of the other shape's convex part.
 fn leave_out_ghosts_of<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (side, reach): (usize, impl Fn(u32, Vector) -> Real),
     number: impl Fn(u32) -> u32,
-    slack: Real,
+    slack: impl Fn(u32) -> Real,
 ) {
     let seen = |m: &ContactManifold<M, C>, i: usize| {
         let parts = [m.subshape1, m.subshape2];

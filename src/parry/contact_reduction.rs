@@ -6,7 +6,8 @@
 //! over `c` comes to lie on the facet above `c` of the lower convex hull of all `(u_i, d_i)`. That facet attains the
 //! smallest `Σ λ_i d_i` with `Σ λ_i u_i = c`, `Σ λ_i = 1`, `λ ≥ 0`, which the simplex method finds: it has three
 //! rows, and a pivot is a change of one corner. A fourth contact makes the facet wider; one that does not touch counts
-//! the less, the higher it is above the facet, since the body stands on the others before it comes down there.
+//! the less, the higher it is above the facet, since the body stands on the others before it comes down there. Where `c` is
+//! beside all contacts the body tips over, and the deepest contact is among the four.
 
 use crate::math::{Pose, Real, Vector};
 use parry3d::query::ContactManifold;
@@ -232,9 +233,9 @@ fn without_doubles(seen: &mut Vec<Seen>, radius: f64) -> Vec<[usize; 2]> {
     doubles
 }
 
-/// Four of the contacts: the facet above the origin, or what of it there is and the deepest, to which the body tips over;
-/// and those that make the area over which the body stands largest, or are farthest from the others where none makes it
-/// larger.
+/// Four of the contacts: the corners of the facet above the origin; if it lacks one, also the deepest, to which the body tips
+/// over; then those that make the area over which the body stands largest, or are farthest from the others where none makes
+/// it larger.
 fn bearing(seen: &[Seen], prediction: f64) -> Vec<usize> {
     let (corners, plane) = facet(seen);
     let mut bear: Vec<usize> = corners.into_iter().flatten().collect();

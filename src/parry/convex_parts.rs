@@ -9,9 +9,12 @@ use parry3d::shape::{Compound, Shape, TypedShape};
 /// Slack of heights that are compared, in units of the sizes in play: about eight ulps of `f32`.
 const SLACK: Real = 1.0e-6;
 
-/// Slope by which a plane may be off whose normal was found by iteration (GJK): of rings on tiles, one of a hundred normals is
-/// by 6e-5, one of seven thousand by more than 2e-4.
+/// Tilt of parry's (GJK) normals that is allowed for, a slope. Of rings on tiles one in a hundred is off by more than 6e-5, one in
+/// seven thousand by more than 2e-4; what is off by more keeps its ghost.
 const TILT: Real = 1.0e-4;
+
+/// A step lower than this share of a body's size may count as level on account of that.
+const LOW: Real = 1.0e-3;
 
 /// A convex part of a mesh.
 pub enum Part<'a> {
@@ -82,15 +85,33 @@ pub fn child_reach(compound: &Compound, child: u32, n: Vector) -> Real {
     support.map_or(Real::MAX, |(pose, map)| n.dot(map.support_point(pose, n)))
 }
 
-/// Slack of heights of some of a compound's children, a length.
-pub fn slack_of(compound: &Compound, children: impl Iterator<Item = u32>) -> Real {
+/// Slack of heights of a compound's child beside a mesh, a length.
+pub fn slack_of(compound: &Compound, child: u32, mesh: &MedialMesh) -> Real {
     let bounds = compound.local_aabb();
-    let sizes = children.map(|child| compound.aabbs()[child as usize].extents().max_element());
-    TILT * sizes.fold(0.0, Real::max)
-        + SLACK * bounds.mins.abs().max(bounds.maxs.abs()).max_element()
+    let own = compound.aabbs().get(child as usize);
+    let size = own.map_or(0.0, |own| own.extents().max_element());
+    let low = LOW * mesh.aabb().extents().max_element();
+    low.min(TILT * size) + SLACK * bounds.mins.abs().max(bounds.maxs.abs()).max_element()
 }
 
 /// Slack of heights of a mesh's parts, a length, where the other shape is at `pose` in the mesh's frame.
 pub fn slack(mesh: &MedialMesh, pose: &Pose) -> Real {
     SLACK * (mesh.aabb().extents().max_element() + pose.translation.abs().max_element())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parry3d::shape::SharedShape;
+
+    #[test]
+    fn the_slack_of_a_large_child_is_low_for_the_body_and_is_its_own() {
+        let tile = |half: Real| (Pose::IDENTITY, SharedShape::cuboid(half, half, half));
+        let compound = Compound::new(vec![tile(500.0), tile(0.1)]);
+        let mesh = MedialMesh::ball(0.05).expect("a ball");
+        let [floor, step] = [0, 1].map(|child| slack_of(&compound, child, &mesh));
+        // Eight ulps of 500 m, and a thousandth of the body.
+        assert!((floor - 6.0e-4).abs() < 1.0e-6, "{floor}");
+        assert!((step - 5.2e-4).abs() < 1.0e-6, "{step}");
+    }
 }

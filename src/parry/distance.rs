@@ -28,7 +28,7 @@ use std::collections::BinaryHeap;
 /// If a centre of the mesh is inside `other`, the distance is minus the length of the shortest way out.
 ///
 /// # Errors
-/// For a shape that is neither medial nor one of parry's own.
+/// For a shape that is neither medial nor one of parry's own, and a compound that has such a child in reach.
 pub fn nearest(
     mesh: &MedialMesh,
     other: &dyn Shape,

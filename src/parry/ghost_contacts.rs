@@ -13,10 +13,10 @@ use crate::math::{Real, Vector};
 /// Cosine from which two normals are one (0.8°).
 const PARALLEL: Real = 0.9999;
 
-/// Distance from which two normals are one.
-const SAME_NORMAL: Real = 1.0e-5;
+/// Contacts of a part in one plane, whose unit normals differ by at most this length, are compared with others as one.
+const ONE_PLANE: Real = 1.0e-5;
 
-/// Each contact is compared with at most so many deeper ones that are no ghosts, of those of one part under one normal with
+/// Each contact is compared with at most so many deeper ones that are no ghosts, of those of one part in one plane with
 /// the first: a body that lies on tiles has several contacts with each, and may meet a wall besides.
 const COMPARED: usize = 128;
 
@@ -35,12 +35,12 @@ pub struct PartContact {
     pub gap: Real,
 }
 
-/// Whether each contact is a ghost. `reach` is how far a part reaches along a unit direction, a length; heights that differ
-/// by up to `slack`, a length, are equal.
+/// Whether each contact is a ghost. `reach` is how far a part reaches along a unit direction, a length; heights of a part
+/// that differ by up to its `slack`, a length, are equal.
 pub fn ghosts(
     contacts: &[PartContact],
     reach: impl Fn(u32, Vector) -> Real,
-    slack: Real,
+    slack: impl Fn(u32) -> Real,
 ) -> Vec<bool> {
     let mut ghosts = vec![false; contacts.len()];
     let first = contacts.first().map_or(Vector::ZERO, |c| c.normal);
@@ -64,13 +64,13 @@ pub fn ghosts(
             let c = &contacts[i];
             ghosts[i] = kept.iter().any(|deeper| {
                 deeper.normal.dot(c.normal) < PARALLEL
-                    && beyond(deeper, c.part) <= slack
-                    && beyond(c, deeper.part) > c.gap.max(0.0) + slack
+                    && beyond(deeper, c.part) <= slack(c.part)
+                    && beyond(c, deeper.part) > c.gap.max(0.0) + slack(deeper.part)
             });
             let is_known = |k: &&PartContact| {
                 k.part == c.part
-                    && k.normal.distance(c.normal) <= SAME_NORMAL
-                    && k.normal.dot(c.place - k.place).abs() <= slack
+                    && k.normal.distance(c.normal) <= ONE_PLANE
+                    && k.normal.dot(c.place - k.place).abs() <= slack(c.part)
             };
             if !ghosts[i] && kept.len() < COMPARED && !kept.iter().any(is_known) {
                 kept.push(c);
@@ -109,7 +109,7 @@ mod tests {
     }
 
     fn found(boxes: &[(Vector, Vector)], contacts: &[PartContact]) -> Vec<bool> {
-        ghosts(contacts, reach(boxes), 1.0e-5)
+        ghosts(contacts, reach(boxes), |_| 1.0e-5)
     }
 
     /// A ball above the first box, with a contact on it and one ahead on the rim of the second.
@@ -178,7 +178,7 @@ mod tests {
             let heights = corners.map(|(x, y)| n.dot(Vector::new(x, y, 0.0)));
             heights.into_iter().fold(Real::MIN, Real::max)
         };
-        assert_eq!(ghosts(&contacts, ridge, 1.0e-5), [false; 2]);
+        assert_eq!(ghosts(&contacts, ridge, |_| 1.0e-5), [false; 2]);
     }
 
     #[test]

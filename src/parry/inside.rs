@@ -49,7 +49,7 @@ pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
     }
 }
 
-/// A length that is no less than the distance of a point to a shape: 0 inside.
+/// A length that is no less than the distance of a point to a shape, but for [`PROJECTION_SLACK`]: 0 inside.
 pub fn most_distance(shape: &dyn Shape, point: Vector) -> Real {
     match shape.as_typed_shape() {
         TypedShape::RoundCuboid(c) => {

@@ -157,7 +157,8 @@ fn without_ghosts<'a>(
         });
         let seen: Vec<PartContact> = seen.collect();
         let reach = |part: u32, n: Vector| Part::of(meshes[k], part).reach(n);
-        let ghosts = ghosts(&seen, reach, slack(meshes[k], pos12));
+        let slack = slack(meshes[k], pos12);
+        let ghosts = ghosts(&seen, reach, |_| slack);
         let mut ghosts = ghosts.into_iter();
         contacts.retain(|_| ghosts.next() != Some(true));
     }

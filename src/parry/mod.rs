@@ -11,8 +11,8 @@
 //!   `contact_reduction.rs` leaves the ones that bear the load. Between which convex parts: `convex_parts.rs`.
 //! - Casts: `cast.rs`, parry's answer `cast_answer.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
 //!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
-//!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at, of
-//!   compounds by `compound_children.rs`. Flat faces (`shape_faces.rs`) on whose plane a body lies are treated by `sliding.rs`,
+//!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at; of
+//!   a compound, the children that `compound_children.rs` finds there. Flat faces (`shape_faces.rs`) on whose plane a body lies are treated by `sliding.rs`,
 //!   normals at their edges corrected by `folds.rs`.
 //! - Distance: `distance.rs`.
 //! - What a pipeline tells the dispatcher for a step, muted pairs among it: `narrow_phase_plan.rs`.

@@ -126,8 +126,8 @@ pub fn for_each_flat_face(
             }
         }
         TypedShape::Compound(c) => {
-            // A mesh counts as over a face up to its radius beyond each side, so that past a corner, and above, it may be
-            // √3 times as far off.
+            // A mesh counts as over a rectangle up to its radius beyond each side, so that past a corner, and above, it is up
+            // to √3 radii off. The region holds the mesh, so that half its sides is a radius or more.
             let half = region.half_extents();
             let beyond = Aabb::new(region.mins - half, region.maxs + half);
             for i in children_in(c, &seen_from(pose, &beyond)) {

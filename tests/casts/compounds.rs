@@ -1,5 +1,4 @@
-//! Distances and casts to compounds of many children: of those out of reach none is looked at, of the others none is missed.
-//! The oracle is every child by itself.
+//! Distances and casts to compounds of many children: no child is missed. The oracle is every child by itself.
 
 use crate::rng::Rng;
 use rapier3d::parry::query::{NonlinearRigidMotion, QueryDispatcher};

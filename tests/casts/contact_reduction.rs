@@ -154,7 +154,8 @@ fn the_deepest_contact_bears_whichever_way_the_body_is_turned() {
         let mut kept = all.iter().flat_map(|m| &m.points);
         assert!(
             kept.any(|p| p.dist == -0.00255),
-            "turned by {turn}0 degrees"
+            "turned by {} degrees",
+            10 * turn
         );
     }
 }

@@ -119,7 +119,7 @@ fn assert_near(name: &str, mesh: &Mesh, primitives: usize, most: f32) {
 
 #[test]
 fn a_nut_keeps_its_thread() {
-    assert_near("nut", &nut(1.6, 0.4, 2, 24), 200, 0.022);
+    assert_near("nut", &nut(1.6, 0.4, 2, 24), 200, 0.018);
 }
 
 #[test]

@@ -29,7 +29,8 @@ const TRUE_RADIUS: f64 = 0.7;
 /// Step beyond the medial axis, over the radius there.
 const BEYOND: f64 = 0.05;
 
-/// The surface is nearer to a ball's centre than this many of its radii, but for what samples are shifted.
+/// Guess of the distance from a ball's centre to the surface, over its radius: samples lie on it, but for a shift. Only time
+/// depends on it.
 const ABOUT: f64 = 1.01;
 
 /// Half the side of the cube whose corners are added to the samples, so that no Voronoi polygon of a
@@ -180,7 +181,7 @@ impl Clipper<'_> {
         let radius = (nearest - ball.center).length();
         let inward = direction(ball.center - nearest);
         let grown = shrink_from(tree, nearest, inward, radius + reach);
-        let near = (grown.center - ball.center).length() < reach;
+        let near = radius > 0.0 && (grown.center - ball.center).length() < reach;
         if near && tree.winding(grown.center) > INSIDE {
             // Beyond the medial axis the nearest face is the other that the grown ball touches.
             let step = BEYOND * grown.radius;

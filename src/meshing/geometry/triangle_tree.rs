@@ -198,7 +198,7 @@ impl TriangleTree {
         self.closest_triangle(p, guess).0
     }
 
-    /// Does the same as [`Self::closest`], and gives the triangle that the point is of.
+    /// Does the same as [`Self::closest`], and gives the triangle that the point is of. The tree must not be empty.
     pub fn closest_triangle(&self, p: Point, guess: f64) -> (Point, u32) {
         let within = |limit: f64| self.nearest_within(p, limit).map(|found| found.1);
         let nearest = within(guess).or_else(|| within(f64::INFINITY)).unwrap_or(0);

@@ -3,7 +3,7 @@
 //! Enclosure raises radii until all is covered, and a ball that grows for what sticks out on one side grows on all
 //! sides: it doubles the error of a fit that is as much too small here as it is too large there. So what enclosure
 //! made is fitted again, to lie between the surface and an offset of it that is nearer than its error, and enclosed
-//! again, as long as that gains.
+//! again, until two rounds in turn gain little.
 //!
 //! What sticks out lies between the samples: ridges and corners most of all. Points at which the draft was found not to
 //! cover the surface become samples, as violated constraints do in a cutting-plane method (Kelley, "The
@@ -25,8 +25,9 @@ pub const GAIN_OF_TIGHT: f64 = 1.5;
 /// little is gained.
 const OFFSET: f64 = 0.6;
 
-/// Rounds end where so many in turn leave more than this share of the error each, or after so many. What enclosure makes of
-/// a fit varies, and the next round mends it: the bolt's first gains nothing, its second an eighth.
+/// Rounds end after so many in turn that leave more than this share of the least error so far, or after so many in all. What
+/// enclosure makes of a fit varies, and the next round mends it: of an M16 bolt of 500 primitives the first gains nothing, the
+/// second an eighth.
 const FAILURES: usize = 2;
 const GAIN: f64 = 0.95;
 const ROUNDS: usize = 4;
