@@ -12,6 +12,7 @@ use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
 use crate::rapier::report::StepReport;
 use crate::rapier::state::State;
 use crate::rapier::tuning::Tuning;
+use crate::rapier::view::still_colliders::StillRecord;
 use crate::rapier::world::World;
 #[cfg(feature = "gpu")]
 use crate::rapier::{contacts::candidates, step_plan::lowered, view::medial_colliders::Sets};
@@ -83,6 +84,7 @@ impl MedialPipeline {
             budget: options.budget,
             reported: ReportedStarts::default(),
             placed: InitialOverlaps::default(),
+            still: StillRecord::default(),
             moved: None,
             kept: None,
         };

@@ -20,6 +20,9 @@ counters! {
     pub struct StepReport {
         /// Number of enabled medial colliders in the world.
         pub medial_colliders: usize,
+        /// Colliders that the step looked at for impacts: all but sensors, or, in a world of many still ones, those that move and
+        /// those near them. Summed over the steps between stops; 0 where nothing moves.
+        pub participants: usize,
         /// Pairs of medial colliders, at least one of the two awake, whose bounding boxes were near each other at the
         /// start of the step.
         pub pairs: usize,

@@ -8,6 +8,7 @@ use crate::rapier::host::recycling::RecyclingRecord;
 use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::tuning::Tuning;
+use crate::rapier::view::still_colliders::StillRecord;
 use rapier3d::dynamics::RigidBodyHandle;
 use std::sync::Arc;
 
@@ -25,6 +26,8 @@ pub struct State {
     pub budget: u64,
     pub reported: ReportedStarts,
     pub placed: InitialOverlaps,
+    /// The colliders that stood still in the last step.
+    pub still: StillRecord,
     /// The bodies that impacts moved in the last step; `None` before the first.
     pub moved: Option<Vec<RigidBodyHandle>>,
     /// The plan of the last step, if nothing moved in it.

@@ -1,19 +1,19 @@
 //! One step, in order: the plan (who may meet whom, and the contacts that rapier will ask for), rapier's own step, the
 //! impacts within it, and the report. The work itself is in the rooms of this folder.
 
-use crate::math::{Pose, Real, Vector};
+use crate::math::{Real, Vector};
 use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Sweeps, Tally};
 use crate::rapier::contacts::candidates;
 use crate::rapier::contacts::muting::{self, Muted};
 use crate::rapier::contacts::predicted_contacts::predicted;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
+use crate::rapier::host::forced_updates;
 use crate::rapier::host::multibody_energy::WildMultibodies;
 use crate::rapier::host::sleep_timers::{SleepTimers, moved_before};
 use crate::rapier::host::speculative::Speculators;
 use crate::rapier::host::substeps::Substeps;
-use crate::rapier::host::{forced_updates, multibody_coordinates};
-use crate::rapier::impacts::event_loop;
+use crate::rapier::impacts::event_loop::{self, Contacts};
 use crate::rapier::impacts::outcome::Outcome;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::report::StepReport;
@@ -23,9 +23,10 @@ use crate::rapier::tuning::Tuning;
 use crate::rapier::view::census::Census;
 use crate::rapier::view::filter_answers::FilterAnswers;
 use crate::rapier::view::medial_colliders::{self, Sets};
+use crate::rapier::view::near_what_moves;
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
-use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle};
+use rapier3d::dynamics::IntegrationParameters;
 use rapier3d::pipeline::{EventHandler, PhysicsHooks};
 use std::sync::Arc;
 use web_time::Instant;
@@ -107,7 +108,7 @@ impl State {
             report.medial_colliders = 0;
             report += done;
             let Some(time) = stopped else {
-                self.send_early(world.sets(parameters), &mut report);
+                self.send_early(world.sets(parameters, None), &mut report);
                 return report;
             };
             report.stops += 1;
@@ -147,9 +148,11 @@ impl State {
 
         let clock = Instant::now();
         let outcome = self.impacts(world, args, (&mut plan, tally.depth), &mut work);
-        self.moved = Some(write_back(&plan.view, &outcome, world));
+        self.moved = Some(world.write_back(&plan.view, &outcome));
         if !is_kept || plan.view.followed {
-            self.placed.end(&plan.view, &world.rules(args.filters));
+            let participants = plan.participants.as_ref();
+            self.placed
+                .end(&plan.view, participants, &world.rules(args.filters));
         }
         let scene = Scene {
             dt: args.parameters.dt,
@@ -160,6 +163,9 @@ impl State {
         events.finish(&mut self.reported, &outcome.impulses, scene);
         if plan.census.all > 0 {
             report.medial_colliders = medial_colliders::count(world.colliders);
+        }
+        if plan.view.followed {
+            report.participants = plan.view.parts.len();
         }
         report.add_impacts(&outcome);
         report.event_seconds = clock.elapsed().as_secs_f64();
@@ -183,14 +189,19 @@ impl State {
     ) -> StepPlan {
         let clock = Instant::now();
         let parameters = args.parameters;
-        medial_colliders::make_unique(world.bodies, world.colliders);
+        let may_leave_out =
+            census.medial > 0 && census.still.is_none() && world.soft_bodies.is_empty();
+        let sets = world.sets(parameters, None);
+        let participants = may_leave_out
+            .then(|| near_what_moves::find(&mut self.still, sets, self.tuning.least_still));
+        let participants = participants.flatten();
+        let taking_part = participants.as_ref();
+        medial_colliders::make_unique(world.bodies, world.colliders, taking_part);
         self.effects.clean(world.colliders);
         let view = if census.medial == 0 || self.effects.none() {
             StepView::default()
         } else {
-            let (bodies, colliders) = (&*world.bodies, &*world.colliders);
-            let joints = world.joints();
-            StepView::take(world.gravity, parameters.dt, bodies, colliders, joints)
+            StepView::take(world.sets(parameters, taking_part))
         };
         let rules = world.rules(args.filters);
         self.placed.begin(&view, world.narrow_phase, &rules);
@@ -217,7 +228,8 @@ impl State {
         report.mute_seconds = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
-        let found = candidates::find(world.sets(parameters), &mut self.recycled, &muted);
+        let sets = world.sets(parameters, taking_part);
+        let found = candidates::find(sets, &mut self.recycled, &muted);
         let forced = found.forced.union(&stale).copied().collect();
         forced_updates::force_updates(&forced, world.colliders);
         let mut results = self.batch.run(&found.jobs);
@@ -249,6 +261,7 @@ impl State {
         StepPlan {
             census,
             view,
+            participants,
             narrow_phase,
             depth: found.depth,
             wild,
@@ -329,15 +342,26 @@ impl State {
             world.gravity,
             bouncing,
         );
-        event_loop::resolve(
-            view,
-            policy,
-            rules,
-            (world.narrow_phase, depth),
-            &mut self.placed,
-            &mut self.batch,
-            work,
-        )
+        let mut resolve = |view: &mut StepView, participants| {
+            let contacts = Contacts {
+                narrow_phase: world.narrow_phase,
+                participants,
+                depth,
+            };
+            let placed = &mut self.placed;
+            event_loop::resolve(view, policy, rules, contacts, placed, &mut self.batch, work)
+        };
+        let participants = plan.participants.take();
+        let mut before = participants.is_some().then(|| view.clone());
+        if let Some(outcome) = resolve(view, participants.as_ref()) {
+            plan.participants = participants;
+            return outcome;
+        }
+        let mut whole = StepView::take(world.sets(parameters, None));
+        whole.follow(parameters, world.bodies, world.colliders);
+        std::mem::swap(view, before.get_or_insert_default());
+        view.complete(whole);
+        resolve(view, None).unwrap_or_default()
     }
 
     /// Sends the contacts of the next step to a device, since the poses are final.
@@ -355,28 +379,4 @@ impl State {
         self.batch.submit(&next);
         report.batch += self.batch.report().counts - before;
     }
-}
-
-/// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies that are elsewhere now. Colliders
-/// of these and no others are marked as moved, from which a loaded world knows them ([`moved_before`]).
-fn write_back(view: &StepView, outcome: &Outcome, world: &mut World) -> Vec<RigidBodyHandle> {
-    if outcome.changed.is_empty() {
-        return Vec::new();
-    }
-    let handles = view.bodies.iter().filter_map(|body| body.handle);
-    let poses = handles.filter_map(|h| Some((h, *world.bodies.get(h)?.position())));
-    let poses: Vec<_> = poses.collect();
-    for &(index, struck) in &outcome.changed {
-        view.bodies[index].write_back(struck, world.bodies);
-    }
-    multibody_coordinates::write_back(view, &outcome.changed, world.bodies, world.multibody_joints);
-    world
-        .bodies
-        .propagate_modified_body_positions_to_colliders(world.colliders);
-    let is_elsewhere = |(h, pose): &(RigidBodyHandle, Pose)| {
-        let body = world.bodies.get(*h);
-        body.is_some_and(|body| body.position() != pose)
-    };
-    let moved = poses.into_iter().filter(is_elsewhere);
-    moved.map(|(handle, _)| handle).collect()
 }

@@ -6,6 +6,7 @@ use crate::parry::narrow_phase_plan::NarrowPhasePlan;
 use crate::rapier::host::multibody_energy::WildMultibodies;
 use crate::rapier::host::recycling::RECYCLE_DISTANCE;
 use crate::rapier::view::census::Census;
+use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::IntegrationParameters;
 use std::sync::Arc;
@@ -16,6 +17,8 @@ pub struct StepPlan {
     pub census: Census,
     /// Bodies and colliders.
     pub view: StepView,
+    /// Colliders that take part, where not all do.
+    pub participants: Option<Participants>,
     /// Plan that the dispatcher goes by while rapier steps.
     pub narrow_phase: Arc<NarrowPhasePlan>,
     /// How deep the deepest contact of all is, a length.

@@ -1,13 +1,17 @@
 //! rapier's sets of one world, as its step takes them.
 
-use crate::math::Vector;
+use crate::math::{Pose, Vector};
+use crate::rapier::host::multibody_coordinates;
+use crate::rapier::impacts::outcome::Outcome;
 use crate::rapier::view::census::Census;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::filter_answers::FilterAnswers;
 use crate::rapier::view::medial_colliders::Sets;
+use crate::rapier::view::participants::Participants;
+use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
-    RigidBodySet, SoftBodySet,
+    RigidBodyHandle, RigidBodySet, SoftBodySet,
 };
 use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline};
@@ -29,7 +33,11 @@ pub struct World<'a> {
 
 impl World<'_> {
     /// The sets that contacts are found in.
-    pub fn sets<'s>(&'s self, parameters: &'s IntegrationParameters) -> Sets<'s> {
+    pub fn sets<'s>(
+        &'s self,
+        parameters: &'s IntegrationParameters,
+        participants: Option<&'s Participants>,
+    ) -> Sets<'s> {
         Sets {
             gravity: self.gravity,
             parameters,
@@ -38,6 +46,7 @@ impl World<'_> {
             impulse_joints: self.impulse_joints,
             multibody_joints: self.multibody_joints,
             narrow_phase: self.narrow_phase,
+            participants,
         }
     }
 
@@ -65,6 +74,31 @@ impl World<'_> {
     /// Whether it has multibodies or soft bodies, which cannot be set back to where they were within a step.
     pub fn has_links_or_particles(&self) -> bool {
         self.multibody_joints.multibodies().next().is_some() || !self.soft_bodies.is_empty()
+    }
+
+    /// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies that are elsewhere now. Colliders
+    /// of these and no others are marked as moved, from which a loaded world knows them
+    /// ([`crate::rapier::host::sleep_timers::moved_before`]).
+    pub fn write_back(&mut self, view: &StepView, outcome: &Outcome) -> Vec<RigidBodyHandle> {
+        if outcome.changed.is_empty() {
+            return Vec::new();
+        }
+        let handles = view.bodies.iter().filter_map(|body| body.handle);
+        let poses = handles.filter_map(|h| Some((h, *self.bodies.get(h)?.position())));
+        let poses: Vec<_> = poses.collect();
+        for &(index, struck) in &outcome.changed {
+            view.bodies[index].write_back(struck, self.bodies);
+        }
+        let links = &mut *self.multibody_joints;
+        multibody_coordinates::write_back(view, &outcome.changed, self.bodies, links);
+        self.bodies
+            .propagate_modified_body_positions_to_colliders(self.colliders);
+        let is_elsewhere = |(h, pose): &(RigidBodyHandle, Pose)| {
+            let body = self.bodies.get(*h);
+            body.is_some_and(|body| body.position() != pose)
+        };
+        let moved = poses.into_iter().filter(is_elsewhere);
+        moved.map(|(handle, _)| handle).collect()
     }
 
     /// Takes rapier's step.

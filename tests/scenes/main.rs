@@ -7,6 +7,7 @@ mod bodies;
 mod bounces;
 mod brickwork;
 mod budget;
+mod bystanders;
 mod changes;
 mod characters;
 mod combs;

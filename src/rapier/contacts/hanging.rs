@@ -11,6 +11,7 @@ use crate::math::Real;
 use crate::rapier::contacts::reach::reach;
 use crate::rapier::host::contact_depth::deepest;
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
+use crate::rapier::view::participants::contact_pairs;
 use rapier3d::dynamics::IntegrationParameters;
 use rapier3d::geometry::{ColliderSet, ContactPair};
 
@@ -31,12 +32,12 @@ const PULLS: Real = 0.7;
 const RESTS: Real = 1.25;
 
 /// Finds the medial colliders whose contacts with each other are to be computed anew (one flag each), and the depth of the
-/// deepest contact of all, a length. Known from the world alone, so that a world that was saved and loaded goes on as it
+/// deepest contact of all that take part, a length. Known from the world alone, so that a world that was saved and loaded goes on as it
 /// would have.
 pub fn find(sets: &Sets, medial: &MedialColliders) -> (Vec<bool>, Real) {
     let mut anew = vec![false; medial.all.len()];
     let mut depth_of_all: Real = 0.0;
-    let touching = sets.narrow_phase.contact_pairs();
+    let touching = contact_pairs(sets.narrow_phase, sets.participants);
     for pair in touching.filter(|pair| !pair.manifolds().is_empty()) {
         depth_of_all = depth_of_all.max(depth(pair, sets.colliders));
         let places = [pair.collider1, pair.collider2].map(|h| medial.place(h));
@@ -74,7 +75,7 @@ fn depth(pair: &ContactPair, colliders: &ColliderSet) -> Real {
 /// however little. Known from the world alone, as in [`find`].
 pub fn hang(sets: &Sets, medial: &MedialColliders) -> Vec<bool> {
     let mut hangs = vec![false; medial.all.len()];
-    for pair in sets.narrow_phase.contact_pairs() {
+    for pair in contact_pairs(sets.narrow_phase, sets.participants) {
         let places = [pair.collider1, pair.collider2].map(|h| medial.place(h));
         let [Some(i), Some(j)] = places else {
             continue;

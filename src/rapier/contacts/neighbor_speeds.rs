@@ -4,9 +4,9 @@
 
 use crate::math::Real;
 use crate::medial::MedialMesh;
-use crate::rapier::view::enabled::enabled;
 use crate::rapier::view::medial_colliders::Sets;
 use crate::rapier::view::motion::velocities;
+use crate::rapier::view::participants::enabled;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::Collider;
@@ -34,7 +34,7 @@ pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Real)> + 'a {
         let margin = sets.parameters.prediction_distance() + collider.contact_skin();
         (speed > 0.0).then(|| (aabb.loosened(margin), speed))
     };
-    enabled(sets.bodies, sets.colliders).filter_map(move |(_, c)| moving(c))
+    enabled(sets.bodies, sets.colliders, sets.participants).filter_map(move |(_, c)| moving(c))
 }
 
 /// Whether a body is held by joints, which hand on what is not near.

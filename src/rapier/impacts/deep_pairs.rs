@@ -6,6 +6,7 @@ use crate::math::fast_hash::{FastMap, FastSet};
 use crate::rapier::host::contact_depth::deepest;
 use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::view::eligible_pairs::in_order;
+use crate::rapier::view::participants::{Participants, contact_pairs};
 use crate::rapier::view::step_view::StepView;
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 
@@ -33,12 +34,16 @@ pub struct DeepPairs {
 }
 
 /// Finds the deep pairs.
-pub fn deep(view: &StepView, narrow_phase: &NarrowPhase, policy: &CcdPolicy) -> DeepPairs {
+pub fn deep(
+    view: &StepView,
+    (narrow_phase, participants): (&NarrowPhase, Option<&Participants>),
+    policy: &CcdPolicy,
+) -> DeepPairs {
     let tuning = &policy.tuning;
     let parts = view.parts.iter().enumerate();
     let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
     let mut deep = DeepPairs::default();
-    for found in narrow_phase.contact_pairs() {
+    for found in contact_pairs(narrow_phase, participants) {
         let places = [found.collider1, found.collider2].map(|h| parts.get(&h));
         let [Some(&i), Some(&j)] = places else {
             continue;

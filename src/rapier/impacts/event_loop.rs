@@ -30,14 +30,11 @@ use crate::rapier::impacts::swept_boxes::SweptBoxes;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::view::eligible_pairs::{Rules, in_order, is_ccd_candidate, sweep};
 use crate::rapier::view::motion::Kind;
+use crate::rapier::view::near_what_moves;
+use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::StepView;
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::SharedShape;
 use rapier3d::geometry::NarrowPhase;
-
-/// Margin that boxes are grown by, in units of rapier's length unit: more than half of any target distance, which grows
-/// a little with each meeting of a pair.
-const MARGIN: Real = 5.0e-3;
 
 /// Shares of a step before and after which the world does not stop: what is left would be no step, and
 /// a stop at the start would change nothing.
@@ -82,27 +79,46 @@ pub(crate) struct Loop<'a> {
     events: usize,
     /// Whether the budget was spent, so that nothing waits any more but for what a driven body does.
     pub(crate) is_spent: bool,
+    /// Colliders that take part, where not all do, and whether something may get to another.
+    pub(crate) participants: Option<&'a Participants>,
+    leaves: bool,
+}
+
+/// Contacts of rapier at the end of its step.
+#[derive(Clone, Copy)]
+pub struct Contacts<'a> {
+    /// All of them.
+    pub narrow_phase: &'a NarrowPhase,
+    /// Colliders that take part, where not all do.
+    pub participants: Option<&'a Participants>,
+    /// Depth of the deepest of a medial collider that takes part, a length, or more.
+    pub depth: Real,
 }
 
 /// Finds and resolves the impacts on the motions of `view`, which is at the bodies' last poses
-/// afterwards. No contact of a medial collider in the narrow phase is deeper than `depth`.
+/// afterwards; `None` if something may get to a collider that does not take part.
 pub fn resolve(
     view: &mut StepView,
     policy: CcdPolicy,
     rules: Rules,
-    (narrow_phase, depth): (&NarrowPhase, Real),
+    contacts: Contacts,
     placed: &mut InitialOverlaps,
     batch: &mut Batch,
     work: &mut Work,
-) -> Outcome {
+) -> Option<Outcome> {
+    let Contacts {
+        narrow_phase,
+        participants,
+        depth,
+    } = contacts;
     let guarded = policy.tuning.guarded();
     let thinnest = view.thinnest_part();
     let deep = if depth > guarded * thinnest {
-        deep(view, narrow_phase, &policy)
+        deep(view, (narrow_phase, participants), &policy)
     } else {
         DeepPairs::default()
     };
-    let left = placed.leave(view, &deep, &rules);
+    let left = placed.leave(view, participants, &deep, &rules);
     let deep = deep.watched;
     let all = view.bodies.iter().enumerate();
     let taken = all.filter(|(_, body)| body.is_taken_back);
@@ -111,11 +127,11 @@ pub fn resolve(
         && deep.is_empty()
         && !policy.may_be_fast(view, policy.tuning.fast, thinnest)
     {
-        return Outcome::default();
+        return Some(Outcome::default());
     }
     let mut response = Response::new(view.bodies.len());
     response.lead(view, &policy, &rules, &taken);
-    let pairs = sweep(view, policy.dt, MARGIN * policy.unit);
+    let pairs = sweep(view, policy.dt, near_what_moves::MARGIN * policy.unit);
     let shapes: Vec<_> = view.parts.iter().map(|p| p.shape.clone()).collect();
     let mut events = Loop {
         view,
@@ -133,7 +149,10 @@ pub fn resolve(
         jobs: 0,
         events: 0,
         is_spent: false,
+        participants,
+        leaves: false,
     };
+    events.leaves = events.leaves_at_start();
     let mut known = FastMap::default();
     if batch.has_device() {
         let (asked, jobs): (Vec<_>, Vec<_>) = events.first_queries(&pairs).into_iter().unzip();
@@ -142,7 +161,9 @@ pub fn resolve(
     for pair in pairs {
         events.ask(pair, 0.0, known.remove(&pair), work);
     }
-    while let Some(next) = events.earliest(work) {
+    while !events.leaves
+        && let Some(next) = events.earliest(work)
+    {
         events.find_boxes();
         let (pair, hit) = match next {
             Next::Impact(pair, hit) => (pair, hit),
@@ -156,11 +177,11 @@ pub fn resolve(
             }
         };
         if events.stops_at(pair, hit.time) {
-            return events.stop(hit.time, narrow_phase);
+            return Some(events.stop(hit.time, narrow_phase));
         }
         events.impact(pair, hit, work);
     }
-    events.finish()
+    (!events.leaves).then(|| events.finish())
 }
 
 impl Loop<'_> {
@@ -301,7 +322,9 @@ impl Loop<'_> {
         changed.sort_unstable();
         changed.dedup();
         for &k in &changed {
-            self.boxes.set(k, self.swept_box(k, time));
+            let aabb = self.swept_box(k, time);
+            self.leaves |= self.meets_bystander(&aabb);
+            self.boxes.set(k, aabb);
             self.outlines.forget(k);
         }
         for (n, &i) in changed.iter().enumerate() {
@@ -315,25 +338,6 @@ impl Loop<'_> {
                 if !changed[..n].contains(&j) && is_ccd_candidate(self.view, [i, j]) {
                     self.ask(in_order(self.view, [i, j]), time, None, work);
                 }
-            }
-        }
-    }
-
-    fn swept_box(&self, part: usize, time: Real) -> Aabb {
-        self.grown(part, self.view.swept_aabb(part, time, self.policy.dt))
-    }
-
-    pub(crate) fn grown(&self, part: usize, aabb: Aabb) -> Aabb {
-        aabb.loosened(self.view.parts[part].skin + MARGIN * self.policy.unit)
-    }
-
-    pub(crate) fn find_boxes(&mut self) {
-        if self.boxes.is_empty() {
-            let parts = 0..self.view.parts.len();
-            self.boxes = SweptBoxes::new(parts.map(|k| self.swept_box(k, 0.0)).collect());
-            self.parts_of = vec![Vec::new(); self.view.bodies.len()];
-            for (k, part) in self.view.parts.iter().enumerate() {
-                self.parts_of[part.body].push(k);
             }
         }
     }

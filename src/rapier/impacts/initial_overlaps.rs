@@ -23,6 +23,7 @@ use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
 use crate::rapier::impacts::pinched::{one_gives_way, pinched, pressed_by_joints};
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
+use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::{Part, StepView};
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, RigidBodyType};
 use rapier3d::geometry::{
@@ -37,8 +38,10 @@ type BodyPair = [RigidBodyHandle; 2];
 /// Record from step to step of bodies put into each other.
 #[derive(Default)]
 pub struct InitialOverlaps {
-    /// How the last step left the colliders, in the order of their indices.
-    ends: Vec<(ColliderHandle, End)>,
+    /// How the last step left the colliders, by their indices.
+    ends: Vec<Option<(ColliderHandle, End)>>,
+    /// The colliders that the last step looked at.
+    seen: Vec<ColliderHandle>,
     /// Pairs that rapier's solver held apart in the step before.
     met: FastSet<Pair>,
     /// New colliders, and those whose groups changed since the last step, or the type of their body.
@@ -144,7 +147,7 @@ fn sorted([a, b]: Pair) -> Pair {
 impl InitialOverlaps {
     /// What a world is saved with.
     pub fn record(&self) -> OverlapsRecord {
-        let ends = self.ends.iter();
+        let ends = self.ends.iter().flatten();
         let mut record = OverlapsRecord {
             ends: ends.map(|(h, end)| (*h, end.pose, end.kind)).collect(),
             muted: self.muted.iter().copied().collect(),
@@ -165,8 +168,10 @@ impl InitialOverlaps {
             let shape = KnownShape::of(colliders.get(handle)?.shared_shape());
             Some((handle, End { pose, shape, kind }))
         };
-        self.ends = record.ends.into_iter().filter_map(end).collect();
-        self.ends.sort_by_key(|(handle, _)| index(*handle));
+        self.ends.clear();
+        for (handle, end) in record.ends.into_iter().filter_map(end) {
+            self.set_end(handle, end);
+        }
         self.muted = record.muted.into_iter().collect();
         self.left = record.left.into_iter().collect();
     }
@@ -221,7 +226,13 @@ impl InitialOverlaps {
     }
 
     /// Pairs with deep contacts in this step that are left to the solver.
-    pub fn leave(&mut self, view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
+    pub fn leave(
+        &mut self,
+        view: &StepView,
+        participants: Option<&Participants>,
+        deep: &DeepPairs,
+        rules: &Rules,
+    ) -> Vec<[usize; 2]> {
         let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
         let was_put = |pair: [usize; 2], deep: &Deep| {
             let is_met = self.met.contains(&handles(pair));
@@ -255,7 +266,13 @@ impl InitialOverlaps {
             .iter()
             .filter(|(pair, deep)| is_left(pair, deep));
         let pairs: Vec<_> = left.map(|(pair, _)| *pair).collect();
-        self.left = pairs.iter().map(|pair| handles(*pair)).collect();
+        // What does not take part stays as it is.
+        let stays = |pair: &Pair| {
+            let mut both = pair.iter();
+            participants.is_some_and(|p| both.any(|h| p.is_bystander(*h)))
+        };
+        self.left.retain(stays);
+        self.left.extend(pairs.iter().map(|pair| handles(*pair)));
         pairs
     }
 
@@ -265,23 +282,39 @@ impl InitialOverlaps {
         matches!(both, [Some(a), Some(b)] if bodies.contains(&body_pair([a, b])))
     }
 
-    /// Remembers where the step leaves the colliders.
-    pub fn end(&mut self, view: &StepView, rules: &Rules) {
-        self.ends.clear();
+    /// Remembers where the step leaves the colliders; those that did not take part are where they were.
+    pub fn end(&mut self, view: &StepView, participants: Option<&Participants>, rules: &Rules) {
+        match participants {
+            None => self.ends.clear(),
+            Some(participants) => {
+                let gone = |h: &ColliderHandle| !participants.is_bystander(*h);
+                for handle in std::mem::take(&mut self.seen).into_iter().filter(gone) {
+                    self.ends[index(handle) as usize] = None;
+                }
+            }
+        }
         let end = |part: &Part| {
             let collider = rules.colliders.get(part.handle)?;
             let (pose, kind) = (*collider.position(), kind(collider, rules.bodies));
             let shape = KnownShape::of(&part.shape);
             Some((part.handle, End { pose, shape, kind }))
         };
-        self.ends.extend(view.parts.iter().filter_map(end));
+        for (handle, end) in view.parts.iter().filter_map(end) {
+            self.set_end(handle, end);
+        }
+        self.seen = view.parts.iter().map(|part| part.handle).collect();
+    }
+
+    fn set_end(&mut self, handle: ColliderHandle, end: End) {
+        let place = index(handle) as usize;
+        if self.ends.len() <= place {
+            self.ends.resize_with(place + 1, || None);
+        }
+        self.ends[place] = Some((handle, end));
     }
 
     fn end_of(&self, handle: ColliderHandle) -> Option<&End> {
-        let place = self
-            .ends
-            .binary_search_by_key(&index(handle), |(h, _)| index(*h));
-        let (known, end) = &self.ends[place.ok()?];
+        let (known, end) = self.ends.get(index(handle) as usize)?.as_ref()?;
         (*known == handle).then_some(end)
     }
 

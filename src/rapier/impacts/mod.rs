@@ -4,7 +4,7 @@
 //! - The loop: `event_loop.rs`, in the order of times of `event_queue.rs`; its result: `outcome.rs`.
 //! - When a pair first touches: `toi_query.rs` (what counts as contact; its answer `hit.rs`), `lazy_toi_query.rs` (a search that pauses).
 //! - Which pairs are searched at all: `fast_parts.rs`, `deep_pairs.rs`, `initial_overlaps.rs`, `pinched.rs`; what spares a search:
-//!   `swept_boxes.rs`, `pair_culling.rs`, `near_lists.rs`.
+//!   `swept_boxes.rs`, `path_boxes.rs`, `pair_culling.rs`, `near_lists.rs`.
 //! - What an impact does: `impulse.rs` is the law (Newton's restitution, Coulomb's friction), `contact_impulses.rs`
 //!   gives the two impulses of one contact, `response.rs` passes them on to what touches already; `bounces.rs`,
 //!   `way_out.rs` and `lost_gains.rs` say with which speeds.
@@ -27,6 +27,7 @@ mod lost_gains;
 mod near_lists;
 pub(crate) mod outcome;
 pub(crate) mod pair_culling;
+pub(crate) mod path_boxes;
 mod pinched;
 pub(crate) mod response;
 pub(crate) mod spent_budget;

@@ -2,15 +2,7 @@
 //! disabled, so what runs before the step has to ask the body.
 
 use rapier3d::dynamics::RigidBodySet;
-use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
-
-/// Colliders that will be enabled in the next step.
-pub fn enabled<'a>(
-    bodies: &'a RigidBodySet,
-    colliders: &'a ColliderSet,
-) -> impl Iterator<Item = (ColliderHandle, &'a Collider)> + 'a {
-    colliders.iter().filter(move |(_, c)| takes_part(bodies, c))
-}
+use rapier3d::geometry::Collider;
 
 /// Whether a collider will be enabled in the next step.
 pub fn takes_part(bodies: &RigidBodySet, collider: &Collider) -> bool {

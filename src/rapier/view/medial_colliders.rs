@@ -3,8 +3,8 @@
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::rapier::view::enabled::enabled;
 use crate::rapier::view::motion::{forces_per_mass, velocities};
+use crate::rapier::view::participants::{Participants, enabled};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::AngularInertia;
 use parry3d::query::NonlinearRigidMotion;
@@ -35,6 +35,8 @@ pub struct Sets<'a> {
     pub multibody_joints: &'a MultibodyJointSet,
     /// Contacts of the step before.
     pub narrow_phase: &'a NarrowPhase,
+    /// Colliders that take part, where not all do.
+    pub participants: Option<&'a Participants>,
 }
 
 #[cfg(feature = "gpu")]
@@ -49,6 +51,7 @@ impl<'a> Sets<'a> {
             impulse_joints: &world.impulse_joints,
             multibody_joints: &world.multibody_joints,
             narrow_phase: &world.narrow_phase,
+            participants: None,
         }
     }
 }
@@ -61,8 +64,12 @@ pub fn count(colliders: &ColliderSet) -> usize {
 
 /// Gives every medial collider an instance id of its own; colliders that share a shape would share
 /// answers.
-pub fn make_unique(bodies: &RigidBodySet, colliders: &mut ColliderSet) {
-    let medial = enabled(bodies, colliders).filter_map(|(handle, collider)| {
+pub fn make_unique(
+    bodies: &RigidBodySet,
+    colliders: &mut ColliderSet,
+    participants: Option<&Participants>,
+) {
+    let medial = enabled(bodies, colliders, participants).filter_map(|(handle, collider)| {
         let mesh = collider.shape().as_shape::<MedialMesh>()?;
         Some((mesh.instance_id(), handle))
     });
@@ -219,7 +226,7 @@ pub struct MedialColliders {
 impl MedialColliders {
     /// The medial colliders of a world.
     pub fn new(sets: &Sets) -> Self {
-        let medial = enabled(sets.bodies, sets.colliders);
+        let medial = enabled(sets.bodies, sets.colliders, sets.participants);
         let medial = medial.filter_map(|(handle, c)| MedialCollider::new(sets, handle, c));
         let mut all: Vec<MedialCollider> = medial.collect();
         all.sort_by_key(|c| c.mesh.instance_id());

@@ -3,7 +3,8 @@
 //!
 //! - The view itself: `step_view.rs`, of bodies (`motion.rs`), colliders and joints (`all_joints.rs`, `joint_opening.rs`, `groups.rs`); medial ones: `medial_colliders.rs`.
 //! - Who may meet whom: `eligible_pairs.rs`, `filter_answers.rs` (hooks of the user), `enabled.rs`,
-//!   `overlapping_boxes.rs`.
+//!   `overlapping_boxes.rs`. Who is too far from all that moves: `participants.rs`, found by `near_what_moves.rs` among
+//!   `still_colliders.rs`.
 //! - How fast they meet: `meeting_speed.rs`. How they resist: `inertia.rs`. Whether there is anything to do:
 //!   `census.rs`.
 
@@ -19,5 +20,8 @@ pub(crate) mod link_angles;
 pub(crate) mod medial_colliders;
 pub(crate) mod meeting_speed;
 pub(crate) mod motion;
+pub(crate) mod near_what_moves;
 pub(crate) mod overlapping_boxes;
+pub(crate) mod participants;
 pub(crate) mod step_view;
+pub(crate) mod still_colliders;

@@ -6,9 +6,10 @@ use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::parry::swept_sphere_parts;
 use crate::rapier::view::all_joints::for_each_joint;
-use crate::rapier::view::enabled::enabled;
 use crate::rapier::view::link_angles::LinkAngles;
+use crate::rapier::view::medial_colliders::Sets;
 use crate::rapier::view::motion::{Body, Kind};
+use crate::rapier::view::participants::enabled;
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{
@@ -58,7 +59,7 @@ impl Part {
 }
 
 /// All bodies and colliders that can meet a medial one in a step.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct StepView {
     /// Bodies; the first stands for no body.
     pub bodies: Vec<Body>,
@@ -72,13 +73,9 @@ pub struct StepView {
 
 impl StepView {
     /// The world before a step, bodies in the motion that their velocities and forces announce.
-    pub fn take(
-        gravity: Vector,
-        dt: Real,
-        bodies: &RigidBodySet,
-        colliders: &ColliderSet,
-        (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
-    ) -> Self {
+    pub fn take(sets: Sets) -> Self {
+        let (bodies, joints, multibodies) =
+            (sets.bodies, sets.impulse_joints, sets.multibody_joints);
         let mut view = Self {
             bodies: vec![Body::ground()],
             parts: Vec::new(),
@@ -93,14 +90,14 @@ impl StepView {
             let link = multibodies.rigid_body_link(h);
             let multibody = link.and_then(|l| multibodies.get_multibody(l.multibody));
             let mut new = Body::new(h, body, multibody.is_none_or(gives_way));
-            new.predict(body, gravity, dt);
+            new.predict(body, sets.gravity, sets.parameters.dt);
             let link = link.zip(multibody).and_then(|(l, m)| m.link(l.id));
             new.turned_before = link.map(LinkAngles::of);
             view.bodies.push(new);
             view.index.insert(h, view.bodies.len() - 1);
             Some(view.bodies.len() - 1)
         };
-        for (handle, collider) in enabled(bodies, colliders) {
+        for (handle, collider) in enabled(bodies, sets.colliders, sets.participants) {
             if collider.is_sensor() {
                 continue;
             }
@@ -196,6 +193,29 @@ impl StepView {
                 body.moved(b, parameters.num_solver_iterations, parameters.dt);
             }
         }
+    }
+
+    /// Goes on with all bodies and colliders: those of this view in their motions, and of `whole` those that did not take part, which
+    /// have not moved.
+    pub fn complete(&mut self, mut whole: Self) {
+        let known = |handle: Option<RigidBodyHandle>| self.index.get(&handle?).copied();
+        for body in &mut whole.bodies {
+            if let Some(k) = known(body.handle) {
+                body.clone_from(&self.bodies[k]);
+            }
+        }
+        let parts = self.parts.iter().map(|part| (part.handle, part));
+        let parts: FastMap<ColliderHandle, &Part> = parts.collect();
+        for part in &mut whole.parts {
+            if let Some(known) = parts.get(&part.handle) {
+                *part = Part {
+                    body: part.body,
+                    ..(*known).clone()
+                };
+            }
+        }
+        whole.followed = self.followed;
+        *self = whole;
     }
 
     /// Copies of bodies and colliders as they were at the start of the step.

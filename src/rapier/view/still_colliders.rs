@@ -1,0 +1,193 @@
+//! Colliders that stay where they are as long as nothing gets to them: fixed ones, and those of sleeping bodies that no
+//! joint holds. A world may have thousands, and a step need not look at those that are far from all that moves
+//! (`participants.rs`). While they stay the same from step to step, a tree of their boxes is kept.
+
+use crate::math::fast_hash::FastHasher;
+use crate::math::{Pose, Real, Vector};
+use crate::rapier::view::enabled::takes_part;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::partitioning::{Bvh, BvhBuildStrategy};
+use rapier3d::dynamics::{ImpulseJointSet, MultibodyJointSet, RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
+use std::hash::Hasher;
+use std::sync::Arc;
+
+/// Largest side of a box that the tree holds: round a larger one, as of a half-space, sums are no longer exact.
+const LARGEST: Real = 1.0e6;
+
+/// Still colliders, with a tree of their boxes.
+pub struct StillColliders {
+    handles: Vec<ColliderHandle>,
+    boxes: Vec<Aabb>,
+    tree: Bvh,
+    /// Those without a box that the tree could hold.
+    everywhere: Vec<u32>,
+    /// Place of each among all, by the index in its handle.
+    places: Vec<u32>,
+}
+
+impl StillColliders {
+    /// Boxes are grown by `margin` and the collider's skin.
+    fn new(handles: Vec<ColliderHandle>, colliders: &ColliderSet, margin: Real) -> Self {
+        let index = |h: &ColliderHandle| h.into_raw_parts().0 as usize;
+        let mut places = vec![u32::MAX; handles.iter().map(index).max().map_or(0, |last| last + 1)];
+        let (mut boxes, mut everywhere) = (Vec::new(), Vec::new());
+        for (place, handle) in handles.iter().enumerate() {
+            places[index(handle)] = place as u32;
+            let aabb = colliders.get(*handle).map(|collider| {
+                let grown = margin + collider.contact_skin();
+                collider.compute_aabb().loosened(grown)
+            });
+            let held = aabb.filter(|b| b.mins.abs().max(b.maxs.abs()).max_element() < LARGEST);
+            if held.is_none() {
+                everywhere.push(place as u32);
+            }
+            boxes.push(held.unwrap_or_else(Aabb::new_invalid));
+        }
+        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        Self {
+            handles,
+            boxes,
+            tree,
+            everywhere,
+            places,
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.handles.len()
+    }
+
+    /// The collider at a place.
+    pub fn handle(&self, place: u32) -> ColliderHandle {
+        self.handles[place as usize]
+    }
+
+    /// The place of a collider, if it is one of them.
+    pub fn place(&self, collider: ColliderHandle) -> Option<u32> {
+        let place = *self.places.get(collider.into_raw_parts().0 as usize)?;
+        (*self.handles.get(place as usize)? == collider).then_some(place)
+    }
+
+    /// Places of those without a box.
+    pub fn everywhere(&self) -> &[u32] {
+        &self.everywhere
+    }
+
+    /// Places of those whose boxes meet this one; of a box that is no number all.
+    pub fn meeting(&self, aabb: &Aabb) -> Vec<u32> {
+        if aabb.mins.is_nan() || aabb.maxs.is_nan() {
+            return (0..self.handles.len() as u32).collect();
+        }
+        let near = self.tree.intersect_aabb(aabb);
+        near.filter(|k| aabb.intersects(&self.boxes[*k as usize]))
+            .collect()
+    }
+}
+
+/// What is known from step to step about the still colliders of a world.
+#[derive(Default)]
+pub struct StillRecord {
+    /// Hash of who is where.
+    key: u64,
+    /// The colliders that moved, in the order of the set, and what decides with whom each collides.
+    moving: Vec<(ColliderHandle, u64)>,
+    known: Option<Arc<StillColliders>>,
+}
+
+impl StillRecord {
+    /// The colliders that move, in the order of the set, and the still ones, if these are the same as in the step before
+    /// and at least `least`. Boxes are grown by `margin`. `None`, too, where a collider that moved is gone or collides with
+    /// others than before, for rapier may then wake what rested on it.
+    pub fn look(
+        &mut self,
+        (bodies, colliders): (&RigidBodySet, &ColliderSet),
+        joints: (&ImpulseJointSet, &MultibodyJointSet),
+        (least, margin): (usize, Real),
+    ) -> Option<(Vec<ColliderHandle>, Arc<StillColliders>)> {
+        let (mut moving, mut still) = (Vec::new(), Vec::new());
+        let mut hash = FastHasher::default();
+        hash.write_u32(margin.to_bits());
+        for (handle, collider) in colliders.iter() {
+            if !takes_part(bodies, collider) {
+                continue;
+            }
+            if is_still(bodies, joints, collider) {
+                add_place(&mut hash, handle, collider);
+                hash.write_u64(partners(bodies, collider));
+                still.push(handle);
+            } else {
+                moving.push((handle, partners(bodies, collider)));
+            }
+        }
+        let key = hash.finish();
+        let is_same = key == self.key && go_on(&self.moving, &moving);
+        self.key = key;
+        self.moving = moving;
+        if !is_same || still.len() < least {
+            self.known = None;
+            return None;
+        }
+        let moving = self.moving.iter().map(|(handle, _)| *handle).collect();
+        let known = self
+            .known
+            .get_or_insert_with(|| Arc::new(StillColliders::new(still, colliders, margin)));
+        Some((moving, Arc::clone(known)))
+    }
+}
+
+/// Whether a collider stays where it is unless something gets to it.
+fn is_still(
+    bodies: &RigidBodySet,
+    (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
+    collider: &Collider,
+) -> bool {
+    let Some(handle) = collider.parent() else {
+        return true;
+    };
+    let Some(body) = bodies.get(handle) else {
+        return true;
+    };
+    let has_speed = body.linvel() != Vector::ZERO || body.angvel() != Vector::ZERO;
+    let is_tied = |h: RigidBodyHandle| {
+        joints.attached_joints(h).next().is_some() || multibodies.rigid_body_link(h).is_some()
+    };
+    let rests = body.is_fixed() || body.is_dynamic() && body.is_sleeping();
+    rests && !has_speed && !is_tied(handle)
+}
+
+/// Whether all of some colliders are among others, unchanged; both in the order of the set.
+fn go_on(before: &[(ColliderHandle, u64)], now: &[(ColliderHandle, u64)]) -> bool {
+    let mut now = now.iter();
+    before.iter().all(|known| now.any(|other| other == known))
+}
+
+/// Adds who it is, and where.
+fn add_place(hash: &mut FastHasher, handle: ColliderHandle, collider: &Collider) {
+    let (index, generation) = handle.into_raw_parts();
+    hash.write_u64(u64::from(index) << 32 | u64::from(generation));
+    // The place beside its body is the user's until rapier's step moves the collider there.
+    let beside = collider.position_wrt_parent();
+    for pose in [collider.position(), beside.unwrap_or(&Pose::IDENTITY)] {
+        let (t, r) = (pose.translation, pose.rotation);
+        for word in [t.x, t.y, t.z, r.x, r.y, r.z, r.w] {
+            hash.write_u32(word.to_bits());
+        }
+    }
+}
+
+/// Hash of what decides with what a collider collides where it is.
+fn partners(bodies: &RigidBodySet, collider: &Collider) -> u64 {
+    let mut hash = FastHasher::default();
+    hash.write_u64(std::ptr::from_ref(collider.shape()).addr() as u64);
+    for groups in [collider.collision_groups(), collider.solver_groups()] {
+        hash.write_u32(groups.memberships.bits());
+        hash.write_u32(groups.filter.bits());
+    }
+    let body = collider.parent().and_then(|h| bodies.get(h));
+    let body_type = body.map_or(u32::MAX, |body| body.body_type() as u32);
+    hash.write_u32(body_type << 1 | u32::from(collider.is_sensor()));
+    hash.write_u32(collider.contact_skin().to_bits());
+    hash.finish()
+}
