@@ -24,6 +24,7 @@ use crate::rapier::view::census::Census;
 use crate::rapier::view::filter_answers::FilterAnswers;
 use crate::rapier::view::medial_colliders::{self, Sets};
 use crate::rapier::view::near_what_moves;
+use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
 use rapier3d::dynamics::IntegrationParameters;
@@ -192,11 +193,17 @@ impl State {
         let may_leave_out =
             census.medial > 0 && census.still.is_none() && world.soft_bodies.is_empty();
         let sets = world.sets(parameters, None);
-        let participants = may_leave_out
-            .then(|| near_what_moves::find(&mut self.still, sets, self.tuning.least_still));
+        let participants = may_leave_out.then(|| {
+            near_what_moves::find(
+                &mut self.still,
+                sets,
+                world.islands,
+                self.tuning.least_still,
+            )
+        });
         let participants = participants.flatten();
         let taking_part = participants.as_ref();
-        medial_colliders::make_unique(world.bodies, world.colliders, taking_part);
+        medial_colliders::make_unique(world.bodies, world.colliders);
         self.effects.clean(world.colliders);
         let view = if census.medial == 0 || self.effects.none() {
             StepView::default()
@@ -342,26 +349,32 @@ impl State {
             world.gravity,
             bouncing,
         );
-        let mut resolve = |view: &mut StepView, participants| {
-            let contacts = Contacts {
-                narrow_phase: world.narrow_phase,
-                participants,
-                depth,
+        let mut resolve =
+            |view: &mut StepView, participants: Option<&Participants>, work: &mut Work| {
+                let contacts = Contacts {
+                    narrow_phase: world.narrow_phase,
+                    participants,
+                    depth,
+                };
+                let placed = &mut self.placed;
+                event_loop::resolve(view, policy, rules, contacts, placed, &mut self.batch, work)
             };
-            let placed = &mut self.placed;
-            event_loop::resolve(view, policy, rules, contacts, placed, &mut self.batch, work)
+        let Some(participants) = plan.participants.take() else {
+            return resolve(view, None, work).unwrap_or_default();
         };
-        let participants = plan.participants.take();
-        let mut before = participants.is_some().then(|| view.clone());
-        if let Some(outcome) = resolve(view, participants.as_ref()) {
-            plan.participants = participants;
-            return outcome;
+        let mut active = world.islands.active_bodies();
+        if !active.any(|h| !view.index.contains_key(&h) && participants.still().pose(h).is_some()) {
+            let before = (view.clone(), *work);
+            if let Some(outcome) = resolve(view, Some(&participants), work) {
+                plan.participants = Some(participants);
+                return outcome;
+            }
+            (*view, *work) = before;
         }
-        let mut whole = StepView::take(world.sets(parameters, None));
-        whole.follow(parameters, world.bodies, world.colliders);
-        std::mem::swap(view, before.get_or_insert_default());
-        view.complete(whole);
-        resolve(view, None).unwrap_or_default()
+        let whole = StepView::take(world.sets(parameters, None));
+        let sets = (&*world.bodies, &*world.colliders);
+        view.complete(whole, participants.still(), parameters, sets);
+        resolve(view, None, work).unwrap_or_default()
     }
 
     /// Sends the contacts of the next step to a device, since the poses are final.

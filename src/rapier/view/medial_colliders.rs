@@ -64,16 +64,15 @@ pub fn count(colliders: &ColliderSet) -> usize {
 
 /// Gives every medial collider an instance id of its own; colliders that share a shape would share
 /// answers.
-pub fn make_unique(
-    bodies: &RigidBodySet,
-    colliders: &mut ColliderSet,
-    participants: Option<&Participants>,
-) {
-    let medial = enabled(bodies, colliders, participants).filter_map(|(handle, collider)| {
+pub fn make_unique(bodies: &RigidBodySet, colliders: &mut ColliderSet) {
+    let medial = enabled(bodies, colliders, None).filter_map(|(handle, collider)| {
         let mesh = collider.shape().as_shape::<MedialMesh>()?;
         Some((mesh.instance_id(), handle))
     });
     let mut ids: Vec<(u64, ColliderHandle)> = medial.collect();
+    if ids.is_sorted_by(|one, next| one.0 < next.0) {
+        return;
+    }
     // The first of several keeps its id.
     ids.sort_by_key(|(id, _)| *id);
     for two in ids.windows(2).filter(|two| two[0].0 == two[1].0) {

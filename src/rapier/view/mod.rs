@@ -4,12 +4,13 @@
 //! - The view itself: `step_view.rs`, of bodies (`motion.rs`), colliders and joints (`all_joints.rs`, `joint_opening.rs`, `groups.rs`); medial ones: `medial_colliders.rs`.
 //! - Who may meet whom: `eligible_pairs.rs`, `filter_answers.rs` (hooks of the user), `enabled.rs`,
 //!   `overlapping_boxes.rs`. Who is too far from all that moves: `participants.rs`, found by `near_what_moves.rs` among
-//!   `still_colliders.rs`.
+//!   `still_colliders.rs`; what if something gets to them after all: `completed.rs`.
 //! - How fast they meet: `meeting_speed.rs`. How they resist: `inertia.rs`. Whether there is anything to do:
 //!   `census.rs`.
 
 pub(crate) mod all_joints;
 pub(crate) mod census;
+mod completed;
 pub(crate) mod eligible_pairs;
 pub(crate) mod enabled;
 pub(crate) mod filter_answers;

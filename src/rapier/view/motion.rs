@@ -65,7 +65,7 @@ pub struct Body {
     /// The velocities before rapier's step.
     pub velocity_before: [Vector; 2],
     /// Linear velocity that gravity and forces of the user give it in the whole step.
-    pull: Vector,
+    pub(super) pull: Vector,
     /// Part of [`Self::pull`] taken back for times in which the body gets nowhere.
     taken_back: Vector,
     /// Largest distance of a point of its colliders from the centre of mass, a length.

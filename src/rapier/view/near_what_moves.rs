@@ -1,23 +1,31 @@
 //! Finds the still colliders that a step may get to: those that what moves may reach by its velocities, and, of a sleeping
-//! body that is reached, those that touch it or nearly do, since rapier wakes what hangs together. What flies farther
-//! than its velocities told, because it was struck, may reach others: then the step looks at all
-//! ([`StepView::complete`]).
+//! body that is reached, those that touch it or nearly do and those of its island, which rapier wakes together. What flies
+//! farther than its velocities told, because it was struck, may reach others, and rapier may wake bodies for reasons of its
+//! own: then the step looks at all ([`StepView::complete`]).
 
 use crate::math::Real;
+use crate::math::fast_hash::FastMap;
 use crate::rapier::view::medial_colliders::Sets;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::view::still_colliders::StillRecord;
 use parry3d::bounding_volume::BoundingVolume;
+use rapier3d::dynamics::IslandManager;
 use rapier3d::geometry::ColliderHandle;
 
 /// Margin that boxes are grown by, in units of rapier's length unit: more than half of any target distance, which grows
 /// a little with each meeting of a pair.
 pub const MARGIN: Real = 5.0e-3;
 
-/// Who takes part in a step; `None` where all do, as where there are fewer than `least` still colliders.
-pub fn find(record: &mut StillRecord, sets: Sets, least: usize) -> Option<Participants> {
+/// Who takes part in a step; `None` where all do, as where there are not enough still colliders
+/// ([`StillRecord::look`]).
+pub fn find(
+    record: &mut StillRecord,
+    sets: Sets,
+    islands: &IslandManager,
+    least: [usize; 2],
+) -> Option<Participants> {
     let parameters = sets.parameters;
     let margin = parameters
         .prediction_distance()
@@ -25,12 +33,12 @@ pub fn find(record: &mut StillRecord, sets: Sets, least: usize) -> Option<Partic
     let joints = (sets.impulse_joints, sets.multibody_joints);
     let (moving, still) = record.look((sets.bodies, sets.colliders), joints, (least, margin))?;
     let mut participants = Participants::new(moving, still);
-    add_near(&mut participants, sets, margin);
+    add_near(&mut participants, sets, islands, margin);
     Some(participants)
 }
 
 /// Adds to those that move the still ones that the step may get to, with boxes grown by `margin` and their skins.
-fn add_near(participants: &mut Participants, sets: Sets, margin: Real) {
+fn add_near(participants: &mut Participants, sets: Sets, islands: &IslandManager, margin: Real) {
     let moving = Sets {
         participants: Some(participants),
         ..sets
@@ -38,14 +46,14 @@ fn add_near(participants: &mut Participants, sets: Sets, margin: Real) {
     let view = StepView::take(moving);
     let dt = sets.parameters.dt;
     let moves = |k: &usize| view.bodies[view.parts[*k].body].kind != Kind::Fixed;
-    let mut reached: Vec<ColliderHandle> = Vec::new();
+    let mut reached: Vec<ColliderHandle> = participants.still().everywhere().collect();
     for k in (0..view.parts.len()).filter(moves) {
         let aabb = view.swept_aabb(k, 0.0, dt);
         let aabb = aabb.loosened(margin + view.parts[k].skin);
         reached.extend(participants.bystanders_in(&aabb));
-        let pairs = sets.narrow_phase.contact_pairs_with(view.parts[k].handle);
-        reached.extend(pairs.flat_map(|pair| [pair.collider1, pair.collider2]));
+        reached.extend(touching(sets, view.parts[k].handle));
     }
+    let mut sleeping = None;
     while let Some(handle) = reached.pop() {
         let Some(collider) = sets.colliders.get(handle) else {
             continue;
@@ -53,16 +61,49 @@ fn add_near(participants: &mut Participants, sets: Sets, margin: Real) {
         if !participants.add(handle) {
             continue;
         }
-        let body = collider.parent().and_then(|h| sets.bodies.get(h));
-        let Some(body) = body else { continue };
+        let parent = collider.parent();
+        let body = parent.and_then(|h| Some((h, sets.bodies.get(h)?)));
+        let Some((parent, body)) = body else { continue };
         reached.extend(body.colliders());
         if body.is_dynamic() {
+            let all =
+                sleeping.get_or_insert_with(|| SleepingIslands::new(participants, sets, islands));
+            reached.extend(all.take(islands.persistent_island_of(sets.bodies, parent)));
             let grown = margin + collider.contact_skin();
             let aabb = collider.compute_aabb().loosened(grown);
             reached.extend(participants.bystanders_in(&aabb));
-            let pairs = sets.narrow_phase.contact_pairs_with(handle);
-            reached.extend(pairs.flat_map(|pair| [pair.collider1, pair.collider2]));
+            reached.extend(touching(sets, handle));
         }
     }
     participants.sort();
+}
+
+/// Colliders of sleeping bodies, by the island of their body.
+struct SleepingIslands(FastMap<u32, Vec<ColliderHandle>>);
+
+impl SleepingIslands {
+    fn new(participants: &Participants, sets: Sets, islands: &IslandManager) -> Self {
+        let mut all = FastMap::<u32, Vec<ColliderHandle>>::default();
+        for handle in participants.still().dynamic_bodies() {
+            let island = islands.persistent_island_of(sets.bodies, handle);
+            if let Some((island, body)) = island.zip(sets.bodies.get(handle)) {
+                all.entry(island).or_default().extend(body.colliders());
+            }
+        }
+        Self(all)
+    }
+
+    /// Those of an island, the first time they are asked for.
+    fn take(&mut self, island: Option<u32>) -> Vec<ColliderHandle> {
+        island
+            .and_then(|island| self.0.remove(&island))
+            .unwrap_or_default()
+    }
+}
+
+/// Colliders that touch one, and itself.
+fn touching(sets: Sets, handle: ColliderHandle) -> impl Iterator<Item = ColliderHandle> {
+    let pairs = sets.narrow_phase.contact_pairs_with(handle);
+    let touching = pairs.filter(|pair| pair.has_any_active_contact());
+    touching.flat_map(|pair| [pair.collider1, pair.collider2])
 }

@@ -18,18 +18,18 @@ pub struct Participants {
 }
 
 impl Participants {
-    /// Those that move, and so far no still ones but those that are everywhere.
+    /// Those that move, and so far no still ones.
     pub fn new(moving: Vec<ColliderHandle>, still: Arc<StillColliders>) -> Self {
-        let mut all = Self {
+        Self {
             handles: moving,
             near: vec![false; still.len()],
-            still: Arc::clone(&still),
-        };
-        for &place in still.everywhere() {
-            all.add(still.handle(place));
+            still,
         }
-        all.sort();
-        all
+    }
+
+    /// The still colliders, near or not.
+    pub fn still(&self) -> &StillColliders {
+        &self.still
     }
 
     /// Adds a collider, if it is a bystander.

@@ -69,6 +69,8 @@ pub struct StepView {
     pub followed: bool,
     /// Place of each body in `bodies`.
     pub index: FastMap<RigidBodyHandle, usize>,
+    /// Whether a collider that does not take part has restitution.
+    pub others_bounce: bool,
 }
 
 impl StepView {
@@ -81,6 +83,7 @@ impl StepView {
             parts: Vec::new(),
             followed: false,
             index: FastMap::default(),
+            others_bounce: sets.participants.is_some_and(|p| p.still().bounce()),
         };
         let add = |view: &mut Self, h: RigidBodyHandle| {
             let body = bodies.get(h)?;
@@ -195,29 +198,6 @@ impl StepView {
         }
     }
 
-    /// Goes on with all bodies and colliders: those of this view in their motions, and of `whole` those that did not take part, which
-    /// have not moved.
-    pub fn complete(&mut self, mut whole: Self) {
-        let known = |handle: Option<RigidBodyHandle>| self.index.get(&handle?).copied();
-        for body in &mut whole.bodies {
-            if let Some(k) = known(body.handle) {
-                body.clone_from(&self.bodies[k]);
-            }
-        }
-        let parts = self.parts.iter().map(|part| (part.handle, part));
-        let parts: FastMap<ColliderHandle, &Part> = parts.collect();
-        for part in &mut whole.parts {
-            if let Some(known) = parts.get(&part.handle) {
-                *part = Part {
-                    body: part.body,
-                    ..(*known).clone()
-                };
-            }
-        }
-        whole.followed = self.followed;
-        *self = whole;
-    }
-
     /// Copies of bodies and colliders as they were at the start of the step.
     pub fn world_at_start(
         &self,
@@ -313,9 +293,9 @@ impl StepView {
         self.bodies.iter().map(speed).fold(0.0, Real::max) * seconds
     }
 
-    /// Whether a collider has restitution.
+    /// Whether a collider of the world has restitution.
     pub fn any_restitution(&self) -> bool {
-        self.parts.iter().any(|p| p.restitution.0 > 0.0)
+        self.others_bounce || self.parts.iter().any(|p| p.restitution.0 > 0.0)
     }
 
     /// Coefficient of restitution of two colliders, by rapier's combine rules.

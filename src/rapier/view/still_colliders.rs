@@ -1,8 +1,8 @@
 //! Colliders that stay where they are as long as nothing gets to them: fixed ones, and those of sleeping bodies that no
 //! joint holds. A world may have thousands, and a step need not look at those that are far from all that moves
-//! (`participants.rs`). While they stay the same from step to step, a tree of their boxes is kept.
+//! (`participants.rs`). Where they have been the same for some steps, a tree of their boxes is kept.
 
-use crate::math::fast_hash::FastHasher;
+use crate::math::fast_hash::{FastHasher, FastMap};
 use crate::math::{Pose, Real, Vector};
 use crate::rapier::view::enabled::takes_part;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -15,6 +15,10 @@ use std::sync::Arc;
 /// Largest side of a box that the tree holds: round a larger one, as of a half-space, sums are no longer exact.
 const LARGEST: Real = 1.0e6;
 
+/// Steps in turn with the same still colliders after which the tree is built: where bodies wake and fall asleep all the time
+/// it would be built in vain.
+const STEPS: u32 = 3;
+
 /// Still colliders, with a tree of their boxes.
 pub struct StillColliders {
     handles: Vec<ColliderHandle>,
@@ -24,11 +28,19 @@ pub struct StillColliders {
     everywhere: Vec<u32>,
     /// Place of each among all, by the index in its handle.
     places: Vec<u32>,
+    /// Where the dynamic bodies among them are.
+    poses: FastMap<RigidBodyHandle, Pose>,
+    /// Whether one has restitution.
+    bounces: bool,
 }
 
 impl StillColliders {
     /// Boxes are grown by `margin` and the collider's skin.
-    fn new(handles: Vec<ColliderHandle>, colliders: &ColliderSet, margin: Real) -> Self {
+    fn new(
+        handles: Vec<ColliderHandle>,
+        (bodies, colliders): (&RigidBodySet, &ColliderSet),
+        (bounces, margin): (bool, Real),
+    ) -> Self {
         let index = |h: &ColliderHandle| h.into_raw_parts().0 as usize;
         let mut places = vec![u32::MAX; handles.iter().map(index).max().map_or(0, |last| last + 1)];
         let (mut boxes, mut everywhere) = (Vec::new(), Vec::new());
@@ -45,12 +57,18 @@ impl StillColliders {
             boxes.push(held.unwrap_or_else(Aabb::new_invalid));
         }
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        let parents = handles.iter().filter_map(|h| colliders.get(*h)?.parent());
+        let dynamic = parents.filter_map(|h| Some((h, bodies.get(h)?)));
+        let dynamic = dynamic.filter(|(_, body)| body.is_dynamic());
+        let poses = dynamic.map(|(h, body)| (h, *body.position())).collect();
         Self {
             handles,
             boxes,
             tree,
             everywhere,
             places,
+            poses,
+            bounces,
         }
     }
 
@@ -70,9 +88,24 @@ impl StillColliders {
         (*self.handles.get(place as usize)? == collider).then_some(place)
     }
 
-    /// Places of those without a box.
-    pub fn everywhere(&self) -> &[u32] {
-        &self.everywhere
+    /// Those without a box.
+    pub fn everywhere(&self) -> impl Iterator<Item = ColliderHandle> + '_ {
+        self.everywhere.iter().map(|place| self.handle(*place))
+    }
+
+    /// Their dynamic bodies.
+    pub fn dynamic_bodies(&self) -> impl Iterator<Item = RigidBodyHandle> + '_ {
+        self.poses.keys().copied()
+    }
+
+    /// Where a dynamic body of theirs is.
+    pub fn pose(&self, body: RigidBodyHandle) -> Option<Pose> {
+        self.poses.get(&body).copied()
+    }
+
+    /// Whether one has restitution.
+    pub fn bounce(&self) -> bool {
+        self.bounces
     }
 
     /// Places of those whose boxes meet this one; of a box that is no number all.
@@ -91,6 +124,8 @@ impl StillColliders {
 pub struct StillRecord {
     /// Hash of who is where.
     key: u64,
+    /// Steps for which that has been so.
+    steps: u32,
     /// The colliders that moved, in the order of the set, and what decides with whom each collides.
     moving: Vec<(ColliderHandle, u64)>,
     known: Option<Arc<StillColliders>>,
@@ -98,15 +133,16 @@ pub struct StillRecord {
 
 impl StillRecord {
     /// The colliders that move, in the order of the set, and the still ones, if these are the same as in the step before
-    /// and at least `least`. Boxes are grown by `margin`. `None`, too, where a collider that moved is gone or collides with
+    /// and enough: at least so many, and at least so many times those that move. Boxes are grown by `margin`. `None`, too, where a collider that moved is gone or collides with
     /// others than before, for rapier may then wake what rested on it.
     pub fn look(
         &mut self,
         (bodies, colliders): (&RigidBodySet, &ColliderSet),
         joints: (&ImpulseJointSet, &MultibodyJointSet),
-        (least, margin): (usize, Real),
+        ([least, times], margin): ([usize; 2], Real),
     ) -> Option<(Vec<ColliderHandle>, Arc<StillColliders>)> {
         let (mut moving, mut still) = (Vec::new(), Vec::new());
+        let mut bounces = false;
         let mut hash = FastHasher::default();
         hash.write_u32(margin.to_bits());
         for (handle, collider) in colliders.iter() {
@@ -116,23 +152,28 @@ impl StillRecord {
             if is_still(bodies, joints, collider) {
                 add_place(&mut hash, handle, collider);
                 hash.write_u64(partners(bodies, collider));
+                bounces |= collider.restitution() > 0.0;
                 still.push(handle);
             } else {
                 moving.push((handle, partners(bodies, collider)));
             }
         }
+        hash.write_u32(bounces.into());
         let key = hash.finish();
         let is_same = key == self.key && go_on(&self.moving, &moving);
         self.key = key;
         self.moving = moving;
-        if !is_same || still.len() < least {
+        self.steps = if is_same { self.steps + 1 } else { 0 };
+        let enough = still.len() >= least.max(times * self.moving.len());
+        if self.steps < STEPS || !enough {
             self.known = None;
             return None;
         }
         let moving = self.moving.iter().map(|(handle, _)| *handle).collect();
-        let known = self
-            .known
-            .get_or_insert_with(|| Arc::new(StillColliders::new(still, colliders, margin)));
+        let known = self.known.get_or_insert_with(|| {
+            let sets = (bodies, colliders);
+            Arc::new(StillColliders::new(still, sets, (bounces, margin)))
+        });
         Some((moving, Arc::clone(known)))
     }
 }
@@ -177,16 +218,25 @@ fn add_place(hash: &mut FastHasher, handle: ColliderHandle, collider: &Collider)
     }
 }
 
-/// Hash of what decides with what a collider collides where it is.
+/// Hash of what decides with what a collider collides where it is, and who gives way.
 fn partners(bodies: &RigidBodySet, collider: &Collider) -> u64 {
     let mut hash = FastHasher::default();
     hash.write_u64(std::ptr::from_ref(collider.shape()).addr() as u64);
+    // A game may change a shape in place.
+    let aabb = collider.shape().compute_local_aabb();
+    for side in [aabb.mins, aabb.maxs] {
+        for x in side.to_array() {
+            hash.write_u32(x.to_bits());
+        }
+    }
     for groups in [collider.collision_groups(), collider.solver_groups()] {
         hash.write_u32(groups.memberships.bits());
         hash.write_u32(groups.filter.bits());
     }
     let body = collider.parent().and_then(|h| bodies.get(h));
     let body_type = body.map_or(u32::MAX, |body| body.body_type() as u32);
+    let dominance = body.map_or(0, |body| body.effective_dominance_group());
+    hash.write_i32(dominance.into());
     hash.write_u32(body_type << 1 | u32::from(collider.is_sensor()));
     hash.write_u32(collider.contact_skin().to_bits());
     hash.finish()

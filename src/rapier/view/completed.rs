@@ -1,0 +1,62 @@
+//! Completes the view of a step that left out bystanders (`participants.rs`) after rapier's step, where rapier woke one, or
+//! something may get to one.
+
+use crate::math::fast_hash::FastMap;
+use crate::math::{Pose, Vector};
+use crate::rapier::view::motion::Body;
+use crate::rapier::view::step_view::{Part, StepView};
+use crate::rapier::view::still_colliders::StillColliders;
+use parry3d::query::NonlinearRigidMotion;
+use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::{ColliderHandle, ColliderSet};
+
+impl StepView {
+    /// Goes on with all bodies and colliders: those of this view in their motions, and of `whole`, taken after rapier's step, those
+    /// that did not take part, which were `still` before it.
+    pub fn complete(
+        &mut self,
+        mut whole: Self,
+        still: &StillColliders,
+        parameters: &IntegrationParameters,
+        (bodies, colliders): (&RigidBodySet, &ColliderSet),
+    ) {
+        for body in &mut whole.bodies {
+            if let Some(pose) = body.handle.and_then(|h| still.pose(h)) {
+                sleep_at(body, pose);
+            }
+        }
+        for part in &mut whole.parts {
+            let pose = whole.bodies[part.body].start * part.offset;
+            part.aabb = part.shape.compute_aabb(&pose);
+        }
+        whole.follow(parameters, bodies, colliders);
+        let known = |handle: Option<RigidBodyHandle>| self.index.get(&handle?).copied();
+        for body in &mut whole.bodies {
+            if let Some(k) = known(body.handle) {
+                body.clone_from(&self.bodies[k]);
+            }
+        }
+        let parts = self.parts.iter().map(|part| (part.handle, part));
+        let parts: FastMap<ColliderHandle, &Part> = parts.collect();
+        for part in &mut whole.parts {
+            if let Some(known) = parts.get(&part.handle) {
+                let body = part.body;
+                part.clone_from(known);
+                part.body = body;
+            }
+        }
+        *self = whole;
+    }
+}
+
+/// Makes a body what it was when it slept at a pose, before rapier's step.
+fn sleep_at(body: &mut Body, pose: Pose) {
+    body.awake = false;
+    body.motion = NonlinearRigidMotion {
+        local_center: body.motion.local_center,
+        ..NonlinearRigidMotion::constant_position(pose)
+    };
+    body.start = pose;
+    body.velocity_before = [Vector::ZERO; 2];
+    body.pull = Vector::ZERO;
+}
