@@ -180,6 +180,21 @@ impl State {
         (report, outcome.stopped)
     }
 
+    /// Who takes part in a step; `None` where all do.
+    fn participants(
+        &mut self,
+        world: &World,
+        parameters: &IntegrationParameters,
+        census: &Census,
+    ) -> Option<Participants> {
+        if census.medial == 0 || census.still.is_some() || !world.soft_bodies.is_empty() {
+            return None;
+        }
+        let sets = world.sets(parameters, None);
+        let least = self.tuning.least_still;
+        near_what_moves::find(&mut self.still, sets, world.islands, least)
+    }
+
     /// Plans a step, and hands the contacts to come to the narrow phase.
     fn plan(
         &mut self,
@@ -190,18 +205,7 @@ impl State {
     ) -> StepPlan {
         let clock = Instant::now();
         let parameters = args.parameters;
-        let may_leave_out =
-            census.medial > 0 && census.still.is_none() && world.soft_bodies.is_empty();
-        let sets = world.sets(parameters, None);
-        let participants = may_leave_out.then(|| {
-            near_what_moves::find(
-                &mut self.still,
-                sets,
-                world.islands,
-                self.tuning.least_still,
-            )
-        });
-        let participants = participants.flatten();
+        let participants = self.participants(world, parameters, &census);
         let taking_part = participants.as_ref();
         medial_colliders::make_unique(world.bodies, world.colliders);
         self.effects.clean(world.colliders);
