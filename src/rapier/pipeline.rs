@@ -85,6 +85,7 @@ impl MedialPipeline {
             reported: ReportedStarts::default(),
             placed: InitialOverlaps::default(),
             still: StillRecord::default(),
+            still_medial: None,
             moved: None,
             kept: None,
         };

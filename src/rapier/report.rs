@@ -21,8 +21,12 @@ counters! {
         /// Number of enabled medial colliders in the world.
         pub medial_colliders: usize,
         /// Colliders that the step looked at for impacts: all but sensors, or, in a world of many still ones, those that move and
-        /// those near them. Summed over the steps between stops; 0 where nothing moves.
+        /// those near them, as long as nothing gets to others ([`Self::completed`]). Summed over the steps between stops; 0 where
+        /// nothing moves.
         pub participants: usize,
+        /// Times that a step had left out still colliders and looked at all of them after all, because something may have got to
+        /// one, or rapier woke one.
+        pub completed: usize,
         /// Pairs of medial colliders, at least one of the two awake, whose bounding boxes were near each other at the
         /// start of the step.
         pub pairs: usize,

@@ -1,6 +1,7 @@
 //! State that a pipeline keeps from step to step.
 
 use crate::batch::Batch;
+use crate::math::Vector;
 use crate::parry::narrow_phase_plan::PlanExchange;
 use crate::rapier::effects::EffectSettings;
 use crate::rapier::host::events_of_impacts::ReportedStarts;
@@ -8,8 +9,13 @@ use crate::rapier::host::recycling::RecyclingRecord;
 use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::tuning::Tuning;
-use crate::rapier::view::still_colliders::StillRecord;
-use rapier3d::dynamics::RigidBodyHandle;
+use crate::rapier::view::census::Census;
+use crate::rapier::view::medial_colliders::MedialColliders;
+use crate::rapier::view::near_what_moves;
+use crate::rapier::view::participants::Participants;
+use crate::rapier::view::still_colliders::{StillColliders, StillRecord};
+use crate::rapier::world::World;
+use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle};
 use std::sync::Arc;
 
 /// State that a [`MedialPipeline`](crate::MedialPipeline) keeps from step to step.
@@ -28,8 +34,46 @@ pub struct State {
     pub placed: InitialOverlaps,
     /// The colliders that stood still in the last step.
     pub still: StillRecord,
+    /// The medial ones, with what they were made for: the still colliders and gravity.
+    pub still_medial: Option<(Arc<StillColliders>, Vector, Arc<MedialColliders>)>,
     /// The bodies that impacts moved in the last step; `None` before the first.
     pub moved: Option<Vec<RigidBodyHandle>>,
     /// The plan of the last step, if nothing moved in it.
     pub kept: Option<StepPlan>,
+}
+
+impl State {
+    /// Who takes part in a step; `None` where all do.
+    pub fn participants(
+        &mut self,
+        world: &World,
+        parameters: &IntegrationParameters,
+        census: &Census,
+    ) -> Option<Participants> {
+        if census.medial == 0 || census.still.is_some() || !world.soft_bodies.is_empty() {
+            return None;
+        }
+        let sets = world.sets(parameters, None);
+        let least = self.tuning.least_still;
+        near_what_moves::find(&mut self.still, sets, world.islands, least)
+    }
+
+    /// The medial colliders of the whole world, of which those that do not take part are where they were; `None` where all
+    /// take part. rapier asks for contacts of some that touch although none of them moves.
+    pub fn bystanders(
+        &mut self,
+        world: &World,
+        parameters: &IntegrationParameters,
+        participants: Option<&Participants>,
+    ) -> Option<Arc<MedialColliders>> {
+        let still = participants?.shared_still();
+        let holds = |known: &(Arc<StillColliders>, Vector, _)| {
+            Arc::ptr_eq(&known.0, still) && known.1 == world.gravity
+        };
+        if !self.still_medial.as_ref().is_some_and(holds) {
+            let all = MedialColliders::new(&world.sets(parameters, None));
+            self.still_medial = Some((Arc::clone(still), world.gravity, Arc::new(all)));
+        }
+        self.still_medial.as_ref().map(|known| Arc::clone(&known.2))
+    }
 }

@@ -13,7 +13,7 @@ use crate::rapier::host::multibody_energy::WildMultibodies;
 use crate::rapier::host::sleep_timers::{SleepTimers, moved_before};
 use crate::rapier::host::speculative::Speculators;
 use crate::rapier::host::substeps::Substeps;
-use crate::rapier::impacts::event_loop::{self, Contacts};
+use crate::rapier::impacts::event_loop;
 use crate::rapier::impacts::outcome::Outcome;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::report::StepReport;
@@ -23,8 +23,7 @@ use crate::rapier::tuning::Tuning;
 use crate::rapier::view::census::Census;
 use crate::rapier::view::filter_answers::FilterAnswers;
 use crate::rapier::view::medial_colliders::{self, Sets};
-use crate::rapier::view::near_what_moves;
-use crate::rapier::view::participants::Participants;
+use crate::rapier::view::participants::Contacts;
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
 use rapier3d::dynamics::IntegrationParameters;
@@ -148,7 +147,9 @@ impl State {
         let tally = self.rapiers_step(world, args, (&mut plan, is_kept), &events, &mut report);
 
         let clock = Instant::now();
+        let left_out = plan.participants.is_some();
         let outcome = self.impacts(world, args, (&mut plan, tally.depth), &mut work);
+        report.completed = usize::from(left_out && plan.participants.is_none());
         self.moved = Some(world.write_back(&plan.view, &outcome));
         if !is_kept || plan.view.followed {
             let participants = plan.participants.as_ref();
@@ -178,21 +179,6 @@ impl State {
         report.batch += self.batch.report().counts - before;
         self.kept = (!plan.view.followed).then_some(plan);
         (report, outcome.stopped)
-    }
-
-    /// Who takes part in a step; `None` where all do.
-    fn participants(
-        &mut self,
-        world: &World,
-        parameters: &IntegrationParameters,
-        census: &Census,
-    ) -> Option<Participants> {
-        if census.medial == 0 || census.still.is_some() || !world.soft_bodies.is_empty() {
-            return None;
-        }
-        let sets = world.sets(parameters, None);
-        let least = self.tuning.least_still;
-        near_what_moves::find(&mut self.still, sets, world.islands, least)
     }
 
     /// Plans a step, and hands the contacts to come to the narrow phase.
@@ -255,11 +241,14 @@ impl State {
         let keys = jobs.map(|(job, ahead)| ahead.key(job));
         let known = keys.zip(results);
         let colliders = found.colliders;
+        let others = self.bystanders(world, parameters, participants.as_ref());
         let off = |e: &Effects| e.continuous == Effect::Off;
         let takes_all = !self.effects.any(off) && !census.any_modified;
         let narrow_phase = Arc::new(NarrowPhasePlan {
             known: known.map(|((k, p), result)| (k, (p, result))).collect(),
-            compute: Some(Box::new(move |job| predicted(&colliders, job))),
+            compute: Some(Box::new(move |job| {
+                predicted(&colliders, others.as_deref(), job)
+            })),
             muted,
             single_point_pairs: self.effects.single_point_pairs(world.colliders),
             // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
@@ -353,32 +342,38 @@ impl State {
             world.gravity,
             bouncing,
         );
-        let mut resolve =
-            |view: &mut StepView, participants: Option<&Participants>, work: &mut Work| {
-                let contacts = Contacts {
-                    narrow_phase: world.narrow_phase,
-                    participants,
-                    depth,
-                };
-                let placed = &mut self.placed;
-                event_loop::resolve(view, policy, rules, contacts, placed, &mut self.batch, work)
-            };
+        let narrow_phase = &*world.narrow_phase;
+        let (placed, batch) = (&mut self.placed, &mut self.batch);
         let Some(participants) = plan.participants.take() else {
-            return resolve(view, None, work).unwrap_or_default();
+            let contacts = Contacts::of_all(narrow_phase, depth);
+            let outcome = event_loop::resolve(view, policy, rules, contacts, placed, batch, work);
+            return outcome.unwrap_or_default();
         };
+        let still = participants.still();
         let mut active = world.islands.active_bodies();
-        if !active.any(|h| !view.index.contains_key(&h) && participants.still().pose(h).is_some()) {
-            let before = (view.clone(), *work);
-            if let Some(outcome) = resolve(view, Some(&participants), work) {
+        let wakes = active.any(|h| !view.index.contains_key(&h) && still.pose(h).is_some());
+        if !wakes {
+            let before = (view.clone(), *work, placed.left());
+            let contacts = Contacts {
+                participants: Some(&participants),
+                ..Contacts::of_all(narrow_phase, depth)
+            };
+            let outcome = event_loop::resolve(view, policy, rules, contacts, placed, batch, work);
+            if let Some(outcome) = outcome {
                 plan.participants = Some(participants);
                 return outcome;
             }
-            (*view, *work) = before;
+            let left;
+            (*view, *work, left) = before;
+            placed.leave_again(left);
         }
         let whole = StepView::take(world.sets(parameters, None));
         let sets = (&*world.bodies, &*world.colliders);
-        view.complete(whole, participants.still(), parameters, sets);
-        resolve(view, None, work).unwrap_or_default()
+        view.complete(whole, still, parameters, sets);
+        // How deep the others are was not looked at.
+        let contacts = Contacts::of_all(narrow_phase, Real::INFINITY);
+        let outcome = event_loop::resolve(view, policy, rules, contacts, placed, batch, work);
+        outcome.unwrap_or_default()
     }
 
     /// Sends the contacts of the next step to a device, since the poses are final.

@@ -57,8 +57,8 @@ pub struct Tuning {
     /// Impacts of a body in one step after which it stays where it is. Halved and doubled, 1.7 times and
     /// half as many bodies do at 150 m/s, for 0.75 and 1.33 times the queries.
     pub max_events: u32,
-    /// Number of still colliders from which those that nothing gets to are left out of a step, and how many times as many as move
-    /// they must be. Looking for them costs more than it saves among few. No world goes on otherwise for it.
+    /// Number of still colliders from which a step leaves out those that nothing gets to, and how many times as many as
+    /// the moving ones they must be. Among fewer, looking for them costs more than it saves.
     pub least_still: [usize; 2],
     /// Times that the world stops in one step. Each costs a step; after the last one impulses take the
     /// rest, so fewer only make impacts less exact: at half, 0.7 impulses a flight instead of 0.3.

@@ -55,8 +55,8 @@ pub fn stick_out(complex: &Complex, tree: &TriangleTree, ab: [u32; 2], ball: &Ba
     middles.chain([*ball]).map(out).fold(0.0, f64::max)
 }
 
-/// Does the same as [`stick_out`] where that is more than `least`, and gives 0 where it is not, which is far quicker to
-/// tell. What stays as it was does not count.
+/// How far what moves with the edge sticks out of the solid, as [`stick_out`] tells it, where that is more than `least`, and 0 where it is not, which
+/// is far quicker to tell. What stays as it was does not count, nor a ball whose centre is far outside.
 pub fn stick_out_beyond(
     least: f64,
     complex: &Complex,

@@ -32,7 +32,7 @@ const REACH: f64 = 3.0;
 /// of 200 by an eighth more.
 const STICK_OUT: f64 = 4.0;
 
-/// Below this many primitives all of that counts. From the first collapse on it takes ten seconds, and gains nothing.
+/// Below this many primitives all of that counts. From the first collapse on it takes ten seconds.
 const MEASURED: usize = 10_000;
 
 /// With more it counts where something sticks out by more than this (longest side 1): a nut's thread of 180,000

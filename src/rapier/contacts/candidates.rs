@@ -26,7 +26,7 @@ pub struct Candidates {
     pub colliders: MedialColliders,
     /// Colliders whose contacts rapier must be made to ask for.
     pub forced: HashSet<ColliderHandle>,
-    /// Depth of the deepest of all contacts, a length.
+    /// Depth of the deepest contact of those that take part, a length.
     pub depth: Real,
 }
 
@@ -71,7 +71,7 @@ struct ContactScene {
     forced: Vec<bool>,
     /// Whether it asks for them in any case: the user has hooks on it, or it is `forced`.
     asked: Vec<bool>,
-    /// Depth of the deepest of all contacts, a length.
+    /// Depth of the deepest contact of those that take part, a length.
     depth: Real,
 }
 

@@ -50,9 +50,15 @@ const REACH: Real = 0.25;
 const HELD_LEVER: Real = 0.03;
 
 /// The contacts of a pair that rapier asks for unexpectedly, as the batch would have computed them;
-/// `None` if it is not at its start, or rapier looks further than usual.
-pub fn predicted(colliders: &MedialColliders, job: PairJob) -> Option<PairResult> {
-    let [a, b] = [&job.mesh1, &job.mesh2].map(|mesh| colliders.of(mesh));
+/// `None` if it is not at its start, or rapier looks further than usual. Those that are not among `colliders` may be among
+/// `others`, which stand still.
+pub fn predicted(
+    colliders: &MedialColliders,
+    others: Option<&MedialColliders>,
+    job: PairJob,
+) -> Option<PairResult> {
+    let of = |mesh| colliders.of(mesh).or_else(|| others?.of(mesh));
+    let [a, b] = [&job.mesh1, &job.mesh2].map(of);
     let pair = [a?, b?];
     let at_start = pair[0].pose().inv_mul(pair[1].pose()) == job.pos12;
     let skins = pair[0].skin + pair[1].skin;

@@ -31,7 +31,7 @@ use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::view::eligible_pairs::{Rules, in_order, is_ccd_candidate, sweep};
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::near_what_moves;
-use crate::rapier::view::participants::Participants;
+use crate::rapier::view::participants::{Contacts, Participants};
 use crate::rapier::view::step_view::StepView;
 use parry3d::shape::SharedShape;
 use rapier3d::geometry::NarrowPhase;
@@ -84,19 +84,8 @@ pub(crate) struct Loop<'a> {
     leaves: bool,
 }
 
-/// Contacts of rapier at the end of its step.
-#[derive(Clone, Copy)]
-pub struct Contacts<'a> {
-    /// All of them.
-    pub narrow_phase: &'a NarrowPhase,
-    /// Colliders that take part, where not all do.
-    pub participants: Option<&'a Participants>,
-    /// Depth of the deepest of a medial collider that takes part, a length, or more.
-    pub depth: Real,
-}
-
 /// Finds and resolves the impacts on the motions of `view`, which is at the bodies' last poses
-/// afterwards; `None` if something may get to a collider that does not take part.
+/// afterwards. `None` if something may get to a collider that does not take part; the motions are of no use then.
 pub fn resolve(
     view: &mut StepView,
     policy: CcdPolicy,
@@ -111,6 +100,9 @@ pub fn resolve(
         participants,
         depth,
     } = contacts;
+    if participants.is_some_and(|p| near_what_moves::leaves(view, p, (policy.dt, policy.unit))) {
+        return None;
+    }
     let guarded = policy.tuning.guarded();
     let thinnest = view.thinnest_part();
     let deep = if depth > guarded * thinnest {
@@ -152,7 +144,6 @@ pub fn resolve(
         participants,
         leaves: false,
     };
-    events.leaves = events.leaves_at_start();
     let mut known = FastMap::default();
     if batch.has_device() {
         let (asked, jobs): (Vec<_>, Vec<_>) = events.first_queries(&pairs).into_iter().unzip();

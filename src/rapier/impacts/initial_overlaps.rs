@@ -31,7 +31,7 @@ use rapier3d::geometry::{
     SolverFlags,
 };
 
-type Pair = [ColliderHandle; 2];
+pub type Pair = [ColliderHandle; 2];
 /// In the order of their indices.
 type BodyPair = [RigidBodyHandle; 2];
 
@@ -168,6 +168,7 @@ impl InitialOverlaps {
             let shape = KnownShape::of(colliders.get(handle)?.shared_shape());
             Some((handle, End { pose, shape, kind }))
         };
+        self.seen.clear();
         self.ends.clear();
         for (handle, end) in record.ends.into_iter().filter_map(end) {
             self.set_end(handle, end);
@@ -276,6 +277,16 @@ impl InitialOverlaps {
         pairs
     }
 
+    /// The pairs that are left to the solver.
+    pub fn left(&self) -> FastSet<Pair> {
+        self.left.clone()
+    }
+
+    /// Leaves other pairs to it.
+    pub fn leave_again(&mut self, left: FastSet<Pair>) {
+        self.left = left;
+    }
+
     /// Whether the bodies of a pair are among some.
     fn among(bodies: &FastSet<BodyPair>, view: &StepView, pair: [usize; 2]) -> bool {
         let both = pair.map(|k| view.bodies[view.parts[k].body].handle);
@@ -289,7 +300,9 @@ impl InitialOverlaps {
             Some(participants) => {
                 let gone = |h: &ColliderHandle| !participants.is_bystander(*h);
                 for handle in std::mem::take(&mut self.seen).into_iter().filter(gone) {
-                    self.ends[index(handle) as usize] = None;
+                    if let Some(end) = self.ends.get_mut(index(handle) as usize) {
+                        *end = None;
+                    }
                 }
             }
         }

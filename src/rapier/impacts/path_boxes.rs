@@ -4,7 +4,6 @@
 use crate::math::Real;
 use crate::rapier::impacts::event_loop::Loop;
 use crate::rapier::impacts::swept_boxes::SweptBoxes;
-use crate::rapier::view::motion::Kind;
 use crate::rapier::view::near_what_moves::MARGIN;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 
@@ -29,16 +28,6 @@ impl Loop<'_> {
                 self.parts_of[part.body].push(k);
             }
         }
-    }
-
-    /// Whether something may get to a bystander on the path that rapier's step gave it.
-    pub fn leaves_at_start(&self) -> bool {
-        let moves = |k: &usize| {
-            let body = &self.view.bodies[self.view.parts[*k].body];
-            body.kind != Kind::Fixed && body.awake
-        };
-        let mut moving = (0..self.view.parts.len()).filter(moves);
-        self.participants.is_some() && moving.any(|k| self.meets_bystander(&self.swept_box(k, 0.0)))
     }
 
     /// Whether a box meets that of a bystander.

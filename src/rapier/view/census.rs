@@ -3,7 +3,7 @@
 use crate::math::fast_hash::FastHasher;
 use crate::math::{Pose, Vector};
 use crate::medial::MedialMesh;
-use crate::rapier::view::enabled::takes_part;
+use crate::rapier::view::enabled::will_be_enabled;
 use rapier3d::dynamics::{
     GenericJoint, ImpulseJointSet, MultibodyJointSet, RigidBody, RigidBodyHandle, RigidBodySet,
     SoftBodySet,
@@ -48,7 +48,7 @@ impl Census {
             census.any_modified |= hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS);
             let medial = collider.shape().as_shape::<MedialMesh>().is_some();
             census.all += usize::from(medial);
-            if !medial && places.is_none() || !takes_part(bodies, collider) {
+            if !medial && places.is_none() || !will_be_enabled(bodies, collider) {
                 continue;
             }
             census.medial += usize::from(medial);

@@ -5,7 +5,7 @@ use rapier3d::dynamics::RigidBodySet;
 use rapier3d::geometry::Collider;
 
 /// Whether a collider will be enabled in the next step.
-pub fn takes_part(bodies: &RigidBodySet, collider: &Collider) -> bool {
+pub fn will_be_enabled(bodies: &RigidBodySet, collider: &Collider) -> bool {
     match collider.parent().and_then(|h| bodies.get(h)) {
         Some(body) => {
             body.is_enabled() && (collider.is_enabled() || !is_disabled_by_user(collider))

@@ -1,5 +1,5 @@
 //! Finds the still colliders that a step may get to: those that what moves may reach by its velocities, and, of a sleeping
-//! body that is reached, those that touch it or nearly do and those of its island, which rapier wakes together. What flies
+//! body that is reached, those that touch it and those of its island, which rapier wakes together, and what is beside these. What flies
 //! farther than its velocities told, because it was struck, may reach others, and rapier may wake bodies for reasons of its
 //! own: then the step looks at all ([`StepView::complete`]).
 
@@ -46,36 +46,61 @@ fn add_near(participants: &mut Participants, sets: Sets, islands: &IslandManager
     let view = StepView::take(moving);
     let dt = sets.parameters.dt;
     let moves = |k: &usize| view.bodies[view.parts[*k].body].kind != Kind::Fixed;
-    let mut reached: Vec<ColliderHandle> = participants.still().everywhere().collect();
+    // What rapier may wake in the step, and what is beside it then.
+    let mut woken: Vec<ColliderHandle> = participants.still().everywhere().collect();
+    let mut beside = Vec::new();
     for k in (0..view.parts.len()).filter(moves) {
         let aabb = view.swept_aabb(k, 0.0, dt);
         let aabb = aabb.loosened(margin + view.parts[k].skin);
-        reached.extend(participants.bystanders_in(&aabb));
-        reached.extend(touching(sets, view.parts[k].handle));
+        woken.extend(participants.bystanders_in(&aabb));
+        woken.extend(touching(sets, view.parts[k].handle));
     }
     let mut sleeping = None;
-    while let Some(handle) = reached.pop() {
-        let Some(collider) = sets.colliders.get(handle) else {
-            continue;
-        };
+    while let Some(handle) = woken.pop() {
         if !participants.add(handle) {
             continue;
         }
+        let Some(collider) = sets.colliders.get(handle) else {
+            continue;
+        };
         let parent = collider.parent();
         let body = parent.and_then(|h| Some((h, sets.bodies.get(h)?)));
         let Some((parent, body)) = body else { continue };
-        reached.extend(body.colliders());
         if body.is_dynamic() {
-            let all =
-                sleeping.get_or_insert_with(|| SleepingIslands::new(participants, sets, islands));
-            reached.extend(all.take(islands.persistent_island_of(sets.bodies, parent)));
+            woken.extend(body.colliders());
             let grown = margin + collider.contact_skin();
             let aabb = collider.compute_aabb().loosened(grown);
-            reached.extend(participants.bystanders_in(&aabb));
-            reached.extend(touching(sets, handle));
+            beside.extend(participants.bystanders_in(&aabb));
+            woken.extend(touching(sets, handle));
+            let all =
+                sleeping.get_or_insert_with(|| SleepingIslands::new(participants, sets, islands));
+            woken.extend(all.take(islands.persistent_island_of(sets.bodies, parent)));
+        }
+    }
+    for handle in beside {
+        let body = sets.colliders.get(handle).and_then(|c| c.parent());
+        let body = body.and_then(|h| sets.bodies.get(h));
+        participants.add(handle);
+        let dynamic = body.filter(|body| body.is_dynamic());
+        for other in dynamic.map_or(&[][..], |body| body.colliders()) {
+            participants.add(*other);
         }
     }
     participants.sort();
+}
+
+/// Whether something may get to a bystander on the path that rapier's step of a length, in a world of a length unit, gave it.
+pub fn leaves(view: &StepView, participants: &Participants, (dt, unit): (Real, Real)) -> bool {
+    let moves = |k: &usize| {
+        let body = &view.bodies[view.parts[*k].body];
+        body.kind != Kind::Fixed && body.awake
+    };
+    let mut moving = (0..view.parts.len()).filter(moves);
+    moving.any(|k| {
+        let grown = view.parts[k].skin + MARGIN * unit;
+        let aabb = view.swept_aabb(k, 0.0, dt).loosened(grown);
+        participants.bystanders_in(&aabb).next().is_some()
+    })
 }
 
 /// Colliders of sleeping bodies, by the island of their body.

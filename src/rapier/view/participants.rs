@@ -1,7 +1,8 @@
 //! The colliders that may take part in a step, where a world has many that may not: all that moves, and of the still ones
 //! (`still_colliders.rs`) those near it. The others are bystanders.
 
-use crate::rapier::view::enabled::takes_part;
+use crate::math::Real;
+use crate::rapier::view::enabled::will_be_enabled;
 use crate::rapier::view::still_colliders::StillColliders;
 use parry3d::bounding_volume::Aabb;
 use rapier3d::dynamics::RigidBodySet;
@@ -25,6 +26,11 @@ impl Participants {
             near: vec![false; still.len()],
             still,
         }
+    }
+
+    /// The still colliders, shared from step to step.
+    pub fn shared_still(&self) -> &Arc<StillColliders> {
+        &self.still
     }
 
     /// The still colliders, near or not.
@@ -68,6 +74,28 @@ impl Participants {
     }
 }
 
+/// Contacts of rapier at the end of its step.
+#[derive(Clone, Copy)]
+pub struct Contacts<'a> {
+    /// All of them.
+    pub narrow_phase: &'a NarrowPhase,
+    /// Colliders that take part, where not all do.
+    pub participants: Option<&'a Participants>,
+    /// Depth of the deepest of a medial collider that takes part, a length, or more.
+    pub depth: Real,
+}
+
+impl<'a> Contacts<'a> {
+    /// Where all colliders take part.
+    pub fn of_all(narrow_phase: &'a NarrowPhase, depth: Real) -> Self {
+        Self {
+            narrow_phase,
+            participants: None,
+            depth,
+        }
+    }
+}
+
 /// Colliders that will be enabled in the next step: those that take part, where not all do.
 pub fn enabled<'a>(
     bodies: &'a RigidBodySet,
@@ -75,7 +103,7 @@ pub fn enabled<'a>(
     participants: Option<&'a Participants>,
 ) -> Box<dyn Iterator<Item = (ColliderHandle, &'a Collider)> + 'a> {
     let Some(participants) = participants else {
-        return Box::new(colliders.iter().filter(|(_, c)| takes_part(bodies, c)));
+        return Box::new(colliders.iter().filter(|(_, c)| will_be_enabled(bodies, c)));
     };
     let handles = participants.handles().iter();
     Box::new(handles.filter_map(|h| Some((*h, colliders.get(*h)?))))

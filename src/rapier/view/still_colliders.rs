@@ -4,7 +4,7 @@
 
 use crate::math::fast_hash::{FastHasher, FastMap};
 use crate::math::{Pose, Real, Vector};
-use crate::rapier::view::enabled::takes_part;
+use crate::rapier::view::enabled::will_be_enabled;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::partitioning::{Bvh, BvhBuildStrategy};
 use rapier3d::dynamics::{ImpulseJointSet, MultibodyJointSet, RigidBodyHandle, RigidBodySet};
@@ -146,7 +146,7 @@ impl StillRecord {
         let mut hash = FastHasher::default();
         hash.write_u32(margin.to_bits());
         for (handle, collider) in colliders.iter() {
-            if !takes_part(bodies, collider) {
+            if !will_be_enabled(bodies, collider) {
                 continue;
             }
             if is_still(bodies, joints, collider) {
@@ -194,8 +194,8 @@ fn is_still(
     let is_tied = |h: RigidBodyHandle| {
         joints.attached_joints(h).next().is_some() || multibodies.rigid_body_link(h).is_some()
     };
-    let rests = body.is_fixed() || body.is_dynamic() && body.is_sleeping();
-    rests && !has_speed && !is_tied(handle)
+    let sleeps = body.is_dynamic() && body.is_sleeping() && !is_tied(handle);
+    (body.is_fixed() || sleeps) && !has_speed
 }
 
 /// Whether all of some colliders are among others, unchanged; both in the order of the set.
