@@ -203,3 +203,29 @@ fn characters_stand_still_where_rounding_makes_normals_short() {
         assert!(least < 4.9, "{turned:?} m of 5");
     }
 }
+
+/// Bodies that slept when their joint was removed wake together, however far apart, and rapier tells so by a call that its
+/// documentation hides.
+#[test]
+fn sleeping_islands_wake_as_a_whole() {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let ball = || ColliderBuilder::ball(0.1);
+    let [a, b] = [0.0, 10.0].map(|x| {
+        let body = RigidBodyBuilder::dynamic().translation(Vector::X * x);
+        world.insert(body, ball()).0
+    });
+    let joint = FixedJointBuilder::new().local_anchor1(Vector::X * 10.0);
+    let joint = world.impulse_joints.insert(a, b, joint, true);
+    for _ in 0..300 {
+        world.step();
+    }
+    assert!([a, b].iter().all(|h| world.bodies[*h].is_sleeping()));
+    world.impulse_joints.remove(joint, false);
+    world.step();
+    let island = |world: &PhysicsWorld, h| world.islands.persistent_island_of(&world.bodies, h);
+    assert!(world.bodies[b].is_sleeping() && island(&world, a) == island(&world, b));
+    world.bodies[a].wake_up(true);
+    world.step();
+    assert!(!world.bodies[b].is_sleeping());
+}
