@@ -22,6 +22,10 @@ use crate::meshing::watch::{Watch, bytes_of};
 /// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
 const BULGE: f64 = 0.2;
 
+/// Costs of bent sheets are measured below this many primitives: from the first collapse on that takes ten
+/// seconds, and gains nothing.
+const MEASURED: usize = 10_000;
+
 /// A collapse waits where its measured cost is above the one in the queue by this share, and more than rounding.
 const STALE: f64 = 1.05;
 const NO_COST: f64 = 1e-10;
@@ -174,7 +178,7 @@ impl<'a> Simplifier<'a> {
             return;
         }
         let (_, mut ball) = self.merge(a, b);
-        if self.measures {
+        if self.measures && self.primitives() < MEASURED {
             let cost = self.measured_cost(a, b, &ball);
             if cost > STALE * candidate.cost + NO_COST {
                 self.queue.push(Candidate { cost, ..candidate });

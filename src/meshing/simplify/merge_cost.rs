@@ -4,7 +4,7 @@ use crate::meshing::draft::Ball;
 use crate::meshing::geometry::quadric::Quadric;
 use crate::meshing::simplify::ball_quadrics::stability;
 use crate::meshing::simplify::collapse::Simplifier;
-use crate::meshing::simplify::crease_cost::{fold_cost, stick_out, stick_out_beyond};
+use crate::meshing::simplify::crease_cost::{fold_cost, stick_out};
 
 /// Added to the error before the stability ratio scales it (Q-MAT's `k`, in units of the longest
 /// side): orders the collapses that cost nothing by their stability.
@@ -32,13 +32,6 @@ const REACH: f64 = 3.0;
 /// of 200 by an eighth more.
 const STICK_OUT: f64 = 4.0;
 
-/// Below this many primitives all of that counts. From the first collapse on it takes ten seconds.
-const MEASURED: usize = 10_000;
-
-/// With more it counts where something sticks out by more than this (longest side 1): a nut's thread of 180,000
-/// primitives was off by .008 at one place in a hundred when 10,000 were left, which no fit mends.
-const FAR: f64 = 8e-4;
-
 impl Simplifier<'_> {
     /// Whether one of two balls lies on a crease.
     pub(crate) fn is_on_crease(&self, a: u32, b: u32) -> bool {
@@ -49,12 +42,7 @@ impl Simplifier<'_> {
 
     /// Cost of merging two balls into `ball` by how far what is around it then sticks out.
     pub(crate) fn measured_cost(&self, a: u32, b: u32, ball: &Ball) -> f64 {
-        let (complex, tree) = (&self.complex, self.tree);
-        let out = match self.primitives() < MEASURED {
-            true => stick_out(complex, tree, [a, b], ball),
-            false => stick_out_beyond(FAR, complex, tree, [a, b], ball),
-        };
-        STICK_OUT * out * out
+        STICK_OUT * stick_out(&self.complex, self.tree, [a, b], ball).powi(2)
     }
 
     pub(crate) fn flat_cost(&self) -> f64 {
