@@ -66,7 +66,7 @@ impl State {
         parameters: &IntegrationParameters,
         participants: Option<&Participants>,
     ) -> Option<Arc<MedialColliders>> {
-        let still = participants?.shared_still();
+        let still = participants?.still();
         let holds = |known: &(Arc<StillColliders>, Vector, _)| {
             Arc::ptr_eq(&known.0, still) && known.1 == world.gravity
         };

@@ -1,6 +1,7 @@
 //! Worlds with many colliders that stand still, of which a step looks at those near what moves: they go on bit by bit as
 //! if it looked at all.
 
+use crate::bodies::bits;
 use crate::rng::Rng;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
@@ -13,6 +14,18 @@ const FIELD: [usize; 2] = [16, 8];
 struct Stepped {
     world: PhysicsWorld,
     pipeline: MedialPipeline,
+}
+
+impl Stepped {
+    fn new(world: PhysicsWorld, least_still: [usize; 2]) -> Self {
+        let mut pipeline = MedialPipeline::default();
+        let tuning = Tuning {
+            least_still,
+            ..Tuning::default()
+        };
+        pipeline.set_tuning(tuning);
+        Self { world, pipeline }
+    }
 }
 
 /// A collider of one of five kinds, and how high its centre lies on the ground.
@@ -47,26 +60,7 @@ fn field(least_still: [usize; 2], seed: usize) -> Stepped {
             world.insert(body.translation(at + above), collider);
         }
     }
-    let mut pipeline = MedialPipeline::default();
-    let tuning = Tuning {
-        least_still,
-        ..Tuning::default()
-    };
-    pipeline.set_tuning(tuning);
-    Stepped { world, pipeline }
-}
-
-/// The bits of all poses and velocities.
-fn bits(world: &PhysicsWorld) -> Vec<[u32; 13]> {
-    let of = |body: &RigidBody| {
-        let (t, r) = (body.translation(), body.rotation());
-        let (v, w) = (body.linvel(), body.angvel());
-        let all = [
-            t.x, t.y, t.z, r.x, r.y, r.z, r.w, v.x, v.y, v.z, w.x, w.y, w.z,
-        ];
-        all.map(Real::to_bits)
-    };
-    world.bodies.iter().map(|(_, body)| of(body)).collect()
+    Stepped::new(world, least_still)
 }
 
 #[test]
@@ -119,13 +113,7 @@ fn circle(least_still: [usize; 2], aside: Real) -> Stepped {
     let mesh = ball(0.2).expect("a heavy ball");
     let heavy = heavy.linvel(Vector::Y * -150.0);
     world.insert(heavy, ColliderBuilder::medial_mesh(mesh).density(1000.0));
-    let mut pipeline = MedialPipeline::default();
-    let tuning = Tuning {
-        least_still,
-        ..Tuning::default()
-    };
-    pipeline.set_tuning(tuning);
-    Stepped { world, pipeline }
+    Stepped::new(world, least_still)
 }
 
 #[test]

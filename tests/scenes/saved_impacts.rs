@@ -2,7 +2,6 @@
 //! know of these is no part of rapier's world.
 
 use crate::bodies::*;
-use crate::saving::bits;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 use rapier3d_medial::rapier::{load_world, save_world};

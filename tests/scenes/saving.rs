@@ -37,18 +37,6 @@ fn mixed_world() -> (PhysicsWorld, MedialMesh) {
     (world, mesh)
 }
 
-pub fn bits(world: &PhysicsWorld) -> Vec<u32> {
-    let mut all = Vec::new();
-    for (handle, b) in world.bodies.iter() {
-        let (t, r, v, w) = (b.translation(), b.rotation(), b.linvel(), b.angvel());
-        all.push(handle.into_raw_parts().0);
-        all.extend([t.x, t.y, t.z, r.x, r.y, r.z, r.w].map(Real::to_bits));
-        all.extend([v.x, v.y, v.z, w.x, w.y, w.z].map(Real::to_bits));
-        all.push(u32::from(b.is_sleeping()));
-    }
-    all
-}
-
 /// Heavy bricks on light ones, which impacts move in each step until they sleep.
 fn pressed_world() -> PhysicsWorld {
     let mut world = world_with_ground();

@@ -32,8 +32,8 @@ const PULLS: Real = 0.7;
 const RESTS: Real = 1.25;
 
 /// Finds the medial colliders whose contacts with each other are to be computed anew (one flag each), and the depth of the
-/// deepest contact of all that take part, a length. Known from the world alone, so that a world that was saved and loaded goes on as it
-/// would have.
+/// deepest contact of all that take part, a length. Known from the world alone, so that a world that was saved and loaded
+/// goes on as it would have.
 pub fn find(sets: &Sets, medial: &MedialColliders) -> (Vec<bool>, Real) {
     let mut anew = vec![false; medial.all.len()];
     let mut depth_of_all: Real = 0.0;

@@ -11,8 +11,8 @@ use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{ColliderHandle, ColliderSet};
 
 impl StepView {
-    /// Goes on with all bodies and colliders: those of this view in their motions, and of `whole`, taken after rapier's step, those
-    /// that did not take part, which were `still` before it.
+    /// Goes on with all bodies and colliders: those of this view in their motions, and of `whole`, taken after rapier's
+    /// step, those that did not take part, which were `still` before it.
     pub fn complete(
         &mut self,
         mut whole: Self,

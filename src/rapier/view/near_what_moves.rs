@@ -1,7 +1,7 @@
 //! Finds the still colliders that a step may get to: those that what moves may reach by its velocities, and, of a sleeping
-//! body that is reached, those that touch it and those of its island, which rapier wakes together, and what is beside these. What flies
-//! farther than its velocities told, because it was struck, may reach others, and rapier may wake bodies for reasons of its
-//! own: then the step looks at all ([`StepView::complete`]).
+//! body that is reached, those that touch it and those of its island, which rapier wakes together, and what is beside
+//! these. What flies farther than its velocities told, because it was struck, may reach others, and rapier may wake bodies
+//! for reasons of its own: then the step looks at all ([`StepView::complete`]).
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;

@@ -28,13 +28,8 @@ impl Participants {
         }
     }
 
-    /// The still colliders, shared from step to step.
-    pub fn shared_still(&self) -> &Arc<StillColliders> {
-        &self.still
-    }
-
-    /// The still colliders, near or not.
-    pub fn still(&self) -> &StillColliders {
+    /// The still colliders, near or not; the same from step to step while they stay as they are.
+    pub fn still(&self) -> &Arc<StillColliders> {
         &self.still
     }
 

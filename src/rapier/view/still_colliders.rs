@@ -132,9 +132,9 @@ pub struct StillRecord {
 }
 
 impl StillRecord {
-    /// The colliders that move, in the order of the set, and the still ones, if these are the same as in the step before
-    /// and enough: at least so many, and at least so many times those that move. Boxes are grown by `margin`. `None`, too, where a collider that moved is gone or collides with
-    /// others than before, for rapier may then wake what rested on it.
+    /// The colliders that move, in the order of the set, and the still ones. `None` if these changed in the last steps, or
+    /// are fewer than `least`, or than so many times those that move; and where a collider that moved is gone or collides
+    /// with others than before, for rapier may then wake what rested on it. Boxes are grown by `margin`.
     pub fn look(
         &mut self,
         (bodies, colliders): (&RigidBodySet, &ColliderSet),
