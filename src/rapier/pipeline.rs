@@ -162,7 +162,8 @@ impl MedialPipeline {
     /// Prepares a world to be stepped by this pipeline: the narrow phase (the part of rapier that computes contacts)
     /// asks this pipeline first, and parry after that. A query dispatcher that you have set yourself is replaced;
     /// nothing else in the world changes. For a new world you need not call this: a pipeline that is not attached yet
-    /// attaches itself in its first step. Call it after the world was loaded or its narrow phase was replaced.
+    /// attaches itself in its first step. Call it after the world was loaded, or put back to an earlier state as netcode
+    /// does, or its narrow phase was replaced.
     pub fn attach(&mut self, world: &mut PhysicsWorld) {
         self.attach_sets(&mut world.narrow_phase);
     }
@@ -170,6 +171,8 @@ impl MedialPipeline {
     /// Prepares like [`Self::attach`], for games that keep rapier's sets themselves.
     pub fn attach_sets(&mut self, narrow_phase: &mut NarrowPhase) {
         self.is_attached = true;
+        // Those that impacts moved in another world, or a later state of it.
+        self.state.moved = None;
         let dispatcher = MedialDispatcher::new(Arc::clone(&self.state.exchange));
         narrow_phase.set_query_dispatcher(dispatcher.chain(DefaultQueryDispatcher));
     }

@@ -42,6 +42,32 @@ fn a_loaded_world_knows_how_long_neighbours_of_fast_bodies_have_been_slow() {
     assert!(slow(&world) > 0.0);
 }
 
+/// A game that predicts, as netcode does, steps ahead, puts the world back, and steps again with the same pipeline.
+#[test]
+fn a_world_put_back_goes_on_as_if_it_had_not_been_stepped_ahead() {
+    let (mut world, brick) = world_with_a_blow_beside_a_brick();
+    let (mut ahead, _) = world_with_a_blow_beside_a_brick();
+    let mut pipeline = attached(&mut world);
+    let mut predicting = attached(&mut ahead);
+    let slow = |world: &PhysicsWorld| world.bodies[brick].activation().time_since_can_sleep;
+    for step in 0..60 {
+        let bytes = save_world(&ahead).expect("a world that can be saved");
+        let (overlaps, starts) = (predicting.overlaps(), predicting.told_starts().to_vec());
+        for _ in 0..1 + step % 7 {
+            predicting.step(&mut ahead);
+        }
+        ahead = load_world(&bytes).expect("what was saved");
+        predicting.attach(&mut ahead);
+        predicting.resume_overlaps(overlaps, &ahead);
+        predicting.resume_told_starts(starts);
+        predicting.step(&mut ahead);
+        pipeline.step(&mut world);
+        assert_eq!(slow(&ahead), slow(&world), "put back at step {step}");
+        assert_eq!(bits(&ahead), bits(&world), "put back at step {step}");
+    }
+    assert!(slow(&world) > 0.0);
+}
+
 /// A ball that is added before the world is saved takes nothing from what is known of the bodies that impacts moved.
 #[test]
 fn what_impacts_moved_is_known_beside_a_new_collider() {

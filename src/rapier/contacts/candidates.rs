@@ -4,8 +4,9 @@
 use crate::batch::PairJob;
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::PairKey;
+use crate::rapier::contacts::hanging;
+use crate::rapier::contacts::neighbor_speeds::{self, Pusher};
 use crate::rapier::contacts::predicted_contacts::PredictedMotion;
-use crate::rapier::contacts::{hanging, neighbor_speeds};
 use crate::rapier::host::forced_updates::is_hooked;
 use crate::rapier::host::recycling::{Place, RecyclingRecord};
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
@@ -79,17 +80,14 @@ impl ContactScene {
     fn new(sets: Sets) -> Self {
         let mut medial = MedialColliders::new(&sets);
         let mut boxes: Vec<Aabb> = medial.all.iter().map(|collider| collider.aabb).collect();
-        let speed = |collider: &MedialCollider| match collider.body {
-            Some(body) if neighbor_speeds::is_tied(&sets, body) => Real::MAX,
-            _ => collider.speed(),
-        };
-        let mut speeds: Vec<Real> = medial.all.iter().map(speed).collect();
-        for (aabb, speed) in neighbor_speeds::others(&sets) {
+        let pusher = |collider: &MedialCollider| Pusher::medial(&sets, collider);
+        let mut pushers: Vec<Pusher> = medial.all.iter().map(pusher).collect();
+        for (aabb, pusher) in neighbor_speeds::others(&sets) {
             boxes.push(aabb);
-            speeds.push(speed);
+            pushers.push(pusher);
         }
         let met = overlapping_pairs(&boxes);
-        let pushed = neighbor_speeds::neighbor_speed_bounds(&speeds, &met);
+        let pushed = neighbor_speeds::neighbor_speed_bounds(&pushers, &met);
         let hangs = hanging::hang(&sets, &medial);
         for (collider, (pushed, hangs)) in medial.all.iter_mut().zip(pushed.into_iter().zip(hangs))
         {

@@ -4,7 +4,7 @@
 
 use crate::math::Real;
 use crate::medial::MedialMesh;
-use crate::rapier::view::medial_colliders::Sets;
+use crate::rapier::view::medial_colliders::{MedialCollider, Sets};
 use crate::rapier::view::motion::velocities;
 use crate::rapier::view::participants::enabled;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -15,9 +15,34 @@ use rapier3d::geometry::Collider;
 /// shares it out.
 const MAX_HOPS: usize = 3;
 
-/// Moving colliders that are not medial: their boxes, as far as contacts are looked for, and bounds on the
-/// speed of their points.
-pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Real)> + 'a {
+/// What a collider may do to its neighbours in a step.
+#[derive(Clone, Copy)]
+pub struct Pusher {
+    /// Bound on the speed of its points.
+    speed: Real,
+    /// Whether a push goes through it: nothing moves what is fixed or kinematic.
+    is_pushed: bool,
+}
+
+impl Pusher {
+    /// A medial collider.
+    pub fn medial(sets: &Sets, collider: &MedialCollider) -> Self {
+        let own = collider.speed();
+        Self::new(sets, collider.body, collider.is_dynamic, own)
+    }
+
+    /// A collider whose points are no faster than `own` by the velocities of its body.
+    fn new(sets: &Sets, body: Option<RigidBodyHandle>, is_dynamic: bool, own: Real) -> Self {
+        let is_tied = is_dynamic && body.is_some_and(|body| is_tied(sets, body));
+        Self {
+            speed: if is_tied { Real::MAX } else { own },
+            is_pushed: is_dynamic,
+        }
+    }
+}
+
+/// Moving colliders that are not medial: their boxes, as far as contacts are looked for.
+pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Pusher)> + 'a {
     let moving = |collider: &Collider| {
         let handle = collider.parent()?;
         let body = sets.bodies.get(handle)?;
@@ -27,32 +52,62 @@ pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Real)> + 'a {
         let [linear, angular] = velocities(body, sets.parameters.dt);
         let aabb = collider.compute_aabb();
         let arm = (aabb.center() - body.center_of_mass()).length() + aabb.half_extents().length();
-        let speed = match is_tied(sets, handle) {
-            true => Real::MAX,
-            false => linear.length() + angular.length() * arm,
-        };
+        let own = linear.length() + angular.length() * arm;
+        let pusher = Pusher::new(sets, Some(handle), body.is_dynamic(), own);
         let margin = sets.parameters.prediction_distance() + collider.contact_skin();
-        (speed > 0.0).then(|| (aabb.loosened(margin), speed))
+        (pusher.speed > 0.0).then(|| (aabb.loosened(margin), pusher))
     };
     enabled(sets.bodies, sets.colliders, sets.participants).filter_map(move |(_, c)| moving(c))
 }
 
 /// Whether a body is held by joints, which hand on what is not near.
-pub fn is_tied(sets: &Sets, body: RigidBodyHandle) -> bool {
+fn is_tied(sets: &Sets, body: RigidBodyHandle) -> bool {
     sets.impulse_joints.attached_joints(body).next().is_some()
         || sets.multibody_joints.rigid_body_link(body).is_some()
 }
 
-/// Largest speed that gets to each of some colliders, of these speeds, over at most [`MAX_HOPS`] pairs that are near
-/// each other.
-pub fn neighbor_speed_bounds(speeds: &[Real], near: &[[usize; 2]]) -> Vec<Real> {
-    let mut reached = speeds.to_vec();
+/// Largest speed that gets to each of some colliders, over at most [`MAX_HOPS`] pairs that are near each other.
+pub fn neighbor_speed_bounds(pushers: &[Pusher], near: &[[usize; 2]]) -> Vec<Real> {
+    let mut reached: Vec<Real> = pushers.iter().map(|pusher| pusher.speed).collect();
     for _ in 0..MAX_HOPS {
         let before = reached.clone();
         for &[i, j] in near {
-            reached[i] = reached[i].max(before[j]);
-            reached[j] = reached[j].max(before[i]);
+            for [to, from] in [[i, j], [j, i]] {
+                if pushers[to].is_pushed {
+                    reached[to] = reached[to].max(before[from]);
+                }
+            }
         }
     }
     reached
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Pusher, neighbor_speed_bounds};
+
+    #[test]
+    fn a_push_goes_through_three_bodies_and_no_fixed_one() {
+        let [fast, slow] = [8.0, 0.0].map(|speed| Pusher {
+            speed,
+            is_pushed: true,
+        });
+        let fixed = Pusher {
+            is_pushed: false,
+            ..slow
+        };
+        let row = [fast, slow, slow, slow, slow];
+        let near: Vec<[usize; 2]> = (1..row.len()).map(|k| [k, k - 1]).collect();
+        let reached = neighbor_speed_bounds(&row, &near);
+        assert_eq!(reached, [8.0, 8.0, 8.0, 8.0, 0.0]);
+        let reached = neighbor_speed_bounds(&[fast, fixed, slow, slow, slow], &near);
+        assert_eq!(reached, [8.0, 0.0, 0.0, 0.0, 0.0]);
+        // What moves by itself pushes, and is not pushed.
+        let mover = Pusher {
+            speed: 2.0,
+            ..fixed
+        };
+        let reached = neighbor_speed_bounds(&[fast, mover, slow, slow, slow], &near);
+        assert_eq!(reached, [8.0, 2.0, 2.0, 2.0, 0.0]);
+    }
 }

@@ -93,6 +93,8 @@ pub struct MedialCollider {
     pub body: Option<RigidBodyHandle>,
     /// Shape, whose instance id tells the collider apart from all others.
     pub mesh: MedialMesh,
+    /// Whether the body is dynamic; all else goes its own way, whatever pushes it.
+    pub is_dynamic: bool,
     /// Mass and centre of mass of the body, if the solver moves it and it is awake.
     pub moving: Option<(Real, Vector)>,
     /// Motion that the velocities announce. It starts where the narrow phase will see the collider, to the bit.
@@ -150,6 +152,7 @@ impl MedialCollider {
             handle,
             body: parent.filter(|_| body.is_some()),
             mesh: mesh.clone(),
+            is_dynamic: dynamic.is_some(),
             moving: moving.map(|body| (body.mass(), body.center_of_mass())),
             motion: NonlinearRigidMotion {
                 start: pose,
