@@ -21,7 +21,7 @@ pub struct StepPlan {
     pub participants: Option<Participants>,
     /// Plan that the dispatcher goes by while rapier steps.
     pub narrow_phase: Arc<NarrowPhasePlan>,
-    /// How deep the deepest contact of those that take part is, a length.
+    /// How deep the deepest contact of a medial collider that takes part is, a length.
     pub depth: Real,
     /// Multibodies that gain energy in rapier's step.
     pub wild: WildMultibodies,

@@ -27,7 +27,7 @@ pub struct Candidates {
     pub colliders: MedialColliders,
     /// Colliders whose contacts rapier must be made to ask for.
     pub forced: HashSet<ColliderHandle>,
-    /// Depth of the deepest contact of those that take part, a length.
+    /// Depth of the deepest contact of a medial collider that takes part, a length.
     pub depth: Real,
 }
 
@@ -72,7 +72,7 @@ struct ContactScene {
     forced: Vec<bool>,
     /// Whether it asks for them in any case: the user has hooks on it, or it is `forced`.
     asked: Vec<bool>,
-    /// Depth of the deepest contact of those that take part, a length.
+    /// Depth of the deepest contact of a medial collider that takes part, a length.
     depth: Real,
 }
 

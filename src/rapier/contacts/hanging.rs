@@ -32,15 +32,18 @@ const PULLS: Real = 0.7;
 const RESTS: Real = 1.25;
 
 /// Finds the medial colliders whose contacts with each other are to be computed anew (one flag each), and the depth of the
-/// deepest contact of all that take part, a length. Known from the world alone, so that a world that was saved and loaded
+/// deepest contact of a medial collider that takes part, a length. Known from the world alone, so that a world that was saved and loaded
 /// goes on as it would have.
 pub fn find(sets: &Sets, medial: &MedialColliders) -> (Vec<bool>, Real) {
     let mut anew = vec![false; medial.all.len()];
     let mut depth_of_all: Real = 0.0;
     let touching = contact_pairs(sets.narrow_phase, sets.participants);
     for pair in touching.filter(|pair| !pair.manifolds().is_empty()) {
-        depth_of_all = depth_of_all.max(depth(pair, sets.colliders));
         let places = [pair.collider1, pair.collider2].map(|h| medial.place(h));
+        if places == [None, None] {
+            continue;
+        }
+        depth_of_all = depth_of_all.max(depth(pair, sets.colliders));
         let [Some(i), Some(j)] = places else {
             continue;
         };

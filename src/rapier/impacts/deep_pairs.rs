@@ -33,7 +33,8 @@ pub struct DeepPairs {
     pub sunk: FastSet<[usize; 2]>,
 }
 
-/// Finds the deep pairs.
+/// Finds the deep pairs. Those of rapier's own shapes are `sunk` at most, where that decides what a medial collider is pressed
+/// against.
 pub fn deep(
     view: &StepView,
     (narrow_phase, participants): (&NarrowPhase, Option<&Participants>),
@@ -43,11 +44,16 @@ pub fn deep(
     let parts = view.parts.iter().enumerate();
     let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
     let mut deep = DeepPairs::default();
+    let mut others = Vec::new();
     for found in contact_pairs(narrow_phase, participants) {
         let places = [found.collider1, found.collider2].map(|h| parts.get(&h));
         let [Some(&i), Some(&j)] = places else {
             continue;
         };
+        if [i, j].iter().all(|k| view.parts[*k].medial().is_none()) {
+            others.push((found, [i, j]));
+            continue;
+        }
         let pair = in_order(view, [i, j]);
         let [start1, start2] = [i, j].map(|k| view.motion(k, 0.0).start);
         for m in found.manifolds() {
@@ -69,6 +75,18 @@ pub fn deep(
                 }
             }
         }
+    }
+    if deep.watched.values().any(|deep| deep.way > 0.0) {
+        let sunk = others.iter().filter(|(found, [i, j])| {
+            let [start1, start2] = [*i, *j].map(|k| view.motion(k, 0.0).start);
+            let depths = found
+                .manifolds()
+                .iter()
+                .map(|m| deepest(m, [&start1, &start2]));
+            depths.fold(0.0, Real::max) > SUNK * policy.unit
+        });
+        deep.sunk
+            .extend(sunk.map(|(_, pair)| in_order(view, *pair)));
     }
     deep
 }

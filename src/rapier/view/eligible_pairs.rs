@@ -111,13 +111,17 @@ pub fn sweep(view: &StepView, dt: Real, margin: Real) -> Vec<[usize; 2]> {
         let aabb = view.swept_aabb(k, 0.0, dt);
         aabb.loosened(margin + view.parts[k].skin)
     };
-    let (mut parts, fixed): (Vec<usize>, Vec<usize>) = (0..view.parts.len()).partition(moving);
-    let mut boxes: Vec<Aabb> = parts.iter().map(swept).collect();
+    let all = (0..view.parts.len()).map(|k| (k, swept(&k)));
+    let is_medial = |k: usize| view.parts[k].medial().is_some();
+    let medial = all.clone().filter(|(k, _)| is_medial(*k));
+    let medial = medial.fold(Aabb::new_invalid(), |medial, (_, b)| medial.merged(&b));
+    let near = all.filter(|(k, b)| is_medial(*k) || b.intersects(&medial));
+    let (moving, fixed): (Vec<_>, Vec<_>) = near.partition(|(k, _)| moving(k));
+    let (mut parts, mut boxes): (Vec<usize>, Vec<Aabb>) = moving.into_iter().unzip();
     let all = boxes
         .iter()
         .fold(Aabb::new_invalid(), |all, b| all.merged(b));
-    for k in fixed {
-        let aabb = swept(&k);
+    for (k, aabb) in fixed {
         if aabb.intersects(&all) {
             parts.push(k);
             boxes.push(aabb);
