@@ -40,6 +40,9 @@ use crate::meshing::surface::samples::vertex_samples;
 use crate::meshing::watch::Watch;
 use std::ops::ControlFlow;
 
+/// Share of its length by which a way out of the solid may be overstated.
+const WAY_OUT: f64 = 0.05;
+
 /// Step off the surface that tells an enclosed part from the outside (longest side 1).
 const OFF_SURFACE: f64 = 1e-4;
 
@@ -223,7 +226,7 @@ impl FromSource<'_> {
             } else {
                 best.min(allowed)
             };
-            Look::Distance(self.solid.nearest_exit(p, way, enough))
+            Look::Distance(self.solid.nearest_exit(p, [way, enough], WAY_OUT).distance)
         }
     }
 

@@ -15,10 +15,8 @@ use std::collections::BinaryHeap;
 /// below any error.
 const ON_BOUNDARY: f64 = 1e-7;
 
-/// Share of the distance by which a way out of the solid may be overstated, and a length (longest side 1) by which it may
-/// in any case: half of what bodies are enlarged by to cover rounding. Without it, bodies with steps of 1e-5 take
-/// three times as long.
-const WAY_OUT: f64 = 0.05;
+/// Length (longest side 1) by which a way out of the solid may be overstated in any case: half of what bodies are enlarged
+/// by to cover rounding. Without it, bodies with steps of 1e-5 take three times as long.
 const WAY_OUT_LENGTH: f64 = 1e-6;
 
 /// How much larger the next cube is in which an exit is searched, and how much larger the first is than the depth: with
@@ -194,12 +192,13 @@ impl<'a> Solid<'a> {
         f64::INFINITY
     }
 
-    /// Distance from `p`, inside, to the boundary, overstated by at most [`WAY_OUT`] of it or
-    /// [`WAY_OUT_LENGTH`]; at most `way`. Ends once an exit is found within `enough`. Cubes around `p` are searched, each [`LARGER`] than the one
-    /// before, until one holds an exit and the ball up to it.
-    pub fn nearest_exit(&self, p: Point, way: f64, enough: f64) -> f64 {
+    /// The nearest exit from `p`, inside, with a distance that is overstated by at most a `share` of it or
+    /// [`WAY_OUT_LENGTH`]; none beyond `way`. Ends once one is found within `enough`. Cubes around `p` are searched, each
+    /// [`LARGER`] than the one before, until one holds an exit and the ball up to it.
+    pub fn nearest_exit(&self, p: Point, [way, enough]: [f64; 2], share: f64) -> Exit {
         let most = way.min(2.0);
         let near = self.nearest(p, 0);
+        let mut cells = 0;
         // No exit is nearer than the depth.
         let mut half_side = LARGER * near.signed.distance.abs().max(ON_BOUNDARY);
         loop {
@@ -208,35 +207,44 @@ impl<'a> Solid<'a> {
                 center: p,
                 half_side: half_side.min(most),
             };
-            let exit = self.exit_within(cell, most, enough, near.primitive);
-            if last || exit <= half_side {
-                return exit;
+            let exit = self.exit_within(cell, [most, enough], share, near.primitive);
+            cells += exit.cells;
+            if last || exit.distance <= half_side {
+                return Exit { cells, ..exit };
             }
             half_side *= LARGER;
         }
     }
 
-    /// The nearest exit in a cube around a point as [`Self::nearest_exit`], or `way`. Cells that the boundary may cross
-    /// are searched, nearest first.
-    fn exit_within(&self, cube: Cell, way: f64, enough: f64, mut hint: u32) -> f64 {
+    /// The nearest exit in a cube around a point as [`Self::nearest_exit`]. Cells that the boundary may cross are searched,
+    /// nearest first.
+    fn exit_within(&self, cube: Cell, [way, enough]: [f64; 2], share: f64, mut hint: u32) -> Exit {
         let p = cube.center;
-        let mut best = way;
+        let mut best = Exit {
+            distance: way,
+            point: None,
+            cells: 0,
+        };
         let mut waiting = BinaryHeap::from([Waiting {
             bound: 0.0,
             cell: cube,
         }]);
         while let Some(Waiting { bound, cell }) = waiting.pop() {
-            let room = (WAY_OUT * best).max(WAY_OUT_LENGTH);
-            if best <= enough || bound >= best - room {
+            let room = (share * best.distance).max(WAY_OUT_LENGTH);
+            if best.distance <= enough || bound >= best.distance - room {
                 break;
             }
+            best.cells += 1;
             let near = self.nearest(cell.center, hint);
             hint = near.primitive;
             if near.signed.distance.abs() > cell.radius() {
                 continue;
             }
             if let Some(exit) = self.onto_boundary(cell.center, &near) {
-                best = best.min((exit - p).length());
+                let distance = (exit - p).length();
+                if distance < best.distance {
+                    (best.distance, best.point) = (distance, Some(exit));
+                }
             }
             if cell.radius() > 0.5 * room {
                 waiting.extend(cell.children().map(|cell| Waiting {
@@ -249,6 +257,16 @@ impl<'a> Solid<'a> {
     }
 }
 
+/// A way out of a solid.
+pub struct Exit {
+    /// Length of the way.
+    pub distance: f64,
+    /// Where it ends; `None` if no shorter one than what was known was found.
+    pub point: Option<Point>,
+    /// Cells that the search for it looked at.
+    pub cells: u64,
+}
+
 /// A cell to be searched, and its distance.
 struct Waiting {
     bound: f64,
@@ -256,3 +274,55 @@ struct Waiting {
 }
 
 least_first!(Waiting, bound);
+
+#[cfg(test)]
+mod tests {
+    use super::Solid;
+    use crate::meshing::draft::{Ball, Draft};
+    use crate::meshing::geometry::bounds::Point;
+
+    /// Two balls of radius 1 whose surfaces meet in a circle of radius .8.
+    fn peanut() -> Draft {
+        let ball = |x| Ball {
+            center: Point::new(x, 0.0, 0.0),
+            radius: 1.0,
+        };
+        Draft {
+            balls: vec![ball(-0.6), ball(0.6)],
+            ..Draft::default()
+        }
+    }
+
+    #[test]
+    fn the_nearest_way_out_ends_in_the_groove() {
+        let draft = peanut();
+        let solid = Solid::new(&draft);
+        for (share, height) in [(0.15, 0.3), (0.05, 0.3), (0.15, 0.75), (0.05, 0.79)] {
+            let p = Point::new(0.0, height, 0.0);
+            let exit = solid.nearest_exit(p, [f64::INFINITY, 0.0], share);
+            let true_way = 0.8 - height;
+            let way = exit.point.map(|end| (end - p).length());
+            assert_eq!(way, Some(exit.distance));
+            assert!(
+                exit.distance >= true_way - 1e-6,
+                "{} at {height}",
+                exit.distance
+            );
+            let most = true_way / (1.0 - share) + 1e-6;
+            assert!(exit.distance <= most, "{} at {height}", exit.distance);
+        }
+    }
+
+    #[test]
+    fn a_way_out_that_is_short_enough_ends_the_search() {
+        let draft = peanut();
+        let solid = Solid::new(&draft);
+        let p = Point::new(0.0, 0.3, 0.0);
+        let enough = solid.nearest_exit(p, [f64::INFINITY, 1.0], 0.05);
+        let nearest = solid.nearest_exit(p, [f64::INFINITY, 0.0], 0.05);
+        assert!(enough.distance <= 1.0 && enough.cells < nearest.cells);
+        // None is shorter than half of the way.
+        let none = solid.nearest_exit(p, [0.25, 0.0], 0.05);
+        assert!(none.point.is_none() && none.distance == 0.25);
+    }
+}

@@ -8,7 +8,6 @@ pub(crate) mod nearest_triangle;
 pub(crate) mod polygon_triangles;
 pub(crate) mod quadric;
 pub(crate) mod random;
-pub(crate) mod sorted_points;
 pub(crate) mod subdivide;
 pub(crate) mod triangle;
 pub(crate) mod triangle_tree;

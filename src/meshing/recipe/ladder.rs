@@ -16,7 +16,8 @@ pub struct Ladder<'a> {
     pub finest: Parts<'a>,
     /// Convex creases that it keeps.
     pub creases: Vec<[Point; 2]>,
-    rungs: Vec<Parts<'a>>,
+    /// On the way to few primitives, and to many ([`Parts::measuring_early`]).
+    rungs: [Vec<Parts<'a>>; 2],
 }
 
 impl<'a> Ladder<'a> {
@@ -25,7 +26,7 @@ impl<'a> Ladder<'a> {
         Self {
             finest,
             creases,
-            rungs: Vec::new(),
+            rungs: [Vec::new(), Vec::new()],
         }
     }
 
@@ -33,9 +34,11 @@ impl<'a> Ladder<'a> {
     pub fn at(&mut self, count: usize, watch: &mut Watch) -> Result<Parts<'a>, BuildError> {
         loop {
             let above = |r: &&Parts| r.primitives() >= count;
-            let last = self.rungs.iter().rev().find(above);
-            let is_lowest = last.map(Parts::primitives) == self.rungs.last().map(Parts::primitives);
-            let mut parts = last.unwrap_or(&self.finest).clone();
+            let rungs = &mut self.rungs[usize::from(count > LARGE)];
+            let last = rungs.iter().rev().find(above);
+            let is_lowest = last.map(Parts::primitives) == rungs.last().map(Parts::primitives);
+            let parts = last.unwrap_or(&self.finest).clone();
+            let mut parts = parts.measuring_early(count > LARGE);
             let half = parts.primitives() / 2;
             if !is_lowest || half <= count {
                 parts.reduce_to(count, watch)?;
@@ -46,7 +49,7 @@ impl<'a> Ladder<'a> {
             if parts.primitives() >= before {
                 return Ok(parts);
             }
-            self.rungs.push(parts);
+            rungs.push(parts);
         }
     }
 

@@ -3,11 +3,11 @@
 //! Enclosure raises radii until all is covered, and a ball that grows for what sticks out on one side grows on all
 //! sides: it doubles the error of a fit that is as much too small here as it is too large there. So what enclosure
 //! made is fitted again, to lie between the surface and an offset of it that is nearer than its error, and enclosed
-//! again, until two rounds in turn gain little.
+//! again, until a round gains little.
 //!
 //! What sticks out lies between the samples: ridges and corners most of all. Points at which the draft was found not to
-//! cover the surface become samples, as violated constraints do in a cutting-plane method (Kelley, "The
-//! cutting-plane method for solving convex programs", 1960).
+//! cover the surface, or to reach far beyond it, become samples, as violated constraints do in a cutting-plane method
+//! (Kelley, "The cutting-plane method for solving convex programs", 1960).
 
 use crate::error::BuildError;
 use crate::meshing::certify::inside::Solid;
@@ -15,7 +15,7 @@ use crate::meshing::draft::Draft;
 use crate::meshing::geometry::random::Random;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::refine::refit::{Target, refit};
-use crate::meshing::refine::swaps::LARGE;
+use crate::meshing::refine::residuals::far_exit;
 use crate::meshing::surface::samples::{Sample, even_samples, vertex_samples};
 use crate::meshing::watch::Watch;
 
@@ -26,24 +26,22 @@ pub const GAIN_OF_TIGHT: f64 = 1.5;
 /// little is gained.
 const OFFSET: f64 = 0.6;
 
-/// Rounds end after so many in turn that leave more than this share of the least error so far, or after so many in all. What
-/// enclosure makes of a fit varies, and the next round mends it: of an M16 bolt of 500 primitives the first gains nothing, the
-/// second an eighth. Of thousands it does not, and takes long: there the first such round is the last.
-const FAILURES: usize = 2;
-const GAIN: f64 = 0.95;
+/// Rounds end with one that leaves more than this share of the least error so far, or after so many.
+const GAIN: f64 = 0.98;
 const ROUNDS: usize = 4;
 
-/// Fits in a round, and iterations of each; after each but the last, what sticks out is added to the samples.
+/// Fits in a round, and iterations of each; after each but the last, points that are off are added to the samples.
 const FITS: usize = 2;
 const ITERATIONS: usize = 3;
 
 /// Share of a build's budget of fits beyond which no round begins.
 const BUDGET: f64 = 1.0;
 
-/// Points that are examined for that, besides vertices, and how far one sticks out to be added, as a share of the
-/// error.
+/// Points that are examined for that, besides vertices, and how far one sticks out, or how deep it is, to be added, as
+/// shares of the error.
 const POINTS: usize = 30_000;
 const STICKS_OUT: f64 = 0.02;
+const DEEP: f64 = 0.75;
 
 impl Source {
     /// A draft that covers the surface more closely than `loose`; `None` where none was found, or where `loose` is off
@@ -70,29 +68,23 @@ impl Source {
         let mut points = even_samples(surface, POINTS, &mut Random::new(3));
         points.extend(vertex_samples(surface));
         let mut best = None;
-        let mut failures = 0;
-        let most_failures = match loose.primitives().len() {
-            0..LARGE => FAILURES,
-            _ => 1,
-        };
         let mut draft = loose.clone();
         for _ in 0..ROUNDS {
             target.beyond = OFFSET * error;
             for fit in 0..FITS {
                 if fit > 0 {
-                    let least = STICKS_OUT * error;
-                    add_uncovered(&mut target.samples, &points, &draft, least, watch)?;
+                    add_far(&mut target.samples, &points, &draft, error, watch)?;
                 }
                 watch.begin("refit")?;
                 refit(&mut draft, &target, ITERATIONS, watch)?;
             }
             draft = self.covering(draft, watch)?.0;
             let now = target.beyond + target.residuals(&draft, watch)?.largest;
-            failures = if now < GAIN * error { 0 } else { failures + 1 };
+            let ends = now >= GAIN * error || watch.ends_fit(BUDGET);
             if now < error {
                 (best, error) = (Some(draft.clone()), now);
             }
-            if failures == most_failures || watch.ends_fit(BUDGET) {
+            if ends {
                 break;
             }
         }
@@ -100,25 +92,32 @@ impl Source {
     }
 }
 
-/// Adds the points that stick out of a draft by more than `least` to the samples.
-fn add_uncovered(
+/// Adds to the samples the points that are off by much, for a draft that is off by `error`.
+fn add_far(
     samples: &mut Vec<Sample>,
     points: &[Sample],
     draft: &Draft,
-    least: f64,
+    error: f64,
     watch: &mut Watch,
 ) -> Result<(), BuildError> {
     let solid = Solid::new(draft);
+    let [out, deep] = [STICKS_OUT * error, DEEP * error];
     let mut hint = 0;
+    let mut work = 0;
     for (i, sample) in points.iter().enumerate() {
         if i % 512 == 0 {
             watch.again()?;
         }
         let near = solid.nearest(sample.point, hint);
         hint = near.primitive;
-        if near.signed.distance > least {
+        let mut is_deep = || {
+            let exit = far_exit(&solid, sample, &near, deep, &mut work)?;
+            Some((exit - sample.point).length() > deep)
+        };
+        if near.signed.distance > out || near.signed.distance < 0.0 && is_deep() == Some(true) {
             samples.push(*sample);
         }
     }
+    watch.count_fit(0, work);
     Ok(())
 }

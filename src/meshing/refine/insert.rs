@@ -2,7 +2,7 @@
 //!
 //! The worst samples come first, one per primitive, none within three errors of one already served.
 //! At a tip, where the surface sticks out beyond the end of the medial mesh, the ball that touches
-//! the surface there joins it by a cone; in the middle of a cone, of a slab's edge or of a slab, the
+//! the surface there joins it by a cone; in the middle of a cone, of a slab's edge or of a slab, a
 //! ball splits it. No case closes a loop or opens one: the Euler number stays.
 
 use crate::error::BuildError;
@@ -140,13 +140,13 @@ impl Inserter<'_> {
             Place::End => false,
             Place::Tip => touching.is_some_and(|ball| self.add_tip(ball, size)),
             place => {
-                let Some(ball) = self.splitting_ball(row, touching) else {
-                    return false;
-                };
                 let corners = row.corners;
                 if corners.iter().any(|&v| self.touched[v as usize]) {
                     return false;
                 }
+                let Some(ball) = self.splitting_ball(row, &place, touching) else {
+                    return false;
+                };
                 let done = match place {
                     Place::Cone => self.split_cone(corners, ball),
                     Place::Edge(opposite) => self.split_edge(corners, opposite, ball),
@@ -162,22 +162,54 @@ impl Inserter<'_> {
         }
     }
 
-    /// The ball that splits a primitive: the one that touches the sample if it is near the medial
-    /// mesh there, else the largest in the surface about the primitive's own.
-    fn splitting_ball(&self, row: &Row, touching: Option<Ball>) -> Option<Ball> {
+    /// The ball that splits a primitive: the one that touches the sample if it is near the medial mesh there, or the
+    /// largest in the surface about the primitive's own. Of both the one whose new edges bulge out less: where the
+    /// primitive crosses a groove, what touches its bottom belongs to another sheet.
+    fn splitting_ball(&self, row: &Row, place: &Place, touching: Option<Ball>) -> Option<Ball> {
         let own = Ball::interpolate(self.draft.balls_of(row.corners), row.weights);
         if own.radius < ON_CREASE {
             return self.on_crease(own.center);
         }
         let near =
             |ball: &Ball| (ball.center - own.center).length() < 1.5 * own.radius.max(ball.radius);
-        touching.filter(near).or_else(|| {
-            let signed = self.tree.signed_distance(own.center, own.radius);
-            (signed < 0.0).then(|| Ball {
-                center: own.center,
-                radius: (-signed).max(SMALLEST_BALL),
-            })
-        })
+        let signed = self.tree.signed_distance(own.center, own.radius);
+        let largest = (signed < 0.0).then(|| Ball {
+            center: own.center,
+            radius: (-signed).max(SMALLEST_BALL),
+        });
+        match (touching.filter(near), largest) {
+            (Some(touching), Some(largest)) => {
+                let ends = self.ends_of_split(row.corners, place);
+                let bulge = |ball: &Ball| {
+                    let of_edges = ends.iter().map(|end| self.bulge(ball, end));
+                    of_edges.fold(0.0, f64::max)
+                };
+                let less = bulge(&largest) < bulge(&touching);
+                Some(if less { largest } else { touching })
+            }
+            (touching, largest) => touching.or(largest),
+        }
+    }
+
+    /// The balls that one which splits a primitive will be joined to.
+    fn ends_of_split(&self, corners: Corners, place: &Place) -> Vec<Ball> {
+        let mut ends = corners.to_vec();
+        if let Place::Edge(opposite) = place {
+            let at_edge = self.faces_at_edge(corners, *opposite);
+            ends.extend(at_edge.into_iter().flat_map(|k| self.draft.faces[k]));
+        }
+        ends.sort_unstable();
+        ends.dedup();
+        let ball = |v: u32| self.draft.balls[v as usize];
+        ends.into_iter().map(ball).collect()
+    }
+
+    /// The faces at the edge opposite to a corner of a slab.
+    fn faces_at_edge(&self, corners: Corners, opposite: usize) -> Vec<usize> {
+        let (u, v) = (corners[(opposite + 1) % 3], corners[(opposite + 2) % 3]);
+        let at_edge = |f: &[u32; 3]| f.contains(&u) && f.contains(&v);
+        let faces = self.draft.faces.iter().enumerate();
+        faces.filter(|(_, f)| at_edge(f)).map(|(k, _)| k).collect()
     }
 
     /// The ball of radius 0 on the nearest crease.
@@ -261,10 +293,7 @@ impl Inserter<'_> {
 
     fn split_edge(&mut self, corners: Corners, opposite: usize, ball: Ball) -> bool {
         let (u, v) = (corners[(opposite + 1) % 3], corners[(opposite + 2) % 3]);
-        let at_edge = |f: &[u32; 3]| f.contains(&u) && f.contains(&v);
-        let faces: Vec<usize> = (0..self.draft.faces.len())
-            .filter(|&k| at_edge(&self.draft.faces[k]))
-            .collect();
+        let faces = self.faces_at_edge(corners, opposite);
         if faces.is_empty() || faces.len() > FACES_AT_EDGE.min(self.left) {
             return false;
         }

@@ -22,10 +22,6 @@ use crate::meshing::watch::{Watch, bytes_of};
 /// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
 const BULGE: f64 = 0.2;
 
-/// Costs of bent sheets are measured below this many primitives: from the first collapse on that takes ten
-/// seconds, and gains nothing.
-const MEASURED: usize = 10_000;
-
 /// A collapse waits where its measured cost is above the one in the queue by this share, and more than rounding.
 const STALE: f64 = 1.05;
 const NO_COST: f64 = 1e-10;
@@ -48,6 +44,8 @@ pub struct Simplifier<'a> {
     pub(crate) creased: bool,
     /// Whether sheets may bend, so that costs are measured, too.
     measures: bool,
+    /// Whether they are measured from the first collapse on, where much sticks out.
+    pub(crate) measures_early: bool,
     pub(crate) tree: &'a TriangleTree,
 }
 
@@ -93,6 +91,7 @@ impl<'a> Simplifier<'a> {
             clear: vec![0.0; n],
             creased: complex.balls.iter().any(|b| b.radius == 0.0),
             measures: false,
+            measures_early: false,
             complex,
             blocked: Vec::new(),
             progressed: false,
@@ -117,6 +116,12 @@ impl<'a> Simplifier<'a> {
             *clear = clear_sq.max(0.0).sqrt();
         }
         self
+    }
+
+    /// Says whether to measure costs from the first collapse on where much sticks out: many primitives can keep what few
+    /// lose anyway.
+    pub fn measure_early(&mut self, early: bool) {
+        self.measures_early = early;
     }
 
     /// Bytes of its arrays.
@@ -178,7 +183,7 @@ impl<'a> Simplifier<'a> {
             return;
         }
         let (_, mut ball) = self.merge(a, b);
-        if self.measures && self.primitives() < MEASURED {
+        if self.measures {
             let cost = self.measured_cost(a, b, &ball);
             if cost > STALE * candidate.cost + NO_COST {
                 self.queue.push(Candidate { cost, ..candidate });

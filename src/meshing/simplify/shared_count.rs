@@ -61,6 +61,12 @@ impl<'a> Parts<'a> {
         }
     }
 
+    /// Passes [`Simplifier::measure_early`] on to the solid part.
+    pub fn measuring_early(mut self, early: bool) -> Self {
+        self.solid.measure_early(early);
+        self
+    }
+
     /// Number of primitives now.
     pub fn primitives(&self) -> usize {
         self.solid.primitives() + self.sheet_primitives()
