@@ -108,6 +108,6 @@ mod tests {
             ..fixed
         };
         let reached = neighbor_speed_bounds(&[fast, mover, slow, slow, slow], &near);
-        assert_eq!(reached, [8.0, 2.0, 2.0, 2.0, 0.0]);
+        assert_eq!(reached, [8.0, 2.0, 2.0, 2.0, 2.0]);
     }
 }

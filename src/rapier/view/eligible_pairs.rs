@@ -104,29 +104,19 @@ pub fn is_ccd_candidate(view: &StepView, [i, j]: [usize; 2]) -> bool {
 }
 
 /// Pairs of colliders whose boxes over the whole step meet, in the narrow phase's order (lower collider
-/// index first). Of fixed ones only those count that are near what moves: a world may have thousands.
+/// index first). Of rapier's own shapes only those count that are near medial ones, and of fixed colliders those near
+/// what moves: a world may have thousands of either.
 pub fn sweep(view: &StepView, dt: Real, margin: Real) -> Vec<[usize; 2]> {
-    let moving = |k: &usize| view.bodies[view.parts[*k].body].kind != Kind::Fixed;
-    let swept = |&k: &usize| {
+    let swept = |k: usize| {
         let aabb = view.swept_aabb(k, 0.0, dt);
-        aabb.loosened(margin + view.parts[k].skin)
+        (k, aabb.loosened(margin + view.parts[k].skin))
     };
-    let all = (0..view.parts.len()).map(|k| (k, swept(&k)));
-    let is_medial = |k: usize| view.parts[k].medial().is_some();
-    let medial = all.clone().filter(|(k, _)| is_medial(*k));
-    let medial = medial.fold(Aabb::new_invalid(), |medial, (_, b)| medial.merged(&b));
-    let near = all.filter(|(k, b)| is_medial(*k) || b.intersects(&medial));
-    let (moving, fixed): (Vec<_>, Vec<_>) = near.partition(|(k, _)| moving(k));
-    let (mut parts, mut boxes): (Vec<usize>, Vec<Aabb>) = moving.into_iter().unzip();
-    let all = boxes
-        .iter()
-        .fold(Aabb::new_invalid(), |all, b| all.merged(b));
-    for (k, aabb) in fixed {
-        if aabb.intersects(&all) {
-            parts.push(k);
-            boxes.push(aabb);
-        }
-    }
+    let mut parts: Vec<(usize, Aabb)> = (0..view.parts.len()).map(swept).collect();
+    keep_near(&mut parts, |k| view.parts[k].medial().is_some());
+    keep_near(&mut parts, |k| {
+        view.bodies[view.parts[k].body].kind != Kind::Fixed
+    });
+    let (parts, boxes): (Vec<usize>, Vec<Aabb>) = parts.into_iter().unzip();
     let met = overlapping_pairs(&boxes)
         .into_iter()
         .map(|pair| pair.map(|n| parts[n]));
@@ -136,8 +126,39 @@ pub fn sweep(view: &StepView, dt: Real, margin: Real) -> Vec<[usize; 2]> {
     pairs
 }
 
+/// Keeps the boxes of parts that are wanted, and those that meet the box round all of these. A box that is not a number
+/// meets nothing.
+fn keep_near(parts: &mut Vec<(usize, Aabb)>, is_wanted: impl Fn(usize) -> bool) {
+    let is_number = |b: &Aabb| !b.mins.is_nan() && !b.maxs.is_nan();
+    let wanted = parts.iter().filter(|(k, b)| is_wanted(*k) && is_number(b));
+    let all = wanted.fold(Aabb::new_invalid(), |all, (_, b)| all.merged(b));
+    parts.retain(|(k, b)| is_wanted(*k) || b.intersects(&all));
+}
+
 /// The two in the narrow phase's order.
 pub fn in_order(view: &StepView, [i, j]: [usize; 2]) -> [usize; 2] {
     let index = |k: usize| view.parts[k].handle.into_raw_parts().0;
     if index(i) <= index(j) { [i, j] } else { [j, i] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::keep_near;
+    use crate::math::{Real, Vector};
+    use parry3d::bounding_volume::Aabb;
+
+    #[test]
+    fn boxes_near_wanted_ones_are_kept_beside_one_that_is_no_number() {
+        let cube = |from: Real, to: Real| Aabb::new(Vector::splat(from), Vector::splat(to));
+        let boxes = [
+            cube(0.0, 1.0),
+            cube(Real::NAN, Real::NAN),
+            cube(0.5, 2.0),
+            cube(5.0, 6.0),
+        ];
+        let mut parts: Vec<(usize, Aabb)> = boxes.into_iter().enumerate().collect();
+        keep_near(&mut parts, |k| k < 2);
+        let kept: Vec<usize> = parts.iter().map(|(k, _)| *k).collect();
+        assert_eq!(kept, [0, 1, 2]);
+    }
 }
