@@ -33,7 +33,8 @@ const ATTEMPT: f64 = 0.25;
 
 /// Nodes and triangles that the searches of all fits of a build may look at: so many, and so many for each search.
 /// Clean meshes take 5 to 31 for each, the more the larger the error, a surface of 1,600 random triangles 430: each is
-/// as long as the body, and its box holds most of it. The first is five to ten seconds' work.
+/// as long as the body, and its box holds most of it. Searches for ways out of the solid add to the work, not to the number of
+/// searches. The first is five to ten seconds' work.
 const MOST_FIT_WORK: [u64; 2] = [100_000_000, 32];
 
 /// Bytes of an array, with what it has in reserve.

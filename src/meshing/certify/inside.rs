@@ -193,7 +193,7 @@ impl<'a> Solid<'a> {
     }
 
     /// The nearest exit from `p`, inside, with a distance that is overstated by at most a `share` of it or
-    /// [`WAY_OUT_LENGTH`]; none beyond `way`. Ends once one is found within `enough`. Cubes around `p` are searched, each
+    /// [`WAY_OUT_LENGTH`]; none beyond `way`, or beyond 2. Any exit found within `enough` ends the search. Cubes around `p` are searched, each
     /// [`LARGER`] than the one before, until one holds an exit and the ball up to it.
     pub fn nearest_exit(&self, p: Point, [way, enough]: [f64; 2], share: f64) -> Exit {
         let most = way.min(2.0);
@@ -261,7 +261,7 @@ impl<'a> Solid<'a> {
 pub struct Exit {
     /// Length of the way.
     pub distance: f64,
-    /// Where it ends; `None` if no shorter one than what was known was found.
+    /// Where it ends; `None` if none is shorter than the limit, which `distance` is then.
     pub point: Option<Point>,
     /// Cells that the search for it looked at.
     pub cells: u64,

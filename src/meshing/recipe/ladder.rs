@@ -1,7 +1,8 @@
-//! Gives a collapsed medial mesh for any number of primitives, in whatever order they are asked for, from one collapse.
+//! Gives a collapsed medial mesh for any number of primitives, in whatever order they are asked for, from two collapses:
+//! one for up to [`LARGE`] primitives, and one for more, which measures costs from the start.
 //!
-//! A collapse does not depend on where it stops. So the state is kept each time the number has halved, and a mesh
-//! of any number only needs the collapse from the kept state above it.
+//! Neither depends on where it stops. So the state is kept each time the number has halved, and a mesh of any number only
+//! needs the collapse from the kept state above it.
 
 use crate::error::BuildError;
 use crate::meshing::geometry::bounds::Point;
@@ -16,7 +17,7 @@ pub struct Ladder<'a> {
     pub finest: Parts<'a>,
     /// Convex creases that it keeps.
     pub creases: Vec<[Point; 2]>,
-    /// On the way to few primitives, and to many ([`Parts::measuring_early`]).
+    /// Kept states of the collapse to few primitives, and of that to many.
     rungs: [Vec<Parts<'a>>; 2],
 }
 
@@ -32,13 +33,23 @@ impl<'a> Ladder<'a> {
 
     /// The medial mesh with at most `count` primitives, or as few as it can have.
     pub fn at(&mut self, count: usize, watch: &mut Watch) -> Result<Parts<'a>, BuildError> {
+        self.on_the_way(count, count > LARGE, watch)
+    }
+
+    /// The same, from the collapse to many primitives where it is `large`.
+    fn on_the_way(
+        &mut self,
+        count: usize,
+        large: bool,
+        watch: &mut Watch,
+    ) -> Result<Parts<'a>, BuildError> {
         loop {
             let above = |r: &&Parts| r.primitives() >= count;
-            let rungs = &mut self.rungs[usize::from(count > LARGE)];
+            let rungs = &mut self.rungs[usize::from(large)];
             let last = rungs.iter().rev().find(above);
             let is_lowest = last.map(Parts::primitives) == rungs.last().map(Parts::primitives);
-            let parts = last.unwrap_or(&self.finest).clone();
-            let mut parts = parts.measuring_early(count > LARGE);
+            let mut parts = last.unwrap_or(&self.finest).clone();
+            parts.set_measures_early(large);
             let half = parts.primitives() / 2;
             if !is_lowest || half <= count {
                 parts.reduce_to(count, watch)?;
@@ -60,7 +71,7 @@ impl<'a> Ladder<'a> {
         watch: &mut Watch,
     ) -> Result<(Collapsed, bool), BuildError> {
         watch.begin("simplify")?;
-        let mut parts = self.at(fine_count(count), watch)?;
+        let mut parts = self.on_the_way(fine_count(count), count > LARGE, watch)?;
         let fine = (count <= LARGE).then(|| parts.draft());
         parts.reduce_to(count, watch)?;
         let (plain, keeps) = (parts.draft(), !parts.broke_topology());

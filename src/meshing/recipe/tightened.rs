@@ -37,8 +37,8 @@ const ITERATIONS: usize = 3;
 /// Share of a build's budget of fits beyond which no round begins.
 const BUDGET: f64 = 1.0;
 
-/// Points that are examined for that, besides vertices, and how far one sticks out, or how deep it is, to be added, as
-/// shares of the error.
+/// Points that are examined between two fits, besides vertices, and how far one sticks out, or how deep it is, to become a
+/// sample, as shares of the error.
 const POINTS: usize = 30_000;
 const STICKS_OUT: f64 = 0.02;
 const DEEP: f64 = 0.75;
@@ -105,16 +105,16 @@ fn add_far(
     let mut hint = 0;
     let mut work = 0;
     for (i, sample) in points.iter().enumerate() {
-        if i % 512 == 0 {
+        if i % 64 == 0 {
             watch.again()?;
         }
         let near = solid.nearest(sample.point, hint);
         hint = near.primitive;
-        let mut is_deep = || {
-            let exit = far_exit(&solid, sample, &near, deep, &mut work)?;
-            Some((exit - sample.point).length() > deep)
-        };
-        if near.signed.distance > out || near.signed.distance < 0.0 && is_deep() == Some(true) {
+        let distance = near.signed.distance;
+        let is_deep = distance < 0.0
+            && far_exit(&solid, sample, &near, deep, &mut work)
+                .is_some_and(|exit| (exit - sample.point).length() > deep);
+        if distance > out || is_deep {
             samples.push(*sample);
         }
     }

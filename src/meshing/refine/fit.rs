@@ -96,13 +96,13 @@ pub const ROUND: [usize; 12] = [
 /// Collapses to `most` primitives, and to the round counts below as long as the topology stays: the
 /// drafts for each, the largest count first and by itself, and whether that one kept the topology.
 pub fn collapse(
-    parts: Parts,
+    mut parts: Parts,
     most: usize,
     watch: &mut Watch,
 ) -> Result<(Collapsed, Vec<Collapsed>, bool), BuildError> {
     // More than there is would be copied again and again.
     let most = most.min(parts.primitives()).max(1);
-    let mut parts = parts.measuring_early(most > LARGE);
+    parts.set_measures_early(most > LARGE);
     let round = ROUND.into_iter().filter(|n| *n < most);
     let tried = std::iter::once(most).chain(round);
     let counts: BTreeSet<usize> = tried

@@ -191,7 +191,7 @@ impl Inserter<'_> {
         }
     }
 
-    /// The balls that one which splits a primitive will be joined to.
+    /// Balls that a ball which splits a primitive gets edges to.
     fn ends_of_split(&self, corners: Corners, place: &Place) -> Vec<Ball> {
         let mut ends = corners.to_vec();
         if let Place::Edge(opposite) = place {

@@ -257,8 +257,9 @@ fn envelope_rows(
     })
 }
 
-/// Point where the way out of the solid from a sample within it is shortest, if it is longer than `beyond` and leads past
-/// the primitive that is deepest there. Nodes that the search looked at are added to `work`.
+/// End of a way out of the solid from a sample within it that is longer than the shortest by at most [`WAY_OUT`] of it, or is
+/// no longer than `beyond`; `None` if the way along the sample's normal is no longer than `beyond`, or the nearest point of
+/// the primitive that is deepest there is outside all others. Nodes that the search looked at are added to `work`.
 pub fn far_exit(
     solid: &Solid,
     sample: &Sample,

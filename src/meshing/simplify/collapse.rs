@@ -44,7 +44,7 @@ pub struct Simplifier<'a> {
     pub(crate) creased: bool,
     /// Whether sheets may bend, so that costs are measured, too.
     measures: bool,
-    /// Whether they are measured from the first collapse on, where much sticks out.
+    /// Whether costs are measured from the first collapse on, where much sticks out.
     pub(crate) measures_early: bool,
     pub(crate) tree: &'a TriangleTree,
 }
@@ -118,9 +118,9 @@ impl<'a> Simplifier<'a> {
         self
     }
 
-    /// Says whether to measure costs from the first collapse on where much sticks out: many primitives can keep what few
+    /// Sets whether costs are measured from the first collapse on where much sticks out: many primitives can keep what few
     /// lose anyway.
-    pub fn measure_early(&mut self, early: bool) {
+    pub fn set_measures_early(&mut self, early: bool) {
         self.measures_early = early;
     }
 

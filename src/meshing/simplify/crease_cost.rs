@@ -55,8 +55,8 @@ pub fn stick_out(complex: &Complex, tree: &TriangleTree, ab: [u32; 2], ball: &Ba
     middles.chain([*ball]).map(out).fold(0.0, f64::max)
 }
 
-/// Does the same as [`stick_out`] where that is more than `least`, and gives 0 where it is not, which is far quicker to
-/// tell. What stays as it was does not count.
+/// Lower bound on what [`stick_out`] gives, which is far quicker to tell: 0 up to `least`. Balls no thicker than `least` are
+/// not seen, nor those whose centres are outside the solid by more than their radius.
 pub fn stick_out_beyond(
     least: f64,
     complex: &Complex,

@@ -32,11 +32,12 @@ const REACH: f64 = 3.0;
 /// of 200 by an eighth more.
 const STICK_OUT: f64 = 4.0;
 
-/// Below this many primitives all of that counts. From the first collapse on it takes ten seconds, and gains nothing.
+/// Number of primitives below which all that sticks out is measured. From the first collapse on that takes ten seconds
+/// more, and gains nothing.
 const MEASURED: usize = 10_000;
 
-/// On the way to many primitives it counts before, where something sticks out by more than this (longest side 1): of
-/// 180,000 primitives of a nut's thread one place in a hundred was off by .008 when 10,000 were left, which no fit mends.
+/// Length (longest side 1) by which something must stick out to be measured before, on the way to many primitives: of
+/// 180,000 of a nut's thread one place in a hundred was off by .008 when 10,000 were left, which no fit mends.
 const FAR: f64 = 1e-3;
 
 impl Simplifier<'_> {
@@ -50,10 +51,12 @@ impl Simplifier<'_> {
     /// Cost of merging two balls into `ball` by how far what is around it then sticks out.
     pub(crate) fn measured_cost(&self, a: u32, b: u32, ball: &Ball) -> f64 {
         let (complex, tree) = (&self.complex, self.tree);
-        let out = match self.measures_early {
-            _ if self.primitives() < MEASURED => stick_out(complex, tree, [a, b], ball),
-            true => stick_out_beyond(FAR, complex, tree, [a, b], ball),
-            false => 0.0,
+        let out = if self.primitives() < MEASURED {
+            stick_out(complex, tree, [a, b], ball)
+        } else if self.measures_early {
+            stick_out_beyond(FAR, complex, tree, [a, b], ball)
+        } else {
+            0.0
         };
         STICK_OUT * out * out
     }

@@ -61,10 +61,9 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Passes [`Simplifier::measure_early`] on to the solid part.
-    pub fn measuring_early(mut self, early: bool) -> Self {
-        self.solid.measure_early(early);
-        self
+    /// Passes [`Simplifier::set_measures_early`] on to the solid part.
+    pub fn set_measures_early(&mut self, early: bool) {
+        self.solid.set_measures_early(early);
     }
 
     /// Number of primitives now.

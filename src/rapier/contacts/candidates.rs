@@ -5,7 +5,7 @@ use crate::batch::PairJob;
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::PairKey;
 use crate::rapier::contacts::hanging;
-use crate::rapier::contacts::neighbor_speeds::{self, Pusher};
+use crate::rapier::contacts::neighbor_speeds::{self, Neighbor};
 use crate::rapier::contacts::predicted_contacts::PredictedMotion;
 use crate::rapier::host::forced_updates::is_hooked;
 use crate::rapier::host::recycling::{Place, RecyclingRecord};
@@ -80,14 +80,14 @@ impl ContactScene {
     fn new(sets: Sets) -> Self {
         let mut medial = MedialColliders::new(&sets);
         let mut boxes: Vec<Aabb> = medial.all.iter().map(|collider| collider.aabb).collect();
-        let pusher = |collider: &MedialCollider| Pusher::medial(&sets, collider);
-        let mut pushers: Vec<Pusher> = medial.all.iter().map(pusher).collect();
-        for (aabb, pusher) in neighbor_speeds::others(&sets) {
+        let neighbor = |collider: &MedialCollider| Neighbor::medial(&sets, collider);
+        let mut neighbors: Vec<Neighbor> = medial.all.iter().map(neighbor).collect();
+        for (aabb, neighbor) in neighbor_speeds::others(&sets) {
             boxes.push(aabb);
-            pushers.push(pusher);
+            neighbors.push(neighbor);
         }
         let met = overlapping_pairs(&boxes);
-        let pushed = neighbor_speeds::neighbor_speed_bounds(&pushers, &met);
+        let pushed = neighbor_speeds::neighbor_speed_bounds(&neighbors, &met);
         let hangs = hanging::hang(&sets, &medial);
         for (collider, (pushed, hangs)) in medial.all.iter_mut().zip(pushed.into_iter().zip(hangs))
         {

@@ -11,20 +11,20 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::Collider;
 
-/// Bodies that a push goes through in a step. A chain of equal balls would hand it on for ever; a heap
+/// Pairs that a push goes through in a step, to the third neighbour. A chain of equal balls would hand it on for ever; a heap
 /// shares it out.
 const MAX_HOPS: usize = 3;
 
 /// What a collider may do to its neighbours in a step.
 #[derive(Clone, Copy)]
-pub struct Pusher {
+pub struct Neighbor {
     /// Bound on the speed of its points.
     speed: Real,
     /// Whether a push goes through it: nothing moves what is fixed or kinematic.
-    is_pushed: bool,
+    is_movable: bool,
 }
 
-impl Pusher {
+impl Neighbor {
     /// A medial collider.
     pub fn medial(sets: &Sets, collider: &MedialCollider) -> Self {
         let own = collider.speed();
@@ -36,13 +36,13 @@ impl Pusher {
         let is_tied = is_dynamic && body.is_some_and(|body| is_tied(sets, body));
         Self {
             speed: if is_tied { Real::MAX } else { own },
-            is_pushed: is_dynamic,
+            is_movable: is_dynamic,
         }
     }
 }
 
 /// Moving colliders that are not medial: their boxes, as far as contacts are looked for.
-pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Pusher)> + 'a {
+pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Neighbor)> + 'a {
     let moving = |collider: &Collider| {
         let handle = collider.parent()?;
         let body = sets.bodies.get(handle)?;
@@ -53,9 +53,9 @@ pub fn others<'a>(sets: &'a Sets) -> impl Iterator<Item = (Aabb, Pusher)> + 'a {
         let aabb = collider.compute_aabb();
         let arm = (aabb.center() - body.center_of_mass()).length() + aabb.half_extents().length();
         let own = linear.length() + angular.length() * arm;
-        let pusher = Pusher::new(sets, Some(handle), body.is_dynamic(), own);
+        let neighbor = Neighbor::new(sets, Some(handle), body.is_dynamic(), own);
         let margin = sets.parameters.prediction_distance() + collider.contact_skin();
-        (pusher.speed > 0.0).then(|| (aabb.loosened(margin), pusher))
+        (neighbor.speed > 0.0).then(|| (aabb.loosened(margin), neighbor))
     };
     enabled(sets.bodies, sets.colliders, sets.participants).filter_map(move |(_, c)| moving(c))
 }
@@ -67,13 +67,13 @@ fn is_tied(sets: &Sets, body: RigidBodyHandle) -> bool {
 }
 
 /// Largest speed that gets to each of some colliders, over at most [`MAX_HOPS`] pairs that are near each other.
-pub fn neighbor_speed_bounds(pushers: &[Pusher], near: &[[usize; 2]]) -> Vec<Real> {
-    let mut reached: Vec<Real> = pushers.iter().map(|pusher| pusher.speed).collect();
+pub fn neighbor_speed_bounds(neighbors: &[Neighbor], near: &[[usize; 2]]) -> Vec<Real> {
+    let mut reached: Vec<Real> = neighbors.iter().map(|neighbor| neighbor.speed).collect();
     for _ in 0..MAX_HOPS {
         let before = reached.clone();
         for &[i, j] in near {
             for [to, from] in [[i, j], [j, i]] {
-                if pushers[to].is_pushed {
+                if neighbors[to].is_movable {
                     reached[to] = reached[to].max(before[from]);
                 }
             }
@@ -84,16 +84,16 @@ pub fn neighbor_speed_bounds(pushers: &[Pusher], near: &[[usize; 2]]) -> Vec<Rea
 
 #[cfg(test)]
 mod tests {
-    use super::{Pusher, neighbor_speed_bounds};
+    use super::{Neighbor, neighbor_speed_bounds};
 
     #[test]
-    fn a_push_goes_through_three_bodies_and_no_fixed_one() {
-        let [fast, slow] = [8.0, 0.0].map(|speed| Pusher {
+    fn a_push_gets_to_the_third_neighbor_and_through_nothing_fixed() {
+        let [fast, slow] = [8.0, 0.0].map(|speed| Neighbor {
             speed,
-            is_pushed: true,
+            is_movable: true,
         });
-        let fixed = Pusher {
-            is_pushed: false,
+        let fixed = Neighbor {
+            is_movable: false,
             ..slow
         };
         let row = [fast, slow, slow, slow, slow];
@@ -103,7 +103,7 @@ mod tests {
         let reached = neighbor_speed_bounds(&[fast, fixed, slow, slow, slow], &near);
         assert_eq!(reached, [8.0, 0.0, 0.0, 0.0, 0.0]);
         // What moves by itself pushes, and is not pushed.
-        let mover = Pusher {
+        let mover = Neighbor {
             speed: 2.0,
             ..fixed
         };

@@ -38,8 +38,8 @@ pub fn one_gives_way(view: &StepView, pair: [usize; 2]) -> bool {
 }
 
 /// Watched pairs of bodies that are pressed, by themselves or through each other, against two that do not give way to them.
-/// One of these two moves, and with one of them the bodies are below the floor; in the other they need not be as deep as to be
-/// watched.
+/// One of these two moves, and with one of them a medial collider is below the floor; in the other the bodies need not be as
+/// deep as to be watched.
 pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
     let free = |b: &usize| view.bodies[*b].kind == Kind::Free;
     let is_below = |pair: &[usize; 2]| deep.watched.get(pair).is_some_and(|deep| deep.way > 0.0);

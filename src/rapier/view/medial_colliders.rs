@@ -93,7 +93,7 @@ pub struct MedialCollider {
     pub body: Option<RigidBodyHandle>,
     /// Shape, whose instance id tells the collider apart from all others.
     pub mesh: MedialMesh,
-    /// Whether the body is dynamic; all else goes its own way, whatever pushes it.
+    /// Whether the body is dynamic; nothing pushes fixed and kinematic ones.
     pub is_dynamic: bool,
     /// Mass and centre of mass of the body, if the solver moves it and it is awake.
     pub moving: Option<(Real, Vector)>,
