@@ -21,8 +21,8 @@ use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::{Watch, bytes_of};
 
-/// Share of its length by which a way out of the solid may be overstated; with a third of it fits take a tenth longer and
-/// are no closer.
+/// Share of its length by which a way out of the solid may be overstated. With a third of it searches look at 1.7 to 2 times as
+/// many cells for a sample, and the M16 nut and bolt of 500 primitives are off by the same to 2 %.
 const WAY_OUT: f64 = 0.15;
 
 /// Nodes of a tree that take as long to look at as a cell of a search for a way out.
