@@ -229,3 +229,26 @@ fn sleeping_islands_wake_as_a_whole() {
     world.step();
     assert!(!world.bodies[b].is_sleeping());
 }
+
+/// A ball strikes a bar on a multibody's hinge: the velocity of the hinge is not that of the bar until the next step.
+#[test]
+fn bodies_of_multibodies_get_their_last_velocity_in_the_next_step() {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let root = world.bodies.insert(RigidBodyBuilder::fixed());
+    let bar = RigidBodyBuilder::dynamic().translation(Vector::X * 0.3);
+    let (bar, _) = world.insert(bar, ColliderBuilder::cuboid(0.3, 0.05, 0.05));
+    let hinge = RevoluteJointBuilder::new(Vector::Y).local_anchor2(Vector::X * -0.3);
+    world.insert_multibody_joint(root, bar, hinge);
+    let ball = RigidBodyBuilder::dynamic().translation(Vector::new(0.5, 0.0, -0.2));
+    world.insert(ball.linvel(Vector::Z), ColliderBuilder::ball(0.1));
+    let mut most: Real = 0.0;
+    for _ in 0..20 {
+        world.step();
+        let link = world.multibody_joints.rigid_body_link(bar).copied();
+        let multibody = link.and_then(|l| world.multibody_joints.get_multibody(l.multibody));
+        let hinge = multibody.map(|m| m.generalized_velocity()[0]);
+        most = most.max((hinge.expect("a hinge") - world.bodies[bar].angvel().y).abs());
+    }
+    assert!(most > 0.05, "{most} rad/s");
+}

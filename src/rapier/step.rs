@@ -330,7 +330,8 @@ impl State {
         }
         let parameters = args.parameters;
         let view = &mut plan.view;
-        view.follow(parameters, world.bodies, world.colliders);
+        let sets = (&*world.bodies, &*world.colliders);
+        view.follow(parameters, sets, world.multibody_joints);
         let rules = world.rules(args.filters);
         let wild = std::mem::take(&mut plan.wild);
         wild.take_back(view, &rules, world.narrow_phase, parameters.dt);
@@ -369,7 +370,7 @@ impl State {
         }
         let whole = StepView::take(world.sets(parameters, None));
         let sets = (&*world.bodies, &*world.colliders);
-        view.complete(whole, still, parameters, sets);
+        view.complete(whole, still, parameters, sets, world.multibody_joints);
         // How deep the others are was not looked at.
         let contacts = Contacts::of_all(narrow_phase, Real::INFINITY);
         let outcome = event_loop::resolve(view, policy, rules, contacts, placed, batch, work);

@@ -28,6 +28,9 @@ impl Stepped {
     }
 }
 
+/// From this seed on only the fixed ones of a field are medial.
+const FEW: usize = 3;
+
 /// A collider of one of five kinds, and how high its centre lies on the ground.
 fn collider(kind: usize) -> (ColliderBuilder, Real) {
     let ring = || MedialMesh::torus(0.25, 0.06, 12).expect("a ring");
@@ -46,7 +49,11 @@ fn field(least_still: [usize; 2], seed: usize) -> Stepped {
     let ground = ColliderBuilder::cuboid(40.0, 0.1, 40.0).translation(Vector::Y * -0.1);
     world.insert_collider(ground, None);
     for i in 0..FIELD[0] * FIELD[1] {
-        let (collider, height) = collider(i + seed);
+        let (collider, height) = collider(match seed < FEW {
+            true => i + seed,
+            false if i % 7 == 3 => i % 3,
+            false => 3 + i % 2,
+        });
         let x = (i % FIELD[0]) as Real * 0.62 - 5.0;
         let at = Vector::new(x, height, (i / FIELD[0]) as Real * 0.62 - 2.5);
         if i % 7 == 3 {
@@ -65,13 +72,16 @@ fn field(least_still: [usize; 2], seed: usize) -> Stepped {
 
 #[test]
 fn what_nothing_gets_to_is_left_out_and_no_bit_changes() {
-    for seed in 0..3 {
+    for seed in 0..2 * FEW {
         let mut both = [[usize::MAX, 0], [0, 0]].map(|least| field(least, seed));
         let mut rng = Rng::new(seed as u64 + 7);
         let mut least = usize::MAX;
         for step in 0..420 {
             if step >= 120 && step % 12 == 0 {
-                let shot = Shot::random(&mut rng);
+                let mut shot = Shot::random(&mut rng);
+                if seed >= FEW {
+                    shot.kind = 3 + shot.kind % 2;
+                }
                 both.iter_mut().for_each(|one| shot.fire(&mut one.world));
             }
             let reports = both.each_mut().map(|one| one.pipeline.step(&mut one.world));
@@ -82,7 +92,12 @@ fn what_nothing_gets_to_is_left_out_and_no_bit_changes() {
             if step >= 120 && some.participants > 0 {
                 least = least.min(some.participants);
             }
-            let [all, some] = both.each_ref().map(|one| bits(&one.world));
+            // A bit of the hooks makes rapier compute contacts anew.
+            let hooks = |one: &Stepped| -> Vec<u32> {
+                let colliders = one.world.colliders.iter();
+                colliders.map(|(_, c)| c.active_hooks().bits()).collect()
+            };
+            let [all, some] = both.each_ref().map(|one| (bits(&one.world), hooks(one)));
             assert!(all == some, "seed {seed}, step {step}");
         }
         assert!(least < 20, "{least} colliders at least");

@@ -87,6 +87,7 @@ mod spawned;
 mod stairs;
 mod still;
 mod strained_joints;
+mod struck_links;
 mod table_edges;
 mod tapered;
 #[allow(dead_code)]

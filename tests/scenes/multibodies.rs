@@ -6,10 +6,10 @@ use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
 /// Radius of links and rod, metres.
-const RADIUS: Real = 0.05;
+pub const RADIUS: Real = 0.05;
 
 /// A link's half length between the centres of its ends, metres.
-const HALF: Real = 0.2;
+pub const HALF: Real = 0.2;
 
 /// What is struck.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub enum By {
 }
 
 /// A capsule along an axis, medial or rapier's own.
-fn bar(medial: bool, axis: Vector, half: Real) -> ColliderBuilder {
+pub fn bar(medial: bool, axis: Vector, half: Real) -> ColliderBuilder {
     let end = axis * half;
     let collider = if medial {
         let ends = [-end, end].map(|c| MedialSphere::new(c, RADIUS));

@@ -181,3 +181,47 @@ fn dominant_bodies_take_along_what_gives_way() {
         "{ours:?}, rapier's own {own:?}"
     );
 }
+
+/// A body that rests on a platform is given a higher dominance group than the platform has, which is none for a fixed one.
+#[test]
+fn dominant_bodies_fall_through_kinematic_platforms_as_rapiers_do() {
+    let rest = |medial: bool, plate: bool, platform: RigidBodyType| {
+        let mut world = PhysicsWorld::new();
+        let mut pipeline = attached(&mut world);
+        let platform = world.bodies.insert(RigidBodyBuilder::new(platform));
+        let top = ColliderBuilder::cuboid(3.0, 0.15, 3.0).translation(Vector::Y * -0.15);
+        world.insert_collider(top, Some(platform));
+        let ground = ColliderBuilder::cuboid(9.0, 0.5, 9.0).translation(Vector::Y * -3.0);
+        world.insert_collider(ground, None);
+        let half = Vector::new(0.3, if plate { 0.03 } else { 0.25 }, 0.3);
+        let collider = match medial {
+            true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a cuboid")),
+            false => ColliderBuilder::cuboid(half.x, half.y, half.z),
+        };
+        let body = RigidBodyBuilder::dynamic().translation(Vector::Y * (half.y + 0.05));
+        let (body, _) = world.insert(body, collider);
+        for step in 0..300 {
+            if step == 100 {
+                world.bodies[body].set_dominance_group(3);
+            }
+            pipeline.step(&mut world);
+        }
+        world.bodies[body].translation().y
+    };
+    let kinds = [
+        RigidBodyType::KinematicVelocityBased,
+        RigidBodyType::KinematicPositionBased,
+        RigidBodyType::Fixed,
+    ];
+    for (platform, plate) in kinds
+        .into_iter()
+        .flat_map(|kind| [(kind, true), (kind, false)])
+    {
+        let [ours, own] = [true, false].map(|medial| rest(medial, plate, platform));
+        println!("{platform:?}, a plate {plate}: {ours}, rapier's own {own}");
+        assert!(
+            (ours - own).abs() < 0.005,
+            "{platform:?}: {ours}, rapier's own {own}"
+        );
+    }
+}

@@ -50,15 +50,20 @@ fn set(
     let state = |link: &MultibodyLink| {
         let handle = link.rigid_body_handle();
         let body = &bodies[handle];
-        let moved = view.index.get(&handle);
-        let moved = moved.and_then(|i| changed.iter().find(|(b, _)| b == i));
+        let place = view.index.get(&handle);
+        let moved = place.and_then(|i| changed.iter().find(|(b, _)| b == i));
         let ours = moved.map(|(b, _)| &view.bodies[*b]);
         let pose = ours.map_or(*body.position(), |b| b.motion.start);
+        let by_joints = place.and_then(|i| view.bodies[*i].by_joints);
         let struck = ours.filter(|_| moved.is_some_and(|(_, struck)| *struck));
         State {
             pose,
             center: pose * body.mass_properties().local_mprops.local_com,
-            velocity: struck.map_or([body.linvel(), body.angvel()], |b| b.velocity),
+            velocity: match (struck, by_joints) {
+                (Some(body), _) => body.velocity,
+                (None, Some(velocity)) => velocity,
+                (None, None) => [body.linvel(), body.angvel()],
+            },
             turned: ours.map_or_else(|| LinkAngles::of(link), |b| b.turned(link)),
         }
     };

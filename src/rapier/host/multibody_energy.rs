@@ -12,15 +12,13 @@
 use crate::math::{Real, Rotation, Vector};
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::inertia::Inertia;
+use crate::rapier::view::link_velocity::WHIRLS;
 use crate::rapier::view::motion::{Body, Kind};
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{
     Multibody, MultibodyIndex, MultibodyJointSet, MultibodyLink, RigidBody, RigidBodyHandle,
 };
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
-
-/// Turn of the fastest link in a step, in radians, from which a multibody whirls.
-const WHIRLS: Real = 0.1;
 
 /// The turn from which rapier's step is not asked: links that turn further may leave all numbers within one step, and
 /// then nothing is left to take back.

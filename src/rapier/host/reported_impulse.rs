@@ -47,12 +47,22 @@ impl ReportedImpulse {
         }
     }
 
-    /// Adds it to those of its pair: to the one of the same normal, if there is one.
+    /// Adds it to those of its pair: to the one of about the same normal, if there is one.
     pub fn add_to(self, blows: &mut Vec<Self>) {
         let same = |b: &&mut Self| b.normals[0].dot(self.normals[0]) >= SAME_NORMAL;
         match blows.iter_mut().find(same) {
-            Some(same) => same.impulse += self.impulse,
+            Some(same) => same.add(&self),
             None => blows.push(self),
+        }
+    }
+
+    /// Adds another: impulse and normal are those of the sum of both vectors, points and distance stay those of the first.
+    fn add(&mut self, other: &Self) {
+        let sum = |k: usize| self.normals[k] * self.impulse + other.normals[k] * other.impulse;
+        let sums = [0, 1, 2].map(sum);
+        self.impulse = sums[0].length();
+        if self.impulse > 0.0 {
+            self.normals = sums.map(Vector::normalize);
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::math::fast_hash::FastSet;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
-use crate::rapier::impacts::pinched::{one_gives_way, pinched, pressed_by_joints};
+use crate::rapier::impacts::pinched::{one_dominates, pinched, pressed_by_joints};
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::participants::Participants;
@@ -258,7 +258,7 @@ impl InitialOverlaps {
         let is_left = |pair: &[usize; 2], deep: &Deep| {
             self.left.contains(&handles(*pair))
                 || was_put(*pair, deep)
-                || deep.way > 0.0 && one_gives_way(view, *pair)
+                || deep.way > 0.0 && one_dominates(view, *pair)
                 || deep.is_sunk && rules.are_jointed(view, *pair)
                 || pinched.contains(pair)
         };

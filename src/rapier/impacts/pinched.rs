@@ -30,11 +30,16 @@ fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
     }
 }
 
-/// Whether one of two free bodies alone gives way.
-pub fn one_gives_way(view: &StepView, pair: [usize; 2]) -> bool {
-    let bodies = pair.map(|k| view.parts[k].body);
-    let free = |b: &usize| view.bodies[*b].kind == Kind::Free;
-    bodies.iter().all(free) && yielding(view, bodies).is_some()
+/// Whether dominance groups keep one of a pair from being pushed back: two free bodies of different groups, or a free body of a
+/// higher group than one that nothing stops.
+pub fn one_dominates(view: &StepView, pair: [usize; 2]) -> bool {
+    let [first, second] = pair.map(|k| &view.bodies[view.parts[k].body]);
+    match [first, second].map(|body| body.kind == Kind::Free) {
+        [true, true] => first.dominance != second.dominance,
+        [true, false] => first.dominance > second.dominance,
+        [false, true] => second.dominance > first.dominance,
+        [false, false] => false,
+    }
 }
 
 /// Watched pairs of bodies that are pressed, by themselves or through each other, against two that do not give way to them.

@@ -7,7 +7,7 @@ use crate::rapier::view::motion::Body;
 use crate::rapier::view::step_view::{Part, StepView};
 use crate::rapier::view::still_colliders::StillColliders;
 use parry3d::query::NonlinearRigidMotion;
-use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle, RigidBodySet};
+use rapier3d::dynamics::{IntegrationParameters, MultibodyJointSet, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{ColliderHandle, ColliderSet};
 
 impl StepView {
@@ -18,7 +18,8 @@ impl StepView {
         mut whole: Self,
         still: &StillColliders,
         parameters: &IntegrationParameters,
-        (bodies, colliders): (&RigidBodySet, &ColliderSet),
+        sets: (&RigidBodySet, &ColliderSet),
+        multibodies: &MultibodyJointSet,
     ) {
         for body in &mut whole.bodies {
             if let Some(pose) = body.handle.and_then(|h| still.pose(h)) {
@@ -29,7 +30,7 @@ impl StepView {
             let pose = whole.bodies[part.body].start * part.offset;
             part.aabb = part.shape.compute_aabb(&pose);
         }
-        whole.follow(parameters, bodies, colliders);
+        whole.follow(parameters, sets, multibodies);
         let known = |handle: Option<RigidBodyHandle>| self.index.get(&handle?).copied();
         for body in &mut whole.bodies {
             if let Some(k) = known(body.handle) {

@@ -18,6 +18,7 @@ pub(crate) mod groups;
 pub(crate) mod inertia;
 pub(crate) mod joint_opening;
 pub(crate) mod link_angles;
+pub(crate) mod link_velocity;
 pub(crate) mod medial_colliders;
 pub(crate) mod meeting_speed;
 pub(crate) mod motion;

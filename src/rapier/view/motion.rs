@@ -80,6 +80,9 @@ pub struct Body {
     pub dominance: i16,
     /// Radians per second of the fastest link of its multibody before rapier's step; 0 of a body of none.
     pub whirl: Real,
+    /// Linear and angular velocity after rapier's step by the joints of its multibody, where they hold and not those of
+    /// rapier's body.
+    pub by_joints: Option<[Vector; 2]>,
     /// Whether a joint holds it.
     pub jointed: bool,
     /// The point, in its frame, at which a joint holds it to what no impact moves; it turns about it.
@@ -122,6 +125,7 @@ impl Body {
             locked: properties.flags,
             dominance: body.effective_dominance_group(),
             whirl: 0.0,
+            by_joints: None,
             jointed: false,
             pivot: None,
             turned_before: None,
@@ -160,6 +164,7 @@ impl Body {
             locked: LockedAxes::empty(),
             dominance: i16::from(i8::MAX) + 1,
             whirl: 0.0,
+            by_joints: None,
             jointed: false,
             pivot: None,
             turned_before: None,
@@ -181,6 +186,7 @@ impl Body {
 
     /// The motion that took it to where it is after rapier's step.
     pub fn moved(&mut self, body: &RigidBody, iterations: usize, dt: Real) {
+        let [linear, angular] = self.by_joints.unwrap_or([body.linvel(), body.angvel()]);
         // rapier computes the mass of a body that is new in this step only now.
         let properties = body.mass_properties();
         let com = properties.local_mprops.local_com;
@@ -191,10 +197,10 @@ impl Body {
         self.dominance = body.effective_dominance_group();
         let (start, end) = (self.motion.start, *body.position());
         self.end = end;
-        let spin = start.rotation * (end.rotation.inverse() * body.angvel());
-        self.velocity = [body.linvel(), spin];
+        let spin = start.rotation * (end.rotation.inverse() * angular);
+        self.velocity = [linear, spin];
         let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
-        let turn = unwrapped(turn, body.angvel() * dt, iterations.max(1) as Real);
+        let turn = unwrapped(turn, angular * dt, iterations.max(1) as Real);
         // The path of a centre that goes round a pivot is an arc, of which rapier's step tells the chord.
         let center = self.pivot.filter(|_| turn.length() > TURNS).unwrap_or(com);
         self.reach += (center - com).length();

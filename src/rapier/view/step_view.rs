@@ -183,12 +183,13 @@ impl StepView {
     pub fn follow(
         &mut self,
         parameters: &IntegrationParameters,
-        bodies: &RigidBodySet,
-        colliders: &ColliderSet,
+        (bodies, colliders): (&RigidBodySet, &ColliderSet),
+        multibodies: &MultibodyJointSet,
     ) {
         self.followed = true;
         let enabled = |p: &Part| colliders.get(p.handle).is_some_and(Collider::is_enabled);
         self.parts.retain(enabled);
+        self.find_velocities_by_joints(parameters.dt, bodies, multibodies);
         for body in &mut self.bodies {
             if let Some(b) = body.handle.and_then(|h| bodies.get(h))
                 && body.kind != Kind::Fixed
