@@ -77,8 +77,8 @@ impl Source {
     /// The least error at each count, in order of the counts.
     fn curve(&mut self, counts: Vec<usize>, watch: &mut Watch) -> Result<Vec<ErrorAt>, BuildError> {
         let exact = self.exact(self.limits.primitives.unwrap_or(usize::MAX), watch)?;
-        let (start, samples) = self.start(false, watch)?;
-        let (mut rounded, mut creased) = self.ladders(start, samples, watch)?;
+        let start = self.start(false, watch)?;
+        let (mut rounded, mut creased) = self.ladders(start, watch)?;
         let mut best = None;
         let mut points = Vec::with_capacity(counts.len());
         let at = |asked, draft: &Draft, hausdorff| ErrorAt {

@@ -29,6 +29,7 @@ mod shapes;
 mod smallest;
 mod threads;
 mod topology;
+mod walls;
 
 use meshes::Mesh;
 use rapier3d_medial::Quality;

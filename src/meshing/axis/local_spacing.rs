@@ -52,17 +52,23 @@ impl<'a> LocalSpacing<'a> {
         };
         let enough = distance / PER_RADIUS;
         for (i, probe) in probes.iter().enumerate() {
-            watch.every(i)?;
+            if i % 1024 == 0 {
+                watch.again()?;
+            }
             let ball = shrink_from(tree, probe.point, -probe.normal, enough);
             let group = creases.group[probe.triangle as usize];
             let key = spacing.key(probe.point);
             let found = (probe.point, group, ball.radius);
             spacing.cells.entry(key).or_default().push(found);
         }
-        let unlimited = probes
-            .iter()
-            .map(|p| spacing.thickness(p.point, creases.group[p.triangle as usize]));
-        let unlimited: Vec<f64> = unlimited.map(|r| PER_RADIUS * r).collect();
+        let mut unlimited = Vec::with_capacity(probes.len());
+        for (i, probe) in probes.iter().enumerate() {
+            if i % 1024 == 0 {
+                watch.again()?;
+            }
+            let group = creases.group[probe.triangle as usize];
+            unlimited.push(PER_RADIUS * spacing.thickness(probe.point, group));
+        }
         let growth = |least: f64| {
             let times = |h: &f64| (distance / h.clamp(least, distance)).powi(2);
             unlimited.iter().map(times).sum::<f64>() / unlimited.len().max(1) as f64

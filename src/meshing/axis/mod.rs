@@ -24,4 +24,5 @@ pub(crate) mod sheets;
 pub(crate) mod shrinking_ball;
 pub(crate) mod start;
 pub(crate) mod tangent;
+pub(crate) mod wall_samples;
 pub(crate) mod wavefront;

@@ -7,6 +7,7 @@
 use crate::error::BuildError;
 use crate::meshing::axis::inner_balls::{inner_balls, tetrahedra};
 use crate::meshing::axis::sheets::{open_sheets, thin_sheets};
+use crate::meshing::axis::wall_samples::samples_for_walls;
 use crate::meshing::draft::Draft;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
@@ -27,7 +28,9 @@ const BEFORE: f64 = 1e-7;
 pub struct Start {
     /// All balls inside solid matter.
     pub solid: Draft,
-    /// Distance between the samples that they touch.
+    /// Samples asked for: more than the caller's count where walls are thin.
+    pub samples: usize,
+    /// Distance between the samples that balls touch.
     pub spacing: f64,
     /// Slabs of sheets, and of matter too thin for balls.
     pub sheets: Draft,
@@ -37,8 +40,8 @@ pub struct Start {
     pub sheet_patches: usize,
 }
 
-/// The initial medial mesh from about `count` samples of the solid patches; `findings` is told what
-/// turned out too thin and what is buried.
+/// The initial medial mesh from about `count` samples of the solid patches, or up to four times as many where they are of
+/// thin walls; `findings` is told what turned out too thin and what is buried.
 pub fn start(
     surface: &Surface,
     tree: &TriangleTree,
@@ -53,6 +56,10 @@ pub fn start(
     watch.begin("samples")?;
     let mut solid = Draft::default();
     let mut thin = vec![false; surface.triangles.len()];
+    let count = match part.triangles.is_empty() || findings.overlapping {
+        true => count,
+        false => samples_for_walls(&part, tree, count, watch)?,
+    };
     let spacing = (part.area / count as f64).sqrt();
     if !part.triangles.is_empty() {
         let mut samples = blue_noise(&part, count, watch)?;
@@ -88,6 +95,7 @@ pub fn start(
     let share = surface.part(slabs).area / surface.area;
     Ok(Start {
         solid,
+        samples: count,
         spacing,
         sheets: open.and(thin_sheets(surface, &thin, spacing, watch)?),
         share,

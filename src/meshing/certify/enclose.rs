@@ -143,11 +143,12 @@ fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<()
         // Radii only grow, so what is proven stays so.
         let mut left = Vec::new();
         for (i, &piece) in open.iter().enumerate() {
+            let done = (pass as f64 + i as f64 / open.len() as f64).min(3.0);
+            let mut tick = || watch.at(0.4 + 0.2 * done);
             if i % 64 == 0 {
-                let done = (pass as f64 + i as f64 / open.len() as f64).min(3.0);
-                watch.at(0.4 + 0.2 * done)?;
+                tick()?;
             }
-            prover.prove(piece, &mut growth, &mut left);
+            prover.prove(piece, &mut growth, &mut left, &mut tick)?;
         }
         let worst = prover.worst;
         drop(tree);
@@ -177,9 +178,19 @@ struct Prover<'a> {
 
 impl Prover<'_> {
     /// Asks for growth where a piece is not covered, and puts the parts of which that is so on the list.
-    fn prove(&mut self, piece: [Point; 3], growth: &mut Growth, left: &mut Vec<[Point; 3]>) {
+    fn prove(
+        &mut self,
+        piece: [Point; 3],
+        growth: &mut Growth,
+        left: &mut Vec<[Point; 3]>,
+        tick: &mut dyn FnMut() -> Result<(), BuildError>,
+    ) -> Result<(), BuildError> {
         let mut pieces = vec![piece];
-        while let Some(piece) = pieces.pop() {
+        for looked_at in 1usize.. {
+            let Some(piece) = pieces.pop() else { break };
+            if looked_at.is_multiple_of(64) {
+                tick()?;
+            }
             let (primitive, worst, at_middle) = self.tightest(&piece);
             if worst.distance <= 0.0 {
                 continue;
@@ -203,6 +214,7 @@ impl Prover<'_> {
             self.ask(primitive, &worst, growth);
             left.push(piece);
         }
+        Ok(())
     }
 
     /// Asks for a primitive's growth to the worst corner of a piece.
@@ -278,7 +290,8 @@ mod tests {
         let strip = strip.map(|(x, y)| Point::new(x, y, top));
         let mut left = Vec::new();
         let mut growth = Growth::none(&draft);
-        prover.prove(strip, &mut growth, &mut left);
+        let proven = prover.prove(strip, &mut growth, &mut left, &mut || Ok(()));
+        proven.expect("nobody cancels");
         left
     }
 

@@ -208,8 +208,11 @@ impl<'a, S: Side> Search<'a, S> {
         }
         self.keep_leaders();
         waiting.extend(self.leaders.iter().rev().map(|leader| leader.1));
-        for _ in 0..POLISH_BUDGET {
+        for i in 0..POLISH_BUDGET {
             let Some(piece) = waiting.pop() else { break };
+            if i % 16 == 0 {
+                tick(1.0)?;
+            }
             let slack = (1.0 + POLISH) * self.best - self.high();
             self.examine(piece, slack, &mut waiting);
         }

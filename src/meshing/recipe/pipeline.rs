@@ -58,16 +58,15 @@ impl Source {
             Some(prism) if prism.error() <= NEAR => return Ok(prism),
             other => other,
         };
-        let (start, samples) = self.start(exact.is_some(), watch)?;
+        let start = self.start(exact.is_some(), watch)?;
         match self.limits.max_error {
-            None => self.rounded_or_creased(start, samples, prism, watch),
-            Some(limit) => self.within(limit, start, samples, exact.or(prism), watch),
+            None => self.rounded_or_creased(start, prism, watch),
+            Some(limit) => self.within(limit, start, exact.or(prism), watch),
         }
     }
 
-    /// The medial mesh of balls inside and of slabs, and from how many samples it is: few where it is only to be
-    /// smaller than one that is exact.
-    pub fn start(&mut self, few: bool, watch: &mut Watch) -> Result<(Start, usize), BuildError> {
+    /// The medial mesh of balls inside and of slabs: of few samples where it is only to be smaller than one that is exact.
+    pub fn start(&mut self, few: bool, watch: &mut Watch) -> Result<Start, BuildError> {
         let count = match few {
             true => FEW_SAMPLES,
             false => self.limits.samples(self.surface.area),
@@ -75,7 +74,7 @@ impl Source {
         let mut findings = std::mem::take(&mut self.surface.findings);
         let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
         self.surface.findings = findings;
-        Ok((start, count))
+        Ok(start)
     }
 
     /// The medial mesh whose ends are rounded, and one that keeps creases, if there are any, to be asked for many
@@ -83,10 +82,10 @@ impl Source {
     pub fn ladders(
         &self,
         start: Start,
-        samples: usize,
         watch: &mut Watch,
     ) -> Result<(Ladder<'_>, Option<Ladder<'_>>), BuildError> {
         watch.begin("simplify")?;
+        let samples = start.samples;
         let rounded = Parts::new(start, &self.tree, watch)?;
         let creased = self.creased(samples, watch)?;
         let creased = creased.map(|c| Ladder::new(Parts::solid(c.simplifier), c.creases));
@@ -124,11 +123,11 @@ impl Source {
     fn rounded_or_creased(
         &self,
         start: Start,
-        samples: usize,
         prism: Option<Candidate>,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
         watch.begin("simplify")?;
+        let samples = start.samples;
         let rounded = Parts::new(start, &self.tree, watch)?;
         let most = self.limits.primitives.unwrap_or(usize::MAX);
         let most = most.min(rounded.primitives());
@@ -193,11 +192,10 @@ impl Source {
         &self,
         limit: f64,
         start: Start,
-        samples: usize,
         exact: Option<Candidate>,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
-        let (mut rounded, mut creased) = self.ladders(start, samples, watch)?;
+        let (mut rounded, mut creased) = self.ladders(start, watch)?;
         let ladders = std::iter::once(&mut rounded)
             .chain(creased.as_mut())
             .collect();

@@ -15,7 +15,7 @@ use crate::meshing::draft::Draft;
 use crate::meshing::geometry::random::Random;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::refine::refit::{Target, refit};
-use crate::meshing::refine::residuals::far_exit;
+use crate::meshing::refine::residuals::{is_far_inside, way_out};
 use crate::meshing::surface::samples::{Sample, even_samples, vertex_samples};
 use crate::meshing::watch::Watch;
 
@@ -111,8 +111,8 @@ fn add_far(
         let near = solid.nearest(sample.point, hint);
         hint = near.primitive;
         let distance = near.signed.distance;
-        let is_deep = distance < 0.0
-            && far_exit(&solid, sample, &near, deep, &mut work)
+        let is_deep = is_far_inside(&solid, sample, &near, deep)
+            && way_out(&solid, sample, hint, deep, &mut work)
                 .is_some_and(|exit| (exit - sample.point).length() > deep);
         if distance > out || is_deep {
             samples.push(*sample);

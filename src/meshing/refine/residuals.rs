@@ -16,7 +16,7 @@ use crate::meshing::certify::inside::{Cell, Solid};
 use crate::meshing::certify::primitive_tree::Nearest;
 use crate::meshing::draft::{Ball, Corners, Draft};
 use crate::meshing::geometry::bounds::{Point, direction};
-use crate::meshing::geometry::chunks::map_chunks;
+use crate::meshing::geometry::chunks::{VERY_COSTLY, map_chunks, map_each};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::{Watch, bytes_of};
@@ -177,37 +177,55 @@ fn surface_rows(
     beyond: f64,
     watch: &mut Watch,
 ) -> Result<Vec<(Row, u64)>, BuildError> {
-    map_chunks(paired, watch, |chunk| {
+    let row = |point: Point, near: &Nearest, residual: f64, on_boundary: Point| Row {
+        corners: solid.primitives()[near.primitive as usize],
+        weights: near.signed.weights,
+        normal: direction(on_boundary - solid.ball(near).center),
+        residual,
+        weight: 1.0,
+        point,
+        primitive: near.primitive,
+    };
+    let found = map_chunks(paired, watch, |chunk| {
         let mut last = 0;
-        let row = |&(sample, hint): &(Sample, u32)| {
-            let point = sample.point;
-            let mut near = solid.nearest(point, if hint == UNKNOWN { last } else { hint });
+        let found = |&(sample, hint): &(Sample, u32)| {
+            let near = solid.nearest(sample.point, if hint == UNKNOWN { last } else { hint });
             last = near.primitive;
             let mut residual = near.signed.distance;
-            let mut on_boundary = point;
-            let mut work = 0;
+            let is_deep = beyond > 0.0 && is_far_inside(solid, &sample, &near, beyond);
             if beyond > 0.0 && residual < 0.0 {
-                if let Some(exit) = far_exit(solid, &sample, &near, beyond, &mut work) {
-                    residual = -(exit - point).length();
-                    // Shrinking the ball there shortens the way.
-                    near = solid.nearest(exit, last);
-                    on_boundary = exit;
-                }
                 residual = (residual + beyond).min(0.0);
             }
-            let row = Row {
-                corners: solid.primitives()[near.primitive as usize],
-                weights: near.signed.weights,
-                normal: direction(on_boundary - solid.ball(&near).center),
-                residual,
-                weight: 1.0,
-                point,
-                primitive: near.primitive,
-            };
-            (row, work)
+            let row = row(sample.point, &near, residual, sample.point);
+            (row, is_deep.then_some(near))
         };
-        chunk.iter().map(row).collect()
-    })
+        chunk.iter().map(found).collect()
+    })?;
+    let (mut rows, mut deep) = (Vec::with_capacity(found.len()), Vec::new());
+    for (i, (row, near)) in found.into_iter().enumerate() {
+        rows.push((row, 0));
+        deep.extend(near.map(|near| (i, near)));
+    }
+    // Ways out take long, and only few samples are deep.
+    let exits = map_each(VERY_COSTLY, &deep, watch, |(i, near)| {
+        let (sample, _) = &paired[*i];
+        let mut work = 0;
+        let exit = way_out(solid, sample, near.primitive, beyond, &mut work);
+        let deepest = exit.map(|exit| {
+            let residual = beyond - (exit - sample.point).length();
+            // Shrinking the ball there shortens the way.
+            let near = solid.nearest(exit, near.primitive);
+            row(sample.point, &near, residual.min(0.0), exit)
+        });
+        (*i, deepest, work)
+    })?;
+    for (i, deepest, work) in exits {
+        rows[i].1 = work;
+        if let Some(deepest) = deepest {
+            rows[i].0 = deepest;
+        }
+    }
+    Ok(rows)
 }
 
 /// Rows of envelope samples of which each weighs `share`, the triangle nearest to each, and the number of nodes and
@@ -257,20 +275,24 @@ fn envelope_rows(
     })
 }
 
-/// End of a way out of the solid from a sample within it that is longer than the shortest by at most [`WAY_OUT`] of it, or is
-/// no longer than `beyond`; `None` if the way along the sample's normal is no longer than `beyond`, or the nearest point of
-/// the primitive that is deepest there is outside all others. Nodes that the search looked at are added to `work`.
-pub fn far_exit(
+/// Whether a sample is within the solid, its way out along its normal is longer than `beyond`, and the nearest point of the
+/// primitive that is deepest there is within others.
+pub fn is_far_inside(solid: &Solid, sample: &Sample, near: &Nearest, beyond: f64) -> bool {
+    near.signed.distance < 0.0
+        && !solid.is_out(sample.point + sample.normal * beyond, near.primitive)
+        && solid.onto_boundary(sample.point, near).is_none()
+}
+
+/// End of a way out of the solid from a sample that [`is_far_inside`], which is longer than the shortest by at most [`WAY_OUT`] of
+/// it, or is no longer than `beyond`; `hint` is a primitive near it. Nodes that the search looked at are added to `work`.
+pub fn way_out(
     solid: &Solid,
     sample: &Sample,
-    near: &Nearest,
+    hint: u32,
     beyond: f64,
     work: &mut u64,
 ) -> Option<Point> {
-    let (p, hint) = (sample.point, near.primitive);
-    if solid.is_out(p + sample.normal * beyond, hint) || solid.onto_boundary(p, near).is_some() {
-        return None;
-    }
+    let p = sample.point;
     let way = solid.exit_distance(p, sample.normal, hint);
     let straight = way.is_finite().then(|| p + sample.normal * way);
     let nearest = solid.nearest_exit(p, [way, beyond], WAY_OUT);
