@@ -12,8 +12,8 @@
 //! turns their contacts off any more, and rapier's solver did not hold the pair apart before; or if it is below the floor and the two were moved against each other between two
 //! steps, or got other shapes, by so much that they may have been apart before. A pair that forces pressed together is
 //! held, even if both are moved together. A free body that gives way to another, by rapier's dominance groups, is
-//! left to the solver as soon as the two are below the floor, and so is one between two that do not give way
-//! ([`crate::rapier::impacts::pinched`]). A pair that a joint holds is left where it is watched and 2 mm deep, and stays left when
+//! left to the solver as soon as the two are below the floor. So is one of a higher group than the kinematic one that it meets,
+//! and one between two that do not give way ([`crate::rapier::impacts::pinched`]). A pair that a joint holds is left where it is watched and 2 mm deep, and stays left when
 //! the joint is gone.
 
 use crate::math::fast_hash::FastSet;
