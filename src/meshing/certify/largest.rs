@@ -37,6 +37,9 @@ const POLISH_BUDGET: usize = 4_000;
 const LEADERS: usize = 32;
 const LEADING: f64 = 0.8;
 
+/// Pieces between two reports of progress: where a fit is far off, each may take ten milliseconds.
+const TICK: usize = 16;
+
 /// Distance at the centre of a piece, as far as it tells something.
 pub enum Look {
     /// Nothing in the piece can matter.
@@ -172,7 +175,7 @@ impl<'a, S: Side> Search<'a, S> {
         while !level.is_empty() && level.len() <= WIDE && self.best <= self.effort.enough {
             let mut next = Vec::new();
             for (i, piece) in level.into_iter().enumerate() {
-                if i % 128 == 0 {
+                if i % TICK == 0 {
                     tick(0.0)?;
                 }
                 self.examine(piece, self.slack_now(), &mut next);
@@ -200,7 +203,7 @@ impl<'a, S: Side> Search<'a, S> {
                 if self.best > self.effort.enough {
                     return Ok(());
                 }
-                if self.examined.is_multiple_of(128) {
+                if self.examined.is_multiple_of(TICK) {
                     tick(self.done)?;
                 }
                 self.examine(piece, self.slack_now(), &mut waiting);
@@ -210,7 +213,7 @@ impl<'a, S: Side> Search<'a, S> {
         waiting.extend(self.leaders.iter().rev().map(|leader| leader.1));
         for i in 0..POLISH_BUDGET {
             let Some(piece) = waiting.pop() else { break };
-            if i % 16 == 0 {
+            if i % TICK == 0 {
                 tick(1.0)?;
             }
             let slack = (1.0 + POLISH) * self.best - self.high();
