@@ -14,6 +14,7 @@ mod host;
 mod impacts;
 mod integration;
 mod joints;
+mod loans;
 mod pipeline;
 mod report;
 mod state;

@@ -185,8 +185,9 @@ impl MedialPipeline {
     /// `integration_parameters.normalized_contact_recycle_distance` is the distance that a pair may move before
     /// rapier computes its contacts anew. While there are medial colliders, the step uses
     /// [`RECYCLE_DISTANCE`](crate::rapier::RECYCLE_DISTANCE) in its place if yours is larger. This holds for all
-    /// bodies. Medial bodies that joints hold and that turn fast get more solver iterations for the
-    /// step (`docs/host.md`).
+    /// bodies, but where at most one in nine of the moving pairs has a medial collider: the contacts of these pairs
+    /// are then computed in each step, and the others go by your distance. Medial bodies that joints hold and that
+    /// turn fast get more solver iterations for the step (`docs/host.md`).
     pub fn step(&mut self, world: &mut PhysicsWorld) -> StepReport {
         self.step_with_events(world, &(), &())
     }

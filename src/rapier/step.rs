@@ -5,17 +5,17 @@ use crate::math::{Real, Vector};
 use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Sweeps, Tally};
 use crate::rapier::contacts::candidates;
 use crate::rapier::contacts::muting::{self, Muted};
+use crate::rapier::contacts::outnumbered::are_outnumbered;
 use crate::rapier::contacts::predicted_contacts::predicted;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
-use crate::rapier::host::forced_updates;
+use crate::rapier::host::forced_updates::{self, Forced};
 use crate::rapier::host::multibody_energy::WildMultibodies;
-use crate::rapier::host::sleep_timers::{SleepTimers, moved_before};
-use crate::rapier::host::speculative::Speculators;
-use crate::rapier::host::substeps::Substeps;
+use crate::rapier::host::sleep_timers::moved_before;
 use crate::rapier::impacts::event_loop;
 use crate::rapier::impacts::outcome::Outcome;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
+use crate::rapier::loans::Loans;
 use crate::rapier::report::StepReport;
 use crate::rapier::state::State;
 use crate::rapier::step_plan::{StepPlan, lowered};
@@ -35,6 +35,8 @@ use web_time::Instant;
 #[derive(Clone, Copy)]
 struct StepArgs<'a> {
     /// The user's parameters, with the time that is left of the step.
+    users: &'a IntegrationParameters,
+    /// The same, but that contacts are kept no longer than medial colliders can bear.
     parameters: &'a IntegrationParameters,
     filters: &'a FilterAnswers<'a>,
     events: &'a dyn EventHandler,
@@ -67,21 +69,6 @@ impl StepArgs<'_> {
     }
 }
 
-/// Properties that bodies are given for the length of rapier's step.
-struct Loans {
-    speculators: Speculators,
-    substeps: Substeps,
-    timers: SleepTimers,
-}
-
-impl Loans {
-    fn give_back(self, world: &mut World) {
-        self.speculators.restore(world.bodies);
-        self.substeps.restore(world.bodies);
-        self.timers.restore(world.bodies);
-    }
-}
-
 impl State {
     /// Steps the world by `parameters.dt`, in as many parts as it stops.
     pub fn step(
@@ -98,6 +85,7 @@ impl State {
         let can_stop = !world.has_links_or_particles();
         loop {
             let args = StepArgs {
+                users: &rest,
                 parameters: &rest,
                 filters: &filters,
                 events,
@@ -226,9 +214,14 @@ impl State {
 
         let clock = Instant::now();
         let sets = world.sets(parameters, taking_part);
-        let found = candidates::find(sets, &mut self.recycled, &muted);
-        let forced = found.forced.union(&stale).copied().collect();
-        forced_updates::force_updates(&forced, world.colliders);
+        let outnumbered = are_outnumbered(&sets, args.users);
+        let found = candidates::find(sets, &mut self.recycled, &muted, outnumbered);
+        let forced = Forced {
+            once: found.forced.union(&stale).copied().collect(),
+            all_medial: outnumbered,
+        };
+        let contacts = (&*world.bodies, &*world.narrow_phase);
+        forced_updates::force_updates(&forced, contacts, world.colliders);
         let mut results = self.batch.run(&found.jobs);
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();
@@ -242,8 +235,6 @@ impl State {
         let known = keys.zip(results);
         let colliders = found.colliders;
         let others = self.bystanders(world, parameters, participants.as_ref());
-        let off = |e: &Effects| e.continuous == Effect::Off;
-        let takes_all = !self.effects.any(off) && !census.any_modified;
         let narrow_phase = Arc::new(NarrowPhasePlan {
             known: known.map(|((k, p), result)| (k, (p, result))).collect(),
             compute: Some(Box::new(move |job| {
@@ -251,11 +242,7 @@ impl State {
             })),
             muted,
             single_point_pairs: self.effects.single_point_pairs(world.colliders),
-            // Fixed partners are the event loop's as all others are; rapier's own sweeps would stop bodies before.
-            sweeps: match takes_all && !world.has_links_or_particles() {
-                true => Sweeps::FindNothing,
-                false => Sweeps::PassOverlaps,
-            },
+            sweeps: self.sweeps(world, &census),
         });
         report.batch_seconds = clock.elapsed().as_secs_f64();
         StepPlan {
@@ -264,8 +251,20 @@ impl State {
             participants,
             narrow_phase,
             depth: found.depth,
+            outnumbered,
             wild,
             bouncing,
+        }
+    }
+
+    /// What rapier's own sweeps find. Fixed partners are the event loop's as all others are, and rapier would stop bodies
+    /// before.
+    fn sweeps(&self, world: &World, census: &Census) -> Sweeps {
+        let off = |e: &Effects| e.continuous == Effect::Off;
+        let takes_all = !self.effects.any(off) && !census.any_modified;
+        match takes_all && !world.has_links_or_particles() {
+            true => Sweeps::FindNothing,
+            false => Sweeps::PassOverlaps,
         }
     }
 
@@ -280,38 +279,24 @@ impl State {
     ) -> Tally {
         let clock = Instant::now();
         let parameters = args.parameters;
-        let loans = (!is_kept).then(|| {
-            let unit = parameters.length_unit;
-            let speculators = Speculators::set(&plan.view, &self.effects, unit, world.bodies);
-            let joints = (&*world.impulse_joints, &*world.multibody_joints);
-            let substeps = Substeps::set(
-                &plan.view,
-                joints,
-                world.narrow_phase,
-                parameters,
-                &plan.wild,
-                world.bodies,
-            );
-            report.speculative = speculators.count();
-            let contacts = (&*world.colliders, &*world.narrow_phase);
-            let moved = self.moved.as_deref().unwrap_or_default();
-            let timers = SleepTimers::shorten(moved, world.bodies, contacts, unit);
-            Loans {
-                speculators,
-                substeps,
-                timers,
-            }
-        });
+        let moved = self.moved.as_deref().unwrap_or_default();
+        let loans =
+            (!is_kept).then(|| Loans::give(plan, (&self.effects, moved), parameters, world));
+        report.speculative = loans.as_ref().map_or(0, Loans::speculative);
         plan.wild.bring_to_rest(world.multibody_joints);
         report.batch_seconds += clock.elapsed().as_secs_f64();
 
         self.exchange.begin_step(Arc::clone(&plan.narrow_phase));
         let clock = Instant::now();
+        let parameters = match plan.outnumbered {
+            true => args.users,
+            false => parameters,
+        };
         world.step(parameters, args.filters, events);
         report.step_seconds = clock.elapsed().as_secs_f64();
         let tally = self.exchange.end_step();
         if let Some(loans) = loans {
-            loans.give_back(world);
+            loans.take_back(world.bodies);
         }
         tally
     }

@@ -23,6 +23,8 @@ pub struct StepPlan {
     pub narrow_phase: Arc<NarrowPhasePlan>,
     /// How deep the deepest contact of a medial collider that takes part is, a length.
     pub depth: Real,
+    /// Whether few of the pairs that move have a medial collider, so that rapier goes by the user's recycle distance.
+    pub outnumbered: bool,
     /// Multibodies that gain energy in rapier's step.
     pub wild: WildMultibodies,
     /// Whether pairs may bounce ([`Effects::restitution`](crate::Effects::restitution)).

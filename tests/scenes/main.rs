@@ -63,6 +63,7 @@ mod neighbours;
 mod odd_steps;
 mod oneway;
 mod oracle;
+mod outnumbered;
 mod partners;
 mod pinched;
 mod put_in_place;

@@ -7,7 +7,7 @@ use crate::parry::narrow_phase_plan::PairKey;
 use crate::rapier::contacts::hanging;
 use crate::rapier::contacts::neighbor_speeds::{self, Neighbor};
 use crate::rapier::contacts::predicted_contacts::PredictedMotion;
-use crate::rapier::host::forced_updates::is_hooked;
+use crate::rapier::host::forced_updates::{is_hooked, kept_longer};
 use crate::rapier::host::recycling::{Place, RecyclingRecord};
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
 use crate::rapier::view::overlapping_boxes::overlapping_pairs;
@@ -33,13 +33,19 @@ pub struct Candidates {
 
 /// Finds all pairs of medial colliders that are near each other, of which at least one is dynamic and awake, which are
 /// on different bodies, and whose groups are compatible. The order of the two is that of rapier's narrow phase (the
-/// lower collider index first).
-pub fn find(sets: Sets, recycled: &mut RecyclingRecord, muted: &HashSet<PairKey>) -> Candidates {
+/// lower collider index first). `all_asked` says that rapier asks for the contacts of all of them.
+pub fn find(
+    sets: Sets,
+    recycled: &mut RecyclingRecord,
+    muted: &HashSet<PairKey>,
+    all_asked: bool,
+) -> Candidates {
     let scene = ContactScene::new(sets);
     recycled.begin(sets.parameters);
     let asked = |pair: &&[usize; 2]| {
         let place = scene.place(pair);
-        recycled.needs_update(&place, scene.asked(pair)) && !scene.is_muted(pair, &place, muted)
+        recycled.needs_update(&place, all_asked || scene.asked(pair))
+            && !scene.is_muted(pair, &place, muted)
     };
     let asked = scene.pairs.iter().filter(asked);
     let (ahead, jobs) = asked.map(|pair| scene.at_the_end(pair)).unzip();
@@ -70,7 +76,7 @@ struct ContactScene {
     pairs: Vec<[usize; 2]>,
     /// Whether rapier has to be made to ask for the contacts of each of them.
     forced: Vec<bool>,
-    /// Whether it asks for them in any case: the user has hooks on it, or it is `forced`.
+    /// Whether it asks for them in any case: the user has hooks on it, or it is made to ask.
     asked: Vec<bool>,
     /// Depth of the deepest contact of a medial collider that takes part, a length.
     depth: Real,
@@ -100,10 +106,10 @@ impl ContactScene {
         let wanted = both_medial.filter(|pair| medial.meet(*pair));
         let pairs = wanted.map(|pair| medial.in_order(pair)).collect();
         let (forced, depth) = hanging::find(&sets, &medial);
-        let hooked = medial.all.iter().map(|collider| is_hooked(collider.hooks));
-        let asked = hooked
-            .zip(&forced)
-            .map(|(hooked, forced)| hooked || *forced)
+        let hooks = medial.all.iter().map(|collider| collider.hooks);
+        let asked = hooks.zip(&forced);
+        let asked = asked
+            .map(|(hooks, forced)| is_hooked(hooks) || kept_longer(hooks) || *forced)
             .collect();
         Self {
             medial,

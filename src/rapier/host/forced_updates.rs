@@ -1,7 +1,14 @@
 //! Makes rapier compute contacts anew although their pair has hardly moved: it would keep them until the pair has moved by
-//! the recycle distance. Which contacts these are is decided in [`crate::rapier::contacts::hanging`].
+//! the recycle distance. Which contacts these are is decided in [`crate::rapier::contacts::hanging`] and
+//! [`crate::rapier::contacts::outnumbered`].
+//!
+//! rapier notes that distance with each pair when it computes it, and goes by it until it computes the pair again. So after
+//! steps with the user's distance, pairs of medial colliders would be kept for too long. A bit in the world, and not a record
+//! of the pipeline, says which colliders have such pairs: worlds that are saved or copied go on alike.
 
-use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
+use crate::medial::MedialMesh;
+use rapier3d::dynamics::RigidBodySet;
+use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::ActiveHooks;
 use std::collections::HashSet;
 
@@ -10,23 +17,72 @@ use std::collections::HashSet;
 /// a step counts as changed by the user.
 const FORCE_UPDATE_BIT: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
 
-/// Makes rapier compute all contacts of these colliders anew in its next step, and of no others.
-pub fn force_updates(forced: &HashSet<ColliderHandle>, colliders: &mut ColliderSet) {
-    let is_asked = |c: &Collider| c.active_hooks().contains(FORCE_UPDATE_BIT);
-    let wrong = colliders
-        .iter()
-        .filter(|(h, c)| is_asked(c) != forced.contains(h));
-    let wrong: Vec<ColliderHandle> = wrong.map(|(handle, _)| handle).collect();
-    for handle in wrong {
+/// A second such bit, of colliders of which rapier may have pairs noted with the user's distance. It stays until all of them
+/// have been computed with the smaller one.
+const KEPT_LONGER_BIT: ActiveHooks = ActiveHooks::from_bits_retain(1 << 30);
+
+/// Both bits.
+const OWN_BITS: ActiveHooks = FORCE_UPDATE_BIT.union(KEPT_LONGER_BIT);
+
+/// Colliders whose contacts rapier must compute anew in its next step.
+pub struct Forced {
+    /// Some of them.
+    pub once: HashSet<ColliderHandle>,
+    /// Whether all medial ones too, because rapier goes by the user's recycle distance.
+    pub all_medial: bool,
+}
+
+/// Makes rapier compute all contacts of these colliders anew in its next step, and those of colliders of which it may have
+/// kept some for longer.
+pub fn force_updates(
+    forced: &Forced,
+    (bodies, narrow_phase): (&RigidBodySet, &NarrowPhase),
+    colliders: &mut ColliderSet,
+) {
+    let is_marked = |c: &Collider| kept_longer(c.active_hooks());
+    // What sleeps on a fixed collider is not computed in the step, so it takes over the mark.
+    let marked = colliders.iter().filter(|(_, c)| is_marked(c));
+    let awake = marked.filter(|(_, c)| !is_asleep(bodies, c));
+    let pairs = awake.flat_map(|(handle, _)| narrow_phase.contact_pairs_with(handle));
+    let partners: HashSet<ColliderHandle> = pairs
+        .flat_map(|pair| [pair.collider1, pair.collider2])
+        .collect();
+    let bits = |handle: ColliderHandle, collider: &Collider| {
+        let is_medial = || collider.shape().as_shape::<MedialMesh>().is_some();
+        let is_marked = is_marked(collider) || partners.contains(&handle);
+        if forced.all_medial && is_medial() || is_marked && is_asleep(bodies, collider) {
+            KEPT_LONGER_BIT
+        } else if kept_longer(collider.active_hooks()) || forced.once.contains(&handle) {
+            FORCE_UPDATE_BIT
+        } else {
+            ActiveHooks::empty()
+        }
+    };
+    let changed = colliders.iter().filter_map(|(handle, collider)| {
+        let hooks = collider.active_hooks();
+        let wanted = hooks.difference(OWN_BITS) | bits(handle, collider);
+        (wanted != hooks).then_some((handle, wanted))
+    });
+    let changed: Vec<(ColliderHandle, ActiveHooks)> = changed.collect();
+    for (handle, hooks) in changed {
         if let Some(collider) = colliders.get_mut(handle) {
-            let mut hooks = collider.active_hooks();
-            hooks.toggle(FORCE_UPDATE_BIT);
             collider.set_active_hooks(hooks);
         }
     }
 }
 
+/// Whether a collider is on a body that sleeps, so that rapier may leave out pairs of it.
+fn is_asleep(bodies: &RigidBodySet, collider: &Collider) -> bool {
+    let body = collider.parent().and_then(|body| bodies.get(body));
+    body.is_some_and(|body| !body.is_fixed() && body.is_sleeping())
+}
+
 /// Whether the user has hooks on a collider with these.
 pub fn is_hooked(hooks: ActiveHooks) -> bool {
-    !hooks.difference(FORCE_UPDATE_BIT).is_empty()
+    !hooks.difference(OWN_BITS).is_empty()
+}
+
+/// Whether rapier may have kept contacts of a collider with these for as long as the user says.
+pub fn kept_longer(hooks: ActiveHooks) -> bool {
+    hooks.contains(KEPT_LONGER_BIT)
 }

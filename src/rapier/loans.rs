@@ -1,0 +1,57 @@
+//! Properties that bodies are given for the length of rapier's step, and lose after it.
+
+use crate::rapier::effects::EffectSettings;
+use crate::rapier::host::sleep_timers::SleepTimers;
+use crate::rapier::host::speculative::Speculators;
+use crate::rapier::host::substeps::Substeps;
+use crate::rapier::step_plan::StepPlan;
+use crate::rapier::world::World;
+use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle, RigidBodySet};
+
+/// Properties that bodies have been given.
+pub struct Loans {
+    speculators: Speculators,
+    substeps: Substeps,
+    timers: SleepTimers,
+}
+
+impl Loans {
+    /// Gives them what the plan of a step asks for; `moved` are the bodies that impacts moved in the step before.
+    pub fn give(
+        plan: &StepPlan,
+        (effects, moved): (&EffectSettings, &[RigidBodyHandle]),
+        parameters: &IntegrationParameters,
+        world: &mut World,
+    ) -> Self {
+        let unit = parameters.length_unit;
+        let speculators = Speculators::set(&plan.view, effects, unit, world.bodies);
+        let joints = (&*world.impulse_joints, &*world.multibody_joints);
+        let substeps = Substeps::set(
+            &plan.view,
+            joints,
+            world.narrow_phase,
+            parameters,
+            &plan.wild,
+            world.bodies,
+        );
+        let contacts = (&*world.colliders, &*world.narrow_phase);
+        let timers = SleepTimers::shorten(moved, world.bodies, contacts, unit);
+        Self {
+            speculators,
+            substeps,
+            timers,
+        }
+    }
+
+    /// How many bodies rapier looks ahead for.
+    pub fn speculative(&self) -> usize {
+        self.speculators.count()
+    }
+
+    /// Takes it all back.
+    pub fn take_back(self, bodies: &mut RigidBodySet) {
+        self.speculators.restore(bodies);
+        self.substeps.restore(bodies);
+        self.timers.restore(bodies);
+    }
+}
