@@ -138,7 +138,7 @@ impl State {
         let left_out = plan.participants.is_some();
         let outcome = self.impacts(world, args, (&mut plan, tally.depth), &mut work);
         report.completed = usize::from(left_out && plan.participants.is_none());
-        self.moved = Some(world.write_back(&plan.view, &outcome));
+        self.moved = Some(world.write_back(&plan.view, &outcome, args.parameters));
         if !is_kept || plan.view.followed {
             let participants = plan.participants.as_ref();
             self.placed

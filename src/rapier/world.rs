@@ -10,7 +10,7 @@ use crate::rapier::view::medial_colliders::Sets;
 use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{
-    CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
+    CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet, RigidBody,
     RigidBodyHandle, RigidBodySet, SoftBodySet,
 };
 use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
@@ -76,10 +76,15 @@ impl World<'_> {
         self.multibody_joints.multibodies().next().is_some() || !self.soft_bodies.is_empty()
     }
 
-    /// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies that are elsewhere now. Colliders
-    /// of these and no others are marked as moved, from which a loaded world knows them
+    /// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies that are elsewhere now. Queries
+    /// between steps find their colliders there. Colliders of these and no others are marked as moved, from which a loaded world knows them
     /// ([`crate::rapier::host::sleep_timers::moved_before`]).
-    pub fn write_back(&mut self, view: &StepView, outcome: &Outcome) -> Vec<RigidBodyHandle> {
+    pub fn write_back(
+        &mut self,
+        view: &StepView,
+        outcome: &Outcome,
+        parameters: &IntegrationParameters,
+    ) -> Vec<RigidBodyHandle> {
         if outcome.changed.is_empty() {
             return Vec::new();
         }
@@ -98,7 +103,23 @@ impl World<'_> {
             body.is_some_and(|body| body.position() != pose)
         };
         let moved = poses.into_iter().filter(is_elsewhere);
-        moved.map(|(handle, _)| handle).collect()
+        let moved: Vec<RigidBodyHandle> = moved.map(|(handle, _)| handle).collect();
+        for body in &moved {
+            self.update_boxes(*body, parameters);
+        }
+        moved
+    }
+
+    /// Tells rapier's broad phase where the colliders of a body are.
+    fn update_boxes(&mut self, body: RigidBodyHandle, parameters: &IntegrationParameters) {
+        let colliders = self.bodies.get(body).map_or(&[][..], RigidBody::colliders);
+        for handle in colliders {
+            let collider = self.colliders.get(*handle).filter(|c| c.is_enabled());
+            let aabb = collider.map(|c| c.compute_broad_phase_aabb(parameters, self.bodies));
+            if let Some(aabb) = aabb.filter(|b| b.mins.is_finite() && b.maxs.is_finite()) {
+                self.broad_phase.set_aabb(parameters, *handle, aabb);
+            }
+        }
     }
 
     /// Takes rapier's step.
