@@ -20,6 +20,9 @@ pub struct Findings {
     pub triangles_collapsed: usize,
     /// Triangles dropped because another has the same corners, in any order.
     pub triangles_repeated: usize,
+    /// Triangles dropped together with one of the same corners that faces the other way, because two parts touch there: the
+    /// solid is on both sides of them.
+    pub triangles_shared: usize,
     /// Triangles without area. They join their neighbours and are covered; for all else they are ignored.
     pub triangles_without_area: usize,
     /// Triangles whose orientation was reversed, to face outward.
@@ -93,6 +96,10 @@ impl Findings {
                 "triangles of fewer than three points: kept as segments only",
             ),
             (self.triangles_repeated, "repeated triangles dropped"),
+            (
+                self.triangles_shared,
+                "triangles dropped where parts touch, which have the solid on both sides",
+            ),
             (
                 self.triangles_without_area,
                 "triangles without area: kept as seams only",

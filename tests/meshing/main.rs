@@ -29,6 +29,7 @@ mod shapes;
 mod smallest;
 mod threads;
 mod topology;
+mod touching;
 mod walls;
 
 use meshes::Mesh;

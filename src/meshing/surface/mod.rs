@@ -1,6 +1,6 @@
 //! Makes the surface of a solid from triangles: repair, orientation, creases, the boundary of what overlaps.
 //!
-//! `repair.rs` calls the stages: `weld.rs`, `orient.rs` (with the loose seams of `sew.rs`), `seams.rs`, `patches.rs`
+//! `repair.rs` calls the stages: `weld.rs`, `shared_faces.rs`, `orient.rs` (with the loose seams of `sew.rs`), `seams.rs`, `patches.rs`
 //! (matter or sheet), `openings.rs`; their result is `checked_surface.rs`. Where it overlaps itself: `boundary.rs`,
 //! with `flat_boundary.rs`, `hidden.rs` and `folds.rs`. Sharp edges: `creases.rs`; flat faces: `flat_faces.rs`; prisms: `profile.rs`.
 
@@ -20,4 +20,5 @@ pub(crate) mod repair;
 pub(crate) mod samples;
 pub(crate) mod seams;
 pub(crate) mod sew;
+pub(crate) mod shared_faces;
 pub(crate) mod weld;

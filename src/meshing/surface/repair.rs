@@ -12,6 +12,7 @@ use crate::meshing::surface::openings::{lids, openings};
 use crate::meshing::surface::orient::{Patches, orient};
 use crate::meshing::surface::patches::{Kind, classify};
 use crate::meshing::surface::seams::seam_slivers;
+use crate::meshing::surface::shared_faces::leave_out_shared;
 use crate::meshing::surface::weld::{Welded, weld};
 use crate::meshing::watch::Watch;
 
@@ -35,13 +36,16 @@ impl Surface {
         let frame = frame_of(vertices, indices)?;
         let mut findings = Findings::default();
         let entered: Vec<Point> = vertices.iter().map(|&v| frame.enter(v)).collect();
+        let mut welded = weld(&entered, indices, &mut findings, watch)?;
+        drop(entered);
+        leave_out_shared(&mut welded, &mut findings, watch)?;
         let Welded {
             vertices,
             mut triangles,
             collapsed,
             moved,
-        } = weld(&entered, indices, &mut findings, watch)?;
-        drop(entered);
+            ..
+        } = welded;
         let slivers = seam_slivers(&vertices, &triangles, watch)?;
         findings.slivers = slivers.len();
         let given = triangles.len();

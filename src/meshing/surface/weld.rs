@@ -21,6 +21,8 @@ pub struct Welded {
     pub vertices: Vec<Point>,
     /// Triangles of three different vertices, each set of vertices once.
     pub triangles: Vec<[u32; 3]>,
+    /// Places of those of which as many repeats faced the other way as theirs.
+    pub against: Vec<usize>,
     /// Triangles of two vertices or one that no other triangle has: segments and points.
     pub collapsed: Vec<[u32; 3]>,
     /// How far a vertex was moved at most (longest side 1).
@@ -52,7 +54,8 @@ pub fn weld(
     findings.vertices_unused = index_of.iter().filter(|&&i| i == u32::MAX).count();
     let used = vertices.len() - findings.vertices_unused;
     findings.vertices_welded = used - places.points.len();
-    let mut seen = FastSet::default();
+    // Place of each triangle, and how many more of its repeats face its way than the other.
+    let mut seen: FastMap<[u32; 3], (usize, i32)> = FastMap::default();
     let mut triangles = Vec::with_capacity(indices.len());
     let mut collapsed = Vec::new();
     for (i, triangle) in indices.iter().enumerate() {
@@ -63,19 +66,53 @@ pub fn weld(
         if key[0] == key[1] || key[1] == key[2] {
             findings.triangles_collapsed += 1;
             collapsed.push([key[0], key[2], key[2]]);
-        } else if seen.insert(key) {
-            triangles.push(t);
-        } else {
-            findings.triangles_repeated += 1;
+            continue;
+        }
+        let (place, facing) = seen.entry(key).or_insert((triangles.len(), 0));
+        *facing += if is_even(t) { 1 } else { -1 };
+        match *place == triangles.len() {
+            true => triangles.push(t),
+            false => findings.triangles_repeated += 1,
         }
     }
+    let against = seen.into_values().filter(|(_, facing)| *facing == 0);
+    let mut against: Vec<usize> = against.map(|(place, _)| place).collect();
+    against.sort_unstable();
     leave_out_covered(&mut collapsed, &triangles, watch)?;
     Ok(Welded {
         vertices: places.points,
         triangles,
+        against,
         collapsed,
         moved: moved_sq.sqrt(),
     })
+}
+
+/// Whether three different vertices are in ascending order but for a rotation.
+fn is_even([a, b, c]: [u32; 3]) -> bool {
+    [a < b, b < c, c < a].into_iter().filter(|up| *up).count() == 2
+}
+
+impl Welded {
+    /// Leaves out the vertices that are not used any more.
+    pub fn leave_out_unused(&mut self) {
+        let mut index_of = vec![u32::MAX; self.vertices.len()];
+        let mut used = Vec::new();
+        for v in self
+            .triangles
+            .iter_mut()
+            .chain(&mut self.collapsed)
+            .flatten()
+        {
+            let index = &mut index_of[*v as usize];
+            if *index == u32::MAX {
+                *index = used.len() as u32;
+                used.push(self.vertices[*v as usize]);
+            }
+            *v = *index;
+        }
+        self.vertices = used;
+    }
 }
 
 /// Takes out segments and points that are an edge or a corner of a triangle, or are listed before.
