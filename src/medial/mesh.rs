@@ -35,6 +35,8 @@ use std::sync::{Arc, OnceLock};
 pub struct MedialMesh {
     data: Arc<MedialData>,
     id: u64,
+    /// Whether parry may find contacts of its primitives with normals that point into their convex piece.
+    takes_any_normals: bool,
 }
 
 #[derive(Debug)]
@@ -138,6 +140,7 @@ impl MedialMesh {
         parts.is_of_convex_pieces = true;
         Self {
             id: self.id,
+            takes_any_normals: false,
             ..Self::from_parts(parts, self.data.solid_mass.clone())
         }
     }
@@ -162,6 +165,7 @@ impl MedialMesh {
         Self {
             data: Arc::new(data),
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
+            takes_any_normals: false,
         }
     }
 
@@ -180,6 +184,7 @@ impl MedialMesh {
         let id = self.id;
         Self {
             id,
+            takes_any_normals: false,
             ..Self::from_parts(parts, self.data.solid_mass.clone())
         }
     }
@@ -372,7 +377,20 @@ impl MedialMesh {
         Self {
             data: Arc::clone(&self.data),
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
+            takes_any_normals: false,
         }
+    }
+
+    /// A clone of whose primitives parry may find contacts with all normals.
+    pub(crate) fn with_any_normals(&self) -> Self {
+        Self {
+            takes_any_normals: true,
+            ..self.clone()
+        }
+    }
+
+    pub(crate) fn takes_any_normals(&self) -> bool {
+        self.takes_any_normals
     }
 
     /// Whether both are clones of one mesh, whatever their instance ids.

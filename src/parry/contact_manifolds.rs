@@ -217,7 +217,7 @@ where
 /// parry's manifolds of a mesh and another shape. It knows its own again; those of a flat face it would begin anew, without
 /// what the user's hooks keep in them.
 fn write_by_parry<M, C>(
-    (_, pos12, [g1, g2]): Pair,
+    ((mesh, side), pos12, [g1, g2]): Pair,
     prediction: Real,
     manifolds: &mut Vec<ContactManifold<M, C>>,
     workspace: &mut Option<ContactManifoldsWorkspace>,
@@ -232,6 +232,11 @@ where
         manifolds.clone()
     } else {
         Vec::new()
+    };
+    let mesh = mesh.with_any_normals();
+    let [g1, g2] = match side {
+        0 => [&mesh, g2],
+        _ => [g1, &mesh as &dyn Shape],
     };
     let parry = DefaultQueryDispatcher;
     let found = parry.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);

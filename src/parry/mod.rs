@@ -2,7 +2,8 @@
 //! casts, against medial meshes and all of parry's shapes.
 //!
 //! # Files
-//! - The entry: `dispatcher.rs`; the shape: `shape.rs`, of convex parts: `medial_part.rs`; rays: `rays.rs`.
+//! - The entry: `dispatcher.rs`; the shape: `shape.rs`, of convex parts: `medial_part.rs`, with the normals that contacts of
+//!   these have for callers of parry's own dispatcher: `outward_normals.rs`; rays: `rays.rs`.
 //! - Contact manifolds: `contact_manifolds.rs` is what parry calls; it takes those of two meshes from `manifolds.rs`,
 //!   those on a flat face from `flat_face.rs`, and others from parry. Contacts of primitives that their neighbours hide are
 //!   left out (`ghost_contacts.rs`). Of parry's, those with triangles are replaced where they are wrong (`false_contacts.rs`)
@@ -39,6 +40,7 @@ mod inward_contacts;
 pub(crate) mod manifolds;
 pub(crate) mod medial_part;
 pub(crate) mod narrow_phase_plan;
+mod outward_normals;
 pub(crate) mod rays;
 pub(crate) mod shape;
 mod shape_faces;

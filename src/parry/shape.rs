@@ -5,6 +5,7 @@
 //! its convex parts itself instead of asking this crate's dispatcher, whose answers are certified.
 
 use super::medial_part::MedialPart;
+use super::outward_normals::OutwardNormals;
 use super::rays;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialPrimitive};
@@ -27,23 +28,26 @@ impl CompositeShape for MedialMesh {
         if shape_id as usize >= self.primitive_count() {
             return;
         }
+        let outward = match self.takes_any_normals() {
+            true => None,
+            false => OutwardNormals::of(self, shape_id),
+        };
+        let normals = outward.as_ref().map(|n| n as &dyn NormalConstraints);
         match self.primitive(shape_id as usize) {
             MedialPrimitive::Sphere(s) => {
-                f(
-                    Some(&Pose::from_translation(s.center)),
-                    &Ball::new(s.radius),
-                    None,
-                );
+                let pose = Pose::from_translation(s.center);
+                f(Some(&pose), &Ball::new(s.radius), normals);
             }
             // parry's capsule panics at points that are no numbers where the square of its length is zero.
             MedialPrimitive::Cone([a, b])
                 if a.radius == b.radius && a.center.distance_squared(b.center) > 0.0 =>
             {
-                f(None, &Capsule::new(a.center, b.center, a.radius), None);
+                f(None, &Capsule::new(a.center, b.center, a.radius), normals);
             }
-            primitive => f(None, &MedialPart::new(primitive), None),
+            primitive => f(None, &MedialPart::new(primitive), normals),
         }
     }
+
     fn bvh(&self) -> &Bvh {
         MedialMesh::bvh(self)
     }

@@ -8,6 +8,7 @@ mod bounces;
 mod brickwork;
 mod budget;
 mod bystanders;
+mod carried_characters;
 mod changes;
 mod characters;
 mod combs;
@@ -32,6 +33,7 @@ mod fixed_partners;
 mod fixtures;
 mod folds;
 mod force_events;
+mod found;
 #[cfg_attr(
     not(feature = "enhanced-determinism"),
     allow(dead_code, reason = "the golden holds with that feature only")
