@@ -381,7 +381,7 @@ impl MedialMesh {
         }
     }
 
-    /// A clone of whose primitives parry may find contacts with all normals.
+    /// A clone of which parry tells contacts with any normal, also into a convex piece (`parry/outward_normals.rs`).
     pub(crate) fn with_any_normals(&self) -> Self {
         Self {
             takes_any_normals: true,

@@ -20,8 +20,8 @@ pub struct Findings {
     pub triangles_collapsed: usize,
     /// Triangles dropped because another has the same corners, in any order.
     pub triangles_repeated: usize,
-    /// Triangles dropped together with one of the same corners that faces the other way, because two parts touch there: the
-    /// solid is on both sides of them.
+    /// Triangles between two parts that touch, dropped in pairs of the same corners that face opposite ways: the solid is on
+    /// both sides of them.
     pub triangles_shared: usize,
     /// Triangles without area. They join their neighbours and are covered; for all else they are ignored.
     pub triangles_without_area: usize,
@@ -98,7 +98,7 @@ impl Findings {
             (self.triangles_repeated, "repeated triangles dropped"),
             (
                 self.triangles_shared,
-                "triangles dropped where parts touch, which have the solid on both sides",
+                "triangles between touching parts dropped: the solid is on both sides of them",
             ),
             (
                 self.triangles_without_area,

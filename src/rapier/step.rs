@@ -5,7 +5,7 @@ use crate::math::{Real, Vector};
 use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Sweeps, Tally};
 use crate::rapier::contacts::candidates;
 use crate::rapier::contacts::muting::{self, Muted};
-use crate::rapier::contacts::outnumbered::are_outnumbered;
+use crate::rapier::contacts::outnumbered::{are_outnumbered, keeps_nothing};
 use crate::rapier::contacts::predicted_contacts::predicted;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
@@ -35,7 +35,7 @@ use web_time::Instant;
 #[derive(Clone, Copy)]
 struct StepArgs<'a> {
     /// The user's parameters, with the time that is left of the step.
-    users: &'a IntegrationParameters,
+    users_parameters: &'a IntegrationParameters,
     /// The same, but that contacts are kept no longer than medial colliders can bear.
     parameters: &'a IntegrationParameters,
     filters: &'a FilterAnswers<'a>,
@@ -85,7 +85,7 @@ impl State {
         let can_stop = !world.has_links_or_particles();
         loop {
             let args = StepArgs {
-                users: &rest,
+                users_parameters: &rest,
                 parameters: &rest,
                 filters: &filters,
                 events,
@@ -214,11 +214,12 @@ impl State {
 
         let clock = Instant::now();
         let sets = world.sets(parameters, taking_part);
-        let outnumbered = are_outnumbered(&sets, args.users);
+        let outnumbered = are_outnumbered(&sets, args.users_parameters);
         let found = candidates::find(sets, &mut self.recycled, &muted, outnumbered);
         let forced = Forced {
             once: found.forced.union(&stale).copied().collect(),
             all_medial: outnumbered,
+            notes_nothing: keeps_nothing(parameters),
         };
         let contacts = (&*world.bodies, &*world.narrow_phase);
         forced_updates::force_updates(&forced, contacts, world.colliders);
@@ -288,11 +289,11 @@ impl State {
 
         self.exchange.begin_step(Arc::clone(&plan.narrow_phase));
         let clock = Instant::now();
-        let parameters = match plan.outnumbered {
-            true => args.users,
+        let rapiers = match plan.outnumbered {
+            true => args.users_parameters,
             false => parameters,
         };
-        world.step(parameters, args.filters, events);
+        world.step(rapiers, args.filters, events);
         report.step_seconds = clock.elapsed().as_secs_f64();
         let tally = self.exchange.end_step();
         if let Some(loans) = loans {

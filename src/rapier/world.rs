@@ -77,8 +77,8 @@ impl World<'_> {
     }
 
     /// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies that are elsewhere now. Queries
-    /// between steps find their colliders there. Colliders of these and no others are marked as moved, from which a loaded world knows them
-    /// ([`crate::rapier::host::sleep_timers::moved_before`]).
+    /// between steps find their colliders there. Colliders of these and no others are marked as moved: by that a loaded world
+    /// knows them ([`crate::rapier::host::sleep_timers::moved_before`]).
     pub fn write_back(
         &mut self,
         view: &StepView,

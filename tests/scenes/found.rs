@@ -7,7 +7,7 @@ use rapier3d_medial::prelude::*;
 
 #[test]
 fn queries_after_a_step_find_bodies_where_impacts_put_them() {
-    let mut elsewhere = 0;
+    let mut impacts = 0;
     for seed in 0..4 {
         let mut random = Random(seed);
         let mut world = PhysicsWorld::new();
@@ -39,7 +39,7 @@ fn queries_after_a_step_find_bodies_where_impacts_put_them() {
         pipeline.attach(&mut world);
         for _ in 0..150 {
             let report = pipeline.step(&mut world);
-            elsewhere += report.events;
+            impacts += report.events;
             let queries = world.query_pipeline();
             for handle in &flying {
                 let collider = &world.colliders[*handle];
@@ -56,5 +56,5 @@ fn queries_after_a_step_find_bodies_where_impacts_put_them() {
             }
         }
     }
-    assert!(elsewhere > 200, "only {elsewhere} events");
+    assert!(impacts > 200, "only {impacts} impacts");
 }

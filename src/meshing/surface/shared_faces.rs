@@ -1,49 +1,80 @@
-//! Leaves out the faces that two parts share where they touch: triangles of the same corners that face opposite ways, with
-//! matter on both sides. They bound nothing.
+//! Leaves out the faces that two parts share where they touch: triangles given once with either orientation, with matter on
+//! both sides. They bound nothing.
 //!
-//! Two such triangles add nothing to the winding number, so that of all others tells what is around them. Where it is no
-//! matter they are the two sides of a sheet, of which one stays.
+//! Such a pair adds nothing to the winding number, so that of the other triangles tells what is around it. It counts those
+//! parts alone whose surface is closed, where it is a whole number. What is not inside these is a sheet with two
+//! sides, of which one stays.
 
 use crate::error::BuildError;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::union_find::Groups;
 use crate::meshing::surface::checked_surface::corners;
+use crate::meshing::surface::edges::Edges;
 use crate::meshing::surface::weld::Welded;
 use crate::meshing::watch::Watch;
 
-/// Winding number from which there is matter: by the middle of an opening that a box lacks one side for it is ½.
-const INSIDE: f64 = 0.75;
+/// Winding number from which there is matter. It is negative where all triangles face inward.
+const INSIDE: f64 = 0.5;
 
-/// Leaves out of a welded mesh those triangles, each with a repeat that faces the other way, that have matter on both sides.
+/// Leaves out of a welded mesh those of the triangles given in both orientations that have matter on both sides.
 pub fn leave_out_shared(
     welded: &mut Welded,
     findings: &mut Findings,
     watch: &mut Watch,
 ) -> Result<(), BuildError> {
-    let places = std::mem::take(&mut welded.against);
-    let mut is_shared = vec![false; welded.triangles.len()];
-    places.iter().for_each(|&t| is_shared[t] = true);
-    let others = (0..is_shared.len()).filter(|&t| !is_shared[t]);
-    let others: Vec<usize> = others.collect();
-    if places.is_empty() || others.is_empty() {
+    let pairs = std::mem::take(&mut welded.both_ways);
+    if pairs.is_empty() {
+        return Ok(());
+    }
+    let mut is_pair = vec![false; welded.triangles.len()];
+    pairs.iter().for_each(|&t| is_pair[t] = true);
+    let closed = closed_parts(welded, &is_pair, watch)?;
+    if closed.is_empty() {
         return Ok(());
     }
     let corners_of = |t: usize| corners(&welded.vertices, &welded.triangles[t]);
-    let tree = TriangleTree::new(others.len(), |i| corners_of(others[i]), watch)?;
-    for (i, &t) in places.iter().enumerate() {
+    let tree = TriangleTree::new(closed.len(), |i| corners_of(closed[i]), watch)?;
+    let mut is_inside = vec![false; is_pair.len()];
+    for (i, &t) in pairs.iter().enumerate() {
         if i % 64 == 0 {
             watch.again()?;
         }
         let [a, b, c] = corners_of(t);
-        // Below −¾ where all faces inward.
-        is_shared[t] = tree.winding((a + b + c) * (1.0 / 3.0)).abs() > INSIDE;
+        is_inside[t] = tree.winding((a + b + c) * (1.0 / 3.0)).abs() > INSIDE;
     }
-    let mut place = 0;
-    welded.triangles.retain(|_| {
-        place += 1;
-        !is_shared[place - 1]
-    });
-    findings.triangles_shared = is_shared.iter().filter(|shared| **shared).count();
+    let inside = is_inside.iter().filter(|inside| **inside).count();
+    findings.triangles_repeated -= inside;
+    findings.triangles_shared = 2 * inside;
+    let mut keep = is_inside.into_iter().map(|inside| !inside);
+    welded.triangles.retain(|_| keep.next().unwrap_or(true));
     welded.leave_out_unused();
     Ok(())
+}
+
+/// The triangles but for the pairs, of those parts that these leave closed: each edge is used as often one way as the other.
+fn closed_parts(
+    welded: &Welded,
+    is_pair: &[bool],
+    watch: &mut Watch,
+) -> Result<Vec<usize>, BuildError> {
+    let mut parts = Groups::new(welded.vertices.len());
+    for (i, &[a, b, c]) in welded.triangles.iter().enumerate() {
+        watch.every(i)?;
+        parts.join(a, b);
+        parts.join(b, c);
+    }
+    let others: Vec<usize> = (0..is_pair.len()).filter(|&t| !is_pair[t]).collect();
+    let triangles: Vec<[u32; 3]> = others.iter().map(|&t| welded.triangles[t]).collect();
+    let edges = Edges::new(welded.vertices.len(), &triangles, watch)?;
+    let mut is_open = vec![false; welded.vertices.len()];
+    for (i, (ends, uses)) in edges.iter().enumerate() {
+        watch.every(i)?;
+        if 2 * uses.iter().filter(|u| u.forward()).count() != uses.len() {
+            is_open[parts.find(ends[0]) as usize] = true;
+        }
+    }
+    let mut closed = others;
+    closed.retain(|&t| !is_open[parts.find(welded.triangles[t][0]) as usize]);
+    Ok(closed)
 }

@@ -21,8 +21,8 @@ pub struct Welded {
     pub vertices: Vec<Point>,
     /// Triangles of three different vertices, each set of vertices once.
     pub triangles: Vec<[u32; 3]>,
-    /// Places of those of which as many repeats faced the other way as theirs.
-    pub against: Vec<usize>,
+    /// Places of the triangles that were given equally often with either orientation.
+    pub both_ways: Vec<usize>,
     /// Triangles of two vertices or one that no other triangle has: segments and points.
     pub collapsed: Vec<[u32; 3]>,
     /// How far a vertex was moved at most (longest side 1).
@@ -54,7 +54,7 @@ pub fn weld(
     findings.vertices_unused = index_of.iter().filter(|&&i| i == u32::MAX).count();
     let used = vertices.len() - findings.vertices_unused;
     findings.vertices_welded = used - places.points.len();
-    // Place of each triangle, and how many more of its repeats face its way than the other.
+    // Place of each triangle, and how many more of its repeats name its vertices in even order than in odd.
     let mut seen: FastMap<[u32; 3], (usize, i32)> = FastMap::default();
     let mut triangles = Vec::with_capacity(indices.len());
     let mut collapsed = Vec::new();
@@ -68,21 +68,21 @@ pub fn weld(
             collapsed.push([key[0], key[2], key[2]]);
             continue;
         }
-        let (place, facing) = seen.entry(key).or_insert((triangles.len(), 0));
-        *facing += if is_even(t) { 1 } else { -1 };
+        let (place, even) = seen.entry(key).or_insert((triangles.len(), 0));
+        *even += if is_even(t) { 1 } else { -1 };
         match *place == triangles.len() {
             true => triangles.push(t),
             false => findings.triangles_repeated += 1,
         }
     }
-    let against = seen.into_values().filter(|(_, facing)| *facing == 0);
-    let mut against: Vec<usize> = against.map(|(place, _)| place).collect();
-    against.sort_unstable();
+    let both_ways = seen.into_values().filter(|(_, even)| *even == 0);
+    let mut both_ways: Vec<usize> = both_ways.map(|(place, _)| place).collect();
+    both_ways.sort_unstable();
     leave_out_covered(&mut collapsed, &triangles, watch)?;
     Ok(Welded {
         vertices: places.points,
         triangles,
-        against,
+        both_ways,
         collapsed,
         moved: moved_sq.sqrt(),
     })
@@ -94,7 +94,7 @@ fn is_even([a, b, c]: [u32; 3]) -> bool {
 }
 
 impl Welded {
-    /// Leaves out the vertices that are not used any more.
+    /// Leaves out the vertices that nothing uses.
     pub fn leave_out_unused(&mut self) {
         let mut index_of = vec![u32::MAX; self.vertices.len()];
         let mut used = Vec::new();

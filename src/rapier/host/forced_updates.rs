@@ -17,8 +17,8 @@ use std::collections::HashSet;
 /// a step counts as changed by the user.
 const FORCE_UPDATE_BIT: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
 
-/// A second such bit, of colliders of which rapier may have pairs noted with the user's distance. It stays until all of them
-/// have been computed with the smaller one.
+/// The mark: a second bit that does the same, of colliders of which rapier may have pairs noted with the user's distance. It
+/// stays until all of these have been computed with the smaller one.
 const KEPT_LONGER_BIT: ActiveHooks = ActiveHooks::from_bits_retain(1 << 30);
 
 /// Both bits.
@@ -26,10 +26,13 @@ const OWN_BITS: ActiveHooks = FORCE_UPDATE_BIT.union(KEPT_LONGER_BIT);
 
 /// Colliders whose contacts rapier must compute anew in its next step.
 pub struct Forced {
-    /// Some of them.
+    /// Those of which they are computed anew in this step only.
     pub once: HashSet<ColliderHandle>,
-    /// Whether all medial ones too, because rapier goes by the user's recycle distance.
+    /// Whether they are of every medial collider, because rapier goes by the user's recycle distance in this step
+    /// ([`crate::rapier::contacts::outnumbered`]).
     pub all_medial: bool,
+    /// Whether rapier keeps no contacts in this step, and so notes nothing.
+    pub notes_nothing: bool,
 }
 
 /// Makes rapier compute all contacts of these colliders anew in its next step, and those of colliders of which it may have
@@ -42,6 +45,7 @@ pub fn force_updates(
     let is_marked = |c: &Collider| kept_longer(c.active_hooks());
     // What sleeps on a fixed collider is not computed in the step, so it takes over the mark.
     let marked = colliders.iter().filter(|(_, c)| is_marked(c));
+    let marked = marked.filter(|_| !forced.all_medial);
     let awake = marked.filter(|(_, c)| !is_asleep(bodies, c));
     let pairs = awake.flat_map(|(handle, _)| narrow_phase.contact_pairs_with(handle));
     let partners: HashSet<ColliderHandle> = pairs
@@ -50,7 +54,8 @@ pub fn force_updates(
     let bits = |handle: ColliderHandle, collider: &Collider| {
         let is_medial = || collider.shape().as_shape::<MedialMesh>().is_some();
         let is_marked = is_marked(collider) || partners.contains(&handle);
-        if forced.all_medial && is_medial() || is_marked && is_asleep(bodies, collider) {
+        let stays = forced.notes_nothing || is_asleep(bodies, collider);
+        if forced.all_medial && is_medial() || is_marked && stays {
             KEPT_LONGER_BIT
         } else if kept_longer(collider.active_hooks()) || forced.once.contains(&handle) {
             FORCE_UPDATE_BIT
@@ -71,10 +76,10 @@ pub fn force_updates(
     }
 }
 
-/// Whether a collider is on a body that sleeps, so that rapier may leave out pairs of it.
+/// Whether a collider is on a body that sleeps: rapier leaves out its pairs with what sleeps or is fixed.
 fn is_asleep(bodies: &RigidBodySet, collider: &Collider) -> bool {
     let body = collider.parent().and_then(|body| bodies.get(body));
-    body.is_some_and(|body| !body.is_fixed() && body.is_sleeping())
+    body.is_some_and(|body| body.is_dynamic() && body.is_sleeping())
 }
 
 /// Whether the user has hooks on a collider with these.
@@ -82,7 +87,7 @@ pub fn is_hooked(hooks: ActiveHooks) -> bool {
     !hooks.difference(OWN_BITS).is_empty()
 }
 
-/// Whether rapier may have kept contacts of a collider with these for as long as the user says.
+/// Whether a collider with these is marked: rapier may have kept its contacts for as long as the user says.
 pub fn kept_longer(hooks: ActiveHooks) -> bool {
     hooks.contains(KEPT_LONGER_BIT)
 }
