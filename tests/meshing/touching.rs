@@ -100,12 +100,17 @@ fn sheets_with_two_sides_stay_where_no_solid_is_around_them() {
     let across = sheet(3.0 * UNIT, [2.0 * UNIT, 6.0 * UNIT]);
     let hole = [0.41, 0.37];
     assert!(!is_hit(&frame, hole, -1.0));
-    assert!(is_hit(&frame.and(across), hole, 2.0 * UNIT));
+    assert!(is_hit(&frame.clone().and(across), hole, 2.0 * UNIT));
+    // Most of it, and the middles of its triangles, are inside the frame.
+    let with_fin = frame.and(sheet(0.0, [-3.0 * UNIT, 1.9 * UNIT]));
+    for at in [[-0.25, -0.25], [-0.25, 0.1], [0.1, -0.25]] {
+        assert!(is_hit(&with_fin, at, -UNIT), "no fin at {at:?}");
+    }
     // A box of single triangles without its upper side, in which a sheet hangs.
     let (vertices, mut indices) = Cuboid::new(Vector::splat(1.0)).to_trimesh();
     indices.retain(|t| t.iter().any(|v| vertices[*v as usize].y < 0.0));
     let open = Mesh { vertices, indices };
-    for y in [0.0, 0.5, 1.0] {
+    for y in [0.0, 1.0] {
         let shelf = sheet(y, [-1.0, 1.0]);
         assert!(!is_hit(&open, [0.3, 0.2], y - 0.2));
         assert!(
