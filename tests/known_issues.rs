@@ -417,3 +417,29 @@ fn blunt_roofs_of_hulls_are_not_where_they_are() {
     }
     assert!(off > 100, "{off} of 400 are off");
 }
+
+/// Triangles that touching parts share are known by being given in both orientations. Those of a part that is inside out are
+/// not, and stay in the solid as inner walls: four boxes round one edge, of which one is inside out, come out a tenth off;
+/// with all of them one way they are exact.
+#[test]
+fn an_inside_out_part_spoils_a_kit_of_boxes() {
+    let at = |k: usize| Vector::new([0.0, 0.4, 0.4, 0.0][k], 0.0, [0.0, 0.0, 0.5, 0.5][k]);
+    let parts: [(Vector, Vector); 4] =
+        std::array::from_fn(|k| (at(k), Vector::new(0.2, 0.15, 0.25)));
+    let (vertices, mut triangles) = boxes(&parts);
+    let options = BuildOptions {
+        primitives: Some(30),
+        ..Default::default()
+    };
+    let error = |triangles: &[[u32; 3]]| {
+        let built = MedialMesh::from_trimesh(&vertices, triangles, &options);
+        built.expect("a plate").1.hausdorff.error()
+    };
+    let exact = error(&triangles);
+    assert!(exact < 1.0e-5, "{exact}");
+    let of_each = triangles.len() / 4;
+    let third = &mut triangles[2 * of_each..3 * of_each];
+    third.iter_mut().for_each(|t| t.swap(0, 1));
+    let error = error(&triangles);
+    assert!(error > 0.1, "{error}: mended?");
+}

@@ -18,7 +18,8 @@ pub struct Findings {
     /// medial mesh covers them, and the error includes how far they stick out of it; for all else
     /// they are ignored.
     pub triangles_collapsed: usize,
-    /// Triangles dropped because another has the same corners, in any order.
+    /// Triangles dropped because another has the same corners, in any order, but for those in
+    /// [`Self::triangles_shared`].
     pub triangles_repeated: usize,
     /// Triangles between two parts that touch, dropped in pairs of the same corners that face opposite ways: the solid is on
     /// both sides of them.
