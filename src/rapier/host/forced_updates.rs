@@ -43,11 +43,11 @@ pub fn force_updates(
     colliders: &mut ColliderSet,
 ) {
     let is_marked = |c: &Collider| kept_longer(c.active_hooks());
-    // What sleeps on a fixed collider is not computed in the step, so it takes over the mark.
+    // What sleeps on a fixed collider is not computed in the step, so it takes over the mark where that ends.
+    let all_stay = forced.all_medial || forced.notes_nothing;
     let marked = colliders.iter().filter(|(_, c)| is_marked(c));
-    let marked = marked.filter(|_| !forced.all_medial);
-    let awake = marked.filter(|(_, c)| !is_asleep(bodies, c));
-    let pairs = awake.flat_map(|(handle, _)| narrow_phase.contact_pairs_with(handle));
+    let ends = marked.filter(|(_, c)| !(all_stay || is_asleep(bodies, c)));
+    let pairs = ends.flat_map(|(handle, _)| narrow_phase.contact_pairs_with(handle));
     let partners: HashSet<ColliderHandle> = pairs
         .flat_map(|pair| [pair.collider1, pair.collider2])
         .collect();
