@@ -1,4 +1,4 @@
-//! A triangle and a point: the nearest point of it, and how it is seen from there.
+//! A triangle and a point: the nearest point of it, and how it is seen from there; and points inside a triangle.
 //!
 //! Nearest point: Ericson, Real-Time Collision Detection (2005), §5.1.5. Solid angle: Van Oosterom and
 //! Strackee, "The solid angle of a plane triangle" (1983).
@@ -13,6 +13,16 @@ pub fn solid_angle_of(p: Point, t: &[Point; 3]) -> f64 {
     let numerator = a.dot(b.cross(c));
     let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
     2.0 * numerator.atan2(denominator)
+}
+
+/// The middle of a triangle, and points near its corners and the middles of its sides: by a share of the way from these to
+/// the middle.
+pub fn points_inside(corners: &[Point; 3], share: f64) -> [Point; 7] {
+    let [a, b, c] = *corners;
+    let middle = (a + b + c) * (1.0 / 3.0);
+    let border = [a, (a + b) * 0.5, b, (b + c) * 0.5, c, (c + a) * 0.5];
+    let [a, ab, b, bc, c, ca] = border.map(|p| p * (1.0 - share) + middle * share);
+    [middle, a, ab, b, bc, c, ca]
 }
 
 /// The point of a triangle that is nearest to `p`.

@@ -10,6 +10,7 @@ use crate::error::BuildError;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::subdivide::{halve, longest_edge_sq};
+use crate::meshing::geometry::triangle::points_inside;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::flat_boundary::{Piece, flat_pieces};
@@ -24,6 +25,9 @@ const OFF: f64 = 2e-4;
 /// seven probes would miss what passes through them.
 const FINEST: f64 = 0.006;
 const LARGE: f64 = 0.08;
+
+/// How far the points of a piece that are looked at are from its border, as a share of the way to the middle.
+const INWARD: f64 = 0.1;
 
 /// Triangles and points that winding numbers may look at, and pieces that may be kept, before larger pieces are tried:
 /// so many, and so many for each triangle. The first is a few seconds' work, an eighth of which bodies of
@@ -197,7 +201,7 @@ impl<'a> Cut<'a> {
                 continue;
             }
             let middle = middle(&piece);
-            let points = || std::iter::once(middle).chain(probes(&piece, middle));
+            let points = || points_inside(&piece, INWARD).into_iter();
             let is_finest = longest_sq <= self.finest * self.finest;
             let here = self.hidden.is_enclosed(middle, normal);
             let is_alike = match is_finest && !here {
@@ -233,11 +237,4 @@ fn area(&[a, b, c]: &[Point; 3]) -> f64 {
 
 fn middle(&[a, b, c]: &[Point; 3]) -> Point {
     (a + b + c) * (1.0 / 3.0)
-}
-
-/// Points near the corners and the middles of the sides.
-fn probes(piece: &[Point; 3], middle: Point) -> impl Iterator<Item = Point> + '_ {
-    let near = move |p: Point| p * 0.9 + middle * 0.1;
-    let at = move |k: usize| [piece[k], (piece[k] + piece[(k + 1) % 3]) * 0.5];
-    (0..3).flat_map(at).map(near)
 }

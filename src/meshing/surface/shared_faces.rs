@@ -7,7 +7,7 @@
 
 use crate::error::BuildError;
 use crate::meshing::findings::Findings;
-use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::triangle::points_inside;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::geometry::union_find::Groups;
 use crate::meshing::surface::checked_surface::corners;
@@ -19,7 +19,7 @@ use crate::meshing::watch::Watch;
 const INSIDE: f64 = 0.5;
 
 /// How far points near a triangle's border are from it, as a share of the way to the middle.
-const INWARD: f64 = 0.02;
+const INWARD: f64 = 1e-3;
 
 /// Leaves out of a welded mesh those of the triangles given in both orientations that have matter on both sides.
 pub fn leave_out_shared(
@@ -44,7 +44,8 @@ pub fn leave_out_shared(
         if i % 64 == 0 {
             watch.again()?;
         }
-        let mut points = probes(corners_of(t)).into_iter();
+        // Of a sheet that leaves a solid not all are inside.
+        let mut points = points_inside(&corners_of(t), INWARD).into_iter();
         is_inside[t] = points.all(|p| tree.winding(p).abs() > INSIDE);
     }
     let inside = is_inside.iter().filter(|inside| **inside).count();
@@ -54,15 +55,6 @@ pub fn leave_out_shared(
     welded.triangles.retain(|_| keep.next().unwrap_or(true));
     welded.leave_out_unused();
     Ok(())
-}
-
-/// The middle of a triangle, and points near its corners and the middles of its sides: of a sheet that leaves a solid not all
-/// are inside.
-fn probes([a, b, c]: [Point; 3]) -> [Point; 7] {
-    let middle = (a + b + c) * (1.0 / 3.0);
-    let border = [a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
-    let [a, b, c, ab, bc, ca] = border.map(|p| p * (1.0 - INWARD) + middle * INWARD);
-    [middle, a, b, c, ab, bc, ca]
 }
 
 /// The triangles but for the pairs, of those parts that these leave closed: each edge is used as often one way as the other.
