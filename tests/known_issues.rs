@@ -5,7 +5,6 @@
 mod scenes {
     pub mod bodies;
     pub mod combs;
-    pub mod eulers_disc;
     pub mod let_go;
     pub mod linking;
     pub mod oneway;
@@ -18,7 +17,6 @@ use rapier3d_medial::MedialDispatcher;
 use rapier3d_medial::prelude::*;
 use scenes::bodies::{boxes, plateau};
 use scenes::combs::Dropped;
-use scenes::eulers_disc::euler;
 use scenes::let_go::let_go;
 use scenes::oneway::plates;
 
@@ -191,15 +189,6 @@ fn a_rod_that_falls_on_two_bars_turns() {
     }
     let turns = world.bodies[rod].angvel().length();
     assert!(turns > 2.0, "{turns} rad/s");
-}
-
-/// At 30 Hz impacts within the step give a ring that rolls on its edge a hundredth of its height of fall now and then, and it
-/// never comes to rest; without the effects `continuous` and `guard` it lies after 1.2 s, as rapier's own.
-#[test]
-fn eulers_disc_goes_on_for_ever_at_30_hz() {
-    let disc = euler(true, 30.0, 0.5);
-    assert!(disc.rests.is_none(), "rests after {:?} s", disc.rests);
-    assert!(disc.gain > 0.01, "gains {}", disc.gain);
 }
 
 /// Pairs without joints bounce in the event loop where nothing pulls on them ([`Effects::restitution`]), though others that

@@ -80,8 +80,20 @@ pub struct PairJob {
 pub struct PairResult {
     /// The contacts: pairs of spheres within the prediction distance.
     pub contacts: Vec<SpherePair>,
+    /// Whether the pair moves so little that these contacts may have to serve for several steps, but is not at rest.
+    pub lasting: bool,
     /// The work it took.
     pub counts: Counts,
+}
+
+impl PairResult {
+    fn new((contacts, counts): (Vec<SpherePair>, Counts)) -> Self {
+        Self {
+            contacts,
+            lasting: false,
+            counts,
+        }
+    }
 }
 
 impl PairJob {
@@ -101,9 +113,13 @@ impl Job for PairJob {
     type Answer = PairResult;
     const PER_THREAD: usize = 8;
     fn answer(&self) -> PairResult {
-        let (contacts, counts) =
-            crate::pair::contacts(&self.mesh1, &self.mesh2, &self.pos12, self.prediction);
-        PairResult { contacts, counts }
+        let (mesh1, mesh2) = (&self.mesh1, &self.mesh2);
+        PairResult::new(crate::pair::contacts(
+            mesh1,
+            mesh2,
+            &self.pos12,
+            self.prediction,
+        ))
     }
     fn sweep(&self) -> Option<Sweep<'_>> {
         Some(Sweep {
@@ -119,14 +135,13 @@ impl Job for PairJob {
     }
     fn answer_near(&self, near: &[[u32; 2]]) -> PairResult {
         let (mesh1, mesh2) = (&self.mesh1, &self.mesh2);
-        let (contacts, counts) = crate::pair::contacts_of_listed(
+        PairResult::new(crate::pair::contacts_of_listed(
             mesh1,
             mesh2,
             &self.pos12,
             self.prediction,
             &mut near.to_vec(),
-        );
-        PairResult { contacts, counts }
+        ))
     }
 }
 

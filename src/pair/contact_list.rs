@@ -7,6 +7,7 @@
 //! nearer half may be that of one side.
 
 use super::SpherePair;
+use super::contact_grid::ContactGrid;
 use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::ONE_DIRECTION;
@@ -17,9 +18,17 @@ const MOST: usize = 2048;
 /// Distance, as a share of the prediction distance, up to which a contact nearly touches.
 const TOUCHING: Real = 0.125;
 
+/// Number of contacts up to which those at one place are looked for one by one.
+const FEW: usize = 64;
+
+/// Least width of a cell of the grid of places, as a share of the prediction distance.
+const CELL: f64 = 0.01;
+
 /// Contacts in the order in which they were found.
 pub(super) struct ContactList {
     contacts: Vec<SpherePair>,
+    /// Their places, once they are more than a few.
+    grid: ContactGrid,
     /// Distance beyond which none is kept.
     limit: Real,
     /// Distance beyond which none need be searched for.
@@ -35,6 +44,7 @@ impl ContactList {
     pub(super) fn new(prediction: f64) -> Self {
         Self {
             contacts: Vec::new(),
+            grid: ContactGrid::new(CELL * prediction),
             limit: Real::INFINITY,
             margin: prediction,
             touching: TOUCHING * prediction.max(0.0) as Real,
@@ -54,15 +64,26 @@ impl ContactList {
         if contact.distance > self.limit {
             return;
         }
-        let same = self.contacts.iter_mut().rev().find(|c| {
+        let is_same = |c: &SpherePair| {
             let along = f64::from(c.points[0].x) - point.x;
             along * along <= apart * apart
                 && (Vec3::<f64>::from_vector(c.points[0]) - point).length_sq() <= apart * apart
                 && Vec3::<f64>::from_vector(c.normal).dot(normal) >= ONE_DIRECTION
-        });
+        };
+        let contacts = &mut self.contacts;
+        let is_many = contacts.len() > FEW;
+        let same = match is_many {
+            true => self.grid.last_near(contacts, point, apart, is_same),
+            false => contacts.iter().rposition(is_same),
+        };
         match same {
             None => self.extend([contact]),
-            Some(c) if contact.distance < c.distance => *c = contact,
+            Some(k) if contact.distance < contacts[k].distance => {
+                contacts[k] = contact;
+                if is_many {
+                    self.grid.put(k, &contact);
+                }
+            }
             Some(_) => {}
         }
     }
@@ -84,6 +105,7 @@ impl ContactList {
         self.limit = middle.max(self.touching);
         let limit = self.limit;
         self.contacts.retain(|c| c.distance <= limit);
+        self.grid.clear();
         self.margin = self.margin.min(f64::from(limit));
         self.most = MOST.max(2 * self.contacts.len());
     }

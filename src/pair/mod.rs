@@ -11,11 +11,12 @@
 //!   apart: `apart.rs`, `path_ends.rs`.
 //! - Contacts at fixed poses: `contacts.rs`, in the order of `descent.rs`; of two primitives `primitive_pair.rs`, of two convex pieces (the blocks of a body
 //!   with flat faces) `face_contacts.rs`; from a list of primitive pairs `listed.rs`. `contact_list.rs` keeps the
-//!   nearest, and `held_back.rs` leaves some out.
+//!   nearest, with `contact_grid.rs`; `thinned.rs` and `held_back.rs` leave some out.
 //! - Distance at fixed poses: `distance.rs`. Proofs at fixed poses: `hulls.rs`, `hull_gap.rs`.
 //! - What spares a search: `outline.rs`, `near_pairs.rs`, `pair_list.rs`.
 
 mod apart;
+mod contact_grid;
 mod contact_list;
 pub mod contacts;
 mod convex_pieces;
@@ -44,6 +45,7 @@ mod queue;
 mod search;
 mod sphere_pair;
 mod swept;
+pub mod thinned;
 mod tips;
 mod waiting;
 

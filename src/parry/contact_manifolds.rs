@@ -121,8 +121,7 @@ impl MedialDispatcher {
         let meshes = [mesh1, mesh2];
         let job = PairJob::of(meshes, pos12, prediction);
         self.exchange.contacts(job, |found| {
-            let contacts = &found.contacts;
-            manifolds::write_manifolds(meshes, contacts, pos12, prediction, manifolds);
+            manifolds::write_manifolds(meshes, found, pos12, prediction, manifolds);
         });
         contact_reduction::choose(manifolds, (pos12, center), prediction, &previous, side);
         self.count_manifolds(manifolds.len());

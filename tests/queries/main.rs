@@ -44,6 +44,7 @@ mod outlines;
 mod penetration;
 mod regressions;
 mod spinning_pieces;
+mod thinned;
 mod tips;
 mod truth;
 mod witness;

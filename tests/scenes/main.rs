@@ -68,6 +68,7 @@ mod oracle;
 mod outnumbered;
 mod partners;
 mod pinched;
+mod pressed_rings;
 mod put_in_place;
 mod random;
 mod resting;
