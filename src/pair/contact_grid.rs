@@ -9,7 +9,7 @@ const END: u32 = u32::MAX;
 
 /// Cells of contacts by their points on the first body. A contact is in the cells of all places where it has been.
 pub(super) struct ContactGrid {
-    /// Width of a cell, a length. Any serves, but a cell as wide as places may be apart is quick.
+    /// Width of a cell, a length: at least as far as places may be apart.
     width: f64,
     /// Place in `links` of each cell's last contact.
     cells: FastMap<[i32; 3], u32>,
@@ -20,7 +20,7 @@ pub(super) struct ContactGrid {
 }
 
 impl ContactGrid {
-    /// An empty grid of cells that are at least so wide, a length.
+    /// An empty grid of cells that are at least so wide, a length; they widen where places farther apart are asked for.
     pub(super) fn new(width: f64) -> Self {
         Self {
             width,
@@ -84,5 +84,60 @@ impl ContactGrid {
 
     fn cell(&self, place: [f64; 3]) -> [i32; 3] {
         place.map(|x| (x / self.width).floor() as i32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Real, Vector};
+
+    /// Numbers in [0, 1) (SplitMix64).
+    fn random(state: &mut u64) -> Real {
+        *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (*state ^ (*state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        ((z ^ (z >> 27)) >> 40) as Real / (1u64 << 24) as Real
+    }
+
+    fn contact(place: Vector) -> SpherePair {
+        SpherePair {
+            primitives: [0; 2],
+            feature: 0,
+            distance: 0.0,
+            normal: Vector::X,
+            points: [place; 2],
+        }
+    }
+
+    /// Contacts that are added, replaced by others beside them, and taken away: the last at each place is found as if all were
+    /// looked at.
+    #[test]
+    fn the_last_contact_at_a_place_is_found() {
+        let mut state = 26;
+        let (mut found, mut contacts) = (0, Vec::new());
+        let mut grid = ContactGrid::new(0.001);
+        for k in 0..4000 {
+            let mut place = || Vector::from([0; 3].map(|_: i32| random(&mut state) - 0.5));
+            let place = place() * 0.2;
+            let apart = [0.0, 0.002, 0.01, 0.03][k / 1000];
+            let near = |c: &SpherePair| c.points[0].distance(place) <= apart as Real;
+            let expected = contacts.iter().rposition(near);
+            let point = Vec3::from_vector(place);
+            let last = grid.last_near(&contacts, point, apart, near);
+            assert_eq!(last, expected, "{k}");
+            match last {
+                Some(k) if k % 3 == 0 => {
+                    contacts[k] = contact(place);
+                    grid.put(k, &contacts[k]);
+                }
+                _ => contacts.push(contact(place)),
+            }
+            if k % 700 == 699 {
+                contacts.retain(|c| c.points[0].x > -0.05);
+                grid.clear();
+            }
+            found += usize::from(last.is_some());
+        }
+        assert!(found > 500, "{found}");
     }
 }

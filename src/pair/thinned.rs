@@ -9,7 +9,7 @@ use std::collections::hash_map::Entry;
 /// Contacts that are left as they are: fewer cost less than they may tell.
 const FEW: usize = 256;
 
-/// Cells of unit normals along each axis in a unit of length: normals of one cell are within 12° of each other.
+/// Cells of unit normals along each axis in a unit of length: normals of one cell are within 12.5° of each other.
 const NORMALS: Real = 8.0;
 
 /// Leaves, of more than [`FEW`] contacts, the nearest of each cell of normals and of places on the first body, `apart` wide
@@ -21,7 +21,7 @@ pub fn thin(contacts: &mut Vec<SpherePair>, apart: Real) {
     let mut nearest: FastMap<[i64; 6], usize> = FastMap::default();
     for (k, c) in contacts.iter().enumerate() {
         let [x, y, z] = (c.points[0] / apart).to_array().map(|x| x.floor() as i64);
-        let [n, o, p] = (c.normal * NORMALS).to_array().map(|x| x.floor() as i64);
+        let [n, o, p] = (c.normal * NORMALS).to_array().map(|x| x.round() as i64);
         match nearest.entry([x, y, z, n, o, p]) {
             Entry::Vacant(cell) => {
                 cell.insert(k);

@@ -32,7 +32,7 @@ const SAME_PATCH: Real = 0.98;
 /// contacts are computed again: with patches as wide as they are thick 65 of 180 pairs of rings that lie on each other rock
 /// on for ever, with this 9 of 360. Where bodies move faster, wide patches serve: what rolls loses no speed to a
 /// contact ahead of it.
-const NARROW: Real = 0.1;
+pub const NARROW: Real = 0.1;
 
 /// Writes the manifolds of two meshes at relative pose `pos12`. Contacts further apart than `prediction`
 /// are left out; the deepest of a primitive pair gives its manifold the normal. Manifolds that were

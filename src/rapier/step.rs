@@ -59,6 +59,7 @@ impl StepArgs<'_> {
             effects,
             dt: self.parameters.dt,
             unit: self.parameters.length_unit,
+            prediction: self.parameters.prediction_distance(),
             sag: gravity.length() / angular_frequency.powi(2),
             substeps: self.parameters.num_solver_iterations.max(1),
             tuning,

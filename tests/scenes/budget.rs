@@ -187,7 +187,6 @@ fn chains_wait_as_a_whole() {
 #[test]
 fn a_heap_that_waits_comes_down() {
     let (needed, _) = thrown(605, 60, u64::MAX);
-    println!("needed {}", needed.most);
     let (run, found) = thrown(605, 600, needed.most / 10);
     let heights = run.poses.iter().map(|pose| pose.translation.y);
     let highest = heights.fold(0.0, Real::max);

@@ -88,8 +88,8 @@ fn no_ring_is_driven_into_the_ground_by_a_heavy_one() {
                  compounds {:.1} ms, lowest {:.3}",
                 ours.0, ours.1, ours.2, own.1, own.2
             );
-            // The middle of a ring that stands or lies on the ground is a radius of its tube above it or higher. What is
-            // pressed into it may be half as deep as the tube is thick, and in one seed of twelve a ring is.
+            // The middle of a ring that stands or lies on the ground is a radius of its tube above it or higher; what is
+            // pressed into the ground may be half a radius deep.
             assert!(
                 ours.2 > 0.49 * MINOR,
                 "{speed} m/s, seed {seed}: {}",

@@ -9,8 +9,8 @@
 //! and a point that goes along an arc falls behind what flies on before it; it is pressed back, the harder the more
 //! sub-steps there are.
 //!
-//! A quarter of the step's budget may go into this; without it a pair is left to both. With half of it the rest would not do for
-//! a first impact of a heap whose budget is a tenth of what it needs, and the same step would come again and again.
+//! A quarter of the step's budget may go into this; without it a pair is left to both. With half of it too little may be left
+//! to reach the first impact of a heap, and the same step comes again and again.
 
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::PairKey;

@@ -22,6 +22,7 @@ use crate::math::{Pose, Real, Rotation, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::thinned::thin;
 use crate::pair::{RelativeMotionBound, SpherePair};
+use crate::parry::manifolds::NARROW;
 use crate::parry::narrow_phase_plan::PairKey;
 use crate::rapier::contacts::reach::{closing, reach, way};
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders};
@@ -45,16 +46,23 @@ const STANDING: Real = 0.0;
 /// in the other, or past it.
 const REACH: Real = 0.25;
 
-/// How far apart two contacts are that bear a load like one, in units of the thinner body's thickness or, where that is
-/// more, rapier's prediction distance: those nearer to each other than a quarter of the latter are one for its solver,
-/// too, and one of each patch as wide as the former is written (`parry/manifolds.rs`).
+/// How far apart two contacts are that bear a load like one, in units of the thinner body's thickness: a quarter of the width
+/// of a patch, of which one contact is written (`parry/manifolds.rs`); where patches are narrow, all of it.
 const APART: Real = 0.25;
 
-/// Travel of two bodies against each other in a step, in units of rapier's length unit, between which their contacts may
-/// have to serve for several steps in which the bodies rock: rapier keeps them until the pair has moved by 0.004. With that
-/// as the upper one 20 of 120 pairs of rings that lie on each other rock on for ever, with this 5; with 0.008 a ring that rolls at
-/// 0.2 m/s loses more speed than rapier's own. With 0 as the lower one heaps at rest cost a fifth more, and rock no less.
-const LASTING: [Real; 2] = [0.0005, 0.0065];
+/// The least such distance, in units of rapier's prediction distance: half of that in which two contacts are one for rapier.
+const LEAST_APART: Real = 0.125;
+
+/// Speeds of two bodies against each other, in units of rapier's length unit per second, between which rapier may keep their
+/// contacts for several steps in which they rock: it does until the pair has moved by 0.004 of its length unit. With an upper
+/// bound of 0.24 instead of 0.39, 20 of 120 pairs of rings that lie on each other rock on for ever, with 0.39 5; with 0.48 a
+/// ring that rolls at 0.2 m/s loses more speed than rapier's own. With a lower bound of 0 heaps at rest cost a fifth
+/// more, and rock no less.
+const ROCKING: [Real; 2] = [0.03, 0.39];
+
+/// Travel in a step, in units of rapier's length unit, beyond which contacts are not kept: that of the upper speed at 60 steps
+/// a second.
+const KEPT: Real = 0.0065;
 
 /// Lever of a contact's normal about the joint of two neighbours in a multibody, in units of the smaller's size, below
 /// which the joint holds the contact itself. Nothing but rounding moves along such a normal, and rapier divides by it:
@@ -96,9 +104,10 @@ pub struct PredictedMotion {
     /// Anchor of the joint of a multibody that holds them to each other, in the first's frame at the start, and the
     /// lever below which it holds a contact too.
     joint: Option<(Vector, Real)>,
-    /// How far apart two contacts are that bear a load like one, a length, where contacts are not corners of faces.
+    /// How far apart two contacts are that bear a load like one, a length; `None` where contacts are corners of faces, or the
+    /// user may take away some.
     apart: Option<Real>,
-    /// Whether the pair moves little, but more than at rest ([`LASTING`]).
+    /// Whether the pair moves little, but more than at rest ([`ROCKING`]).
     lasting: bool,
 }
 
@@ -142,9 +151,13 @@ impl PredictedMotion {
         let reach = reach(starts, parameters);
         let way = way(starts, parameters);
         let skins = job.prediction - prediction;
-        let are_of_pieces =
-            [&job.mesh1, &job.mesh2].map(|m| !m.convex_pieces().is_empty()) == [true; 2];
-        let apart = APART * thickness.max(prediction);
+        let unit = parameters.length_unit;
+        let lasting =
+            speed * dt < KEPT * unit && (ROCKING[0]..ROCKING[1]).contains(&(speed / unit));
+        let width = if lasting { NARROW } else { APART };
+        let apart = (width * thickness).max(LEAST_APART * prediction);
+        let are_of_pieces = [&job.mesh1, &job.mesh2].map(|m| !m.convex_pieces().is_empty());
+        let is_thinned = are_of_pieces != [true; 2] && !starts.iter().any(|s| s.is_modified());
         let joint = |k: usize| {
             let (other, anchor) = starts[k].joint?;
             let pose = a.start.inv_mul(&motions[k].start);
@@ -165,8 +178,8 @@ impl PredictedMotion {
                 skins,
             },
             joint: joint(0).or_else(|| joint(1)),
-            lasting: (LASTING[0]..LASTING[1]).contains(&(speed * dt / parameters.length_unit)),
-            apart: (!are_of_pieces && apart > 0.0).then_some(apart),
+            lasting,
+            apart: (is_thinned && apart > 0.0).then_some(apart),
         };
         let job = PairJob {
             pos12: poses[0].inv_mul(&poses[1]),

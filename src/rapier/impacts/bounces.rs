@@ -73,35 +73,37 @@ impl CcdPolicy<'_> {
     }
 
     /// Whether the pair touches at the start of the step, so that the solver has it. What is pressed together and rolls or
-    /// rocks leaves its contact by about what the pull moves it in a step, and touches all the same while it approaches no
-    /// faster than the pull explains: left to impacts at single points a ring would whirl on for ever.
+    /// rocks leaves its contact by about what the pull moves it in a step. It touches all the same while its nearest points
+    /// move no faster along the normal than the pull explains, and slide by no more than its thickness in a step: left to
+    /// impacts at single points a ring would whirl on for ever.
     pub fn touches(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> bool {
-        let (mesh, other, pos12, reach) = self.at_start(view, pair);
-        let mut within = |reach| {
-            let found = mesh.and_then(|mesh| is_within(mesh, other, &pos12, reach).ok());
-            found.is_some_and(|(within, counts)| {
-                work.counts += counts;
-                within
-            })
-        };
-        let pulled = self.reach(view, pair, view.most_pull(pair) * self.dt);
-        if pulled <= reach {
-            return within(reach);
+        let (mesh, other, pos12, _) = self.at_start(view, pair);
+        let reach = self.touching_reach(view, pair);
+        let pressed = self.pressed_reach(view, pair);
+        let found = mesh.and_then(|mesh| is_within(mesh, other, &pos12, pressed).ok());
+        let is_near = found.is_some_and(|(within, counts)| {
+            work.counts += counts;
+            within
+        });
+        if !is_near || pressed <= reach {
+            return is_near;
         }
-        // Most pairs are farther apart, and looked at once.
-        within(pulled)
-            && (within(reach) || {
-                let speeds = self.speeds_along_normal(view, pair, pulled, work);
-                speeds.is_some_and(|[v1, v2]| v1 - v2 <= self.least_bounce(view, pair))
-            })
+        let Some(nearest) = self.nearest_at_start(view, pair, work) else {
+            return false;
+        };
+        let [v1, v2] = nearest.velocities;
+        let along = (v1 - v2).dot(nearest.normal);
+        let slide = ((v1 - v2) - nearest.normal * along).length() * self.dt;
+        nearest.distance <= reach
+            || along.abs() <= self.least_bounce(view, pair) && slide <= view.thickness(pair)
     }
 
     /// How fast a pair that touches at the start of the step approaches at its nearest points, a length per second;
     /// `None` if it does not touch.
     pub fn approach(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> Option<Real> {
-        let reach = self.at_start(view, pair).3;
-        let [v1, v2] = self.speeds_along_normal(view, pair, reach, work)?;
-        Some(v1 - v2)
+        let nearest = self.nearest_at_start(view, pair, work)?;
+        let [v1, v2] = nearest.velocities;
+        Some((v1 - v2).dot(nearest.normal))
     }
 
     /// Whether a body that a joint holds leaves the straight path of its contact point: it turns while it moves along the
@@ -118,54 +120,73 @@ impl CcdPolicy<'_> {
         if bodies.iter().any(|b| b.kind != Kind::Free) || turns[held] <= SWINGS {
             return false;
         }
-        let reach = self.at_start(view, pair).3;
-        let Some(speeds) = self.speeds_along_normal(view, pair, reach, work) else {
+        let Some(nearest) = self.nearest_at_start(view, pair, work) else {
             return false;
         };
-        let way = speeds[held].abs() * self.dt;
+        let speed = nearest.velocities[held].dot(nearest.normal);
+        let way = speed.abs() * self.dt;
         way * turns[held] * turns[held] / 6.0 > SHORT * view.thickness(pair)
     }
 
-    /// Speeds of both bodies' points at the nearest points of a pair that is within `reach` (a length) at the start of the
-    /// step, along its normal, a length per second; `None` if it is not.
-    fn speeds_along_normal(
+    /// The nearest points of a pair that touches at the start of the step or is pressed; `None` if it is farther apart.
+    fn nearest_at_start(
         &self,
         view: &StepView,
         pair: [usize; 2],
-        reach: Real,
         work: &mut Work,
-    ) -> Option<[Real; 2]> {
-        let (mesh, other, pos12, _) = self.at_start(view, pair);
-        let (found, counts) = nearest(mesh?, other, &pos12, reach).ok()?;
+    ) -> Option<NearestPoints> {
+        let (mesh, other, pos12, flipped) = self.at_start(view, pair);
+        let (found, counts) = nearest(mesh?, other, &pos12, self.pressed_reach(view, pair)).ok()?;
         work.counts += counts;
         let contact = found?;
-        let flipped = view.parts[pair[0]].medial().is_none();
-        let k = pair[usize::from(flipped)];
-        let motion = view.motion(k, 0.0);
+        let motion = view.motion(pair[usize::from(flipped)], 0.0);
         let point = motion.start * contact.points[0];
         let outward = motion.start.rotation * contact.normal;
-        let normal = if flipped { -outward } else { outward };
-        Some(pair.map(|k| {
-            let m = view.motion(k, 0.0);
-            let velocity = m.linvel + m.angvel.cross(point - m.start * m.local_center);
-            velocity.dot(normal)
-        }))
+        Some(NearestPoints {
+            distance: contact.distance,
+            normal: if flipped { -outward } else { outward },
+            velocities: pair.map(|k| {
+                let m = view.motion(k, 0.0);
+                m.linvel + m.angvel.cross(point - m.start * m.local_center)
+            }),
+        })
     }
 
-    /// The medial mesh of a pair and the other shape, which the pose at the start of the step takes to the mesh's frame,
-    /// and the distance, a length, up to which they touch.
+    /// The medial mesh of a pair and the other shape, which the pose at the start of the step takes to the mesh's frame, and
+    /// whether the mesh is the second.
     fn at_start<'v>(
         &self,
         view: &'v StepView,
         pair: [usize; 2],
-    ) -> (Option<&'v MedialMesh>, &'v dyn Shape, Pose, Real) {
-        let gap = self.tuning.touching * self.gap(view.thickness(pair));
+    ) -> (Option<&'v MedialMesh>, &'v dyn Shape, Pose, bool) {
         let [start1, start2] = pair.map(|k| view.motion(k, 0.0).start);
         let [shape1, shape2] = pair.map(|k| &*view.parts[k].shape);
-        let reach = self.reach(view, pair, gap);
         match shape1.as_shape::<MedialMesh>() {
-            Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2), reach),
-            None => (shape2.as_shape(), shape1, start2.inv_mul(&start1), reach),
+            Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2), false),
+            None => (shape2.as_shape(), shape1, start2.inv_mul(&start1), true),
         }
     }
+
+    /// Distance of the shapes of a pair, a length, up to which it touches.
+    fn touching_reach(&self, view: &StepView, pair: [usize; 2]) -> Real {
+        let gap = self.tuning.touching * self.gap(view.thickness(pair));
+        self.reach(view, pair, gap)
+    }
+
+    /// The same, or what a pull moves a body away in a step, where that is more; at most what the solver looks at.
+    fn pressed_reach(&self, view: &StepView, pair: [usize; 2]) -> Real {
+        let pulled = (view.most_pull(pair) * self.dt).min(self.prediction);
+        self.touching_reach(view, pair)
+            .max(self.reach(view, pair, pulled))
+    }
+}
+
+/// Nearest points of a pair.
+struct NearestPoints {
+    /// Of the shapes, a length.
+    distance: Real,
+    /// From the first to the second, in the world.
+    normal: Vector,
+    /// Of both bodies there.
+    velocities: [Vector; 2],
 }

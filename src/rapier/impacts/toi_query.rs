@@ -77,6 +77,8 @@ pub struct CcdPolicy<'a> {
     pub dt: Real,
     /// rapier's length unit.
     pub unit: Real,
+    /// Distance up to which rapier's solver gets contacts, a length.
+    pub prediction: Real,
     /// How far gravity presses a body into rapier's contacts, which are springs, a length.
     pub sag: Real,
     /// rapier's sub-steps in a step.
