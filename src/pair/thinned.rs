@@ -12,7 +12,7 @@ const FEW: usize = 256;
 /// Cells of unit normals along each axis in a unit of length: normals of one cell are within 12.5° of each other.
 const NORMALS: Real = 8.0;
 
-/// Leaves, of more than [`FEW`] contacts, the nearest of each cell of normals and of places on the first body, `apart` wide
+/// Leaves, of more than 256 contacts, the nearest of each cell of normals and of places on the first body, `apart` wide
 /// (a length above 0), in the order in which they were.
 pub fn thin(contacts: &mut Vec<SpherePair>, apart: Real) {
     if contacts.len() <= FEW {
