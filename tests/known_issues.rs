@@ -9,6 +9,7 @@ mod scenes {
     pub mod linking;
     pub mod oneway;
     pub mod random;
+    pub mod wheels;
 }
 
 use rapier3d::parry::query::QueryDispatcher;
@@ -19,6 +20,7 @@ use scenes::bodies::{boxes, plateau};
 use scenes::combs::Dropped;
 use scenes::let_go::let_go;
 use scenes::oneway::plates;
+use scenes::wheels::wheel_rolled;
 
 /// The event loop leaves a pair whose contacts the user modifies ([`ActiveHooks::MODIFY_SOLVER_CONTACTS`])
 /// to rapier, since it has no solver contacts to show. rapier does not sweep two dynamic bodies, so fast
@@ -437,39 +439,7 @@ fn an_inside_out_part_spoils_a_kit_of_boxes() {
 /// it one is ahead of its axle by up to a centimetre. On a medial plate it keeps 0.99 of its speed.
 #[test]
 fn a_wheel_rolls_slower_on_a_cuboid_than_rapiers_own() {
-    const SIDES: u32 = 96;
-    let rolled = |is_medial: bool| {
-        let mut world = PhysicsWorld::new();
-        let ground = ColliderBuilder::cuboid(20.0, 0.5, 20.0).translation(Vector::Y * -0.5);
-        world.insert_collider(ground.friction(1.0), None);
-        let mesh = MedialMesh::torus(0.15, 0.1, SIDES as usize).expect("a wheel");
-        let mass = mesh.mass_properties(1000.0);
-        let at = |i: u32| {
-            let (sin, cos) = (std::f32::consts::TAU * i as Real / SIDES as Real).sin_cos();
-            Vector::new(cos, 0.0, sin) * 0.15
-        };
-        let capsule = |i: u32| (Pose::IDENTITY, SharedShape::capsule(at(i), at(i + 1), 0.1));
-        let collider = match is_medial {
-            true => ColliderBuilder::medial_mesh(mesh),
-            false => ColliderBuilder::compound((0..SIDES).map(capsule).collect()),
-        };
-        let upright = Vector::X * std::f32::consts::FRAC_PI_2;
-        let body = RigidBodyBuilder::dynamic()
-            .pose(Pose::new(Vector::new(-8.0, 0.25, 0.0), upright))
-            .linvel(Vector::X)
-            .angvel(Vector::NEG_Z * 4.0)
-            .can_sleep(false);
-        let (wheel, _) = world.insert(body, collider.mass_properties(mass).friction(1.0));
-        let mut pipeline = MedialPipeline::default();
-        for _ in 0..180 {
-            match is_medial {
-                true => drop(pipeline.step(&mut world)),
-                false => world.step(),
-            }
-        }
-        world.bodies[wheel].linvel().x
-    };
-    let [own, ours] = [false, true].map(rolled);
+    let [own, ours] = [false, true].map(wheel_rolled);
     println!("{ours} m/s after 3 s, rapier's own {own}");
     assert!(ours < own - 0.1, "{ours} m/s, rapier's own {own}");
 }

@@ -28,6 +28,18 @@ pub fn ring(n: u32, major: Real, minor: Real) -> MedialMesh {
         .with_mass_properties(MassProperties::new(Vector::ZERO, mass, inertia))
 }
 
+/// rapier's own compound of capsules in place of a mesh of equally thick cones.
+pub fn capsules(mesh: &MedialMesh) -> ColliderBuilder {
+    let capsule = |edge: &[u32; 2]| {
+        let [a, b] = edge.map(|k| mesh.spheres()[k as usize]);
+        (
+            Pose::IDENTITY,
+            SharedShape::capsule(a.center, b.center, a.radius),
+        )
+    };
+    ColliderBuilder::compound(mesh.edges().iter().map(capsule).collect())
+}
+
 /// How a body is represented.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum As {

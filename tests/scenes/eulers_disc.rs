@@ -1,6 +1,6 @@
 //! Euler's disc: a ring that rolls on its edge while its axis goes round, ever flatter and faster, until it lies.
 
-use super::bodies::ring;
+use super::bodies::{capsules, ring};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
@@ -50,11 +50,7 @@ fn rolling_ring(is_medial: bool, hertz: Real, tilt: Real) -> (PhysicsWorld, Rigi
     let collider = if is_medial {
         ColliderBuilder::medial_mesh(mesh)
     } else {
-        let part = |[a, b]: &[u32; 2]| {
-            let [a, b] = [a, b].map(|k| mesh.spheres()[*k as usize].center);
-            (Pose::IDENTITY, SharedShape::capsule(a, b, RING[1]))
-        };
-        ColliderBuilder::compound(mesh.edges().iter().map(part).collect())
+        capsules(&mesh)
     };
     // The ring's axis leans to X, where its lowest point is.
     let rotation = Rotation::from_rotation_z(-tilt);

@@ -1,7 +1,7 @@
 //! Rings that something presses to the ground, or that lie on each other, come to rest as rapier's own compounds of
 //! capsules do.
 
-use crate::bodies::{attached, ring, steps_until_sleep, world_with_ground};
+use crate::bodies::{attached, capsules, ring, steps_until_sleep, world_with_ground};
 use crate::eulers_disc::euler;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
@@ -10,14 +10,9 @@ use rapier3d_medial::prelude::*;
 fn collider(is_medial: bool, cones: u32, [major, minor]: [Real; 2]) -> ColliderBuilder {
     let mesh = ring(cones, major, minor);
     let mass = mesh.mass_properties(1000.0);
-    let part = |[a, b]: &[u32; 2]| {
-        let [a, b] = [a, b].map(|k| mesh.spheres()[*k as usize].center);
-        (Pose::IDENTITY, SharedShape::capsule(a, b, minor))
-    };
-    let own = || ColliderBuilder::compound(mesh.edges().iter().map(part).collect());
     let collider = match is_medial {
-        true => ColliderBuilder::medial_mesh(mesh.clone()),
-        false => own(),
+        true => ColliderBuilder::medial_mesh(mesh),
+        false => capsules(&mesh),
     };
     collider.mass_properties(mass)
 }

@@ -1,6 +1,6 @@
 //! What rolls, rolls on, and gains nothing: balls and rings on a plate, medial or rapier's own.
 
-use crate::bodies::{attached, ring};
+use crate::bodies::{attached, capsules, ring};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -84,13 +84,8 @@ fn ring_rolled(n: u32, own: bool, speed: Real, angle: Real) -> Real {
     let mesh = ring(n, major, minor);
     let mass = mesh.mass_properties(1.0);
     let (ring, plate) = if own {
-        let capsules = mesh.edges().iter().map(|edge| {
-            let [a, b] = edge.map(|i| mesh.spheres()[i as usize].center);
-            (Pose::IDENTITY, SharedShape::capsule(a, b, minor))
-        });
-        let ring = ColliderBuilder::new(SharedShape::compound(capsules.collect()));
         let plate = ColliderBuilder::cuboid(8.0, PLATE, 2.0);
-        (ring.mass_properties(mass), plate)
+        (capsules(&mesh).mass_properties(mass), plate)
     } else {
         let plate = MedialMesh::round_plate(8.0, 2.0, PLATE).expect("a plate");
         let plate = ColliderBuilder::medial_mesh(plate);
