@@ -252,3 +252,20 @@ fn bodies_of_multibodies_get_their_last_velocity_in_the_next_step() {
     }
     assert!(most > 0.05, "{most} rad/s");
 }
+
+#[test]
+fn a_new_multibody_joint_moves_its_second_body_in_the_step() {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let mut put = |x: Real| {
+        let body = RigidBodyBuilder::dynamic().translation(Vector::X * x);
+        world.insert(body, ColliderBuilder::ball(0.1)).0
+    };
+    let [a, b] = [0.0, 3.0].map(&mut put);
+    let joint = SphericalJointBuilder::new().local_anchor1(Vector::X);
+    world.insert_multibody_joint(a, b, joint);
+    assert_eq!(world.bodies[b].translation().x, 3.0);
+    world.step();
+    let x = world.bodies[b].translation().x;
+    assert!((x - 1.0).abs() < 0.01, "at {x}");
+}

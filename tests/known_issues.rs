@@ -20,7 +20,7 @@ use scenes::bodies::{boxes, plateau};
 use scenes::combs::Dropped;
 use scenes::let_go::let_go;
 use scenes::oneway::plates;
-use scenes::wheels::wheel_rolled;
+use scenes::wheels::{Ground, rolled};
 
 /// The event loop leaves a pair whose contacts the user modifies ([`ActiveHooks::MODIFY_SOLVER_CONTACTS`])
 /// to rapier, since it has no solver contacts to show. rapier does not sweep two dynamic bodies, so fast
@@ -435,11 +435,11 @@ fn an_inside_out_part_spoils_a_kit_of_boxes() {
     assert!(error > 0.1, "{error}: mended?");
 }
 
-/// A wheel that rolls freely on a cuboid loses more speed than rapier's compound of as many capsules: of the contacts that bear
-/// it one is ahead of its axle by up to a centimetre. On a medial plate it keeps 0.99 of its speed.
+/// A wheel of few cones that rolls slowly on rapier's grounds stops sooner than rapier's compound of as many capsules: in a step
+/// it turns by less than half a side, and the next corner comes down on the ground ahead of the axle.
 #[test]
-fn a_wheel_rolls_slower_on_a_cuboid_than_rapiers_own() {
-    let [own, ours] = [false, true].map(wheel_rolled);
+fn slow_wheels_of_few_cones_roll_slower_than_rapiers_own() {
+    let [own, ours] = [false, true].map(|m| rolled(m, Ground::Cuboid, 32, 0.3));
     println!("{ours} m/s after 3 s, rapier's own {own}");
-    assert!(ours < own - 0.1, "{ours} m/s, rapier's own {own}");
+    assert!(ours < own - 0.02, "{ours} m/s, rapier's own {own}: mended?");
 }

@@ -6,8 +6,15 @@
 //! most `A` is never further from it than `A/8` over a step of length 1 (the sagitta).
 
 use super::lane::{Scalar, Vec3};
-use parry3d::math::Rotation;
+use super::{Real, Rotation, Vector};
 use parry3d::query::NonlinearRigidMotion;
+
+/// How far a point at distance 1 from the centre moves by the turn from one rotation to another, at most: `2 sin(θ/2)` for an
+/// angle `θ`. Computed from its sine, since a cosine in single precision tells no angle below a thousandth from 0.
+pub fn chord(from: Rotation, to: Rotation) -> Real {
+    let turn = from.inverse() * to;
+    2.0 * Vector::new(turn.x, turn.y, turn.z).length()
+}
 
 /// A rigid motion over a step; times are fractions of the step, in `[0, 1]`.
 #[derive(Clone, Copy, Debug)]

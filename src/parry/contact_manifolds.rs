@@ -2,7 +2,7 @@
 //! meshes from the batch's answers (`manifolds.rs`), those of a mesh and a flat face from our own code
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
-use super::contact_reduction;
+use super::contact_reduction::{self, Load};
 use super::convex_parts::{Part, child_reach, part_number, slack, slack_of};
 use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
@@ -10,7 +10,9 @@ use super::false_contacts;
 use super::flat_face;
 use super::ghost_contacts::{PartContact, ghosts};
 use super::inward_contacts;
+use super::manifold_points;
 use super::manifolds::{self, ensure_workspace, write_one_point};
+use super::previous_contacts;
 use super::touching_normals;
 use super::voxel_normals;
 use crate::batch::PairJob;
@@ -77,7 +79,7 @@ impl MedialDispatcher {
         };
         let center = mesh.unit_mass_properties().local_com;
         let center = if side == 0 { center } else { pos12 * center };
-        let previous = contact_reduction::previous(manifolds, side);
+        let previous = previous_contacts::previous(manifolds, side);
         let (Some(mesh1), Some(mesh2)) = meshes else {
             let pair = ((mesh, side), pos12, [g1, g2]);
             let goes_on = write_on_flat(pair, prediction, manifolds, workspace);
@@ -85,33 +87,16 @@ impl MedialDispatcher {
                 Some(_) => Ok(()),
                 None => write_by_parry(pair, prediction, manifolds, workspace),
             };
-            let other = [g2, g1][side];
-            let pose = [*pos12, pos12.inverse()][side];
-            match other.as_typed_shape() {
-                TypedShape::TriMesh(_) | TypedShape::HeightField(_) => {
-                    false_contacts::correct(manifolds, (mesh, side), (other, &pose), prediction);
-                    inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
-                    leave_out_ghosts(manifolds, (mesh, side), &pose);
-                }
-                TypedShape::Voxels(voxels) => {
-                    voxel_normals::correct(manifolds, (mesh, side), (voxels, &pose), prediction);
-                    leave_out_ghosts(manifolds, (mesh, side), &pose);
-                }
-                _ if goes_on.is_none() => {
-                    // First, so that none is turned to the normal of one that it is a ghost of.
-                    leave_out_ghosts(manifolds, (mesh, side), &pose);
-                    touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
-                    if let TypedShape::Compound(compound) = other.as_typed_shape() {
-                        leave_out_childrens_ghosts(manifolds, (mesh, side), (compound, &pose));
-                    }
-                    deep_pieces::leave_out(manifolds, (mesh, side), (other, &pose));
-                }
-                _ => {}
-            }
+            correct(pair, (goes_on.is_none(), prediction), manifolds);
             if goes_on != Some(true) {
-                contact_reduction::transfer_impulses(manifolds, &previous, prediction, side);
+                previous_contacts::transfer_impulses(manifolds, &previous, prediction, side);
             }
-            contact_reduction::choose(manifolds, (pos12, center), prediction, &previous, side);
+            let load = Load {
+                center,
+                prediction,
+                turn: plan.turn(mesh),
+            };
+            contact_reduction::choose(manifolds, pos12, &load, &previous, side);
             if goes_on.is_some() {
                 manifolds.retain(|m| !m.points.is_empty());
             }
@@ -123,9 +108,48 @@ impl MedialDispatcher {
         self.exchange.contacts(job, |found| {
             manifolds::write_manifolds(meshes, found, pos12, prediction, manifolds);
         });
-        contact_reduction::choose(manifolds, (pos12, center), prediction, &previous, side);
+        let load = Load {
+            center,
+            prediction,
+            turn: None,
+        };
+        contact_reduction::choose(manifolds, pos12, &load, &previous, side);
         self.count_manifolds(manifolds.len());
         Ok(())
+    }
+}
+
+/// Turns or leaves out what is wrong in the contacts of a mesh with another shape, whether they are parry's or not.
+fn correct<M, C>(
+    ((mesh, side), pos12, [g1, g2]): Pair,
+    (by_parry, prediction): (bool, Real),
+    manifolds: &mut [ContactManifold<M, C>],
+) where
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    let other = [g2, g1][side];
+    let pose = [*pos12, pos12.inverse()][side];
+    match other.as_typed_shape() {
+        TypedShape::TriMesh(_) | TypedShape::HeightField(_) => {
+            false_contacts::correct(manifolds, (mesh, side), (other, &pose), prediction);
+            inward_contacts::leave_out(manifolds, (mesh, side), (other, &pose), prediction);
+            leave_out_ghosts(manifolds, (mesh, side), &pose);
+        }
+        TypedShape::Voxels(voxels) => {
+            voxel_normals::correct(manifolds, (mesh, side), (voxels, &pose), prediction);
+            leave_out_ghosts(manifolds, (mesh, side), &pose);
+        }
+        _ if by_parry => {
+            // First, so that none is turned to the normal of one that it is a ghost of.
+            leave_out_ghosts(manifolds, (mesh, side), &pose);
+            touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
+            if let TypedShape::Compound(compound) = other.as_typed_shape() {
+                leave_out_childrens_ghosts(manifolds, (mesh, side), (compound, &pose));
+            }
+            deep_pieces::leave_out(manifolds, (mesh, side), (other, &pose));
+        }
+        _ => {}
     }
 }
 
@@ -168,8 +192,8 @@ fn leave_out_ghosts_of<M, C>(
         PartContact {
             part: parts[side],
             other: number(parts[1 - side]),
-            place: contact_reduction::places(m, i)[side],
-            normal: contact_reduction::normals(m)[side],
+            place: manifold_points::places(m, i)[side],
+            normal: manifold_points::normals(m)[side],
             gap: m.points[i].dist,
         }
     };
@@ -226,7 +250,7 @@ where
     M: Default + Clone,
     C: Default + Copy,
 {
-    contact_reduction::force_full_update(manifolds);
+    previous_contacts::force_full_update(manifolds);
     let flat = if !manifolds.is_empty() && flat_face::wrote(manifolds) {
         manifolds.clone()
     } else {

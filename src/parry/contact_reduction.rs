@@ -9,6 +9,8 @@
 //! the less, the higher it is above the facet, since the body stands on the others before it comes down there. Where `c` is
 //! beside all contacts the body tips over, and the deepest contact is among the four.
 
+use super::manifold_points::{normals, places};
+use super::previous_contacts::PreviousContact;
 use crate::math::{Pose, Real, Vector};
 use parry3d::query::ContactManifold;
 
@@ -24,6 +26,11 @@ const EQUAL: f64 = 0.02;
 
 /// Contacts nearer to each other than this are one, in units of the prediction distance; as in rapier.
 const SAME_PLACE: f64 = 0.25;
+
+/// Width of the place that a body that turns passes over in a step, in units of how far its points turn in it: of the contacts
+/// within that of a deeper one only that one bears. One ahead of a wheel's axle would stop what comes down on it, and the
+/// wheel with it.
+const PASSED: f64 = 3.0;
 
 /// Steepest facet, as a gradient, where the load is beside all contacts and the body tips over: contacts
 /// deeper than that slope from the edge it tips over are not left in. With 1 a knot slept 60 mm deep.
@@ -55,76 +62,50 @@ struct Seen {
     bore: bool,
 }
 
-/// A contact of the step before that carried a load.
-pub struct PreviousContact<C> {
-    subshapes: [u32; 2],
-    place: Vector,
-    data: C,
+/// What a body's contacts have to bear.
+pub struct Load {
+    /// Centre of mass of the body, in the first body's frame.
+    pub center: Vector,
+    /// Largest gap of a contact, a length.
+    pub prediction: Real,
+    /// How the body turns, where that is known.
+    pub turn: Option<Turn>,
 }
 
-/// The contacts of these manifolds that carried a load, at their points on body `side` (0 or 1).
-pub fn previous<M, C: Copy>(
-    manifolds: &[ContactManifold<M, C>],
-    side: usize,
-) -> Vec<PreviousContact<C>> {
-    let of = |m: &ContactManifold<M, C>, i: usize| PreviousContact {
-        subshapes: [m.subshape1, m.subshape2],
-        place: places(m, i)[side],
-        data: m.points[i].data,
-    };
-    let all = manifolds.iter();
-    all.flat_map(|m| (0..m.points.len()).map(move |i| of(m, i)))
-        .collect()
+/// How a body turns in a step, in the frame of its medial mesh.
+pub struct Turn {
+    /// Angle in radians about each axis.
+    pub angle: Vector,
+    /// Centre of mass of the body.
+    pub center: Vector,
+    /// Widest place that one contact may serve, a length.
+    pub most: Real,
 }
 
-/// Makes parry compute all contacts anew. It would otherwise go on from those in the manifolds, of which some were removed
-/// and some turned.
-pub fn force_full_update<M, C: Default + Copy>(manifolds: &mut [ContactManifold<M, C>]) {
-    manifolds
-        .iter_mut()
-        .for_each(ContactManifold::mark_shapes_deformed);
-}
-
-/// Passes the data (impulses) of contacts of the step before to the nearest new contacts of the same subshapes, each
-/// once. parry matches contacts by features, which several contacts of an edge share, so that an impulse would count
-/// several times.
-pub fn transfer_impulses<M, C: Default + Copy>(
-    manifolds: &mut [ContactManifold<M, C>],
-    previous: &[PreviousContact<C>],
-    prediction: Real,
-    side: usize,
-) {
-    for manifold in manifolds {
-        let now: Vec<Vector> = (0..manifold.points.len())
-            .map(|i| places(manifold, i)[side])
-            .collect();
-        let ids = [manifold.subshape1, manifold.subshape2];
-        manifold
-            .points
-            .iter_mut()
-            .for_each(|p| p.data = C::default());
-        let mut free = vec![true; now.len()];
-        for b in previous.iter().filter(|b| b.subshapes == ids) {
-            let apart = |i: &usize| now[*i].distance(b.place);
-            let near = (0..now.len()).filter(|i| free[*i] && apart(i) < prediction);
-            if let Some(i) = near.min_by(|i, j| apart(i).total_cmp(&apart(j))) {
-                free[i] = false;
-                manifold.points[i].data = b.data;
-            }
+impl Turn {
+    /// How far a point of the body turns in the step, a length; 0 for those near the axis. Where a coin that wobbles on its
+    /// edge touches the ground, that place goes round the coin much faster than the coin turns.
+    fn way(&self, p: Vector) -> Real {
+        let arm = p - self.center;
+        let across = self.angle.cross(arm).length();
+        if self.angle.dot(arm).abs() > across {
+            0.0
+        } else {
+            across
         }
     }
 }
 
-/// Removes all contacts but those that bear the load: at most four for each normal, chosen for a load at `center`
-/// (in the first body's frame). `previous` are the contacts that did so in the step before, on body `side`.
+/// Removes all contacts but those that bear the load: at most four for each normal, chosen for a load.
+/// `previous` are the contacts that did so in the step before, on body `side`.
 pub fn choose<M, C: Copy>(
     manifolds: &mut [ContactManifold<M, C>],
-    (pos12, center): (&Pose, Vector),
-    prediction: Real,
+    pos12: &Pose,
+    load: &Load,
     previous: &[PreviousContact<C>],
     side: usize,
 ) {
-    let prediction = f64::from(prediction);
+    let prediction = f64::from(load.prediction);
     let equal = EQUAL * prediction;
     let mut left_out = Vec::new();
     for group in groups(manifolds, equal) {
@@ -136,18 +117,29 @@ pub fn choose<M, C: Copy>(
         });
         let see = |[m, i]: [usize; 2]| {
             let points = places(&manifolds[m], i);
-            let from = points[0] - center;
+            let from = points[0] - load.center;
             let bore = previous
                 .iter()
                 .any(|b| f64::from(b.place.distance(points[side])) < SAME_PLACE * prediction);
             Seen {
                 contact: [m, i],
                 at: [from.dot(x).into(), from.dot(y).into()],
-                gap: f64::from(manifolds[m].points[i].dist) - if bore { equal } else { 0.0 },
+                gap: manifolds[m].points[i].dist.into(),
                 bore,
             }
         };
         let mut seen: Vec<Seen> = of_group.map(see).collect();
+        // By the gap alone: what bore before would push a wheel on from behind its axle.
+        let deepest = seen.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
+        if let (Some(turn), Some(deepest)) = (&load.turn, deepest) {
+            let [m, i] = deepest.contact;
+            let passed = PASSED * f64::from(turn.way(places(&manifolds[m], i)[side]));
+            if passed > SAME_PLACE * prediction {
+                left_out.extend(without_doubles(&mut seen, passed.min(turn.most.into())));
+            }
+        }
+        let bore = seen.iter_mut().filter(|s| s.bore);
+        bore.for_each(|s| s.gap -= equal);
         left_out.extend(without_doubles(&mut seen, SAME_PLACE * prediction));
         if seen.iter().filter(|s| s.gap <= prediction).count() <= SOLVED {
             continue;
@@ -347,23 +339,4 @@ fn through(corners: &[([f64; 2], f64); 3]) -> [f64; 3] {
 
 fn square(at: [f64; 2]) -> f64 {
     at[0] * at[0] + at[1] * at[1]
-}
-
-/// The two points of a contact, each in its body's frame.
-pub fn places<M, C>(manifold: &ContactManifold<M, C>, i: usize) -> [Vector; 2] {
-    let point = &manifold.points[i];
-    let in_body = |pose: Option<&Pose>, p: Vector| pose.map_or(p, |pose| pose * p);
-    [
-        in_body(manifold.subshape_pos1(), point.local_p1),
-        in_body(manifold.subshape_pos2(), point.local_p2),
-    ]
-}
-
-/// The normals out of both bodies, each in its body's frame.
-pub fn normals<M, C>(manifold: &ContactManifold<M, C>) -> [Vector; 2] {
-    let in_body = |pose: Option<&Pose>, n: Vector| pose.map_or(n, |pose| pose.rotation * n);
-    [
-        in_body(manifold.subshape_pos1(), manifold.local_n1),
-        in_body(manifold.subshape_pos2(), manifold.local_n2),
-    ]
 }

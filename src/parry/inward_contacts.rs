@@ -6,7 +6,7 @@
 //! of the box behind it. The box as a whole has no contact there; what holds it up are other contacts. And where a
 //! primitive just touches the border of a triangle, parry's EPA algorithm may find it far below.
 
-use super::contact_reduction::places;
+use super::manifold_points::places;
 use crate::math::fast_hash::FastSet;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};

@@ -9,7 +9,8 @@
 //!   left out (`ghost_contacts.rs`). Of parry's, those with triangles are replaced where they are wrong (`false_contacts.rs`)
 //!   or left out (`inward_contacts.rs`), wrong normals are turned (`touching_normals.rs`, `voxel_normals.rs`), and of
 //!   convex pieces deep in other shapes those are left out that push another way than the shortest (`deep_pieces.rs`).
-//!   `contact_reduction.rs` leaves the ones that bear the load. Between which convex parts: `convex_parts.rs`.
+//!   `contact_reduction.rs` leaves the ones that bear the load, and `previous_contacts.rs` hands on the impulses of those before. Between which convex parts: `convex_parts.rs`.
+//!   Their points and normals: `manifold_points.rs`.
 //! - Casts: `cast.rs`, parry's answer `cast_answer.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
 //!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
 //!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at; of
@@ -37,10 +38,12 @@ mod ghost_contacts;
 pub mod initial_contacts;
 pub(crate) mod inside;
 mod inward_contacts;
+mod manifold_points;
 pub(crate) mod manifolds;
 pub(crate) mod medial_part;
 pub(crate) mod narrow_phase_plan;
 mod outward_normals;
+pub mod previous_contacts;
 pub(crate) mod rays;
 pub(crate) mod shape;
 mod shape_faces;

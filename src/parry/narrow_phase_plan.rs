@@ -9,6 +9,7 @@ use crate::math::counters::counters;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::pair::first_contact::Counts;
+use crate::parry::contact_reduction::Turn;
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
 use std::collections::{HashMap, HashSet};
@@ -84,6 +85,9 @@ impl SinglePointPairs {
 /// world which pairs are known. `None` if contacts of this pair are not predicted.
 pub type Compute = Box<dyn Fn(PairJob) -> Option<PairResult> + Send + Sync>;
 
+/// Tells how the body of a mesh turns in the step; `None` if that is not known.
+pub type Turns = Box<dyn Fn(&MedialMesh) -> Option<Turn> + Send + Sync>;
+
 /// Plan that the dispatcher goes by while rapier steps. It does not change in that time. The default knows nothing and
 /// mutes nothing: all contacts are those of the poses asked about.
 #[derive(Default)]
@@ -92,6 +96,8 @@ pub struct NarrowPhasePlan {
     pub known: HashMap<PairKey, (Real, PairResult)>,
     /// Computes contacts that are not known.
     pub compute: Option<Compute>,
+    /// Tells how the body of a mesh turns.
+    pub turns: Option<Turns>,
     /// Pairs that get no contacts, because the event loop resolves them.
     pub muted: HashSet<PairKey>,
     /// Pairs that get only their deepest contact.
@@ -121,6 +127,11 @@ impl NarrowPhasePlan {
     /// Whether a pair gets only its deepest contact. Only medial shapes of the pair decide.
     pub fn has_single_point(&self, shape1: &dyn Shape, shape2: &dyn Shape) -> bool {
         self.single_point_pairs.contains([shape1, shape2])
+    }
+
+    /// How the body of a mesh turns in the step; `None` if that is not known.
+    pub fn turn(&self, mesh: &MedialMesh) -> Option<Turn> {
+        self.turns.as_ref()?(mesh)
     }
 
     fn known(&self, job: &PairJob) -> Option<&PairResult> {

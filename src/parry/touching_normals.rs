@@ -6,8 +6,8 @@
 //! the contact. Where it is not, but that along the normal of a flat face of either body nearly is ([`ROOM`]), it is turned
 //! to that.
 
-use super::contact_reduction::places;
 use super::convex_parts::{Part, child_of, part_number, slack};
+use super::manifold_points::places;
 use super::shape_faces::flat_sides;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};

@@ -3,7 +3,7 @@
 //! has contacts to its sides. What touches a face can be pushed along its normal only, and at the border of several along
 //! one between theirs. Of rounded parts GJK sees what is within their surface, which does not touch.
 
-use super::contact_reduction::places;
+use super::manifold_points::places;
 use super::shape_faces::free_faces;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;

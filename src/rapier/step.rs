@@ -11,6 +11,7 @@ use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
 use crate::rapier::host::forced_updates::{self, Forced};
 use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::new_links::place_links;
 use crate::rapier::host::sleep_timers::moved_before;
 use crate::rapier::impacts::event_loop;
 use crate::rapier::impacts::outcome::Outcome;
@@ -112,6 +113,12 @@ impl State {
             let unit = args.parameters.length_unit;
             self.moved = Some(moved_before(world.bodies, world.colliders, unit));
         }
+        place_links(
+            world.bodies,
+            world.multibody_joints,
+            world.colliders,
+            args.parameters.length_unit,
+        );
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         world
             .bodies
@@ -235,13 +242,15 @@ impl State {
         }
         let keys = jobs.map(|(job, ahead)| ahead.key(job));
         let known = keys.zip(results);
-        let colliders = found.colliders;
+        let colliders = Arc::new(found.colliders);
+        let (turning, dt) = (Arc::clone(&colliders), parameters.dt);
         let others = self.bystanders(world, parameters, participants.as_ref());
         let narrow_phase = Arc::new(NarrowPhasePlan {
             known: known.map(|((k, p), result)| (k, (p, result))).collect(),
             compute: Some(Box::new(move |job| {
                 predicted(&colliders, others.as_deref(), job)
             })),
+            turns: Some(Box::new(move |mesh| turning.of(mesh)?.turn(dt))),
             muted,
             single_point_pairs: self.effects.single_point_pairs(world.colliders),
             sweeps: self.sweeps(world, &census),

@@ -6,6 +6,7 @@ pub(crate) mod events_of_impacts;
 pub(crate) mod forced_updates;
 pub(crate) mod multibody_coordinates;
 pub(crate) mod multibody_energy;
+pub(crate) mod new_links;
 pub(crate) mod recycling;
 pub(crate) mod reported_impulse;
 pub(crate) mod sleep_timers;

@@ -140,13 +140,20 @@ impl FastParts {
         side: usize,
     ) -> bool {
         let aabb = other.shape.compute_local_aabb();
+        // Its box is the whole world.
+        let plane = other.shape.as_halfspace();
         let starts = [side, 1 - side].map(|k| &motion.motions[k].start);
         let pos21: Pose = starts[1].inv_mul(starts[0]);
         let nodes = mesh.tree().nodes();
         let mut open = vec![0];
         while let Some(i) = open.pop() {
             let node = &nodes[i as usize];
-            let apart = distance(&aabb, pos21 * node.center) - node.radius;
+            let center = pos21 * node.center;
+            let apart = match plane {
+                Some(plane) => plane.normal.dot(center),
+                None => distance(&aabb, center),
+            };
+            let apart = apart - node.radius;
             let thinner = mesh.thicknesses().nodes[i as usize].min(other.thickness);
             if apart > self.reach || !self.is_fast(motion, side, node, thinner) {
                 continue;

@@ -17,6 +17,7 @@
 //! the joint is gone.
 
 use crate::math::fast_hash::FastSet;
+use crate::math::motion::chord;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
@@ -339,7 +340,7 @@ impl InitialOverlaps {
         let [end1, end2] = [self.end_of(p.handle)?, self.end_of(q.handle)?];
         let before = end1.pose.inv_mul(&end2.pose);
         let now = start(0).inv_mul(&start(1));
-        let turn = before.rotation.angle_between(now.rotation);
+        let turn = chord(before.rotation, now.rotation);
         let extent = q.bound.center().length() + q.bound.radius();
         let changed = end1.shape.moved_to(p) + end2.shape.moved_to(q);
         Some((now.translation - before.translation).length() + turn * extent + changed)

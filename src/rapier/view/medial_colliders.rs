@@ -3,6 +3,7 @@
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
+use crate::parry::contact_reduction::Turn;
 use crate::rapier::view::motion::{forces_per_mass, velocities};
 use crate::rapier::view::participants::{Participants, enabled};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -190,6 +191,17 @@ impl MedialCollider {
     /// Bound on the speed at which its points turn about the centre of mass.
     pub fn swing(&self) -> Real {
         self.motion.angvel.length() * (self.motion.local_center.length() + self.extent)
+    }
+
+    /// How it turns in `seconds`; `None` if nothing turns it.
+    pub fn turn(&self, seconds: Real) -> Option<Turn> {
+        let motion = &self.motion;
+        let angle = motion.start.rotation.inverse() * motion.angvel * seconds;
+        (angle != Vector::ZERO).then(|| Turn {
+            angle,
+            center: motion.local_center,
+            most: self.mesh.thickness(),
+        })
     }
 
     /// Bound on the speed of its points.

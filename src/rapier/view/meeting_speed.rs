@@ -3,7 +3,7 @@
 
 use crate::math::{Real, Vector};
 use crate::rapier::view::step_view::StepView;
-use parry3d::bounding_volume::BoundingVolume;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 
 impl StepView {
     /// Bound on how fast the surfaces of two colliders move against each other, a length per second, in all places where
@@ -18,7 +18,12 @@ impl StepView {
             let aabb = self.swept_aabb(k, time, end);
             aabb.loosened(margin + self.parts[k].skin)
         };
-        let Some(common) = swept(pair[0]).intersection(&swept(pair[1])) else {
+        let common = swept(pair[0]).intersection(&swept(pair[1]));
+        let below = |common: Option<Aabb>, (k, other): (usize, usize)| {
+            self.below_plane(k, common?, margin + self.parts[other].skin)
+        };
+        let orders = [(pair[0], pair[1]), (pair[1], pair[0])];
+        let Some(common) = orders.into_iter().fold(common, below) else {
             return 0.0;
         };
         let motions = pair.map(|k| self.motion(k, time));
@@ -37,5 +42,73 @@ impl StepView {
         });
         // Rounding: a few ulps.
         speeds.fold(0.0, Real::max) * (1.0 + 16.0 * Real::EPSILON)
+    }
+
+    /// Box of the part of a box that is below a half-space's plane or within `margin` of it; all of the box if the collider is no
+    /// half-space, or moves. The box of a half-space is the whole world, in which a wheel's top would count as meeting it.
+    fn below_plane(&self, part: usize, aabb: Aabb, margin: Real) -> Option<Aabb> {
+        let p = &self.parts[part];
+        let motion = &self.bodies[p.body].motion;
+        let still = motion.linvel == Vector::ZERO && motion.angvel == Vector::ZERO;
+        let Some(plane) = p.shape.as_halfspace().filter(|_| still) else {
+            return Some(aabb);
+        };
+        let pose = self.motion(part, 0.0).start;
+        let normal = pose.rotation * plane.normal;
+        let size = aabb.mins.abs().max(aabb.maxs.abs()) + pose.translation.abs();
+        let rounding = 16.0 * Real::EPSILON * size.element_sum();
+        let height = normal.dot(pose.translation) + margin + p.skin + rounding;
+        box_below(aabb, normal, height)
+    }
+}
+
+/// Box of the part of a box in which `normal · x` is no more than `height`; `None` if there is none.
+fn box_below(aabb: Aabb, normal: Vector, height: Real) -> Option<Aabb> {
+    let lowest = (normal * aabb.mins).min(normal * aabb.maxs);
+    let (mut mins, mut maxs) = (aabb.mins, aabb.maxs);
+    for axis in 0..3 {
+        // What is left for this coordinate where the two others add least.
+        let room = height - (lowest.element_sum() - lowest[axis]);
+        if normal[axis] > 0.0 {
+            maxs[axis] = maxs[axis].min(room / normal[axis]);
+        } else if normal[axis] < 0.0 {
+            mins[axis] = mins[axis].max(room / normal[axis]);
+        }
+    }
+    mins.cmple(maxs).all().then(|| Aabb::new(mins, maxs))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_points_below_a_plane_are_in_the_box_and_it_is_no_larger_than_needed() {
+        let mut state = 1u32;
+        let mut unit = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as Real / 16_777_216.0 * 2.0 - 1.0
+        };
+        let mut vector = || Vector::new(unit(), unit(), unit());
+        for _ in 0..300 {
+            let (middle, half, normal) = (vector(), vector().abs(), vector().normalize());
+            let aabb = Aabb::from_half_extents(middle, half);
+            let height = normal.dot(middle) + 0.3 * vector().x;
+            let points = (0..4000).map(|_| middle + half * vector());
+            let below = points.filter(|p| normal.dot(*p) <= height);
+            let cut = box_below(aabb, normal, height);
+            let mut reached = [middle.map(|_| Real::MAX), middle.map(|_| Real::MIN)];
+            for p in below {
+                let cut = cut.expect("a point is below");
+                let out = (cut.mins - p).max(p - cut.maxs).max_element();
+                assert!(out < 1.0e-6, "{out} outside");
+                reached = [reached[0].min(p), reached[1].max(p)];
+            }
+            // Where the plane cuts off more than a corner the samples reach nearly all of it.
+            if let Some(cut) = cut.filter(|_| height > normal.dot(middle)) {
+                let spare = (reached[0] - cut.mins).max(cut.maxs - reached[1]) / half;
+                assert!(spare.max_element() < 0.5, "{spare} spare");
+            }
+        }
     }
 }
