@@ -1,12 +1,15 @@
 //! Medial colliders in rapier (layer 6): what a user calls, and what is done before and after rapier's step.
 //!
-//! A step in order (`step.rs`): it takes a view of the world (`view/`), plans the step (`contacts/`: the contacts
-//! that rapier will ask for, and the pairs that are muted, that is kept from its solver), has rapier step, and
-//! resolves the impacts within the step that rapier missed (`impacts/`, `joints/`). What rapier 0.36 has to be told
-//! in roundabout ways is in `host/`.
+//! A step in order (`step.rs`): it takes a view of the world (`view/`) and makes the plan of the step (`planning.rs`, by
+//! the rules of `contacts/`: the contacts that rapier will ask for, and the pairs that are muted, that is kept from its
+//! solver); then rapier steps; then the impacts within the step that rapier missed are resolved (`resolving.rs`, by
+//! `impacts/` and `joints/`). What rapier 0.36 has to be told in roundabout ways is in `host/`.
 //!
-//! What users call is in `pipeline.rs`, and `integration/` adds to rapier's builders. Settings are in `effects.rs`,
-//! the constants of the event loop in `tuning.rs`.
+//! # Files
+//! - What users call: `pipeline.rs`, and between two steps `prepare.rs`; `integration/` adds to rapier's builders. Settings:
+//!   `effects.rs`, the constants of the event loop `tuning.rs`. What a step tells: `report.rs`.
+//! - What a step is taken with: `step_args.rs`, rapier's sets `world.rs`. Its plan: `step_plan.rs`. What is kept from step to
+//!   step: `state.rs`.
 
 mod contacts;
 mod effects;
@@ -14,11 +17,15 @@ mod host;
 mod impacts;
 mod integration;
 mod joints;
-mod loans;
 mod pipeline;
+mod planning;
+#[cfg(feature = "gpu")]
+mod prepare;
 mod report;
+mod resolving;
 mod state;
 mod step;
+mod step_args;
 mod step_plan;
 mod tuning;
 mod view;

@@ -1,21 +1,13 @@
 //! [`MedialPipeline`]: what a user calls in place of rapier's step. `step.rs` has the step itself.
 
 use crate::batch::Batch;
-#[cfg(feature = "gpu")]
-use crate::batch::PairJob;
 use crate::math::Vector;
 use crate::parry::MedialDispatcher;
-use crate::rapier::effects::{EffectSettings, Effects, MedialOptions};
-use crate::rapier::host::events_of_impacts::ReportedStarts;
-use crate::rapier::host::recycling::RecyclingRecord;
-use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
+use crate::rapier::effects::{Effects, MedialOptions};
 use crate::rapier::report::StepReport;
 use crate::rapier::state::State;
 use crate::rapier::tuning::Tuning;
-use crate::rapier::view::still_colliders::StillRecord;
 use crate::rapier::world::World;
-#[cfg(feature = "gpu")]
-use crate::rapier::{contacts::candidates, step_plan::lowered, view::medial_colliders::Sets};
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
@@ -73,24 +65,8 @@ impl MedialPipeline {
 
     /// A pipeline that uses a backend opened before; [`MedialOptions::backend`] is ignored.
     pub fn with_batch(options: MedialOptions, batch: Batch) -> Self {
-        let mut effects = EffectSettings::default();
-        effects.scene = options.effects;
-        let state = State {
-            batch,
-            exchange: Arc::default(),
-            recycled: RecyclingRecord::default(),
-            effects,
-            tuning: Tuning::default(),
-            budget: options.budget,
-            reported: ReportedStarts::default(),
-            placed: InitialOverlaps::default(),
-            still: StillRecord::default(),
-            still_medial: None,
-            moved: None,
-            kept: None,
-        };
         Self {
-            state,
+            state: State::new(options, batch),
             is_attached: false,
         }
     }
@@ -106,56 +82,19 @@ impl MedialPipeline {
         std::mem::replace(&mut self.state.batch, batch)
     }
 
-    /// Sends the contacts of the next step to a GPU in a browser, and waits for its answers without blocking the page.
-    /// Await it between two steps, after your changes to the world: pairs that change later are computed on the CPU.
-    /// Outside browsers each step does this by itself.
-    #[cfg(feature = "gpu")]
-    pub async fn prepare(&mut self, world: &PhysicsWorld) {
-        let next = self.expected(world);
-        self.state.batch.submit_async(&next).await;
-        self.state.batch.ready().await;
-    }
-
-    /// Does the same as [`Self::prepare`] for many worlds in one submission to one GPU, that of `batch`. The
-    /// pipelines themselves need no GPU. Await it between two steps. Each world goes on as it would by itself, bit by
-    /// bit. All other work of the steps is done on the CPU, as everything is without a GPU.
-    #[cfg(feature = "gpu")]
-    pub async fn prepare_many<'a>(
-        batch: &mut Batch,
-        worlds: impl IntoIterator<Item = (&'a mut Self, &'a PhysicsWorld)>,
-    ) {
-        let part = |(pipeline, world): (&'a mut Self, &'a PhysicsWorld)| {
-            let next = pipeline.expected(world);
-            (&mut pipeline.state.batch, next)
-        };
-        let mut parts: Vec<_> = worlds.into_iter().map(part).collect();
-        batch.share(&mut parts).await;
-    }
-
-    /// The contacts that the next step will compute, if nothing is changed until then.
-    #[cfg(feature = "gpu")]
-    fn expected(&self, world: &PhysicsWorld) -> Vec<PairJob> {
-        let parameters = lowered(&world.integration_parameters);
-        let sets = Sets {
-            parameters: &parameters,
-            ..Sets::of(world)
-        };
-        candidates::expect(sets, &self.state.recycled)
-    }
-
     /// Sets the effects of one collider. An effect left at [`Effect::Auto`](crate::Effect::Auto) follows the scene's
     /// setting, so [`Effects::default`] removes the collider's own settings. If the two colliders of a pair have
     /// different settings for an effect, `On` wins over `Off`. A handle that the world does not have is ignored. The
     /// settings are not part of a saved world.
     pub fn set_effects(&mut self, collider: ColliderHandle, effects: Effects) {
-        self.state.effects.set(collider, effects);
+        self.state.settings.effects.set(collider, effects);
         self.state.kept = None;
     }
 
     /// Sets other constants of the event loop, to measure what they do.
     #[doc(hidden)]
     pub fn set_tuning(&mut self, tuning: Tuning) {
-        self.state.tuning = tuning;
+        self.state.settings.tuning = tuning;
         self.state.kept = None;
     }
 

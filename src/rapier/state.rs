@@ -3,10 +3,11 @@
 use crate::batch::Batch;
 use crate::math::Vector;
 use crate::parry::narrow_phase_plan::PlanExchange;
-use crate::rapier::effects::EffectSettings;
+use crate::rapier::effects::{EffectSettings, MedialOptions};
 use crate::rapier::host::events_of_impacts::ReportedStarts;
 use crate::rapier::host::recycling::RecyclingRecord;
 use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
+use crate::rapier::step_args::Settings;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::tuning::Tuning;
 use crate::rapier::view::census::Census;
@@ -26,15 +27,15 @@ pub struct State {
     pub exchange: Arc<PlanExchange>,
     /// Which contacts rapier keeps.
     pub recycled: RecyclingRecord,
-    pub effects: EffectSettings,
-    pub tuning: Tuning,
-    /// [`MedialOptions::budget`](crate::MedialOptions::budget).
-    pub budget: u64,
+    /// Settings of the pipeline.
+    pub settings: Settings,
+    /// Which starts of contacts were reported.
     pub reported: ReportedStarts,
+    /// Bodies that were put into each other.
     pub placed: InitialOverlaps,
     /// The colliders that stood still in the last step.
     pub still: StillRecord,
-    /// The medial ones, with what they were made for: the still colliders and gravity.
+    /// All medial colliders of the world, with what they were made for: the still colliders and gravity.
     pub still_medial: Option<(Arc<StillColliders>, Vector, Arc<MedialColliders>)>,
     /// The bodies that impacts moved in the last step; `None` before the first.
     pub moved: Option<Vec<RigidBodyHandle>>,
@@ -43,6 +44,28 @@ pub struct State {
 }
 
 impl State {
+    /// The state before the first step.
+    pub fn new(options: MedialOptions, batch: Batch) -> Self {
+        let mut effects = EffectSettings::default();
+        effects.scene = options.effects;
+        Self {
+            batch,
+            exchange: Arc::default(),
+            recycled: RecyclingRecord::default(),
+            settings: Settings {
+                effects,
+                tuning: Tuning::default(),
+                budget: options.budget,
+            },
+            reported: ReportedStarts::default(),
+            placed: InitialOverlaps::default(),
+            still: StillRecord::default(),
+            still_medial: None,
+            moved: None,
+            kept: None,
+        }
+    }
+
     /// Who takes part in a step; `None` where all do.
     pub fn participants(
         &mut self,
@@ -54,7 +77,7 @@ impl State {
             return None;
         }
         let sets = world.sets(parameters, None);
-        let least = self.tuning.least_still;
+        let least = self.settings.tuning.least_still;
         near_what_moves::find(&mut self.still, sets, world.islands, least)
     }
 

@@ -4,11 +4,9 @@
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::NarrowPhasePlan;
 use crate::rapier::host::multibody_energy::WildMultibodies;
-use crate::rapier::host::recycling::RECYCLE_DISTANCE;
 use crate::rapier::view::census::Census;
 use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::StepView;
-use rapier3d::dynamics::IntegrationParameters;
 use std::sync::Arc;
 
 /// Plan of a step, made before rapier's.
@@ -36,12 +34,4 @@ impl StepPlan {
     pub fn holds_in(&self, census: &Census) -> bool {
         census.still.is_some() && self.census == *census
     }
-}
-
-/// Parameters of a step with medial colliders: contacts are kept no longer than [`RECYCLE_DISTANCE`] says.
-pub fn lowered(parameters: &IntegrationParameters) -> IntegrationParameters {
-    let mut parameters = *parameters;
-    let distance = &mut parameters.normalized_contact_recycle_distance;
-    *distance = distance.min(RECYCLE_DISTANCE);
-    parameters
 }

@@ -16,7 +16,7 @@ use rapier3d::dynamics::{
 use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline};
 
-/// Sets of one world: the arguments of [`PhysicsPipeline::step`] but for the parameters and what the user hooks in.
+/// rapier's sets of a world, to be changed by its step: the arguments of [`PhysicsPipeline::step`] but for the parameters and what the user hooks in.
 pub struct World<'a> {
     pub pipeline: &'a mut PhysicsPipeline,
     pub gravity: Vector,

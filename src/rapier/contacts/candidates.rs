@@ -8,7 +8,7 @@ use crate::rapier::contacts::hanging;
 use crate::rapier::contacts::neighbor_speeds::{self, Neighbor};
 use crate::rapier::contacts::predicted_contacts::PredictedMotion;
 use crate::rapier::host::forced_updates::{is_hooked, kept_longer};
-use crate::rapier::host::recycling::{Place, RecyclingRecord};
+use crate::rapier::host::recycling::{Place, RecyclingRecord, lowered};
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
 use crate::rapier::view::overlapping_boxes::overlapping_pairs;
 use parry3d::bounding_volume::Aabb;
@@ -61,9 +61,14 @@ pub fn find(
     }
 }
 
-/// The jobs that [`find`] will return at the next step, if nothing is changed until then.
+/// The jobs that [`find`] will return at the next step of a world, with the user's parameters, if nothing is changed until
+/// then.
 pub fn expect(sets: Sets, recycled: &RecyclingRecord) -> Vec<PairJob> {
-    let scene = ContactScene::new(sets);
+    let parameters = lowered(sets.parameters);
+    let scene = ContactScene::new(Sets {
+        parameters: &parameters,
+        ..sets
+    });
     let asked = |pair: &&[usize; 2]| scene.asked(pair) || !recycled.recycles(&scene.place(pair));
     let asked = scene.pairs.iter().filter(asked);
     asked.map(|pair| scene.at_the_end(pair).1).collect()

@@ -110,7 +110,7 @@ fn reason(
     let is_fast = policy.is_fast(view, pair, 0.0, policy.tuning.muted);
     if !(may_bounce || is_fast)
         || policy.speculates(view, pair)
-        || policy.left(work) <= policy.budget - policy.budget / 4
+        || policy.budget_left(work) <= policy.budget - policy.budget / 4
         || !rules.respond(view, pair)
     {
         return None;

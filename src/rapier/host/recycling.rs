@@ -23,6 +23,14 @@ use rapier3d::dynamics::IntegrationParameters;
 /// are few, and after that on what sleeps until it wakes. So change hooks by adding to `active_hooks()` or taking from it.
 pub const RECYCLE_DISTANCE: Real = 0.004;
 
+/// Parameters of a step with medial colliders: contacts are kept no longer than [`RECYCLE_DISTANCE`] says.
+pub fn lowered(parameters: &IntegrationParameters) -> IntegrationParameters {
+    let mut parameters = *parameters;
+    let distance = &mut parameters.normalized_contact_recycle_distance;
+    *distance = distance.min(RECYCLE_DISTANCE);
+    parameters
+}
+
 /// Cosine of the rotation of either body since its pair's last update above which rapier recycles.
 const ROTATION_COSINE: Real = 0.98;
 

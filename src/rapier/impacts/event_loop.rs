@@ -72,7 +72,7 @@ pub(crate) struct Loop<'a> {
     pub(crate) parts_of: Vec<Vec<usize>>,
     /// The shapes of the colliders.
     shapes: &'a [SharedShape],
-    pub(crate) waiting: EventQueue<Awaited<'a>>,
+    pub(crate) queue: EventQueue<Awaited<'a>>,
     pub(crate) outlines: PairCulling,
     lists: NearLists,
     jobs: usize,
@@ -125,7 +125,7 @@ pub fn resolve(
     response.lead(view, &policy, &rules, &taken);
     let pairs = sweep(view, policy.dt, near_what_moves::MARGIN * policy.unit);
     let shapes: Vec<_> = view.parts.iter().map(|p| p.shape.clone()).collect();
-    let mut events = Loop {
+    let mut impacts = Loop {
         view,
         policy,
         rules,
@@ -135,7 +135,7 @@ pub fn resolve(
         boxes: SweptBoxes::default(),
         parts_of: Vec::new(),
         shapes: &shapes,
-        waiting: EventQueue::default(),
+        queue: EventQueue::default(),
         outlines: PairCulling::new(shapes.len(), policy.dt),
         lists: NearLists::default(),
         jobs: 0,
@@ -146,33 +146,33 @@ pub fn resolve(
     };
     let mut known = FastMap::default();
     if batch.has_device() {
-        let (asked, jobs): (Vec<_>, Vec<_>) = events.first_queries(&pairs).into_iter().unzip();
+        let (asked, jobs): (Vec<_>, Vec<_>) = impacts.first_queries(&pairs).into_iter().unzip();
         known.extend(asked.into_iter().zip(batch.run(&jobs)));
     }
     for pair in pairs {
-        events.ask(pair, 0.0, known.remove(&pair), work);
+        impacts.ask(pair, 0.0, known.remove(&pair), work);
     }
-    while !events.leaves
-        && let Some(next) = events.earliest(work)
+    while !impacts.leaves
+        && let Some(next) = impacts.earliest(work)
     {
-        events.find_boxes();
+        impacts.find_boxes();
         let (pair, hit) = match next {
             Next::Impact(pair, hit) => (pair, hit),
             Next::Piece(time) => {
-                events.begin_piece(time, work);
+                impacts.begin_piece(time, work);
                 continue;
             }
             Next::Spent => {
-                events.wait(work);
+                impacts.wait(work);
                 continue;
             }
         };
-        if events.stops_at(pair, hit.time) {
-            return Some(events.stop(hit.time, narrow_phase));
+        if impacts.stops_at(pair, hit.time) {
+            return Some(impacts.stop(hit.time, narrow_phase));
         }
-        events.impact(pair, hit, work);
+        impacts.impact(pair, hit, work);
     }
-    (!events.leaves).then(|| events.finish())
+    (!impacts.leaves).then(|| impacts.finish())
 }
 
 impl Loop<'_> {
@@ -180,15 +180,15 @@ impl Loop<'_> {
     /// another may come first.
     fn earliest(&mut self, work: &mut Work) -> Option<Next> {
         loop {
-            if !self.is_spent && self.policy.left(work) == 0 {
+            if !self.is_spent && self.policy.budget_left(work) == 0 {
                 return Some(Next::Spent);
             }
             let piece = self.response.next_piece();
-            let waits = self.waiting.first_time();
+            let waits = self.queue.first_time();
             if let Some(time) = piece.filter(|time| waits.is_none_or(|first| *time <= first)) {
                 return Some(Next::Piece(time));
             }
-            let (pair, first, next) = self.waiting.first()?;
+            let (pair, first, next) = self.queue.first()?;
             let inquiry = match first {
                 Awaited::Hit(hit) => return Some(Next::Impact(pair, *hit)),
                 Awaited::Answer(inquiry) => inquiry,
@@ -201,9 +201,9 @@ impl Loop<'_> {
             let meshes: Meshes = pair.map(|k| shapes[k].as_shape::<MedialMesh>());
             let known = ((&mut self.outlines, &mut self.lists), &mut *work);
             match inquiry.advance_to(&self.policy, self.view, pair, meshes, until, known) {
-                QueryProgress::FreeUntil(time) => self.waiting.reschedule_first(time),
+                QueryProgress::FreeUntil(time) => self.queue.reschedule_first(time),
                 QueryProgress::Hit(hit) => self.expect(pair, hit),
-                QueryProgress::Never => self.waiting.remove(pair),
+                QueryProgress::Never => self.queue.remove(pair),
             }
         }
     }
@@ -211,14 +211,14 @@ impl Loop<'_> {
     /// Puts a hit in the queue, where the user's rules allow it. Neighbours on a joint that overlap before they met
     /// in this step are left to rapier's solver: the joint presses them there again whatever an impact does.
     fn expect(&mut self, pair: [usize; 2], hit: Hit) {
-        self.waiting.remove(pair);
+        self.queue.remove(pair);
         let (view, rules) = (&*self.view, self.rules);
         let allowed = self.allowed.entry(pair);
         let allowed = allowed.or_insert_with(|| rules.respond(view, pair));
         let is_pressed = hit.depth > 0.0 && self.response.met(pair) == 0;
         *allowed &= !(is_pressed && rules.are_jointed(view, pair));
         if *allowed {
-            self.waiting.insert(pair, hit.time, Awaited::Hit(hit));
+            self.queue.insert(pair, hit.time, Awaited::Hit(hit));
         }
     }
 
@@ -250,7 +250,7 @@ impl Loop<'_> {
         known: Option<ToiResult>,
         work: &mut Work,
     ) {
-        self.waiting.remove(pair);
+        self.queue.remove(pair);
         // The user's filters are asked once per pair and step, and only where it matters.
         if self.allowed.get(&pair) == Some(&false)
             || !self.response.is_movable(self.view, &self.policy, pair)
@@ -280,9 +280,9 @@ impl Loop<'_> {
         let reach = query_options.first.target_distance + query_options.first.tolerance;
         let outlines = &mut self.outlines;
         if let Some((until, left)) = outlines.apart_until(self.view, pair, time, reach) {
-            query_options.left = left;
+            query_options.reachable = left;
             let inquiry = Awaited::Answer(LazyToiQuery::new(time, query_options));
-            self.waiting.insert(pair, until, inquiry);
+            self.queue.insert(pair, until, inquiry);
         }
     }
 
@@ -320,9 +320,9 @@ impl Loop<'_> {
         }
         for (n, &i) in changed.iter().enumerate() {
             let meeting = self.boxes.meeting(i);
-            for j in self.waiting.partners(i) {
+            for j in self.queue.partners(i) {
                 if meeting.binary_search(&j).is_err() {
-                    self.waiting.remove(in_order(self.view, [i, j]));
+                    self.queue.remove(in_order(self.view, [i, j]));
                 }
             }
             for j in meeting {

@@ -279,7 +279,7 @@ impl InitialOverlaps {
     }
 
     /// The pairs that are left to the solver.
-    pub fn left(&self) -> FastSet<Pair> {
+    pub fn left_to_solver(&self) -> FastSet<Pair> {
         self.left.clone()
     }
 

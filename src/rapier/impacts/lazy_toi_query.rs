@@ -87,7 +87,7 @@ impl<'m> LazyToiQuery<'m> {
             return hit.into();
         };
         let seconds = policy.dt - from;
-        let left = &self.query_options.left;
+        let left = &self.query_options.reachable;
         let begin = |options: &ToiOptions, pairs: Option<&PairList>, work: &mut Work| {
             let motions = pair.map(|k| view.motion(k, from));
             work.begin(&motions, options);
@@ -98,7 +98,7 @@ impl<'m> LazyToiQuery<'m> {
         let look_on = |query: &mut MeshQuery, work: &mut Work| {
             let before = query.counts();
             let share = f64::from(until - from) / f64::from(seconds);
-            let free = query.search_within(share, policy.left(work));
+            let free = query.search_within(share, policy.budget_left(work));
             work.counts += query.counts() - before;
             match free {
                 Some(share) => QueryProgress::FreeUntil(from + share * seconds),

@@ -20,7 +20,7 @@ impl Loop<'_> {
     pub(crate) fn wait(&mut self, work: &mut Work) {
         self.is_spent = true;
         self.policy.budget = u64::MAX;
-        let time = self.waiting.first_time();
+        let time = self.queue.first_time();
         let Some(time) = time
             .into_iter()
             .chain(self.response.next_piece())
@@ -32,8 +32,8 @@ impl Loop<'_> {
         let (policy, rules) = (self.policy, self.rules);
         let is_driven =
             |view: &StepView, part: usize| view.bodies[view.parts[part].body].kind == Kind::Driven;
-        let mut next: Vec<usize> = self.waiting.pairs().flatten().collect();
-        let pairs = std::mem::take(&mut self.waiting);
+        let mut next: Vec<usize> = self.queue.pairs().flatten().collect();
+        let pairs = std::mem::take(&mut self.queue);
         let driven = |pair: &[usize; 2]| pair.iter().any(|k| is_driven(self.view, *k));
         let mut driven: Vec<[usize; 2]> = pairs.pairs().filter(driven).collect();
         while let Some(part) = next.pop() {

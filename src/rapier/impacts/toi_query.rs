@@ -63,7 +63,7 @@ pub struct QueryOptions {
     /// Asked for too where the pair is deep: what it must not sink below.
     pub floor: Option<ToiOptions>,
     /// All of both that may come as near as is asked, where that is known.
-    pub left: Option<[ActivePrimitives; 2]>,
+    pub reachable: Option<[ActivePrimitives; 2]>,
     /// Of a body that slides over flat faces.
     pub sinks: Sinks,
 }
@@ -95,7 +95,7 @@ pub struct CcdPolicy<'a> {
 
 impl CcdPolicy<'_> {
     /// Rest of the budget.
-    pub fn left(&self, work: &Work) -> u64 {
+    pub fn budget_left(&self, work: &Work) -> u64 {
         self.budget.saturating_sub(work.spent())
     }
 
@@ -254,14 +254,14 @@ impl CcdPolicy<'_> {
             QueryOptions {
                 first: options(target, by, 0.0),
                 floor: Some(floor),
-                left: None,
+                reachable: None,
                 sinks,
             }
         } else {
             QueryOptions {
                 first: floor,
                 floor: None,
-                left: None,
+                reachable: None,
                 sinks,
             }
         })
@@ -335,11 +335,14 @@ fn ask(
     motions: &[NonlinearRigidMotion; 2],
     seconds: Real,
     options: &ToiOptions,
-    QueryOptions { left, sinks, .. }: &QueryOptions,
+    QueryOptions {
+        reachable, sinks, ..
+    }: &QueryOptions,
 ) -> Option<ToiResult> {
     let [p, q] = pair.map(|k| &view.parts[k]);
     if let (Some(a), Some(b)) = (p.medial(), q.medial()) {
-        let query = Query::new(motions.each_ref(), (a, b), seconds, options, left.clone());
+        let active = reachable.clone();
+        let query = Query::new(motions.each_ref(), (a, b), seconds, options, active);
         return Some(query.settle());
     }
     let flipped = p.medial().is_none();
@@ -356,7 +359,9 @@ fn ask(
         at_start: AtStart::Stop,
         stop_approach: false,
     };
-    let left = left.as_ref().map(|left| order.map(|k| left[k].clone()));
+    let left = reachable
+        .as_ref()
+        .map(|left| order.map(|k| left[k].clone()));
     let mut found = cast.toi_sliding(options, left, Some(*sinks)).ok()?;
     if flipped {
         let toi = &mut found.toi;

@@ -1,4 +1,7 @@
-//! Integration with rapier elsewhere than in the step: builders, debug lines, saved worlds.
+//! Integration with rapier elsewhere than in the step.
+//!
+//! - Builders of colliders and shapes: `collider.rs`. rapier's settings for small bodies: `parameters.rs`.
+//! - Debug lines: `debug_draw.rs`. Saved worlds: `saved_world.rs`.
 
 pub(crate) mod collider;
 #[cfg(feature = "debug-render")]

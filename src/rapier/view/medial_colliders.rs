@@ -19,7 +19,7 @@ use rapier3d::geometry::{
 };
 use rapier3d::pipeline::ActiveHooks;
 
-/// The world at the start of a step.
+/// rapier's sets of a world, to be read at the start of a step.
 #[derive(Clone, Copy)]
 pub struct Sets<'a> {
     /// Gravity.

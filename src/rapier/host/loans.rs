@@ -1,10 +1,11 @@
 //! Properties that bodies are given for the length of rapier's step, and lose after it.
 
 use crate::rapier::effects::EffectSettings;
+use crate::rapier::host::multibody_energy::WildMultibodies;
 use crate::rapier::host::sleep_timers::SleepTimers;
 use crate::rapier::host::speculative::Speculators;
 use crate::rapier::host::substeps::Substeps;
-use crate::rapier::step_plan::StepPlan;
+use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
 use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle, RigidBodySet};
 
@@ -16,22 +17,23 @@ pub struct Loans {
 }
 
 impl Loans {
-    /// Gives them what the plan of a step asks for; `moved` are the bodies that impacts moved in the step before.
+    /// Gives them what the view of a step and its multibodies that gain energy ask for; `moved` are the bodies that impacts
+    /// moved in the step before.
     pub fn give(
-        plan: &StepPlan,
+        (view, wild): (&StepView, &WildMultibodies),
         (effects, moved): (&EffectSettings, &[RigidBodyHandle]),
         parameters: &IntegrationParameters,
         world: &mut World,
     ) -> Self {
         let unit = parameters.length_unit;
-        let speculators = Speculators::set(&plan.view, effects, unit, world.bodies);
+        let speculators = Speculators::set(view, effects, unit, world.bodies);
         let joints = (&*world.impulse_joints, &*world.multibody_joints);
         let substeps = Substeps::set(
-            &plan.view,
+            view,
             joints,
             world.narrow_phase,
             parameters,
-            &plan.wild,
+            wild,
             world.bodies,
         );
         let contacts = (&*world.colliders, &*world.narrow_phase);
