@@ -1,9 +1,9 @@
 //! The constants of the event loop, in one place so that `cargo bench --bench effects -- --sweep` can vary them.
 //! None needs tuning by users.
 //!
-//! Each but [`Tuning::press`] and [`Tuning::lies`], which are for flat faces and for triangles, was halved and doubled alone, in 1,458 flights of two
-//! fast bodies, and in heaps of 27 loops at 20, 60 and 150 m/s, with restitution 0 (measured at commit 343b3fc, before impacts were kept from gaining energy, and at 60
-//! m/s again after) and 0.9 (after, where energy is judged). With no value was a contact missed or invented, a loop
+//! Each but [`Tuning::press`] and [`Tuning::lies`], which are for flat faces and for triangles, was halved and
+//! doubled alone, in 1,458 flights of two fast bodies, and in heaps of 27 loops at 20, 60 and 150 m/s, with restitution 0
+//! (measured at commit 343b3fc) and 0.9, where energy is judged. With no value was a contact missed or invented, a loop
 //! linked wrongly, or, at 0.9, energy gained, and the median error of the first change of velocity stayed within
 //! 0.01. Where something else moves, the constant says so; with all others, depth stays within 0.1 of the radii,
 //! and the number of queries within a quarter.
@@ -42,7 +42,7 @@ pub struct Tuning {
     pub touching: Real,
     /// Gap at which a pair stops the world, in units of [`Self::gap`]: with the query's tolerance and
     /// rounding below [`Self::touching`], so that the solver has the contact in what is left of the
-    /// step. Doubled it is not, which costs a quarter more queries.
+    /// step. Doubling it breaks this, and costs a quarter more queries.
     pub stopping: Real,
     /// How much deeper a touching fast pair may get in one go, in units of the thickness.
     pub sink: Real,

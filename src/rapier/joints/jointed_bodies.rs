@@ -19,9 +19,10 @@ use rapier3d::dynamics::{
     SpringCoefficients,
 };
 
-/// Turn of the fastest body, in radians, in one piece of its motion, and the most pieces of a step if nothing else is
-/// met.
+/// Turn of the fastest body, in radians, in one piece of its motion.
 const PIECE_TURN: Real = 0.125;
+
+/// The most pieces of a step if nothing else is met.
 const MOST_PIECES: Real = 64.0;
 
 /// Opening that joints may gain, a length or an angle, from which they count as not closed: what is this far off says
@@ -237,8 +238,8 @@ impl Joints {
         Piece { moved, until }
     }
 
-    /// The velocities that joints leave of some, where a frozen body keeps others from the path that they make: where
-    /// `moved` has them, with the inertia that they have in the next step. A joint gives both its bodies the same then.
+    /// Velocities that the joints allow the bodies tied to `from`, when a frozen body blocks the path of `moved`. They are
+    /// taken where `moved` has the bodies and with the inertia of the next step, so that both bodies of a joint agree in it.
     fn without_path(
         &self,
         view: &StepView,

@@ -27,6 +27,8 @@ const CLOSING_STEPS: usize = 8;
 /// Opening that is left, a length or an angle in radians; of bodies far from each other more, by the rounding of their
 /// poses.
 const CLOSED: f64 = 1.0e-5;
+
+/// Rounding of a pose in single precision, relative to its distance from the origin.
 const ROUNDING: f64 = ROUNDING_ULPS * Real::EPSILON as f64;
 
 /// Bodies tied by joints, at some poses.
