@@ -8,8 +8,8 @@
 //! # Files
 //! - What users call: `pipeline.rs`, and between two steps `prepare.rs`; `integration/` adds to rapier's builders. Settings:
 //!   `effects.rs`, the constants of the event loop `tuning.rs`. What a step tells: `report.rs`.
-//! - What a step is taken with: `step_args.rs`, rapier's sets `world.rs`. Its plan: `step_plan.rs`. What is kept from step to
-//!   step: `state.rs`.
+//! - What a step is taken with: `step_args.rs`, rapier's sets `world.rs`. Its plan: `step_plan.rs`; what
+//!   bodies are given for the length of rapier's step: `loans.rs`. What is kept from step to step: `state.rs`.
 
 mod contacts;
 mod effects;
@@ -17,6 +17,7 @@ mod host;
 mod impacts;
 mod integration;
 mod joints;
+mod loans;
 mod pipeline;
 mod planning;
 #[cfg(feature = "gpu")]

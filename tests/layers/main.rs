@@ -37,7 +37,7 @@ const LAYERS: [(&str, &[&str]); 8] = [
     ),
 ];
 
-/// Rooms of a layer, in order: each may import from itself and from those before it.
+/// Rooms of a layer, in order: folders, and files beside them. Each may import from itself and from those before it.
 const ROOMS: [(&str, &[&str]); 2] = [
     (
         "meshing",
@@ -45,7 +45,30 @@ const ROOMS: [(&str, &[&str]); 2] = [
             "geometry", "surface", "axis", "certify", "simplify", "refine", "recipe",
         ],
     ),
-    ("rapier", &["view", "host", "joints", "impacts", "contacts"]),
+    (
+        "rapier",
+        &[
+            "effects",
+            "tuning",
+            "view",
+            "host",
+            "joints",
+            "impacts",
+            "contacts",
+            "world",
+            "report",
+            "step_args",
+            "step_plan",
+            "loans",
+            "state",
+            "planning",
+            "resolving",
+            "step",
+            "pipeline",
+            "prepare",
+            "integration",
+        ],
+    ),
 ];
 
 /// Libraries that only one folder may name, as `name::`.
@@ -131,6 +154,26 @@ fn imports_go_down_only() {
     assert!(checked > 50, "the check found only {checked} imports");
 }
 
+/// Files of a room: those in its folder, or the one of its name.
+fn files_of(layer: &Path, room: &str) -> Vec<PathBuf> {
+    let folder = layer.join(room);
+    match folder.is_dir() {
+        true => sources(&folder),
+        false => vec![layer.join(format!("{room}.rs"))],
+    }
+}
+
+#[test]
+fn every_file_of_the_hook_is_in_a_room() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/rapier");
+    let (_, rooms) = ROOMS.iter().find(|(l, _)| *l == "rapier").expect("rooms");
+    for entry in fs::read_dir(src).expect("a source folder") {
+        let path = entry.expect("an entry").path();
+        let stem = path.file_stem().and_then(|s| s.to_str()).expect("a name");
+        assert!(stem == "mod" || rooms.contains(&stem), "{stem} has no room");
+    }
+}
+
 #[test]
 fn rooms_import_from_rooms_before_them_only() {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
@@ -138,7 +181,7 @@ fn rooms_import_from_rooms_before_them_only() {
     for (layer, rooms) in ROOMS {
         let prefix = format!("crate::{layer}::");
         for (place, room) in rooms.iter().enumerate() {
-            for path in sources(&src.join(layer).join(room)) {
+            for path in files_of(&src.join(layer), room) {
                 for line in code_lines(&path) {
                     let named = line.split(&prefix).skip(1).filter_map(|rest| {
                         let name = rest.split(|c: char| !(c.is_alphanumeric() || c == '_'));

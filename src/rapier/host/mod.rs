@@ -3,7 +3,7 @@
 //!
 //! - Contacts that rapier keeps: which ones (`recycling.rs`), how deep they are now (`contact_depth.rs`), and how it is made
 //!   to compute them anew (`forced_updates.rs`).
-//! - What bodies are given for the length of rapier's step (`loans.rs`): more sub-steps (`substeps.rs`), shorter times before
+//! - What bodies are given for the length of rapier's step: more sub-steps (`substeps.rs`), shorter times before
 //!   they sleep (`sleep_timers.rs`), speculative contacts (`speculative.rs`).
 //! - Multibodies: those that gain energy (`multibody_energy.rs`), how impacts are written back to them
 //!   (`multibody_coordinates.rs`), and bodies that a new joint moves (`new_links.rs`).
@@ -12,7 +12,6 @@
 pub(crate) mod contact_depth;
 pub(crate) mod events_of_impacts;
 pub(crate) mod forced_updates;
-pub(crate) mod loans;
 pub(crate) mod multibody_coordinates;
 pub(crate) mod multibody_energy;
 pub(crate) mod new_links;
