@@ -27,9 +27,9 @@ const EQUAL: f64 = 0.02;
 /// Contacts nearer to each other than this are one, in units of the prediction distance; as in rapier.
 const SAME_PLACE: f64 = 0.25;
 
-/// Width of the place that a body that turns passes over in a step, in units of how far its points turn in it: of the contacts
-/// within that of a deeper one only that one bears. One ahead of a wheel's axle would stop what comes down on it, and the
-/// wheel with it.
+/// Width of the place that a body rolls over, in units of how far it rolls in a step: of the contacts within that of a deeper
+/// one only that one bears. One ahead of a wheel's axle would stop what comes down on it, and the wheel with it. With 2 a car
+/// with springs and wheels of 32 cones gets to 0.76 m/s, with 3 to 1.06, rapier's own to 0.90.
 const PASSED: f64 = 3.0;
 
 /// Steepest facet, as a gradient, where the load is beside all contacts and the body tips over: contacts
@@ -78,21 +78,17 @@ pub struct Turn {
     pub angle: Vector,
     /// Centre of mass of the body.
     pub center: Vector,
-    /// Widest place that one contact may serve, a length.
-    pub most: Real,
 }
 
 impl Turn {
-    /// How far a point of the body turns in the step, a length; 0 for those near the axis. Where a coin that wobbles on its
-    /// edge touches the ground, that place goes round the coin much faster than the coin turns.
-    fn way(&self, p: Vector) -> Real {
+    /// How far the body rolls in the step over what it touches at `p` under a normal, a length: the turn about axes across the
+    /// normal times the height of its centre, but no farther than the point turns. A turntable does not roll, nor does a coin
+    /// that wobbles on its edge: it turns about a line through the point.
+    fn rolls(&self, p: Vector, normal: Vector) -> Real {
         let arm = p - self.center;
-        let across = self.angle.cross(arm).length();
-        if self.angle.dot(arm).abs() > across {
-            0.0
-        } else {
-            across
-        }
+        let across = self.angle - normal * self.angle.dot(normal);
+        let rolls = across.length() * normal.dot(arm).abs();
+        rolls.min(self.angle.cross(arm).length())
     }
 }
 
@@ -133,9 +129,10 @@ pub fn choose<M, C: Copy>(
         let deepest = seen.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
         if let (Some(turn), Some(deepest)) = (&load.turn, deepest) {
             let [m, i] = deepest.contact;
-            let passed = PASSED * f64::from(turn.way(places(&manifolds[m], i)[side]));
+            let (place, normal) = (places(&manifolds[m], i)[side], normals(&manifolds[m])[side]);
+            let passed = PASSED * f64::from(turn.rolls(place, normal));
             if passed > SAME_PLACE * prediction {
-                left_out.extend(without_doubles(&mut seen, passed.min(turn.most.into())));
+                left_out.extend(without_doubles(&mut seen, passed));
             }
         }
         let bore = seen.iter_mut().filter(|s| s.bore);

@@ -5,6 +5,7 @@ use crate::math::Vector;
 use crate::parry::narrow_phase_plan::PlanExchange;
 use crate::rapier::effects::{EffectSettings, MedialOptions};
 use crate::rapier::host::events_of_impacts::ReportedStarts;
+use crate::rapier::host::new_links::KnownLinks;
 use crate::rapier::host::recycling::RecyclingRecord;
 use crate::rapier::impacts::initial_overlaps::InitialOverlaps;
 use crate::rapier::step_args::Settings;
@@ -37,6 +38,8 @@ pub struct State {
     pub still: StillRecord,
     /// All medial colliders of the world, with what they were made for: the still colliders and gravity.
     pub still_medial: Option<(Arc<StillColliders>, Vector, Arc<MedialColliders>)>,
+    /// Joints of multibodies in the last step.
+    pub links: KnownLinks,
     /// The bodies that impacts moved in the last step; `None` before the first.
     pub moved: Option<Vec<RigidBodyHandle>>,
     /// The plan of the last step, if nothing moved in it.
@@ -61,6 +64,7 @@ impl State {
             placed: InitialOverlaps::default(),
             still: StillRecord::default(),
             still_medial: None,
+            links: KnownLinks::default(),
             moved: None,
             kept: None,
         }

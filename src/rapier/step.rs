@@ -5,7 +5,6 @@ use crate::math::Real;
 use crate::parry::narrow_phase_plan::Tally;
 use crate::rapier::contacts::candidates;
 use crate::rapier::host::events_of_impacts::{DedupEventHandler, Scene};
-use crate::rapier::host::new_links::place_links;
 use crate::rapier::host::recycling::lowered;
 use crate::rapier::host::sleep_timers::moved_before;
 use crate::rapier::impacts::toi_query::Work;
@@ -76,7 +75,8 @@ impl State {
             self.moved = Some(moved_before(world.bodies, world.colliders, unit));
         }
         let multibodies = &mut *world.multibody_joints;
-        place_links(world.bodies, multibodies, world.colliders, unit);
+        self.links
+            .place_new(world.bodies, multibodies, world.colliders, unit);
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         world
             .bodies

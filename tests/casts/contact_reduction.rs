@@ -128,7 +128,6 @@ fn one_contact_bears_where_a_wheel_rolls() {
         let turn = Turn {
             angle,
             center: Vector::Y * axle,
-            most: 0.1,
         };
         let load = Load {
             turn: Some(turn),

@@ -200,7 +200,6 @@ impl MedialCollider {
         (angle != Vector::ZERO).then(|| Turn {
             angle,
             center: motion.local_center,
-            most: self.mesh.thickness(),
         })
     }
 
