@@ -3,6 +3,13 @@
 //!
 //! Results go to standard output, progress and errors to standard error. Exit code 1 with one line
 //! on failure, 2 for arguments that make no sense.
+//!
+//! # Files
+//! - Commands: `build.rs` (with its work list `jobs.rs`), `info.rs` (`info` and `bake`; for `info --curve` `curve.rs`),
+//!   `compare.rs` (with its picture `compare_picture.rs`), `calibrate.rs`.
+//! - What is read: `placing.rs` (`--scale` and `--up`), `lengths.rs` (lengths with units).
+//! - What is printed: `output.rs` (standard output), `describe.rs` (meshes and errors in words), `failure.rs` (the one
+//!   line of exit code 1).
 
 #[path = "medial/build.rs"]
 mod build;

@@ -26,10 +26,11 @@
 //! # Files
 //! - What is computed: `test_list.rs` (which tests two primitives need), `path.rs` (their motion), `cone_cone.rs` and
 //!   `sphere_slab.rs` (nearest spheres at a fixed time).
-//! - First contact: `bracket.rs` (the loop), `certificate.rs` (why no contact is missed), `first_contact.rs` and
-//!   `earliest.rs` (the earliest of many tests), `resumed.rs`; in eight lanes `many.rs`, in double precision
-//!   `f64.rs`.
-//! - At fixed poses: `distance.rs`, `penetration.rs`, `slab_crossing.rs`.
+//! - First contact: `bracket.rs` (the loop), `certificate.rs` (why no contact is missed), `first_contact.rs` (the call
+//!   for two primitives), `earliest.rs` (the earliest of many tests), `resumed.rs` (a loop that pauses and goes on
+//!   later); in eight lanes `many.rs`, in double precision `f64.rs`.
+//! - At fixed poses: `distance.rs` (signed distance), `penetration.rs` (depth and normal of an overlap),
+//!   `slab_crossing.rs` (an edge through a medial triangle).
 //! - The paper's own iteration, only to compare with: `alternating.rs`.
 
 pub mod alternating;

@@ -8,6 +8,10 @@
 //!
 //! Every reader ends in `Polygons::finish`, which checks indices, cuts polygons into triangles, and makes vertices
 //! at exactly the same place one.
+//!
+//! # Files
+//! - Formats: `obj.rs`, `stl.rs`, `ply.rs`, `off.rs`, `gltf.rs`.
+//! - Polygons cut into triangles: `polygon.rs`.
 
 #[cfg(feature = "gltf")]
 mod gltf;
