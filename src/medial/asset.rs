@@ -44,13 +44,14 @@ pub const MAGIC: [u8; 8] = *b"\x89medial\n";
 /// Version of the layout that is written and read.
 pub const VERSION: u32 = 2;
 
-/// Flags.
+/// Flag: the mass properties of the source are stored.
 const HAS_SOURCE: u32 = 1;
+/// Flag: the mesh is a union of convex pieces.
 const OF_CONVEX_PIECES: u32 = 2;
-
+/// Length of the header in bytes.
 const HEADER: usize = 128;
+/// Length of the checksum in bytes.
 const CHECKSUM: usize = 8;
-
 /// Words of mass properties.
 const MASS: usize = 11;
 
@@ -376,6 +377,7 @@ pub(super) fn mass_of(index: usize, numbers: &[Real; MASS]) -> Result<MassProper
 /// one for a given word, and the word for a given state: a change within one word always changes the
 /// result; of others about one in 2⁶⁴ goes unseen, as a word's bits are spread before they meet the state.
 pub(crate) fn checksum(bytes: &[u8]) -> u64 {
+    /// Primes of xxHash64.
     const P: [u64; 3] = [
         0x9e37_79b1_85eb_ca87,
         0xc2b2_ae3d_27d4_eb4f,

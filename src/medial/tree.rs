@@ -286,6 +286,7 @@ fn enclosing_sphere(members: impl Iterator<Item = MedialSphere> + Clone) -> (Vec
     );
     let mut center = lo * 0.5 + hi * 0.5;
     let mut best = (farthest(center).0, center);
+    /// Steps towards the farthest sphere, each shorter than the one before. With more the ball is smaller.
     const ROUNDS: usize = 24;
     for round in 1..=ROUNDS {
         let (distance, s) = farthest(center);

@@ -295,11 +295,13 @@ impl Limits {
         self.primitives.map_or(usize::MAX, |n| n.max(default))
     }
 
-    /// Samples of the surface that the medial mesh starts from: two for each primitive wanted, or
-    /// neighbours at about twice the error allowed. Measured up to 5,000 primitives: eight for each give
-    /// nothing more; half of the least loses a third at 500.
+    /// Number of samples of the surface that the medial mesh starts from: two for each primitive wanted, or
+    /// so many that neighbours are at about twice the error allowed. `area` is that of the surface (longest side 1).
+    /// Measured up to 5,000 primitives: eight for each give nothing more.
     pub fn samples(&self, area: f64) -> usize {
+        /// Least number of samples. With half of it, results at 500 primitives are a third worse.
         const LEAST: usize = 10_000;
+        /// Largest number of samples, which bounds the time and memory of a build.
         const MOST: usize = 200_000;
         let by_count = self.primitives.map_or(0, |n| n.saturating_mul(2));
         let by_error = self.max_error.map_or(0.0, |e| area / (4.0 * e * e));

@@ -112,6 +112,7 @@ impl<'a> PlacedHull<'a> {
 
 /// The edges of one to three spheres of one radius.
 fn edges_of_simplex(spheres: &[MedialSphere]) -> Option<(&'static [[u32; 2]], Real)> {
+    /// The edges of a triangle, as indices of its corners.
     const TRIANGLE: [[u32; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
     let radius = spheres.first()?.radius;
     let edges = match spheres.len() {
@@ -176,8 +177,10 @@ pub(super) fn nearest_points(hulls: [&PlacedHull; 2], found: HullGap) -> HullGap
 /// has no more than single precision; hulls that are apart by this much are not hard for it.
 const APART: f64 = 0.02;
 
-/// Gain in units of the gap from which hulls are moved apart once more, along the better direction, and how often at most.
+/// Gain of a direction over the one before, in units of the gap, from which hulls are moved apart once more along it.
 const BETTER: f64 = 1.0e-3;
+
+/// Largest number of times that hulls are moved apart.
 const ROUNDS: usize = 4;
 
 /// Directions across edges that are tried at most, times the spheres looked at for each: two boxes have about 200. Larger,

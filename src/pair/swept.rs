@@ -41,6 +41,7 @@ pub(super) struct Swept {
     piece: u32,
 }
 
+/// Place of what is not swept yet.
 const NOT_YET: u32 = u32::MAX;
 
 /// Adds bits to those of one of a body's nodes.

@@ -38,9 +38,12 @@ const ULPS: f64 = 64.0;
 /// contact, and the last step needs room.
 pub const CHASE_TOLERANCE_PER_SLACK: f64 = 4.0;
 
-/// Chords by which a step along a direction that turns is told, and how much later the next time is at which it is tried
-/// first. Not tuned; only speed depends on them.
+/// Chords that narrow down when a direction that turns no longer keeps the two apart. Not tuned; only speed depends on
+/// it.
 const CHORDS: usize = 4;
+
+/// Ratio of the times at which such a direction is tried, until one is found at which it fails. Not tuned; only speed
+/// depends on it.
 const WIDER: f64 = 4.0;
 
 /// How one volume is followed.

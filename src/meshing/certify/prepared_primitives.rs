@@ -154,6 +154,7 @@ impl Prepared {
     }
 }
 
+/// Start of a search for the least distance: farther than any point.
 const NONE: Signed = Signed {
     distance: f64::INFINITY,
     weights: [1.0, 0.0, 0.0],

@@ -310,6 +310,7 @@ fn build(
 }
 
 impl Node {
+    /// A node without triangles.
     const EMPTY: Self = Self {
         bounds: Bounds::EMPTY,
         first: 0,

@@ -15,14 +15,20 @@ use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::profile::{Profile, fewer};
 use crate::meshing::watch::Watch;
 
-/// Thicknesses within which profiles are brought to fewer edges (longest side 1), and their ratio.
+/// Largest thickness within which a profile is brought to fewer edges (longest side 1): the coarsest prism that is tried.
 const THICKEST: f64 = 0.05;
+
+/// Thickness at which the search for a profile ends (longest side 1), if the count of primitives has not ended it before.
 const THINNEST: f64 = 1e-4;
+
+/// Ratio of each thickness to the one before. Nearer to 1, and more profiles are tried, in more time.
 const STEP: f64 = 0.85;
 
-/// Half the thickness below which parts are ribs (longest side 1), and the thickness within which what is left is brought to
-/// fewer edges, over that of the profile.
+/// Half of the thickness below which parts of a profile are ribs (longest side 1). All are tried.
 const THIN: [f64; 6] = [0.015, 0.02, 0.03, 0.045, 0.065, 0.09];
+
+/// Thickness within which a profile without its ribs is brought to fewer edges, in units of the thickness within which
+/// the whole profile was. All are tried.
 const COARSER: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 
 /// Profiles of more edges are not tried with ribs: roofs take time that grows with the third power of the count.

@@ -30,13 +30,17 @@ const STEP: f64 = 1.5;
 /// The result's count is the least that keeps the limit within one part in this many; fits scatter more.
 const CLOSE: usize = 50;
 
-/// Number of primitives up to which each count below the result is tried, until [`FAILURES`] in turn break the limit.
+/// Number of primitives up to which each smaller count is tried in turn, since small counts scatter.
 const EACH: usize = 64;
+
+/// Counts in turn that may break the limit of the error before smaller ones are given up.
 const FAILURES: usize = 3;
 
-/// Counts in ratio [`STEP`] end where this many in turn gain less than [`GAIN`] of the error together: it is then that
-/// of the samples that the medial mesh is made from.
+/// Counts in ratio [`STEP`] after which the search for a sufficient count ends if together they gained less than
+/// [`GAIN`]. The error is then that of the samples that the medial mesh is made from, which no count lowers.
 const STALLED: usize = 3;
+
+/// Share of the error that [`STALLED`] counts have to gain together.
 const GAIN: f64 = 0.1;
 
 /// Least count at which a stall is believed.

@@ -17,8 +17,10 @@ use crate::meshing::watch::Watch;
 /// Errors below this (longest side 1) call for no primitive.
 const NEGLIGIBLE: f64 = 1e-5;
 
-/// Weights above these lie in the middle of a cone, and of a slab; below, at an end or edge.
+/// Weight (0 to 1) of both balls of a cone above which a place lies in its middle, and not at an end.
 const MIDDLE_OF_CONE: f64 = 0.25;
+
+/// Weight (0 to 1) of all balls of a slab above which a place lies in its middle, and not at an edge or a corner.
 const MIDDLE_OF_SLAB: f64 = 0.15;
 
 /// Between balls on creases radii are smaller than this (longest side 1).

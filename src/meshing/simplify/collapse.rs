@@ -22,8 +22,11 @@ use crate::meshing::watch::{Watch, bytes_of};
 /// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
 const BULGE: f64 = 0.2;
 
-/// A collapse waits where its measured cost is above the one in the queue by this share, and more than rounding.
+/// Ratio of a collapse's measured cost to the one it has in the queue, above which it goes back into the queue with the
+/// measured cost. Larger, and collapses leave the order of their costs.
 const STALE: f64 = 1.05;
+
+/// Cost below which a difference is rounding (longest side 1): costs of about 0 would otherwise always count as stale.
 const NO_COST: f64 = 1e-10;
 
 /// A medial mesh on its way to fewer primitives.

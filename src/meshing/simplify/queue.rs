@@ -9,8 +9,10 @@ use crate::math::least_first::least_first;
 use crate::meshing::watch::bytes_of;
 use std::collections::BinaryHeap;
 
-/// The heap takes this share of what waits, and all of it when there is no more than [`FEW`].
+/// Each time the heap is empty it takes the cheapest one in this many of the waiting collapses. Only speed depends on it.
 const SHARE: usize = 8;
+
+/// Number of waiting collapses up to which the heap takes all of them. Only speed depends on it.
 const FEW: usize = 512;
 
 /// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).

@@ -6,8 +6,10 @@ use crate::math::fast_hash::FastMap;
 use crate::meshing::geometry::bounds::{Point, coordinate};
 use crate::meshing::watch::Watch;
 
-/// Widest gap of a loose seam, as a share of the edge's length and at most (longest side 1).
+/// Widest gap of a loose seam, in units of the edge's length.
 const GAP: f64 = 0.1;
+
+/// Widest gap of a loose seam, however long its edge is (longest side 1).
 const MOST_GAP: f64 = 5e-3;
 
 /// Factor by which whatever else runs along an edge is farther from it than its partner; otherwise more than two meet
