@@ -90,9 +90,9 @@ pub use rapier::{
     MedialPipeline, MedialSharedShape, StepReport,
 };
 
-/// Everything that a game with rapier usually needs: `use rapier3d_medial::prelude::*;`. Saving of worlds (`save_world`,
-/// feature `serde-serialize`) and drawing (`MedialDebugRender`, feature `debug-render`) are in [`crate::rapier`], reading of
-/// mesh files in [`crate::meshing::mesh_file`].
+/// Everything that a game with rapier usually needs: `use rapier3d_medial::prelude::*;`. Saving of worlds
+/// (`save_world`, feature `serde-serialize`) and drawing (`MedialDebugRender`, feature `debug-render`) are in
+/// [`crate::rapier`], reading of mesh files in [`crate::meshing::mesh_file`].
 pub mod prelude {
     pub use crate::{
         AssetError, Backend, BuildError, BuildOptions, BuildReport, Creases, Effect, Effects,

@@ -73,8 +73,8 @@ enum Command {
     Bake(BakeArguments),
     /// Describe a medial mesh (.ma or .medial), or show the error of a triangle mesh at several numbers of primitives.
     Info(InfoArguments),
-    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side, and measure error and cost of each,
-    /// scaled to a longest side of one metre.
+    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side, and measure error and cost of
+    /// each, scaled to a longest side of one metre.
     Compare(CompareArguments),
     /// Measure how large a batch must be for the GPU to be faster than the CPU, for `Backend::Auto`.
     #[cfg(feature = "gpu")]

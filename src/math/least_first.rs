@@ -1,7 +1,7 @@
 //! `least_first!`: the order of entries of a `BinaryHeap` from which the least key leaves first.
 
-/// Orders a struct by a key, a float that is not NaN, and of equal keys by ranks, so that of the entries of a `BinaryHeap`
-/// the one with the least leaves first.
+/// Orders a struct by a key, a float that is not NaN, and of equal keys by ranks, so that of the entries of a
+/// `BinaryHeap` the one with the least leaves first.
 macro_rules! least_first {
     ($name:ty, $key:ident $(, $rank:ident)*) => {
         impl Ord for $name {

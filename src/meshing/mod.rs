@@ -50,10 +50,9 @@ impl MedialMesh {
     /// order are turned round. Other damage (cracks, small openings, repeated triangles, overlapping parts) is
     /// repaired if possible, and [`BuildReport::findings`] counts it.
     ///
-    /// A build with some hundreds of primitives takes a second to half a minute in optimised code, a minute for a thread
-    /// (`docs/measurements/medial-mesh-error.md` has a table), over a minute with thousands, and many times as long
-    /// without optimisation. Build once and save the result
-    /// ([`MedialMesh::save_asset`]).
+    /// A build with some hundreds of primitives takes a second to half a minute in optimised code, a minute for a
+    /// thread (`docs/measurements/medial-mesh-error.md` has a table), over a minute with thousands, and many times as
+    /// long without optimisation. Build once and save the result ([`MedialMesh::save_asset`]).
     ///
     /// # Errors
     /// [`BuildError`] names the item and its value: [`BuildError::Option`] an option out of its range, other variants a

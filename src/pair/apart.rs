@@ -153,7 +153,7 @@ impl Balls {
     }
 }
 
-/// Where a ball ends along a direction of this length ([`Balls::along`]).
+/// End of a ball along a direction of this length at the start of the piece, and how fast it moves.
 pub(super) fn end_along((center, chord, radius): &Ball, n: Vec3<f64>, length: f64) -> (f64, f64) {
     (n.dot(*center) + length * radius, n.dot(*chord))
 }
@@ -212,8 +212,8 @@ pub(super) fn free_until(
     free
 }
 
-/// Fraction of the piece, from `from` on, up to which one direction keeps the hulls of two primitives apart by more than
-/// `contact`; `None`: up to `until`.
+/// Fraction of the piece, from `from` on, up to which one direction keeps the hulls of two primitives apart by more
+/// than `contact`; `None`: up to `until`.
 pub(super) fn held_until(
     balls: [&Balls; 2],
     n: Vec3<f64>,
@@ -337,7 +337,8 @@ fn holds(
     ends_hold(ends, span, least * length, contact * length)
 }
 
-/// The same, given where the spheres of each end along the direction, and how fast that changes.
+/// Does the same as [`holds`], given the end of each sphere along the direction and its rate. `least` and `contact` are
+/// in units of the length of the direction.
 pub(super) fn ends_hold(
     [far, near]: [&[(f64, f64)]; 2],
     [from, until]: [f64; 2],

@@ -132,7 +132,7 @@ pub fn near_spheres(
 /// The nearest pair of spheres so far.
 struct Best {
     pair: Option<SpherePair>,
-    /// Its distance, or the largest that counts.
+    /// Distance of the nearest pair found, or the largest that counts before one is found.
     limit: f64,
 }
 

@@ -153,9 +153,9 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         pairs.map(distance).fold(f64::INFINITY, f64::min)
     }
 
-    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness, or of what is left of
-    /// them where they touched at the start: a test that is proven free until then may be nearer than the one that was
-    /// found.
+    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness, or of what is left
+    /// of them where they touched at the start: a test that is proven free until then may be nearer than the one that
+    /// was found.
     pub(super) fn settle(&mut self) {
         self.join_pieces();
         let Some((.., pair)) = self.earliest.found else {

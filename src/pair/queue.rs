@@ -6,7 +6,7 @@ use super::tips::Part;
 use crate::elementary::test_list::ElementaryTest;
 use std::cmp::Ordering;
 
-/// What waits in the queue: a pair of nodes, a pair of (parts of) primitives, or an elementary test, of which it is
+/// An entry of the queue: a pair of nodes, a pair of primitives or parts of them, or an elementary test, of which it is
 /// not known yet whether the two meet.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Candidate {

@@ -61,7 +61,7 @@ pub(super) enum Touch {
     AtStart(f64),
     /// Contact at this share of the piece.
     At(f64),
-    /// No contact in the piece.
+    /// The two do not touch in this piece of the step.
     Never,
 }
 
@@ -130,8 +130,8 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         self.near = Some((near, side));
     }
 
-    /// Bits of swept nodes, those of what is below them added, by the body's nodes. What is below a convex piece that was
-    /// not split has its bits.
+    /// Bits of swept nodes, those of what is below them added, by the body's nodes. What is below a convex piece that
+    /// was not split has its bits.
     pub(super) fn gathered(&self, mut bits: Vec<Bits>) -> Vec<Bits> {
         bits.resize(self.nodes.len(), 0);
         let mut gathered = Vec::new();

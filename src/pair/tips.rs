@@ -44,7 +44,8 @@ impl Part {
         })
     }
 
-    /// The same over a piece of the motions. A mean of points is no farther off its chord than the points in the mean.
+    /// The spheres of this part while they move over a piece of the step. A mean of points is no farther off its chord
+    /// than the points themselves.
     pub(super) fn of_swept(&self, all: &Balls) -> Balls {
         if self.is_whole() {
             return *all;
@@ -66,7 +67,7 @@ impl Part {
     }
 }
 
-/// What is left of a primitive without its tips: one or two parts.
+/// Parts of a primitive that remain without its tips: one or two.
 #[derive(Clone, Copy)]
 pub(super) struct Parts {
     parts: [Part; 2],

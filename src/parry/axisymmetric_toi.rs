@@ -3,8 +3,8 @@
 //! [`follow`] advances them as it does primitives, only less exactly.
 //!
 //! # Guarantee
-//! It is that of [`crate::elementary`], where `D(t)` is the signed distance of [`super::axisymmetric`], which sees bodies
-//! inside the cylinder or cone as overlapping, and never falls below minus the largest radius. For a contact,
+//! It is that of [`crate::elementary`], where `D(t)` is the signed distance of [`super::axisymmetric`], which sees
+//! bodies inside the cylinder or cone as overlapping, and never falls below minus the largest radius. For a contact,
 //! `upper = lower`, and `D` there is at most the tolerance. All is computed in double precision.
 
 use super::axisymmetric::{Axisymmetric, Ball, NearBall, Place, unit};
@@ -27,9 +27,9 @@ use std::collections::BinaryHeap;
 /// primitives in fast rotation: 3.5 on average, 37 at most; 4 leaves a margin of 7.
 const CAP: u32 = 4;
 
-/// Iterations of one query after which it ends, unresolved, and how many more for each primitive of the mesh: no contact
-/// before what comes first then. Queries that turn less than 40 radians take a thousand. Larger, and a query of endless
-/// turns takes longer; smaller, and it knows less of them.
+/// Iterations of one query after which it ends, unresolved, and how many more for each primitive of the mesh: no
+/// contact before what comes first then. Queries that turn less than 40 radians take a thousand. Larger, and a query of
+/// endless turns takes longer; smaller, and it knows less of them.
 const WORK: [u32; 2] = [1 << 11, 1 << 4];
 
 /// Iterations of a primitive before it waits for its turn again. Not tuned; only speed depends on it.

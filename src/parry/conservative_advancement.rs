@@ -15,11 +15,11 @@
 //! bodies, is taken instead where it is longer.
 //!
 //! Where faces and edges meet, the distance has a kink, and another direction takes over at once: that of a face that
-//! rolls over a rim turns with the face, that of two edges with neither. So `m` may turn with any `ν` as well: with that
-//! of the primitive, or as it has turned since the step before. In that frame `ν` stands for `ω` above, and a point `q`
-//! of the body, from its centre, moves with `(ω − ν) × q` and an acceleration of at most `(|ω × ν| + |ω − ν|²) |q|`: its
-//! support along `m` is at most `h(m + s m × (ω − ν))` and half of that times `s²`. The bound is concave in `s`, so
-//! between two times it is above its chord.
+//! rolls over a rim turns with the face, that of two edges with neither. So `m` may turn with any `ν` as well: with
+//! that of the primitive, or as it has turned since the step before. In that frame `ν` stands for `ω` above, and a
+//! point `q` of the body, from its centre, moves with `(ω − ν) × q` and an acceleration of at most `(|ω × ν| + |ω −
+//! ν|²) |q|`: its support along `m` is at most `h(m + s m × (ω − ν))` and half of that times `s²`. The bound is concave
+//! in `s`, so between two times it is above its chord.
 //!
 //! # Rounding
 //! Positions are sums of at most 16 rounded terms no larger than `scale`, the sum of all lengths in
@@ -63,9 +63,9 @@ pub struct Limits {
 
 /// Knowledge of one volume: how far it is proven free.
 pub struct Advance {
-    /// No contact before.
+    /// Time before which there is no contact.
     pub lower: f64,
-    /// Within the tolerance at `lower`.
+    /// Whether the two are within the tolerance of contact at `lower`.
     pub met: bool,
     /// Proven free up to the horizon.
     pub separated: bool,
@@ -176,7 +176,8 @@ impl<'a> Chase<'a> {
         }
     }
 
-    /// Bound of the acceleration of a corner seen from the body's centre, in a frame that turns by `turn`, within `left`.
+    /// Bound of the acceleration of a corner seen from the body's centre, in a frame that turns by `turn`, within
+    /// `left`.
     fn bend(&self, corner: &Corner, p: Vec3<f64>, turn: f64, left: f64) -> f64 {
         let farthest = p.length() + corner.speed * left;
         corner.path.acceleration
@@ -185,8 +186,8 @@ impl<'a> Chase<'a> {
             + turn * turn * farthest
     }
 
-    /// Least gap of the spheres above the target along the direction `m` from the body, and a time for which none closes
-    /// its own within `left`, if `m` turns with the body.
+    /// Least gap of the spheres above the target along the direction `m` from the body, and a time for which none
+    /// closes its own within `left`, if `m` turns with the body.
     fn step(&self, moment: &Moment, m: Vec3<f64>, target: f64, left: f64) -> (f64, f64) {
         let support = self.body.support(&moment.place, m);
         let (turn, spin) = (self.motions[1].angle(), self.motions[1].angular_velocity());
@@ -204,7 +205,8 @@ impl<'a> Chase<'a> {
         (least, step)
     }
 
-    /// The same time if `m` turns with an angular velocity of its own, to within a few chords.
+    /// The time for which no sphere closes its gap along `m` within `left`, if `m` turns with the angular velocity
+    /// `spin`; found to within a few chords.
     fn step_turning(
         &self,
         moment: &Moment,

@@ -1,8 +1,8 @@
 //! Distance of a medial mesh to one of parry's shapes at fixed poses, and the contact that attains it.
 //!
-//! The other shape is its surface as swept spheres ([`super::swept_sphere_parts`]), so the closed forms for two medial meshes
-//! serve here too. Cylinders and cones have closed forms of their own ([`super::axisymmetric`]). A centre inside a closed
-//! body counts as deep as its shortest way out is long ([`super::inside`]).
+//! The other shape is its surface as swept spheres ([`super::swept_sphere_parts`]), so the closed forms for two medial
+//! meshes serve here too. Cylinders and cones have closed forms of their own ([`super::axisymmetric`]). A centre inside
+//! a closed body counts as deep as its shortest way out is long ([`super::inside`]).
 //!
 //! parry's own answers come from its iterative GJK algorithm: they are off by up to 1e-3 of the distance at times, are
 //! missing for height fields and voxels, and are in the wrong frame for contacts of compounds with half-spaces.
@@ -96,7 +96,8 @@ fn near(
     Ok((best, counts))
 }
 
-/// How far from the mesh the other's surface matters: some sphere's distance bounds that of the mesh.
+/// Distance from the mesh within which the other shape's surface matters, a length at most `max_distance`: the distance
+/// of any one sphere bounds that of the mesh.
 fn reach(mesh: &MedialMesh, other: &dyn Shape, pos21: &Pose, max_distance: Real) -> Real {
     let bounds = mesh.spheres().first().map(|s| {
         let center = pos21 * s.center;

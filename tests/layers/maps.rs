@@ -1,5 +1,6 @@
-//! Each folder of `src` lists its files: the doc comment of its map names every file and sub-folder beside it. The map of a
-//! folder is its `mod.rs`, for `src` itself `lib.rs`, and for a folder without `mod.rs` the file of its name next to it.
+//! Each folder of `src` lists its files: the doc comment of its map names every file and sub-folder beside it. The map
+//! of a folder is its `mod.rs`, for `src` itself `lib.rs`, and for a folder without `mod.rs` the file of its name next
+//! to it.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -32,7 +32,8 @@ use std::time::Instant;
 pub const SIZE: Real = 1.0;
 /// Points on each surface (a count) at which errors are measured, besides its vertices.
 const POINTS: usize = 20_000;
-/// Number of heaps whose steps are timed. A heap falls as chance will have it, and takes half or twice as long as another.
+/// Number of heaps whose steps are timed. A heap falls as chance will have it, and takes half or twice as long as
+/// another.
 const HEAPS: u64 = 4;
 /// Number of bodies in each heap.
 const BODIES: usize = 12;

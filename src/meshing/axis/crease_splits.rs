@@ -19,8 +19,8 @@ const SPLIT: f64 = 5e-4;
 /// Passes of splitting, each of which looks at the edges that the one before made. Each halves the edges at most once.
 const PASSES: usize = 3;
 
-/// Distance (longest side 1) by which the ball at the middle of an edge may stick out after the last pass. An edge
-/// that is off by more lies in no sheet of the medial axis: it joins balls of unrelated places, and is left out with its
+/// Distance (longest side 1) by which the ball at the middle of an edge may stick out after the last pass. An edge that
+/// is off by more lies in no sheet of the medial axis: it joins balls of unrelated places, and is left out with its
 /// triangles.
 const DROP: f64 = 3e-3;
 

@@ -11,8 +11,9 @@
 //! inside together.
 //!
 //! # Limits
-//! - The points start in one tetrahedron that encloses them all, 64 times their extent away, which is dropped at the end. Nearly flat tetrahedra on the convex hull, of circumspheres
-//!   larger than that, may be missing. Balls inside a surface never are.
+//! - The points start in one tetrahedron that encloses them all, 64 times their extent away, which is dropped at the
+//!   end. Nearly flat tetrahedra on the convex hull, of circumspheres larger than that, may be missing. Balls inside a
+//!   surface never are.
 //! - The predicates are exact while no product of five coordinate differences underflows: extents
 //!   of 1e-50 to 1e50 are safe.
 

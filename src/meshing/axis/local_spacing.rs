@@ -17,8 +17,8 @@ use crate::meshing::watch::Watch;
 /// Distance between samples where matter is thin, in units of the radius of the largest ball around.
 const PER_RADIUS: f64 = 1.0;
 
-/// How far "around" reaches, in units of the distance between samples where matter is thick. Balls that touch a face near
-/// a convex edge are small, however thick the body is; smaller, and the edges of a box would count as thin.
+/// How far "around" reaches, in units of the distance between samples where matter is thick. Balls that touch a face
+/// near a convex edge are small, however thick the body is; smaller, and the edges of a box would count as thin.
 const AROUND: f64 = 2.0;
 
 /// Least distances between samples that are tried, in units of the distance where matter is thick. The first that keeps

@@ -40,8 +40,8 @@ pub struct Start {
     pub sheet_patches: usize,
 }
 
-/// The initial medial mesh from about `count` samples of the solid patches, or up to four times as many where they are of
-/// thin walls; `findings` is told what turned out too thin and what is buried.
+/// The initial medial mesh from about `count` samples of the solid patches, or up to four times as many where they are
+/// of thin walls; `findings` is told what turned out too thin and what is buried.
 pub fn start(
     surface: &Surface,
     tree: &TriangleTree,

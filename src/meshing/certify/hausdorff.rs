@@ -54,8 +54,8 @@ const WAYS: usize = 3;
 /// How far each direction turns away from what was in the way of the one before, in units of its length.
 const TILT: f64 = 0.05;
 
-/// Way out (longest side 1) that is tried too where a piece is nearly on the boundary, turned by as much as need be: in a
-/// slit the other side is near. Twice what bodies are enlarged by.
+/// Way out (longest side 1) that is tried too where a piece is nearly on the boundary, turned by as much as need be: in
+/// a slit the other side is near. Twice what bodies are enlarged by.
 const SLIT: f64 = 5e-6;
 
 /// Pieces that the search in either direction (source to solid, solid to source) may examine before it becomes coarser:
@@ -249,9 +249,8 @@ impl FromSource<'_> {
         Look::Distance(out)
     }
 
-    /// Whether each point of a triangle is within `allowed` of the boundary: it sticks out of one
-    /// primitive by no more, and moved by as much or less, along its normal or a little away from what stands beside it,
-    /// it is all outside.
+    /// Whether each point of a triangle is within `allowed` of the boundary: it sticks out of one primitive by no more,
+    /// and moved by as much or less, along its normal or a little away from what stands beside it, it is all outside.
     fn is_settled(&self, corners: &[Point; 3], center: Point, normal: Point, allowed: f64) -> bool {
         let to_hint = |p: Point| self.solid.distance_to(self.hint, p);
         if allowed < 0.0

@@ -118,7 +118,7 @@ pub struct Search<'a, S: Side> {
     effort: Effort,
     /// Pieces that gave large distances.
     leaders: Vec<(f64, S::Piece)>,
-    /// No point of a piece that was given up is farther than this.
+    /// Bound of the distances in the pieces that were too small to cut.
     given_up: f64,
     /// Pieces to examine, those examined, and the share of the surface that is done.
     budget: f64,

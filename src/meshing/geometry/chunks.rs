@@ -32,7 +32,7 @@ pub fn map_chunks<T: Sync, R: Send>(
     map_chunks_of(CHUNK, items, watch, map)
 }
 
-/// What `map` makes of each item, in order, in chunks of [`COSTLY`] or [`VERY_COSTLY`] items.
+/// Results of `map` for all items, in order. The items are worked on in chunks of [`COSTLY`] or [`VERY_COSTLY`].
 pub fn map_each<T: Sync, R: Send>(
     chunk: usize,
     items: &[T],

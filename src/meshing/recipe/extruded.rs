@@ -1,5 +1,5 @@
-//! The medial mesh of a prism: its profile with as many edges as the count allows, and the roof over that, which is exact
-//! for it (`prism_axis.rs`), or its thick part and ribs (`ribs.rs`), which take fewer slabs.
+//! The medial mesh of a prism: its profile with as many edges as the count allows, and the roof over that, which is
+//! exact for it (`prism_axis.rs`), or its thick part and ribs (`ribs.rs`), which take fewer slabs.
 
 use crate::error::BuildError;
 use crate::math::Real;
@@ -15,10 +15,12 @@ use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::profile::{Profile, fewer};
 use crate::meshing::watch::Watch;
 
-/// Largest thickness within which a profile is brought to fewer edges (longest side 1): the coarsest prism that is tried.
+/// Largest thickness within which a profile is brought to fewer edges (longest side 1): the coarsest prism that is
+/// tried.
 const THICKEST: f64 = 0.05;
 
-/// Thickness at which the search for a profile ends (longest side 1), if the count of primitives has not ended it before.
+/// Thickness at which the search for a profile ends (longest side 1), if the count of primitives has not ended it
+/// before.
 const THINNEST: f64 = 1e-4;
 
 /// Ratio of each thickness to the one before. Nearer to 1, and more profiles are tried, in more time.
@@ -40,23 +42,24 @@ const SAME: f64 = 0.25;
 /// Radii are larger by this (longest side 1): what is covered needs no proof by the smallest pieces then.
 const MARGIN: f64 = 1e-5;
 
-/// A draft that is off by more than so many thicknesses, at few samples, is not of the body: it is no prism, but for its
-/// outline.
+/// Distance, in units of the thickness, by which a draft may be off at a few samples. One that is off by more does not
+/// fit the body, which then is a prism by its outline alone.
 const FAR: f64 = 4.0;
 
-/// A prism that is off by no more than this (longest side 1) is not fitted as well: fits of prisms by 200 primitives are
-/// off by .002 to .006.
+/// A prism that is off by no more than this (longest side 1) is not fitted as well: fits of prisms by 200 primitives
+/// are off by .002 to .006.
 pub const NEAR: f64 = 2.5e-3;
 
 /// The balls and slabs of a prism near to a body.
 struct Prism {
     draft: Draft,
     count: usize,
-    /// It is off by no more at few samples, or not of the body.
+    /// Largest distance (longest side 1) by which it may be off at a few samples; a draft that is off by more is not of
+    /// the body.
     far: f64,
     /// The edges of its profile.
     edges: usize,
-    /// What it consists of, in words.
+    /// Description of its parts, for the report.
     parts: String,
 }
 
@@ -156,7 +159,7 @@ impl Source {
     }
 }
 
-/// What prisms consist of.
+/// Construction of prisms.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     /// Roofs alone.

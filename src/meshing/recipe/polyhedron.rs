@@ -80,8 +80,8 @@ pub fn known(uncovered: f64, bloat: f64) -> Hausdorff {
     }
 }
 
-/// Faces at most of a convex polyhedron whose axis has so many primitives: three edges or more bound a face, two faces share
-/// one, and each has a slab or more.
+/// Faces at most of a convex polyhedron whose axis has so many primitives: three edges or more bound a face, two faces
+/// share one, and each has a slab or more.
 pub fn faces_of(primitives: usize) -> usize {
     primitives - primitives / 3
 }

@@ -71,7 +71,7 @@ struct Found {
 pub enum Smallest {
     /// A medial mesh that keeps the limit.
     Found(Box<Candidate>),
-    /// No count keeps the limit; more primitives than these gain nothing, or are not allowed.
+    /// No count keeps the limit. More primitives than this many gain nothing, or are not allowed.
     OutOfReach(usize),
 }
 

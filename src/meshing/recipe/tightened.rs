@@ -47,8 +47,8 @@ const POINTS: usize = 30_000;
 /// Distance by which a point sticks out of the draft to become a sample, in units of the error.
 const STICKS_OUT: f64 = 0.02;
 
-/// Depth of a point inside the draft at which it becomes a sample, in units of the error. It is above [`OFFSET`], the depth
-/// that the fit aims at.
+/// Depth of a point inside the draft at which it becomes a sample, in units of the error. It is above [`OFFSET`], the
+/// depth that the fit aims at.
 const DEEP: f64 = 0.75;
 
 impl Source {

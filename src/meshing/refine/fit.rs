@@ -139,9 +139,9 @@ pub fn collapse(
     Ok((first, smaller, kept))
 }
 
-/// Ratio of the count asked for to a small one from which on it is tested whether the body is round: whether
-/// all larger counts lower the error of the plain collapse by less than [`FLAT`]. The errors are then those of the samples
-/// and of the source's own facets.
+/// Ratio of the count asked for to a small one from which on it is tested whether the body is round: whether all larger
+/// counts lower the error of the plain collapse by less than [`FLAT`]. The errors are then those of the samples and of
+/// the source's own facets.
 const ROUND_FROM: usize = 10;
 
 /// Ratio by which larger counts may lower the error of a round body's plain collapse. Errors of a ring of 1,536

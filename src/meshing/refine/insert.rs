@@ -92,7 +92,7 @@ enum Place {
     Edge(usize),
     /// A ball in the middle of a slab.
     Slab,
-    /// Nothing: an end, seen from inside.
+    /// No ball: the sample is at an end and does not stick out.
     End,
 }
 

@@ -22,7 +22,8 @@ use crate::meshing::refine::residuals::{
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
 
-/// Floor of a row's weight, over the largest: rows without error still hold what is right.
+/// Least weight of a row, in units of the largest weight. Without it, rows without error would not hold what is right
+/// already.
 const WEIGHT_FLOOR: f64 = 0.02;
 
 /// Damping of each ball at the start of a fit (no unit; larger means smaller steps).

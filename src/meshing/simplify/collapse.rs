@@ -65,8 +65,8 @@ impl<'a> Simplifier<'a> {
         Self::with_quadrics(complex, quadrics, tree, watch)
     }
 
-    /// Does the same as [`Self::new`] for a medial mesh with creases, which knows the planes that its balls touch;
-    /// `flat` says that all faces are.
+    /// A simplifier for a medial mesh with creases, which knows the planes that its balls touch; `flat` says that all
+    /// faces are flat.
     pub fn creased(
         mesh: CreasedMesh,
         flat: bool,
@@ -121,8 +121,8 @@ impl<'a> Simplifier<'a> {
         self
     }
 
-    /// Sets whether costs are measured from the first collapse on where much sticks out: many primitives can keep what few
-    /// lose anyway.
+    /// Sets whether costs are measured from the first collapse on where much sticks out: many primitives can keep what
+    /// few lose anyway.
     pub fn set_measures_early(&mut self, early: bool) {
         self.measures_early = early;
     }

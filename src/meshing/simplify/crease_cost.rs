@@ -55,8 +55,9 @@ pub fn stick_out(complex: &Complex, tree: &TriangleTree, ab: [u32; 2], ball: &Ba
     middles.chain([*ball]).map(out).fold(0.0, f64::max)
 }
 
-/// Lower bound on what [`stick_out`] gives, which is far quicker to tell: 0 up to `least`. Balls no thicker than `least` are
-/// not seen, nor those whose centres are outside the solid by more than their radius.
+/// Lower bound of [`stick_out`], found far more quickly; 0 if nothing is found to stick out by more than `least`
+/// (longest side 1). Balls no thicker than `least` are not looked at, nor those whose centres are outside the solid by
+/// more than their radius.
 pub fn stick_out_beyond(
     least: f64,
     complex: &Complex,

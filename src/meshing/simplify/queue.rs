@@ -9,7 +9,8 @@ use crate::math::least_first::least_first;
 use crate::meshing::watch::bytes_of;
 use std::collections::BinaryHeap;
 
-/// Each time the heap is empty it takes the cheapest one in this many of the waiting collapses. Only speed depends on it.
+/// Each time the heap is empty it takes the cheapest one in this many of the waiting collapses. Only speed depends on
+/// it.
 const SHARE: usize = 8;
 
 /// Number of waiting collapses up to which the heap takes all of them. Only speed depends on it.

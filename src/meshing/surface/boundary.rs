@@ -2,9 +2,9 @@
 //! of its triangles but the pieces with matter on both sides, which are hidden.
 //!
 //! A triangle that another part passes through is cut along the planes of all faces if these are flat and few
-//! (`flat_boundary.rs`). Otherwise it is halved until its pieces lie on one side; of the smallest, those that are partly
-//! hidden stay. What is hidden: `hidden.rs`. Small openings have lids there. Folds (`folds.rs`) that matter encloses are hidden
-//! too.
+//! (`flat_boundary.rs`). Otherwise it is halved until its pieces lie on one side; of the smallest, those that are
+//! partly hidden stay. What is hidden: `hidden.rs`. Small openings have lids there. Folds (`folds.rs`) that matter
+//! encloses are hidden too.
 
 use crate::error::BuildError;
 use crate::meshing::findings::Findings;
@@ -32,9 +32,9 @@ const LARGE: f64 = 0.08;
 /// How far the points of a piece that are looked at are from its border, as a share of the way to the middle.
 const INWARD: f64 = 0.1;
 
-/// Triangles and points that winding numbers may look at before larger pieces are tried: so many, and so many more for each
-/// triangle. The first is a few seconds' work, of which bodies of overlapping parts took an eighth at most; the second
-/// lets meshes of very many triangles look at each.
+/// Triangles and points that winding numbers may look at before larger pieces are tried: so many, and so many more for
+/// each triangle. The first is a few seconds' work, of which bodies of overlapping parts took an eighth at most; the
+/// second lets meshes of very many triangles look at each.
 const MOST_WORK: [usize; 2] = [100_000_000, 4_000];
 
 /// Pieces that may be kept before larger pieces are tried: so many, and so many more for each triangle.

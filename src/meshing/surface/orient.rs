@@ -33,8 +33,8 @@ pub struct Patch {
     pub triangles: usize,
     /// How many of them were turned round.
     pub turned: usize,
-    /// The first of the patches that are joined to it along loose seams, and face the same way as it does: itself if there
-    /// are none.
+    /// The first of the patches that are joined to it along loose seams, and face the same way as it does: itself if
+    /// there are none.
     pub sewn: u32,
 }
 

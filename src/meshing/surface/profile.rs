@@ -1,5 +1,5 @@
-//! The profile of a body that is a prism: two caps across an axis and walls along it. Its outline is brought to fewer edges,
-//! within a thickness.
+//! The profile of a body that is a prism: two caps across an axis and walls along it. Its outline is brought to fewer
+//! edges, within a thickness.
 
 use crate::meshing::geometry::bounds::{Point, direction, perpendicular};
 use crate::meshing::geometry::polygon_triangles::polygon_area;
@@ -28,7 +28,7 @@ const HALVINGS: usize = 12;
 pub struct Profile {
     /// Directions: two across it, and its axis.
     axes: [Point; 3],
-    /// Its middle along the axis.
+    /// Middle of the prism along the axis.
     middle: f64,
     /// Half its height.
     pub half: f64,
@@ -198,7 +198,8 @@ pub fn fewer(points: &[Point], thickness: f64) -> Option<Vec<Point>> {
     Some((0..ends.len()).map(corner).collect())
 }
 
-/// Where runs begin that lie within `thickness` across the line between their ends: each as long as can be.
+/// Indices at which runs of points begin. All points of a run lie within `thickness` across the line between its ends,
+/// and each run is as long as can be.
 fn runs(points: &[Point], thickness: f64) -> Vec<usize> {
     let n = points.len();
     let fits = |from: usize, to: usize| {

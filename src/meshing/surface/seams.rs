@@ -1,5 +1,5 @@
-//! Seams: an edge of one triangle along which the edges of others run, cut at more vertices (T-junctions), and chains of
-//! edges along each other, cut at different vertices.
+//! Seams: an edge of one triangle along which the edges of others run, cut at more vertices (T-junctions), and chains
+//! of edges along each other, cut at different vertices.
 //!
 //! Nothing is missing there but a sliver without area between the edge and the chain of the others, or between two
 //! chains. Such slivers close the surface, and no vertex moves.

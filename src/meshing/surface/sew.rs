@@ -16,7 +16,7 @@ const MOST_GAP: f64 = 5e-3;
 /// there, and who belongs together is not known.
 const CLEARLY: f64 = 3.0;
 
-/// Edges looked at for each at most: more lie close together in a tangle only.
+/// Largest number of edges that each edge is compared with. Only in a tangle do more lie close together.
 const MOST_NEAR: usize = 256;
 
 /// Cosine of the sharpest angle of a loose seam: layers that lie on each other end at the same place too.
