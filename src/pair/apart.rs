@@ -10,14 +10,14 @@ use crate::elementary::test_list::ElementaryTest;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::ROUNDING_ULPS;
 
-/// Centre at the start of the piece, chord, and radius grown by the sagitta.
-pub(super) type Ball = (Vec3<f64>, Vec3<f64>, f64);
+/// A ball on its way over a piece of the step: centre at the start, chord, and radius grown by the sagitta.
+pub(super) type SweptBall = (Vec3<f64>, Vec3<f64>, f64);
 
 /// Spheres of one primitive, or of one side of an elementary test, over a piece: position at the
 /// start, chord, and radius grown by the sagitta; the last again where there are fewer than four.
 #[derive(Clone, Copy)]
 pub(super) struct Balls {
-    spheres: [Ball; 4],
+    spheres: [SweptBall; 4],
     len: usize,
     /// Bound of the coordinates in play.
     pub(super) size: f64,
@@ -25,7 +25,7 @@ pub(super) struct Balls {
 
 impl Balls {
     /// One to four of them; `terms`: sizes of the numbers that their positions are sums of, beyond those.
-    pub(super) fn new(balls: impl ExactSizeIterator<Item = Ball>, terms: f64) -> Self {
+    pub(super) fn new(balls: impl ExactSizeIterator<Item = SweptBall>, terms: f64) -> Self {
         let len = balls.len();
         let mut spheres = [(Vec3::zero(), Vec3::zero(), 0.0); 4];
         let mut size = terms;
@@ -82,7 +82,7 @@ impl Balls {
         mixed.len = means.len();
         for (k, shares) in means.iter().enumerate() {
             let none = (Vec3::zero(), Vec3::zero(), 0.0);
-            let sum = |sum: Ball, (s, share): (&Ball, &f64)| {
+            let sum = |sum: SweptBall, (s, share): (&SweptBall, &f64)| {
                 (
                     sum.0 + s.0 * *share,
                     sum.1 + s.1 * *share,
@@ -94,7 +94,7 @@ impl Balls {
         mixed
     }
 
-    pub(super) fn all(&self) -> &[Ball] {
+    pub(super) fn all(&self) -> &[SweptBall] {
         &self.spheres[..self.len]
     }
 
@@ -154,7 +154,11 @@ impl Balls {
 }
 
 /// End of a ball along a direction of this length at the start of the piece, and how fast it moves.
-pub(super) fn end_along((center, chord, radius): &Ball, n: Vec3<f64>, length: f64) -> (f64, f64) {
+pub(super) fn end_along(
+    (center, chord, radius): &SweptBall,
+    n: Vec3<f64>,
+    length: f64,
+) -> (f64, f64) {
     (n.dot(*center) + length * radius, n.dot(*chord))
 }
 

@@ -2,7 +2,7 @@
 //! along which the centres of its nodes and primitives move, and radii enlarged by the sagitta, which is how far a
 //! centre may be off its chord. Twin of `Side::chord` on a device: `sweep` in `shaders/swept.wgsl`.
 
-use super::apart::{Ball, Balls};
+use super::apart::{Balls, SweptBall};
 use super::outline::ActivePrimitives;
 use super::primitive_tree::PrimitiveTree;
 use crate::math::approach::first_touch;
@@ -99,7 +99,7 @@ pub(super) struct Side<'a, V> {
     nodes: Vec<Swept>,
     balls: Vec<Balls>,
     /// Balls of convex pieces, and the bound of the coordinates in play.
-    pieces: Vec<(Vec<Ball>, f64)>,
+    pieces: Vec<(Vec<SweptBall>, f64)>,
     /// Primitives that may meet the other side; `None`: all.
     left: Option<ActivePrimitives>,
     /// List of what may come near it, and which of the bodies this is.
@@ -213,15 +213,15 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         let Some(of) = self.body.convex_piece(node).filter(|_| piece == NOT_YET) else {
             return self.sweep_hull(at);
         };
-        let balls: Vec<Ball> = of.spheres.iter().map(|s| self.ball(s)).collect();
-        let size = |ball: &Ball| ball.0.taxicab() + ball.1.taxicab() + ball.2;
+        let balls: Vec<SweptBall> = of.spheres.iter().map(|s| self.ball(s)).collect();
+        let size = |ball: &SweptBall| ball.0.taxicab() + ball.1.taxicab() + ball.2;
         let size = balls.iter().map(size).sum::<f64>() + self.motion.terms();
         self.nodes[at as usize].piece = self.pieces.len() as u32;
         self.pieces.push((balls, size));
     }
 
     /// The spheres of a node's convex piece or primitive, which are swept, and the bound of the coordinates in play.
-    pub(super) fn piece(&self, at: u32) -> (&[Ball], f64) {
+    pub(super) fn piece(&self, at: u32) -> (&[SweptBall], f64) {
         match self.node(at).piece {
             NOT_YET => (self.hull(at).all(), self.hull(at).size),
             piece => {
@@ -231,7 +231,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         }
     }
 
-    fn ball(&self, s: &MedialSphere) -> Ball {
+    fn ball(&self, s: &MedialSphere) -> SweptBall {
         let (from, chord, sagitta) = self.chord(Vec3::from_vector(s.center));
         (from, chord, f64::from(s.radius) + sagitta)
     }
