@@ -26,9 +26,10 @@
 //! play, so that `ULPS` ulps of it cover the bound. A tolerance below [`CHASE_TOLERANCE_PER_SLACK`] times
 //! that slack is raised to it.
 
-use super::axisymmetric::{Axisymmetric, Ball, NearBall, Place, unit};
+use super::axisymmetric::{Axisymmetric, NearBall, Place, unit};
 use crate::math::lane::Vec3;
 use crate::math::motion::{PointPath, RigidMotion};
+use crate::math::sphere::Ball;
 
 /// Rounding slack in units of `f64::EPSILON × scale` (no unit); derived in the header, with a margin
 /// of 4.
@@ -118,7 +119,7 @@ impl<'a> Chase<'a> {
         let [motion1, motion2] = motions;
         let pivot = motion2.point(Vec3::from_vector(body.center));
         let corners: [Corner; 3] = std::array::from_fn(|i| {
-            let (center, radius) = balls[i.min(balls.len() - 1)];
+            let Ball { center, radius } = balls[i.min(balls.len() - 1)];
             let path = motion1.point(center);
             Corner {
                 path,
@@ -153,15 +154,15 @@ impl<'a> Chase<'a> {
         let [motion1, motion2] = self.motions;
         let turned = [motion1.sin_cos(t), motion2.sin_cos(t)];
         let center = self.pivot.at(t, turned[1]);
-        let mut balls = [(Vec3::zero(), 0.0); 3];
+        let mut balls = [Ball::new(Vec3::zero(), 0.0); 3];
         let mut rates = [Vec3::zero(); 3];
         for (i, c) in self.corners().iter().enumerate() {
             let state = c.path.at(t, turned[0]);
             let p = state.position - center.position;
-            balls[i] = (p, c.radius);
+            balls[i] = Ball::new(p, c.radius);
             rates[i] = state.velocity - center.velocity;
         }
-        let distances = balls[..self.count].iter().map(|b| b.0.length());
+        let distances = balls[..self.count].iter().map(|b| b.center.length());
         let far = distances.fold(0.0, f64::max);
         let arms = self.largest(|c| c.path.terms()) + self.pivot.terms();
         let size = self.body.reach() + self.largest(|c| c.radius) + far + self.speed + arms;
@@ -193,10 +194,14 @@ impl<'a> Chase<'a> {
         let (turn, spin) = (self.motions[1].angle(), self.motions[1].angular_velocity());
         let (mut least, mut step) = (f64::MAX, f64::MAX);
         for ((p, corner), rate) in moment.balls.iter().zip(self.corners()).zip(moment.rates) {
-            let gap = m.dot(p.0) - p.1 - support - target - moment.slack;
+            let gap = m.dot(p.center) - p.radius - support - target - moment.slack;
             least = least.min(gap);
-            let rate = m.dot(rate - spin.cross(p.0));
-            step = step.min(first_root(gap, rate, self.bend(corner, p.0, turn, left)));
+            let rate = m.dot(rate - spin.cross(p.center));
+            step = step.min(first_root(
+                gap,
+                rate,
+                self.bend(corner, p.center, turn, left),
+            ));
         }
         // The zero direction: the distance is never below minus the largest radius.
         if -self.largest(|c| c.radius) - target > moment.slack {
@@ -222,9 +227,9 @@ impl<'a> Chase<'a> {
         let mut ends = [(f64::MAX, 0.0, 0.0); 3];
         let corners = moment.balls.iter().zip(self.corners()).zip(moment.rates);
         for (end, ((p, corner), rate)) in ends.iter_mut().zip(corners) {
-            let rate = m.dot(rate - spin.cross(p.0));
-            let bend = self.bend(corner, p.0, turn, left) + swerve;
-            *end = (m.dot(p.0) - p.1, rate, bend);
+            let rate = m.dot(rate - spin.cross(p.center));
+            let bend = self.bend(corner, p.center, turn, left) + swerve;
+            *end = (m.dot(p.center) - p.radius, rate, bend);
         }
         let ends = &ends[..self.count];
         // A time, and the least gap then.

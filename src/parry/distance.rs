@@ -12,6 +12,7 @@ use super::inside;
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::math::lane::Vec3;
 use crate::math::least_first::least_first;
+use crate::math::sphere::Ball;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::tree::NodeKind;
@@ -152,7 +153,7 @@ fn nearest_axisymmetric(
     let border = f64::from(body.border);
     let ball = |(center, radius): (Vector, Real)| {
         let center = Vec3::from_vector(pos21 * center) - place.origin;
-        (center, f64::from(radius) + border)
+        Ball::new(center, f64::from(radius) + border)
     };
     let mut best: Option<(NearBall, u32)> = None;
     let mut limit = f64::from(limit);
@@ -189,7 +190,7 @@ fn nearest_axisymmetric(
     }
     let (near, primitive) = best?;
     let (out, distance) = out_of(body, &place, &near);
-    let (center, radius) = near.ball;
+    let Ball { center, radius } = near.ball;
     let shared = |p: Vec3<f64>| (p + place.origin).to_vector();
     let first = shared(center - out * (radius - border));
     let second = shared(center - out * (radius + distance - border));
@@ -205,8 +206,8 @@ fn nearest_axisymmetric(
 /// Unit direction from the body to a sphere, and the signed distance; of a centre inside, the way out.
 fn out_of(body: &Axisymmetric, place: &Place, near: &NearBall) -> (Vec3<f64>, f64) {
     if near.apart <= 0.0 {
-        let (out, way) = body.min_translation(place, near.ball.0);
-        return (out, -way - near.ball.1);
+        let (out, way) = body.min_translation(place, near.ball.center);
+        return (out, -way - near.ball.radius);
     }
     (unit(near.direction), near.distance())
 }
