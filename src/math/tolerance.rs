@@ -41,7 +41,7 @@ pub const STEP_ULPS: f64 = 4.0;
 /// depends on it, never soundness: the corners are checked for whatever direction comes.
 pub const TURNING_REGULARISATION: f64 = 1.0e-6;
 
-/// Stands for "no root in the step"; any number above 1 serves.
+/// Time that stands for "no root in the step", as a fraction of the step; any number above 1 serves.
 pub const NEVER: f64 = 4.0;
 
 /// Cosine from which two directions count as one (10°): those of contacts of one patch, of points of one manifold, and

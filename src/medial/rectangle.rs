@@ -38,7 +38,7 @@ impl SweptRectangles {
         &self.0[(first as usize - 1) / 2]
     }
 
-    /// Fits those of a node and of all below it; returns the spheres below it, each once.
+    /// Fits the rectangles of a node and of all nodes below it; returns the spheres below the node, each once.
     fn fit(
         &mut self,
         node: u32,

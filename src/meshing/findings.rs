@@ -52,7 +52,7 @@ pub struct Findings {
     pub triangles_thin: usize,
     /// Triangles of sheets (after long edges were halved) that were left out because they lie inside a solid.
     pub triangles_buried: usize,
-    /// Triangles that lie entirely inside a solid. They do not count in the error.
+    /// Number of triangles that lie entirely inside a solid. They do not count in the error.
     pub triangles_hidden: usize,
     /// Patches of which all triangles lie entirely inside a solid.
     pub patches_hidden: usize,

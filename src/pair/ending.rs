@@ -154,9 +154,9 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         pairs.map(distance).fold(f64::INFINITY, f64::min)
     }
 
-    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness, or of what is left
-    /// of them where they touched at the start: a test that is proven free until then may be nearer than the one that
-    /// was found.
+    /// Makes the nearest sphere pair of the reported primitives at `lower` the witness. If parts of them touched at the
+    /// start, only the parts that remain count. A test that is proven free until `lower` may be nearer than the test
+    /// that was found.
     pub(super) fn settle(&mut self) {
         self.join_pieces();
         let Some((.., pair)) = self.earliest.found else {

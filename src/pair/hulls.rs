@@ -176,8 +176,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
         }
     }
 
-    /// How near what two nodes hold is, if it is convex pieces, and they are within `margin` of each other and apart.
-    /// Farther ones have a gap beyond it and no primitives.
+    /// Distance of the convex pieces that two nodes hold, if they are within `margin` of each other and apart. Farther
+    /// ones get a gap beyond the margin and no primitives.
     pub(super) fn pieces_nearest(&mut self, nodes: [u32; 2], margin: f64) -> Option<Nearest> {
         let ((first, second), place) = (self.bodies, self.place);
         let pieces = [first.convex_piece(nodes[0]), second.convex_piece(nodes[1])];

@@ -13,7 +13,7 @@ use crate::medial::MedialSphere;
 use crate::medial::thickness;
 use crate::medial::tree::NodeKind;
 
-/// How often the nearest primitives are asked for a better direction at most.
+/// Largest number of times that the nearest primitives are asked for a better direction.
 const ROUNDS: usize = 3;
 
 /// Two pieces that are looked at as a whole.
@@ -32,7 +32,7 @@ pub(super) struct Pieces {
 /// Contact of two convex pieces, in the frame of the motions.
 #[derive(Clone, Copy)]
 pub(super) struct PiecesMet {
-    /// The bodies' nodes that hold them.
+    /// Nodes that hold the two pieces, one of each body.
     pub(super) nodes: [u32; 2],
     /// The primitives of them that are about nearest.
     pub(super) primitives: [u32; 2],
@@ -133,8 +133,9 @@ impl Nearest {
         }
     }
 
-    /// The largest gap of two nodes' pieces that can be found, from that of their hulls on, with a pair of primitives
-    /// that are about nearest. `place` takes a point of a body's frame to where it is, `local` takes it back.
+    /// The largest gap of two nodes' pieces that can be found, starting from the gap of their hulls, and a pair of
+    /// primitives that are about nearest. `place` takes a point from a body's frame to the common one, `local` takes it
+    /// back.
     pub(super) fn search(
         ((first, second), nodes): ((&impl PrimitiveTree, &impl PrimitiveTree), [u32; 2]),
         (hulls, hull): ([&PlacedHull; 2], HullGap),

@@ -136,8 +136,8 @@ impl<'a> PrimitivePair<'a> {
         penetration::deepest(a, b, middle(b) - middle(a), 0.0)
     }
 
-    /// A crossing of any edge with the other's slab, owned or not: with one the nearest spheres mean
-    /// nothing for this pair.
+    /// The crossing of an edge of one primitive with the slab of the other, whether this pair owns the edge or not.
+    /// With a crossing the nearest spheres mean nothing for this pair.
     fn crossing(&self) -> Option<slab_crossing::Crossing<f64>> {
         let (a, b) = self.spheres();
         [crossing(a, u8::MAX, b), crossing(b, u8::MAX, a)]

@@ -134,8 +134,8 @@ pub struct PrimitiveList {
     /// A node for each primitive; in a hierarchy the root, and all below it.
     nodes: Vec<ListNode>,
     has_tree: bool,
-    /// Range of primitives of the part, for each primitive of a part that has ended: its first and the one behind its
-    /// last.
+    /// For each primitive of a part that is complete, the range of the part's primitives: its first, and the one behind
+    /// its last.
     parts: Vec<[u32; 2]>,
 }
 

@@ -91,7 +91,7 @@ pub(super) struct Search<'a, A, B> {
     pub(super) touching: Vec<([u32; 2], f64)>,
     /// Convex pieces looked at, by the bodies' nodes; `None` where their primitives decide.
     pub(super) convex: FastMap<[u32; 2], Option<Pieces>>,
-    /// The convex pieces found, where the contact found is of such.
+    /// The convex pieces that met, if the contact found is between pieces.
     pub(super) met: Option<PiecesMet>,
     /// Patch in which the pieces found, and all others that meet with them, lie on each other; set when it is asked
     /// for.

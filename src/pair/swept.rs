@@ -294,7 +294,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
 /// longer, fast queries a tenth; 1.5 is nearly as good.
 const SIMILAR: f64 = 3.0;
 
-/// Children that replace two swept nodes, not both of them leaves.
+/// Children that replace two swept nodes, at least one of which is not a leaf.
 pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
     sides: &mut (Side<A>, Side<B>),
     [i, j]: [u32; 2],

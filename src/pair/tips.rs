@@ -83,7 +83,7 @@ impl Parts {
         }
     }
 
-    /// The parts where the radius of a primitive is `kept` or more; all of it, if it is less everywhere.
+    /// Parts of a primitive where its radius is `kept` or more; the whole primitive if it is thinner everywhere.
     pub(super) fn without_tips(spheres: &[Ball<f64>], kept: f64) -> Self {
         let mut whole = Self::whole(spheres.len());
         let at = |k: usize| Part::whole(3).shares[k];

@@ -47,7 +47,7 @@ const CHORDS: usize = 4;
 /// depends on it.
 const WIDER: f64 = 4.0;
 
-/// How one volume is followed.
+/// Limits of the time and the distance within which one volume is followed.
 #[derive(Clone, Copy)]
 pub struct Limits {
     /// Time until which the two are known to be free.
@@ -177,8 +177,8 @@ impl<'a> Chase<'a> {
         }
     }
 
-    /// Bound of the acceleration of a corner seen from the body's centre, in a frame that turns by `turn`, within
-    /// `left`.
+    /// Bound of a corner's acceleration seen from the body's centre within the time `left`, in a frame that turns by
+    /// the angle `turn` in the step.
     fn bend(&self, corner: &Corner, p: Vec3<f64>, turn: f64, left: f64) -> f64 {
         let farthest = p.length() + corner.speed * left;
         corner.path.acceleration
@@ -187,8 +187,8 @@ impl<'a> Chase<'a> {
             + turn * turn * farthest
     }
 
-    /// Least gap of the spheres above the target along the direction `m` from the body, and a time for which none
-    /// closes its own within `left`, if `m` turns with the body.
+    /// Least gap of the spheres above the target along the direction `m` from the body, and a time up to which no gap
+    /// closes within `left`, if `m` turns with the body.
     fn step(&self, moment: &Moment, m: Vec3<f64>, target: f64, left: f64) -> (f64, f64) {
         let support = self.body.support(&moment.place, m);
         let (turn, spin) = (self.motions[1].angle(), self.motions[1].angular_velocity());

@@ -84,7 +84,7 @@ pub fn ghosts(
 mod tests {
     use super::*;
 
-    /// Parts that are boxes, by their centres and half sides.
+    /// The reach of parts that are boxes, by their centres and half sides.
     fn reach(boxes: &[(Vector, Vector)]) -> impl Fn(u32, Vector) -> Real {
         |part, n| {
             let (at, half) = boxes[part as usize];

@@ -117,7 +117,7 @@ pub fn write_manifolds<M, C>(
     }
 }
 
-/// Writes one contact, in a manifold of its own that keeps the data of the one before.
+/// Writes one contact into a manifold of its own, which keeps the data of the manifold that was there before.
 pub fn write_one_point<M, C>(
     contact: Option<SpherePair>,
     pos12: &Pose,

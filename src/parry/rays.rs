@@ -43,7 +43,7 @@ pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
     Some(RayIntersection::new(time, normal, FeatureId::Face(0)).with_subshape(primitive))
 }
 
-/// A point of the mesh's surface near a point inside, and its primitive: straight out of the primitive
+/// A point of the surface near a point inside the mesh, and its primitive: the way leads straight out of the primitive
 /// whose surface is nearest, as far as the union reaches. `None` for a point outside.
 pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> {
     let inside = |i: &u32| mesh.primitive(*i as usize).signed_distance(point).distance <= 0.0;

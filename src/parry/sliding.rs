@@ -49,7 +49,8 @@ pub struct Sliding<'a> {
     sinks: Sinks,
     /// Planes of the faces below the mesh on which it lies.
     grounds: Vec<Lying>,
-    /// Whether no face of a surface (a mesh, height field or voxel) was looked at: folds are between those only.
+    /// Whether only faces of solids were looked at. Folds are between faces of a surface (a mesh, height field or
+    /// voxels).
     pub is_over_solids: bool,
 }
 

@@ -86,8 +86,8 @@ pub fn correct<M, C>(
 /// A part of the mesh, and a convex shape at a pose in the mesh's frame.
 type Two<'a> = (Part<'a>, (&'a dyn Shape, &'a Pose));
 
-/// The gap of two along a unit direction out of the mesh, negative where they overlap along it. `None` for what has no
-/// support map.
+/// Gap of two shapes along a unit direction out of the mesh, negative where they overlap along it. `None` for a shape
+/// without a support map.
 fn gap_along((part, (shape, pose)): &Two, n: Vector) -> Option<Real> {
     let nearest = shape.as_support_map()?.support_point(pose, -n);
     Some(n.dot(nearest) - part.reach(n))

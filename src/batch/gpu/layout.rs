@@ -97,7 +97,7 @@ twins! {
         room: u32 = "u32",
         /// How many primitive pairs there is room for on the list.
         near_room: u32 = "u32",
-        /// Another number in each batch, on every entry of the list.
+        /// Number of the batch, on every entry of the list.
         stamp: u32 = "u32",
     }
     /// Two primitives that are not proven free.

@@ -59,7 +59,7 @@ impl Proposals {
         }
     }
 
-    /// Forgets everything; room is kept.
+    /// Forgets all entries; memory is kept.
     pub fn clear(&mut self) {
         self.each.clear();
         self.near.clear();

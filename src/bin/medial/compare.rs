@@ -72,7 +72,7 @@ struct Comparison {
     triangles: usize,
     /// Longest side of the bounding box, in the unit of the file.
     longest_side: f32,
-    /// Bodies in each heap, heaps, and steps of each.
+    /// Number of bodies in each heap, of heaps, and of steps of each.
     bodies: usize,
     heaps: u64,
     steps: usize,

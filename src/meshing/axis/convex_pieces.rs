@@ -21,7 +21,7 @@ pub const MOST_PLANES: usize = 64;
 /// Cells at most: a ring of 24 sides has 1,251, a gear of eight teeth 1,299.
 const MOST_CELLS: usize = 6_000;
 
-/// Pieces at most.
+/// Largest number of pieces.
 const MOST_PIECES: usize = 64;
 
 /// Orders in which planes are tried for each piece. With one a star of eight points takes seven pieces, with four or

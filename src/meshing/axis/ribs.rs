@@ -11,7 +11,7 @@ use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Point, direction};
 use std::f64::consts::SQRT_2;
 
-/// Lines that meet at a smaller angle than this (rad) are one.
+/// Angle (rad) between two lines below which they are one.
 const SAME_LINE: f64 = 0.02;
 
 /// A ridge from a corner of the outline is not of a plate where the corner is at most this many radii from the ball at

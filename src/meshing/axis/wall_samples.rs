@@ -16,7 +16,7 @@ const PROBES: usize = 1_000;
 /// Distances between samples, over the thickness, between which a wall is neither balls nor slabs.
 const NEITHER: [f64; 2] = [1.15, 2.3];
 
-/// Multiples of the count that are tried.
+/// Multiples of the number of samples that are tried.
 const TIMES: [usize; 3] = [1, 2, 4];
 
 /// Share of the surface that may be neither.

@@ -172,7 +172,7 @@ struct Prover<'a> {
     tree: &'a PrimitiveTree<'a>,
     /// The primitive that held the piece before.
     hint: u32,
-    /// Largest distance by which a piece was missed.
+    /// Largest distance by which the solid failed to cover a piece.
     worst: f64,
     /// Squared length of the longest edge of the smallest pieces.
     finest_sq: f64,

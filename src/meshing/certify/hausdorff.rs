@@ -54,8 +54,9 @@ const WAYS: usize = 3;
 /// How far each direction turns away from what was in the way of the one before, in units of its length.
 const TILT: f64 = 0.05;
 
-/// Way out (longest side 1) that is tried too where a piece is nearly on the boundary, turned by as much as need be: in
-/// a slit the other side is near. Twice what bodies are enlarged by.
+/// Length of a second way out (longest side 1), tried where a piece is nearly on the boundary. Its direction turns as
+/// far as need be, since in a slit the other side is near. Twice the length by which bodies are enlarged to cover
+/// rounding.
 const SLIT: f64 = 5e-6;
 
 /// Pieces that the search in either direction (source to solid, solid to source) may examine before it becomes coarser:

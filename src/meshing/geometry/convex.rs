@@ -56,7 +56,7 @@ impl Convex {
         }
     }
 
-    /// All corners, once for each face that they are of.
+    /// All corners, each once for every face that it is of.
     pub fn corners(&self) -> impl Iterator<Item = Point> + Clone + '_ {
         self.faces
             .iter()
@@ -116,7 +116,7 @@ impl Convex {
     }
 }
 
-/// A height, or 0 where it is within `on`.
+/// The height, or 0 if it is within `on`.
 fn off(height: f64, on: f64) -> f64 {
     if height.abs() <= on { 0.0 } else { height }
 }

@@ -33,7 +33,7 @@ const THIN: [f64; 6] = [0.015, 0.02, 0.03, 0.045, 0.065, 0.09];
 /// the whole profile was. All are tried.
 const COARSER: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 
-/// Profiles of more edges are not tried with ribs: roofs take time that grows with the third power of the count.
+/// Largest number of edges of a profile that is tried with ribs: the time for a roof grows with the third power of it.
 const MOST_RIBBED: usize = 256;
 
 /// Ridges shorter than this share of the thickness are points. With 1 the count is hardly less.
@@ -46,7 +46,7 @@ const MARGIN: f64 = 1e-5;
 /// fit the body, which then is a prism by its outline alone.
 const FAR: f64 = 4.0;
 
-/// A prism that is off by no more than this (longest side 1) is not fitted as well: fits of prisms by 200 primitives
+/// Largest error (longest side 1) of a prism that is returned without a fit besides: fits of prisms by 200 primitives
 /// are off by .002 to .006.
 pub const NEAR: f64 = 2.5e-3;
 

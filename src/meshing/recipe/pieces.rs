@@ -88,8 +88,8 @@ impl Source {
         Ok(Some((parts, flat)))
     }
 
-    /// The pieces that the planes of all faces make, where corners are off these by at most `flat`, and how far the
-    /// source's corners may be beside them; `None` where there are too many.
+    /// Convex pieces between the planes of all faces, for corners that are off these planes by at most `flat`, and the
+    /// distance by which the source's corners may be outside them. `None` where there are too many pieces.
     fn parts_by_faces(
         &self,
         flat: f64,

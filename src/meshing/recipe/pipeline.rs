@@ -16,8 +16,8 @@ use crate::meshing::simplify::shared_count::Parts;
 use crate::meshing::surface::boundary::solid_boundary;
 use crate::meshing::watch::Watch;
 
-/// The plain collapses of two medial meshes of one body are compared by few samples: the one whose largest
-/// residual is above this many of the other's is not fitted.
+/// Ratio of the largest residuals, at few samples, of the plain collapses of two medial meshes of a body. One that is
+/// worse than the other by more than this is not fitted.
 const HOPELESS: f64 = 2.0;
 
 /// Samples for tens of primitives.

@@ -49,7 +49,7 @@ const FINE: usize = 500;
 /// Plain collapses whose largest residuals differ by less than this share are as good.
 const FLAT: f64 = 1.02;
 
-/// The medial meshes of one body, and what was tried of them.
+/// Search over the medial meshes of one body, with what was tried of them.
 struct Search<'a, 'b> {
     source: &'a Source,
     ladders: Vec<&'a mut Ladder<'b>>,
@@ -120,7 +120,8 @@ impl Source {
 }
 
 impl Search<'_, '_> {
-    /// The least count found, or the one from which on more of them gain nothing.
+    /// The smallest number of primitives found that keeps the limit, or else the number from which on more of them gain
+    /// nothing.
     fn run(&mut self, top: usize, watch: &mut Watch) -> Result<Result<Found, usize>, BuildError> {
         let Some(mut count) = self.first(top, watch)? else {
             return Ok(Err(self.flat_from(top, watch)?));

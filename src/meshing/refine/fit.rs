@@ -79,7 +79,7 @@ impl Collapsed {
     }
 }
 
-/// Primitives of a start; the rest is inserted.
+/// Number of primitives of a start; the rest is inserted.
 pub fn start_count(most: usize) -> usize {
     let share = if most > LARGE { 0.85 } else { 0.8 };
     ((most as f64 * share) as usize).max(8).min(most)

@@ -14,7 +14,7 @@ use crate::meshing::refine::refit::Target;
 use crate::meshing::refine::residuals::{GUESS, Row};
 use crate::meshing::watch::Watch;
 
-/// Errors below this (longest side 1) call for no primitive.
+/// Error (longest side 1) below which no primitive is inserted.
 const NEGLIGIBLE: f64 = 1e-5;
 
 /// Weight (0 to 1) of both balls of a cone above which a place lies in its middle, and not at an end.
@@ -32,7 +32,7 @@ const ENDS: usize = 9;
 /// A tip's cone may bulge out by this share of the error that it mends.
 const BULGE: f64 = 0.8;
 
-/// An edge of more faces is not split: each would cost a primitive.
+/// Largest number of faces at an edge that is split: each face costs a primitive.
 const FACES_AT_EDGE: usize = 3;
 
 /// Inserts up to `budget` primitives; gives the number added.

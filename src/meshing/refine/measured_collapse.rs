@@ -194,7 +194,7 @@ impl<'a> Measure<'a> {
         best
     }
 
-    /// Measured cost of a collapse; anything above `enough` once it exceeds that.
+    /// Measured cost of a collapse. It ends early, with some value above `enough`, once the cost exceeds that.
     fn cost(&self, s: &Simplifier, after: &Merged, ball: &Ball, accepted: f64, enough: f64) -> f64 {
         let balls = &s.complex().balls;
         let [a, b] = after.edge;

@@ -46,7 +46,7 @@ pub struct Row {
     pub weight: f64,
     /// Point of the sample.
     pub point: Point,
-    /// Index of its primitive.
+    /// Index of the primitive that the sample is of.
     pub primitive: u32,
 }
 
@@ -275,8 +275,8 @@ fn envelope_rows(
     })
 }
 
-/// Whether a sample is within the solid, its way out along its normal is longer than `beyond`, and the nearest point of
-/// the primitive that is deepest there is within others.
+/// Whether a sample is inside the solid, its way out along its normal is longer than `beyond`, and the nearest point of
+/// the primitive that is deepest there is inside other primitives.
 pub fn is_far_inside(solid: &Solid, sample: &Sample, near: &Nearest, beyond: f64) -> bool {
     near.signed.distance < 0.0
         && !solid.is_out(sample.point + sample.normal * beyond, near.primitive)

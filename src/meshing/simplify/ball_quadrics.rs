@@ -64,7 +64,7 @@ pub fn quadrics(
     Ok(quadrics)
 }
 
-/// The planes that hold the medial mesh's boundary at an edge of one face or none.
+/// Adds the planes that hold the boundary of the medial mesh in place, at an edge of one face or none.
 fn add_end(complex: &Complex, [a, b]: [u32; 2], weight: f64, quadrics: &mut [Quadric]) {
     let balls = &complex.balls;
     let is_thin = |v: u32| (1e-9..THIN).contains(&balls[v as usize].radius);

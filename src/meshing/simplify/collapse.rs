@@ -111,8 +111,8 @@ impl<'a> Simplifier<'a> {
         Ok(simplifier)
     }
 
-    /// Says that the balls lie inside the solid and touch samples of its surface, `spacing` apart, as
-    /// yet: seen from a ball of radius r, a flat surface bulges in by r − √(r² − spacing²) between them.
+    /// Takes note that the balls lie inside the solid and still touch samples of its surface, `spacing` apart. Seen
+    /// from a ball of radius r, a flat surface bulges in by r − √(r² − spacing²) between two of them.
     pub fn touching(mut self, spacing: f64) -> Self {
         for (clear, ball) in self.clear.iter_mut().zip(&self.complex.balls) {
             let clear_sq = ball.radius * ball.radius - spacing * spacing;

@@ -47,8 +47,8 @@ pub fn fold_cost(complex: &Complex, [a, b]: [u32; 2], ball: &Ball) -> f64 {
     FOLD_COST * sum
 }
 
-/// How far the ball that both ends of an edge become, and the middles of what is around it, stick out of the
-/// solid; 0 where none does.
+/// Distance by which the merged ball of an edge, and the middles of the primitives around it, stick out of the solid; 0
+/// where none does.
 pub fn stick_out(complex: &Complex, tree: &TriangleTree, ab: [u32; 2], ball: &Ball) -> f64 {
     let middles = ab.into_iter().flat_map(|v| middles(complex, ab, v, ball));
     let out = |b: Ball| b.radius + tree.signed_distance(b.center, 1.2 * b.radius.max(GUESS));

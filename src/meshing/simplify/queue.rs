@@ -35,7 +35,7 @@ least_first!(Candidate, cost, a, b);
 #[derive(Clone)]
 pub struct Queue {
     heap: BinaryHeap<Candidate>,
-    /// All that cost more than `limit`.
+    /// Collapses that cost more than `limit`, in no order.
     later: Vec<Candidate>,
     limit: f64,
 }
@@ -65,7 +65,7 @@ impl Queue {
         }
     }
 
-    /// The cheapest that is `current`.
+    /// Takes out the cheapest collapse that is `current`.
     pub fn pop(&mut self, current: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
         loop {
             while let Some(candidate) = self.heap.pop() {

@@ -12,7 +12,8 @@ const SQUARE: f64 = 1e-3;
 /// Normals of large triangles from which axes are tried: each, and what is square to two of them.
 const NORMALS: usize = 4;
 
-/// Share of the area that may be neither cap nor wall: small fillets and chamfers. How much they matter is measured.
+/// Share of the area that may be neither cap nor wall, as small fillets and chamfers are. The error that this makes is
+/// measured afterwards.
 const NEITHER: f64 = 0.03;
 
 /// Corners of a cap are in one plane but for this (longest side 1).

@@ -10,7 +10,7 @@ use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::surface::edges::Edges;
 use crate::meshing::watch::Watch;
 
-/// A chain's vertices may be off the edge by this (longest side 1): modellers round to four digits.
+/// Distance (longest side 1) by which vertices of a chain may be off the edge: modellers round to four digits.
 const OFF: f64 = 1e-4;
 
 /// Vertices of two chains along each other, at most.

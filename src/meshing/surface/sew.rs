@@ -37,7 +37,7 @@ pub struct OpenEdge {
 pub struct Seam {
     /// Places of the two among the open edges.
     pub edges: [usize; 2],
-    /// Whether both run the same way: then one of the triangles must be turned for both to face one way.
+    /// Whether both run the same way, so that one of the triangles must be turned for both to face one way.
     pub against: bool,
 }
 
@@ -126,7 +126,7 @@ fn gap(ends: &[Point; 2]) -> f64 {
     (GAP * (ends[1] - ends[0]).length()).min(MOST_GAP)
 }
 
-/// Power of two that the length has; edges along each other have the same or neighbouring ones.
+/// Exponent of the power of two that the length has. Edges along each other have the same or neighbouring ones.
 fn octave(ends: &[Point; 2]) -> Option<i32> {
     let length = (ends[1] - ends[0]).length();
     (length > 0.0).then(|| length.log2().floor() as i32)
