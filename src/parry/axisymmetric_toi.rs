@@ -217,10 +217,8 @@ impl Search<'_> {
             thinner = thinner.min(cores.at_most);
         }
         let cap = CAP.saturating_mul(self.options.max_iterations);
-        let thinnest = all[..len]
-            .iter()
-            .map(|b| b.radius)
-            .fold(f64::INFINITY, f64::min);
+        let radii = all[..len].iter().map(|b| b.radius);
+        let thinnest = radii.fold(f64::INFINITY, f64::min);
         let mut limits = Limits {
             start: entry.time,
             horizon: self.upper,
@@ -257,8 +255,7 @@ impl Search<'_> {
                 let axis = all.map(|s| Ball::new(s.center, 0.0));
                 let axes = || self.advance(body, &axis[..len], &at_start).near.distance();
                 let threshold = Threshold::deepened(start, thinnest, by.into(), tolerance, axes);
-                all.iter_mut()
-                    .for_each(|ball| ball.radius *= threshold.scale);
+                all.iter_mut().for_each(|b| b.radius *= threshold.scale);
                 limits.target = threshold.target;
                 limits.tolerance = threshold.tolerance;
             }
