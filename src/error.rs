@@ -66,7 +66,7 @@ pub enum MeshError {
     ZeroSize {
         /// How many spheres there are.
         count: usize,
-        /// Where they are.
+        /// The point, in the user's unit.
         center: [f32; 3],
     },
     /// A length, radius or number given to a constructor of a simple solid is out of its range.
@@ -207,7 +207,7 @@ pub enum BuildError {
     TooFar {
         /// Index of the vertex.
         index: usize,
-        /// Its position.
+        /// Position of the vertex.
         position: [f32; 3],
         /// Largest coordinate that a vertex may have.
         most: f32,

@@ -61,9 +61,10 @@
 //! | [`medial`] | the medial mesh itself, its trees, mass, surface and files | `mesh.rs` |
 //! | [`math`] | SIMD lanes, closed forms, rigid motion, counters, constants | `nearest.rs`, `motion.rs` |
 //!
-//! `CONTRIBUTING.md` in the repository has the map: which file has which of the paper's equations,
-//! which proof, and which workaround for rapier. The first lines of each folder's `mod.rs` list its
-//! files.
+//! Besides these, `error.rs` has the errors of this crate, and `bin/` the command line program `medial`.
+//!
+//! `CONTRIBUTING.md` in the repository has the map: which file has which of the paper's equations, which proof, and
+//! which workaround for rapier. The first lines of each folder's `mod.rs` list its files.
 
 // Limits are in clippy.toml.
 #![warn(clippy::too_many_lines)]
@@ -89,9 +90,9 @@ pub use rapier::{
     MedialPipeline, MedialSharedShape, StepReport,
 };
 
-/// Everything that a game with rapier usually needs: `use rapier3d_medial::prelude::*;`. Saving of worlds (`save_world`,
-/// feature `serde-serialize`) and drawing (`MedialDebugRender`, feature `debug-render`) are in [`crate::rapier`], reading of
-/// mesh files in [`crate::meshing::mesh_file`].
+/// Everything that a game with rapier usually needs: `use rapier3d_medial::prelude::*;`. Saving of worlds
+/// (`save_world`, feature `serde-serialize`) and drawing (`MedialDebugRender`, feature `debug-render`) are in
+/// [`crate::rapier`], reading of mesh files in [`crate::meshing::mesh_file`].
 pub mod prelude {
     pub use crate::{
         AssetError, Backend, BuildError, BuildOptions, BuildReport, Creases, Effect, Effects,

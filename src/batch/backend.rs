@@ -22,8 +22,8 @@ use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
 
-/// The place where contacts and first contacts of many pairs are computed: the CPU or a GPU. Both give the same answers,
-/// bit by bit.
+/// The place where contacts and first contacts of many pairs are computed: the CPU or a GPU. Both give the same
+/// answers, bit by bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// A GPU for batches that are large enough, and the CPU for others. If there is no GPU, the CPU

@@ -23,13 +23,13 @@ counters! {
         /// Jobs that had been sent to the GPU before their answers were asked for
         /// ([`Batch::submit`](super::Batch::submit)): in a step, contacts sent at the end of the step before.
         pub sent_early: u64,
-        /// Jobs, or pieces of their step, of which too many primitives meet to be looked at on the GPU, or which were never
-        /// begun there. The CPU computed them.
+        /// Jobs, or pieces of their step, of which too many primitives meet to be looked at on the GPU, or which were
+        /// never begun there. The CPU computed them.
         pub given_up: u64,
         /// Jobs, or pieces of their step, whose list of primitives found no room on the GPU, or is not whole.
         pub unlisted: u64,
-        /// Batches for the GPU that it could not take; [`BatchReport::error`](super::BatchReport::error) says why. The CPU
-        /// computed them.
+        /// Batches for the GPU that it could not take; [`BatchReport::error`](super::BatchReport::error) says why. The
+        /// CPU computed them.
         pub fallbacks: u64,
     }
 }

@@ -50,7 +50,7 @@ pub(super) struct Early {
 }
 
 impl Early {
-    /// Nothing is on the device; room is kept.
+    /// Forgets all jobs that were sent; memory is kept for the next ones.
     pub(super) fn forget(&mut self) {
         self.sent.clear();
         self.proposals.clear();

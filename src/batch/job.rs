@@ -111,6 +111,7 @@ impl PairJob {
 
 impl Job for PairJob {
     type Answer = PairResult;
+    /// Contacts of two meshes take long enough for eight of them to pay.
     const PER_THREAD: usize = 8;
     fn answer(&self) -> PairResult {
         let (mesh1, mesh2) = (&self.mesh1, &self.mesh2);

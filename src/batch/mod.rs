@@ -2,8 +2,11 @@
 //! takes a list of jobs and returns their answers in the same order.
 //!
 //! # Files
-//! `job.rs` has jobs and answers, `backend.rs` decides where they run, `cpu.rs` answers them. A GPU (`on_device.rs`,
-//! `gpu/`) only says what certainly does not meet; it never computes an answer.
+//! - `job.rs` has jobs and answers, `backend.rs` decides where they run, `cpu.rs` answers them, `counts.rs` counts
+//!   them.
+//! - A GPU (`on_device.rs`, `gpu/`) only says what certainly does not meet; it never computes an answer.
+//!   `calibration.rs` measures from which batch sizes on it pays, `early.rs` finds answers to jobs that were sent to it
+//!   in advance.
 
 mod backend;
 #[cfg(feature = "gpu")]

@@ -12,8 +12,8 @@ use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
 
-/// Fewest jobs, and elementary tests, for which [`Backend::Auto`] asks a GPU before it is told by a [`Calibration`]: what
-/// was measured on an NVIDIA H200 beside one core. Beside sixteen no batch was large enough
+/// Fewest jobs, and elementary tests, for which [`Backend::Auto`] asks a GPU before it is told by a [`Calibration`]:
+/// what was measured on an NVIDIA H200 beside one core. Beside sixteen no batch was large enough
 /// (`docs/measurements/benches.md`). Where it does not fit, it costs time only.
 const UNCALIBRATED: Least = Least {
     jobs: if cfg!(feature = "parallel") {
@@ -140,9 +140,9 @@ impl Batch {
         }
     }
 
-    /// Sends the jobs of several batches to this one's GPU in one submission, and waits without blocking for its answers.
-    /// The next [`Self::run`] of each of them, which need no GPU of their own, takes the answers of jobs that are the
-    /// same, bit by bit, from it, and computes the others as if nothing had been sent.
+    /// Sends the jobs of several batches to this one's GPU in one submission, and waits without blocking for its
+    /// answers. The next [`Self::run`] of each of them, which need no GPU of their own, takes the answers of jobs that
+    /// are the same, bit by bit, from it, and computes the others as if nothing had been sent.
     pub async fn share<J: Job>(&mut self, parts: &mut [(&mut Self, Vec<J>)]) {
         let jobs: Vec<&J> = parts.iter().flat_map(|(_, jobs)| jobs).collect();
         self.submit_async(&jobs).await;
@@ -282,7 +282,7 @@ impl Batch {
     }
 }
 
-/// The same room for sweeps that borrow from elsewhere: collected in place, nothing is allocated.
+/// Empties a list and lets it hold sweeps that borrow from elsewhere. Its memory stays, so nothing is allocated.
 fn emptied<'a>(sweeps: Vec<Sweep<'_>>) -> Vec<Sweep<'a>> {
     sweeps.into_iter().map_while(|_| None).collect()
 }

@@ -3,6 +3,13 @@
 //!
 //! Results go to standard output, progress and errors to standard error. Exit code 1 with one line
 //! on failure, 2 for arguments that make no sense.
+//!
+//! # Files
+//! - Commands: `build.rs` (with its work list `jobs.rs`), `info.rs` (`info` and `bake`; for `info --curve` `curve.rs`),
+//!   `compare.rs` (with its picture `compare_picture.rs`), `calibrate.rs`.
+//! - What is read: `placing.rs` (`--scale` and `--up`), `lengths.rs` (lengths with units).
+//! - What is printed: `output.rs` (standard output), `describe.rs` (meshes and errors in words), `failure.rs` (the one
+//!   line of exit code 1).
 
 #[path = "medial/build.rs"]
 mod build;
@@ -66,8 +73,8 @@ enum Command {
     Bake(BakeArguments),
     /// Describe a medial mesh (.ma or .medial), or show the error of a triangle mesh at several numbers of primitives.
     Info(InfoArguments),
-    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side, and measure error and cost of each,
-    /// scaled to a longest side of one metre.
+    /// Draw a mesh, its medial mesh, convex decomposition and convex hull side by side, and measure error and cost of
+    /// each, scaled to a longest side of one metre.
     Compare(CompareArguments),
     /// Measure how large a batch must be for the GPU to be faster than the CPU, for `Backend::Auto`.
     #[cfg(feature = "gpu")]

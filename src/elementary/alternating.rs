@@ -55,7 +55,7 @@ pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions)
     toi
 }
 
-/// How far and from where the iteration runs.
+/// Limits of the iteration, and its start.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits<S> {
     /// Distance at which a sphere pair counts as in contact, a length.

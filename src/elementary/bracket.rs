@@ -48,7 +48,7 @@ pub struct Limits<L> {
 /// Time bracket of the first contact in one elementary test, as far as it is known.
 #[derive(Clone, Copy, Debug)]
 pub struct Bracket<L: Lane> {
-    /// No contact before.
+    /// Time before which there is no contact.
     pub lower: L,
     /// Contact here where `contact`, else the horizon.
     pub upper: L,
@@ -188,7 +188,7 @@ impl<L: Lane> Running<L> {
         running
     }
 
-    /// Nothing known yet.
+    /// The state at the start, when nothing is known yet.
     #[inline(always)]
     pub(super) fn at(limits: &Limits<L>, slack: L) -> Self {
         let none = L::Mask::splat(false);

@@ -98,8 +98,8 @@ pub fn signed_distance<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> S {
     signed_distance_along(a, b).0
 }
 
-/// Signed distance of two primitives of 1 to 3 spheres, and the unit direction from the nearest sphere of the first to that
-/// of the second. Where medial surfaces cross there is no such direction.
+/// Signed distance of two primitives of 1 to 3 spheres, and the unit direction from the nearest sphere of the first to
+/// that of the second. Where medial surfaces cross there is no such direction.
 pub fn signed_distance_along<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
     if a.len() == 3 && b.len() == 3 {
         nearest_first(a, b)
@@ -117,7 +117,8 @@ fn in_order<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
         OwnedFeatures::whole(b.len()),
         |test| {
             let family = family(&test, a, b);
-            // No sphere pair of a test is nearer than its corners along any one direction: mostly that of the nearest yet.
+            // No sphere pair of a test is nearer than its corners along any one direction: mostly that of the nearest
+            // yet.
             let bound = normal.map(|n| certificate::lower_bound(test.domain, &family, n));
             if !least
                 .zip(bound)
@@ -207,7 +208,7 @@ struct Waiting<S> {
 }
 
 impl<S: Scalar> Waiting<S> {
-    /// No spheres are deeper in each other than by the sum of their radii.
+    /// A test with the lowest bound there can be: no two spheres are deeper in each other than the sum of their radii.
     fn new(test: ElementaryTest, a: &[Ball<S>], b: &[Ball<S>]) -> Self {
         let [p, q, r, s] = test.corners;
         let of_a = |k: u8| a[usize::from(k)].1;
@@ -236,8 +237,8 @@ fn unit<S: Scalar>(y: Vec3<S>) -> Vec3<S> {
 const TILTED: f64 = 0.01;
 
 /// The outer normal, of any length, of that face of a slab that looks along `y`: of the plane that touches its three
-/// spheres, given by two edges and how much the radius grows along each; `None` if no plane does, or if it hardly differs
-/// from the medial plane.
+/// spheres, given by two edges and how much the radius grows along each; `None` if no plane does, or if it hardly
+/// differs from the medial plane.
 pub(crate) fn face<S: Scalar>(edges: [Vec3<S>; 2], slopes: [S; 2], y: Vec3<S>) -> Option<Vec3<S>> {
     let ([u, v], [du, dv]) = (edges, slopes);
     let normal = u.cross(v);

@@ -18,7 +18,7 @@ pub struct Earliest<S: Scalar> {
     pub limits: Limits<S>,
     /// Status found so far.
     pub status: ToiStatus,
-    /// No contact before, over all tests so far.
+    /// Time before which there is no contact in any test so far.
     pub lower: S,
     /// Contact here; the horizon when none was found.
     pub upper: S,
@@ -33,7 +33,7 @@ pub struct Earliest<S: Scalar> {
 }
 
 impl<S: Scalar> Earliest<S> {
-    /// Nothing tested yet.
+    /// The state before the first test.
     pub fn new(limits: Limits<S>) -> Self {
         Self {
             limits,

@@ -54,7 +54,7 @@ impl Default for ToiOptions {
 pub struct Toi {
     /// The outcome, which says what the other fields mean.
     pub status: ToiStatus,
-    /// No contact before this time.
+    /// Time before which there is no contact.
     pub lower: f64,
     /// Contact, within the tolerance, at this time.
     pub upper: f64,

@@ -26,10 +26,11 @@
 //! # Files
 //! - What is computed: `test_list.rs` (which tests two primitives need), `path.rs` (their motion), `cone_cone.rs` and
 //!   `sphere_slab.rs` (nearest spheres at a fixed time).
-//! - First contact: `bracket.rs` (the loop), `certificate.rs` (why no contact is missed), `first_contact.rs` and
-//!   `earliest.rs` (the earliest of many tests), `resumed.rs`; in eight lanes `many.rs`, in double precision
-//!   `f64.rs`.
-//! - At fixed poses: `distance.rs`, `penetration.rs`, `slab_crossing.rs`.
+//! - First contact: `bracket.rs` (the loop), `certificate.rs` (why no contact is missed), `first_contact.rs` (the call
+//!   for two primitives), `earliest.rs` (the earliest of many tests), `resumed.rs` (a loop that pauses and goes on
+//!   later); in eight lanes `many.rs`, in double precision `f64.rs`.
+//! - At fixed poses: `distance.rs` (signed distance), `penetration.rs` (depth and normal of an overlap),
+//!   `slab_crossing.rs` (an edge through a medial triangle).
 //! - The paper's own iteration, only to compare with: `alternating.rs`.
 
 pub mod alternating;
@@ -66,8 +67,8 @@ pub struct MovingSphere {
     pub displacement: Vector,
 }
 
-/// Options of a query for the first contact: the distance that counts as a contact, and the tolerance of the answer. The
-/// defaults suit metres.
+/// Options of a query for the first contact: the distance that counts as a contact, and the tolerance of the answer.
+/// The defaults suit metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToiOptions {
     /// How much farther than [`Self::target_distance`] apart bodies may be to count as in contact, in the user's
@@ -104,9 +105,9 @@ pub struct ToiOptions {
 /// `share` is at most 1, each core contains its medial axis, so no axis has crossed another, or a surface, however
 /// thin the part is.
 ///
-/// Two convex pieces (the parts of a body with flat faces) that touch at the start, and have no edges sharper than 60 degrees, are
-/// looked at as a whole: they count as touching at their cores when they are `share × t` deep, if `t` is the thickness of
-/// the thinner one, wherever that is.
+/// Two convex pieces (the parts of a body with flat faces) that touch at the start, and have no edges sharper than 60
+/// degrees, are looked at as a whole: they count as touching at their cores when they are `share × t` deep, if `t` is
+/// the thickness of the thinner one, wherever that is.
 ///
 /// [`ToiOptions::target_distance`] counts from the cores. Cores that touch at the start may sink into each other with
 /// [`InitialContact::Deepen`], but never as far as the axes.
@@ -117,9 +118,9 @@ pub struct Cores {
     /// An upper limit of that thickness, a length: the thickness of a partner that is not medial. Infinite if there is
     /// no limit.
     pub at_most: Real,
-    /// How thick a blunt tip has to be, as a share of the local thickness, to be kept from passing through what it
-    /// touches at the start ([`InitialContact::Deepen`]), shared between two medial bodies as
-    /// [`Self::share`] is. With 0 the whole tip is kept from it, however thin it is.
+    /// Thickness down to which a blunt tip is kept from passing through what it touches at the start
+    /// ([`InitialContact::Deepen`]), as a share of the local thickness; a thinner end of the tip is not. Two medial
+    /// bodies take half of it each, as of [`Self::share`]. With 0 the whole tip is kept, however thin it ends.
     pub tips: Real,
 }
 
@@ -138,8 +139,8 @@ impl Cores {
         if share > 0.0 { share * most } else { 0.0 }
     }
 
-    /// Radii, lengths, down to which spheres of two primitives of these thicknesses are kept apart where they touch at
-    /// the start: of blunt tips; what is slender has no thinner ones. Those of their cores.
+    /// Radii, lengths, to which the tips of two primitives of these thicknesses are cut off ([`Self::tips`]), after
+    /// their cores' loss. Only blunt tips are cut; a slender one is not thinner at its end.
     pub(crate) fn kept(&self, thickness: [Real; 2]) -> [f64; 2] {
         let losses = self.losses(thickness);
         let (shares, most) = self.of_each(self.tips, thickness);
@@ -268,8 +269,8 @@ pub struct Toi {
     pub tolerance: Real,
     /// Number of iterations, summed over all elementary tests.
     pub iterations: u32,
-    /// Unit normal from the first body to the second, in the world frame, at `lower`: along it those parts meet that count
-    /// as in contact then ([`InitialContact::Deepen`] lets others be deeper in each other).
+    /// Unit normal from the first body to the second, in the world frame, at `lower`: along it those parts meet that
+    /// count as in contact then ([`InitialContact::Deepen`] lets others be deeper in each other).
     pub normal: Vector,
     /// Nearest spheres of both bodies, in the world frame, at `lower`.
     pub spheres: [MedialSphere; 2],

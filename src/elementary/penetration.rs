@@ -79,7 +79,8 @@ pub fn deepest<S: Scalar>(
         .unwrap_or((most, preferred))
 }
 
-/// Directions that the two bodies alone decide: of the nearest spheres, and tangent to both.
+/// Directions that the two bodies alone decide: those between the nearest spheres of each elementary test, and those
+/// tangent to both bodies.
 fn steady_directions<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> Vec<Vec3<S>> {
     let mut found = Vec::new();
     for_each_test(
@@ -109,8 +110,8 @@ fn steady_directions<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> Vec<Vec3<S>> {
     found.into_iter().filter_map(unit).collect()
 }
 
-/// Directions nearest to `preferred`: itself, and tangent to one edge of either body. They are the
-/// deepest where the bodies leave a choice: cones on one axis, spheres with one centre.
+/// Directions nearest to `preferred`: itself, and one tangent to each edge of either body. They matter where the bodies
+/// leave a choice, as cones on one axis or spheres with one centre do.
 fn loose_directions<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>], preferred: Vec3<S>) -> Vec<Vec3<S>> {
     let (of_first, of_second) = slopes(a, b);
     let on_circle = |(e, d): &(Vec3<S>, S)| {
@@ -134,9 +135,9 @@ fn loose_directions<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>], preferred: Vec3<S>)
         .collect()
 }
 
-/// Edges of both with the slope `n·e` of a tangent direction. On the first body the far side counts
-/// (`n·p + r`), on the second the near one (`n·p − r`): the slope of an edge of the first is the
-/// negative of its radius change.
+/// Edges of both primitives, each with the slope `n·e` that a direction `n` tangent to it has. A tangent plane touches
+/// both spheres of an edge `e = q − p`. On the first body the far side counts, `n·p + r`, so `n·e` is minus the change
+/// of the radius; on the second the near side, `n·p − r`, so it is the change itself.
 fn slopes<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (Vec<Slope<S>>, Vec<Slope<S>>) {
     let of = |s: &[Ball<S>], sign: f64| {
         let slope = |e: &[u8; 2]| {
@@ -148,7 +149,7 @@ fn slopes<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (Vec<Slope<S>>, Vec<Slope<
     (of(a, -1.0), of(b, 1.0))
 }
 
-/// An edge `e` and the `d` of `n·e = d`.
+/// An edge `e`, and `d` in the condition `n·e = d` for directions `n` tangent to it.
 type Slope<S> = (Vec3<S>, S);
 
 /// A unit direction across a unit vector.

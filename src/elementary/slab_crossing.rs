@@ -7,9 +7,9 @@
 //! ```text
 //! x = −w·N/D     α = (w + x e)·(v × N)/N²     β = (w + x e)·(N × u)/N²
 //! ```
-//! The signed distance there is `S = −R(x, α, β)`, the most negative value possible on that line. For `D = 0` the edge is
-//! parallel to the triangle; if it then meets it, it also meets one of its edges or ends inside
-//! it, which the other tests see.
+//! The signed distance there is `S = −R(x, α, β)`, the most negative value possible on that line. For `D = 0` the edge
+//! is parallel to the triangle; if it then meets it, it also meets one of its edges or ends inside it, which the other
+//! tests see.
 
 use crate::math::lane::{Scalar, Vec3};
 

@@ -25,7 +25,9 @@ fn simd() -> V3 {
     unsafe { V3::new_unchecked() }
 }
 
+/// Number of the comparison `<` for AVX; false for NaN.
 const LESS: i32 = std::arch::x86_64::_CMP_LT_OQ;
+/// Number of the comparison `<=` for AVX; false for NaN.
 const LESS_OR_EQUAL: i32 = std::arch::x86_64::_CMP_LE_OQ;
 
 macro_rules! binary {

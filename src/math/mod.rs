@@ -1,9 +1,14 @@
 //! Numbers and geometry that know nothing of medial meshes (layer 0).
 //!
 //! # Files
-//! - Closed forms: `nearest.rs` (paper Eq. 2 at a fixed time), `approach.rs` (Eq. 4 for spheres), `motion.rs` (rigid
-//!   motion and sagitta).
-//! - Constants: `tolerance.rs`. Counters: `counters.rs`. Lanes: `lane.rs`, `lane_avx.rs`.
+//! - Closed forms: `nearest.rs` (spheres nearest to each other at a fixed time, paper Eq. 2), `approach.rs` (when two
+//!   spheres on straight paths meet, Eq. 4), `motion.rs` (rigid motion, and how far its points leave straight paths).
+//! - Types: `sphere.rs` (a centre and a radius), `lane.rs` (one trait over `f32`, `f64` and eight lanes), `lane_avx.rs`
+//!   (eight lanes in an AVX register).
+//! - Helpers: `counters.rs` (structs of counters), `least_first.rs` (the order of a heap from which the least key
+//!   leaves first), `fast_hash.rs` (hash of a few integers), `portable.rs` (functions with the same last bit on every
+//!   platform).
+//! - Constants: `tolerance.rs`.
 
 pub(crate) mod approach;
 pub(crate) mod counters;

@@ -9,8 +9,9 @@ use super::lane::{Scalar, Vec3};
 use super::{Real, Rotation, Vector};
 use parry3d::query::NonlinearRigidMotion;
 
-/// How far a point at distance 1 from the centre moves by the turn from one rotation to another, at most: `2 sin(θ/2)` for an
-/// angle `θ`. Computed from its sine, since a cosine in single precision tells no angle below a thousandth from 0.
+/// How far a point at distance 1 from the centre moves by the turn from one rotation to another, at most: `2 sin(θ/2)`
+/// for an angle `θ`. Computed from its sine, since a cosine in single precision tells no angle below a thousandth from
+/// 0.
 pub fn chord(from: Rotation, to: Rotation) -> Real {
     let turn = from.inverse() * to;
     2.0 * Vector::new(turn.x, turn.y, turn.z).length()

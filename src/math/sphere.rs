@@ -11,6 +11,14 @@ pub struct Sphere<S> {
     pub radius: S,
 }
 
+impl<S> Sphere<S> {
+    /// The sphere of this centre and radius.
+    #[inline]
+    pub fn new(center: Vec3<S>, radius: S) -> Self {
+        Self { center, radius }
+    }
+}
+
 /// A sphere in double precision.
 pub type Ball = Sphere<f64>;
 

@@ -41,17 +41,17 @@ pub const STEP_ULPS: f64 = 4.0;
 /// depends on it, never soundness: the corners are checked for whatever direction comes.
 pub const TURNING_REGULARISATION: f64 = 1.0e-6;
 
-/// Stands for "no root in the step"; any number above 1 serves.
+/// Time that stands for "no root in the step", as a fraction of the step; any number above 1 serves.
 pub const NEVER: f64 = 4.0;
 
-/// Cosine from which two directions count as one (10°): those of contacts of one patch, of points of one manifold, and of a
-/// normal and the same one after its body has turned. Smaller, and contacts of different faces have one normal; larger, and
-/// normals that are only rounding's are told apart.
+/// Cosine from which two directions count as one (10°): those of contacts of one patch, of points of one manifold, and
+/// of a normal and the same one after its body has turned. Smaller, and contacts of different faces have one normal;
+/// larger, and normals that are only rounding's are told apart.
 pub const ONE_DIRECTION: f64 = 0.985;
 
-/// Rounding of a few sums and products of lengths, in units of `EPSILON` times the sum of their sizes (no unit). Not tuned:
-/// far above what such a computation rounds. Too small, and a bound may be wrong by its rounding; larger, and pairs are
-/// looked at that need not be.
+/// Rounding of a few sums and products of lengths, in units of `EPSILON` times the sum of their sizes (no unit). Not
+/// tuned: far above what such a computation rounds. Too small, and a bound may be wrong by its rounding; larger, and
+/// pairs are looked at that need not be.
 pub const ROUNDING_ULPS: f64 = 64.0;
 
 /// Rounding slack of a bound computed on a GPU, in units of `EPSILON × scale` (no unit).

@@ -20,7 +20,7 @@
 //! ```
 //!
 //! # Trust
-//! Counts are compared with the length of the bytes before anything is allocated. The checksum finds every
+//! ItemCounts are compared with the length of the bytes before anything is allocated. The checksum finds every
 //! changed byte. A file forged with a good checksum is checked so far that no query on it panics. It is not
 //! checked that its tree bounds its primitives, that its mass is that of its solid, nor that its parts are convex.
 
@@ -37,20 +37,20 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 
-/// First bytes of a baked mesh. Like those of PNG, no text begins so, and they reveal a transfer that changed
-/// line ends.
+/// First bytes of a baked mesh. As with PNG, no text begins so, and a transfer that changed line ends shows.
 pub const MAGIC: [u8; 8] = *b"\x89medial\n";
 
 /// Version of the layout that is written and read.
 pub const VERSION: u32 = 2;
 
-/// Flags.
+/// Flag: the mass properties of the source are stored.
 const HAS_SOURCE: u32 = 1;
+/// Flag: the mesh is a union of convex pieces.
 const OF_CONVEX_PIECES: u32 = 2;
-
+/// Length of the header in bytes.
 const HEADER: usize = 128;
+/// Length of the checksum in bytes.
 const CHECKSUM: usize = 8;
-
 /// Words of mass properties.
 const MASS: usize = 11;
 
@@ -67,7 +67,7 @@ impl MedialMesh {
     /// ```
     pub fn to_bytes(&self) -> Vec<u8> {
         let parts = self.parts();
-        let counts = Counts {
+        let counts = ItemCounts {
             spheres: parts.spheres.len() as u32,
             edges: parts.edges.len() as u32,
             faces: parts.faces.len() as u32,
@@ -124,7 +124,7 @@ impl MedialMesh {
     /// too long or damaged, or contain numbers that [`Self::to_bytes`] never writes. At most a few
     /// times the length of the bytes is allocated, whatever they contain.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, AssetError> {
-        let counts = Counts::of_header(bytes)?;
+        let counts = ItemCounts::of_header(bytes)?;
         let (needed, found) = (counts.bytes(), bytes.len() as u64);
         let Some((content, stored)) = bytes.split_last_chunk::<CHECKSUM>() else {
             return Err(AssetError::Length { needed, found });
@@ -167,21 +167,22 @@ impl MedialMesh {
             read.map_err(|source| file_error(path, source))
         };
         read(HEADER as u64, &mut bytes)?;
-        let needed = Counts::of_header(&bytes).map_err(asset)?.bytes();
+        let needed = ItemCounts::of_header(&bytes).map_err(asset)?.bytes();
         // One byte more than asked for is enough to tell that there is more.
         read(needed - HEADER as u64 + 1, &mut bytes)?;
         Self::from_bytes(&bytes).map_err(asset)
     }
 }
 
-struct Counts {
+/// Numbers of items, as the header tells them.
+struct ItemCounts {
     spheres: u32,
     edges: u32,
     faces: u32,
     primitives: u32,
 }
 
-impl Counts {
+impl ItemCounts {
     /// Reads the counts of bytes that start like an asset of this version.
     fn of_header(bytes: &[u8]) -> Result<Self, AssetError> {
         if !bytes.starts_with(&MAGIC) {
@@ -227,7 +228,7 @@ impl Counts {
 }
 
 /// Reads content of the right length and checksum.
-fn read(content: &[u8], counts: &Counts) -> Result<MedialMesh, AssetError> {
+fn read(content: &[u8], counts: &ItemCounts) -> Result<MedialMesh, AssetError> {
     let (header, mut rest) = content.split_at_checked(HEADER).unwrap_or((content, &[]));
     let mut header = records::<1>(&mut &header[12..], 29).flatten();
     let mut word = || header.next().unwrap_or_default();
@@ -376,6 +377,7 @@ pub(super) fn mass_of(index: usize, numbers: &[Real; MASS]) -> Result<MassProper
 /// one for a given word, and the word for a given state: a change within one word always changes the
 /// result; of others about one in 2⁶⁴ goes unseen, as a word's bits are spread before they meet the state.
 pub(crate) fn checksum(bytes: &[u8]) -> u64 {
+    /// Primes of xxHash64.
     const P: [u64; 3] = [
         0x9e37_79b1_85eb_ca87,
         0xc2b2_ae3d_27d4_eb4f,

@@ -62,6 +62,7 @@ impl MedialMesh {
     }
 }
 
+/// Names of the half extents, for errors.
 const NAMES: [&str; 3] = ["half_extents.x", "half_extents.y", "half_extents.z"];
 
 fn round_box(half_extents: Vector, border: Real) -> Result<MedialMesh, MeshError> {

@@ -1,6 +1,6 @@
 //! Mass, centre and inertia of a single ball or medial cone, in closed form. Along its axis it is part of a ball, a
-//! frustum, and part of the other ball, with polynomials of degree 4 at most in all integrals, which Gauss's rule with three
-//! points sums exactly.
+//! frustum, and part of the other ball, with polynomials of degree 4 at most in all integrals, which Gauss's rule with
+//! three points sums exactly.
 
 use super::mass::Moments;
 use crate::math::lane::Vec3;

@@ -1,5 +1,5 @@
-//! Convex pieces of a medial mesh: connected parts of it whose primitives together fill the convex hull of their spheres,
-//! as those of a box do. A query may then look at the hull of a piece instead of at each of its primitives.
+//! Convex pieces of a medial mesh: connected parts of it whose primitives together fill the convex hull of their
+//! spheres, as those of a box do. A query may then look at the hull of a piece instead of at each of its primitives.
 
 use super::exact::{balls, tangent_normals};
 use super::simplex::{Simplex, primitive_of};
@@ -38,17 +38,18 @@ pub struct Edges {
 /// A connected part of a mesh that is the convex hull of its spheres, in the body's frame.
 #[derive(Clone, Debug)]
 pub struct ConvexPiece {
-    /// Its thinnest primitive, of which its contacts are told: they count as thick as it is.
+    /// The thinnest primitive of the piece. Contacts of the piece are reported as of this primitive, and with its
+    /// thickness.
     pub primitive: u32,
-    /// Its spheres.
+    /// Spheres of the piece.
     pub spheres: Vec<MedialSphere>,
-    /// Its flat faces.
+    /// Flat faces of the piece.
     pub faces: Vec<Face>,
-    /// Its edges, where the faces are all of its surface but for the radius of the corners, which is one.
+    /// Edges of the piece, if it is a polyhedron grown by one radius; `None` otherwise.
     pub edges: Option<Edges>,
-    /// The thickness of that, a length (`thickness.rs`).
+    /// Thickness of [`Self::primitive`], a length (`thickness.rs`).
     pub thickness: Real,
-    /// Whether each of its primitives is blunt (`thickness.rs`).
+    /// Whether each primitive of the piece is blunt (`thickness.rs`).
     pub is_blunt: bool,
 }
 
@@ -206,8 +207,8 @@ fn convex_polygon<T: Copy>(sorted: &[T], at: impl Fn(&T) -> [f64; 2]) -> Vec<T> 
 /// The convex pieces of a mesh, by the nodes of its tree.
 #[derive(Clone, Debug, Default)]
 pub struct ConvexPieces {
-    /// One more than the number of the piece that a node holds, neither more nor less; 0 for other nodes, and for pieces
-    /// of one primitive.
+    /// One more than the number of the piece that a node holds, neither more nor less; 0 for other nodes, and for
+    /// pieces of one primitive.
     of_nodes: Vec<u32>,
     /// The node of the piece that each primitive is of, if there is one.
     nodes: Vec<Option<u32>>,

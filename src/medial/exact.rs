@@ -54,8 +54,8 @@ pub fn tangent_normals(balls: &[Ball; 3]) -> Option<[Vec3<f64>; 2]> {
     tangent_normals_beyond(balls, COLLINEAR_SIN_SQ * u_sq * v_sq)
 }
 
-/// The same as [`tangent_normals`], where centres lie on a line whose two edges from the first have a cross product of at
-/// most this square.
+/// Does the same as [`tangent_normals`], with another limit: centres count as on a line if the square of the cross
+/// product of the two edges from the first is at most `collinear_sq`.
 pub fn tangent_normals_beyond(balls: &[Ball; 3], collinear_sq: f64) -> Option<[Vec3<f64>; 2]> {
     let [a, b, c] = *balls;
     let (u, v) = (b.center - a.center, c.center - a.center);
@@ -74,8 +74,8 @@ pub fn tangent_normals_beyond(balls: &[Ball; 3], collinear_sq: f64) -> Option<[V
     Some([up - g, -up - g])
 }
 
-/// Outward unit normal of a plane that touches two spheres, of all around their axis the one that faces `along` most; `None`
-/// if one sphere holds the other.
+/// Outward unit normal of a plane that touches two spheres, of all around their axis the one that faces `along` most;
+/// `None` if one sphere holds the other.
 pub fn cone_normal([a, b]: [Ball; 2], along: Vec3<f64>) -> Option<Vec3<f64>> {
     let between = b.center - a.center;
     let length = between.length();

@@ -6,8 +6,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Writes a new file beside `path`, then renames it to `path`. If `path` is a link, the file that it leads to is replaced.
-/// If it is a device or pipe (`/dev/stdout`), which no file may take the place of, it is written to.
+/// Writes a new file beside `path`, then renames it to `path`. If `path` is a link, the file that it leads to is
+/// replaced. If it is a device or pipe (`/dev/stdout`), which no file may take the place of, it is written to.
 pub fn replace(path: &Path, write: impl FnOnce(&File) -> io::Result<()>) -> Result<(), MeshError> {
     let followed = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if fs::metadata(&followed).is_ok_and(|is| !is.is_file() && !is.is_dir()) {

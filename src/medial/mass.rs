@@ -94,7 +94,7 @@ struct Outline {
 }
 
 impl Moments {
-    /// Of nothing, about a point, in the body's axes.
+    /// Moments of nothing, about a point, in the body's axes.
     pub(super) fn zero(center: Vec3<f64>) -> Self {
         let axis = |k: usize| {
             let one = |i: usize| if i == k { 1.0 } else { 0.0 };
@@ -103,7 +103,7 @@ impl Moments {
         Self::in_axes(center, [0, 1, 2].map(axis))
     }
 
-    /// Of nothing, about a point, in some orthonormal axes.
+    /// Moments of nothing, about a point, in some orthonormal axes.
     pub(super) fn in_axes(center: Vec3<f64>, axes: [Vec3<f64>; 3]) -> Self {
         Self {
             center,
@@ -125,8 +125,8 @@ impl Moments {
         }
     }
 
-    /// Adds the tetrahedron from the centre to a triangle, whose corners are given from there; less than nothing where these
-    /// go round clockwise, seen from outside.
+    /// Adds the tetrahedron from the centre to a triangle, whose corners are given from there; less than nothing where
+    /// these go round clockwise, seen from outside.
     pub(super) fn add_tetrahedron(&mut self, corners: [Vec3<f64>; 3]) {
         let [a, b, c] = corners;
         let volume = a.dot(b.cross(c)) / 6.0;

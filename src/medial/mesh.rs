@@ -129,7 +129,7 @@ impl MedialMesh {
         Ok(Self::from_parts(parts, OnceLock::new()))
     }
 
-    /// The same mesh, of which it is known whether each connected part is convex.
+    /// The mesh, marked as a union of convex pieces if `is_of_them`, each with a node of its own in the tree.
     pub(crate) fn of_convex_pieces(self, is_of_them: bool) -> Self {
         if !is_of_them {
             return self;
@@ -174,8 +174,8 @@ impl MedialMesh {
     }
 
     /// Returns this mesh with other mass properties (at density 1, in the body's frame), for instance those of the
-    /// triangle mesh that it stands for; they are not checked. [`Self::from_trimesh`] sets those of its triangles itself.
-    /// The data are copied: keep the result, and clone that.
+    /// triangle mesh that it stands for; they are not checked. [`Self::from_trimesh`] sets those of its triangles
+    /// itself. The data are copied: keep the result, and clone that.
     pub fn with_mass_properties(self, unit_density: MassProperties) -> Self {
         let parts = Parts {
             source_mass: Some(unit_density),

@@ -2,12 +2,18 @@
 //! files.
 //!
 //! # Files
-//! - The mesh: `mesh.rs`, of `sphere.rs`, `primitive.rs` and `simplex.rs`; what is refused: `check.rs`.
-//! - Trees for queries: `tree.rs`, `rectangle.rs` and `proxy_hull.rs` (bounds), `leaf_order.rs`, `convex_pieces.rs`.
-//! - Geometry: `mass.rs`, in closed form `cone_mass.rs` and `polyhedron_mass.rs`; `thickness.rs`, `chord.rs` (rays), `exact.rs`, `scaled.rs`; the surface as triangles:
-//!   `envelope.rs`.
-//! - Files: `asset.rs` (the layout of a baked mesh), `saved.rs` (serde), `ma_file.rs`.
-//! - Meshes that need no build: `solids.rs`, `boxes.rs`, `polygon.rs`.
+//! - The mesh: `mesh.rs`, of spheres (`sphere.rs`) and primitives (`primitive.rs`; as indices of spheres `simplex.rs`);
+//!   what is refused: `check.rs`. A mesh scaled by a factor: `scaled.rs`.
+//! - Trees for queries: `tree.rs` (bounding spheres), `rectangle.rs` and `proxy_hull.rs` (other bounds),
+//!   `leaf_order.rs` (below which child a primitive is), `convex_pieces.rs` (parts that fill their convex hull).
+//! - Mass: `mass.rs`, in closed form `cone_mass.rs` and `polyhedron_mass.rs`.
+//! - Geometry of primitives: `thickness.rs` (how thin a mesh is), `chord.rs` (where a line enters and leaves),
+//!   `exact.rs` (spheres and tangent planes in double precision).
+//! - The surface as triangles: `envelope.rs`, of the sheets of `sheet.rs`, less what `cover.rs` finds hidden.
+//! - Files: `asset.rs` (the layout of a baked mesh), `saved.rs` (serde), `ma_file.rs` (the text format of Q-MAT);
+//!   reading text: `text.rs`, writing safely: `files.rs`.
+//! - Meshes that need no build: `solids.rs` (round bodies and frames), `boxes.rs`, `polygon.rs` (flat ones with a round
+//!   rim).
 
 pub mod asset;
 pub(crate) mod boxes;

@@ -11,6 +11,7 @@ use super::sphere::MedialSphere;
 use super::tree::{NodeKind, SphereTree};
 use crate::math::Real;
 use crate::math::lane::Vec3;
+use crate::math::sphere::Ball;
 
 /// A rectangle swept by a sphere.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,7 +38,7 @@ impl SweptRectangles {
         &self.0[(first as usize - 1) / 2]
     }
 
-    /// Fits those of a node and of all below it; returns the spheres below it, each once.
+    /// Fits the rectangles of a node and of all nodes below it; returns the spheres below the node, each once.
     fn fit(
         &mut self,
         node: u32,
@@ -59,7 +60,7 @@ impl SweptRectangles {
                 members.dedup();
                 let local = |v: &u32| {
                     let s = &spheres[*v as usize];
-                    (Vec3::from_vector(s.center), f64::from(s.radius))
+                    Ball::new(Vec3::from_vector(s.center), s.radius.into())
                 };
                 let balls: Vec<_> = members.iter().map(local).collect();
                 self.0[(first as usize - 1) / 2] = fitted(&balls);
@@ -68,8 +69,6 @@ impl SweptRectangles {
         }
     }
 }
-
-type Ball = (Vec3<f64>, f64);
 
 /// Cosines and sines of the directions tried for a rectangle's sides: multiples of 11.25°.
 const TURNS: [(f64, f64); 8] = [
@@ -88,7 +87,8 @@ const TURNS: [(f64, f64); 8] = [
 
 /// The swept rectangle of some balls.
 fn fitted(balls: &[Ball]) -> SweptRectangle {
-    let middle = balls.iter().fold(Vec3::zero(), |sum, b| sum + b.0) * (1.0 / balls.len() as f64);
+    let middle =
+        balls.iter().fold(Vec3::zero(), |sum, b| sum + b.center) * (1.0 / balls.len() as f64);
     let [x, y, normal] = principal_axes(balls, middle);
     let sized = |sides: [Vec3<f64>; 2]| {
         let rectangle = around(balls, middle, sides, normal);
@@ -122,8 +122,8 @@ fn around(
     normal: Vec3<f64>,
 ) -> (f64, [[f64; 2]; 2], f64) {
     let local = |b: &Ball| {
-        let y = b.0 - middle;
-        ([y.dot(u), y.dot(v), y.dot(normal)], b.1)
+        let y = b.center - middle;
+        ([y.dot(u), y.dot(v), y.dot(normal)], b.radius)
     };
     let (mut low, mut high) = (f64::MAX, f64::MIN);
     for ([.., z], r) in balls.iter().map(local) {
@@ -173,8 +173,8 @@ const SWEEPS: usize = 6;
 /// Unit eigenvectors of the covariance of the balls' centres, of the largest eigenvalue first (Jacobi's method).
 fn principal_axes(balls: &[Ball], middle: Vec3<f64>) -> [Vec3<f64>; 3] {
     let mut m = [[0.0; 3]; 3];
-    for (center, _) in balls {
-        let y = *center - middle;
+    for ball in balls {
+        let y = ball.center - middle;
         let y = [y.x, y.y, y.z];
         for i in 0..3 {
             for j in 0..3 {

@@ -9,7 +9,7 @@ use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 
-/// A mesh for people to read.
+/// A mesh in text formats: lists of spheres, edges and faces.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "MedialMesh", deny_unknown_fields)]
 struct Listed {

@@ -30,7 +30,7 @@ pub(super) enum Sheet {
         to: Ball,
         /// Unit vector along the edge, and two across it: a right-handed frame.
         frame: [Vec3<f64>; 3],
-        /// Sine and cosine of the angle between the normals and the plane across the edge.
+        /// Sine and cosine of the angle between the normals of the flank and the plane across the edge.
         tilt: [f64; 2],
     },
     /// The triangle in which a plane touches three spheres. Parameter: the second and third

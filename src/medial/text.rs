@@ -10,7 +10,7 @@ const LONGEST_LINE: u64 = 1 << 20;
 /// Longest excerpt of a line shown in a message, in characters.
 const EXCERPT: usize = 60;
 
-/// Why a text cannot be read.
+/// Error of a text that cannot be read.
 #[derive(Debug)]
 pub(crate) enum TextError {
     /// The reader failed.

@@ -30,12 +30,12 @@ pub fn of_primitive(spheres: &[MedialSphere]) -> Real {
     (least / (1.0 - steep)).min(most)
 }
 
-/// How fast the radius of a tip has to grow for what it ends to be kept apart by its thickness alone: that of an edge of 60
-/// degrees, across which what is thinner than `ρ` reaches `2 ρ`.
+/// How fast the radius of a tip has to grow for what it ends to be kept apart by its thickness alone: that of an edge
+/// of 60 degrees, across which what is thinner than `ρ` reaches `2 ρ`.
 const TIP: Real = 0.49;
 
-/// Whether a primitive has no tips, or none that are sharper than an edge of 60 degrees: nowhere less than half as thick as
-/// where it is thickest, or else growing that fast.
+/// Whether a primitive has no tips, or none that are sharper than an edge of 60 degrees: nowhere less than half as
+/// thick as where it is thickest, or else growing that fast.
 pub fn is_blunt(spheres: &[MedialSphere]) -> bool {
     let radii = spheres.iter().map(|s| s.radius);
     let (least, most) = radii.fold((Real::MAX, 0.0), |(least, most), r| {

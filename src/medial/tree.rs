@@ -54,8 +54,8 @@ impl Node {
     }
 }
 
-/// Depth of the deepest node of a tree that is loaded: what is built here splits off an eighth at least, so that no tree of
-/// fewer than 2³² primitives is deeper, and what goes down one recursively has room.
+/// Depth of the deepest node of a tree that is loaded: what is built here splits off an eighth at least, so that no
+/// tree of fewer than 2³² primitives is deeper, and what goes down one recursively has room.
 const DEEPEST: u32 = 192;
 
 /// Bounding spheres over primitives; node 0 is the root.
@@ -71,7 +71,7 @@ impl SphereTree {
         Self::of_items(&Items::single(spheres, primitives, all))
     }
 
-    /// The same, with the primitives of each group below a node of their own.
+    /// Builds the tree in the same way, with the primitives of each group below a node of their own.
     pub fn of_groups(
         spheres: &[MedialSphere],
         primitives: &[Simplex],
@@ -174,13 +174,13 @@ impl SphereTree {
 /// A middle, and the number of what is there among [`Items`].
 type Item = (Vector, u32);
 
-/// What a tree is built over: primitives, or groups of them.
+/// Items that a tree is built over: primitives, or groups of them.
 struct Items<'a> {
     spheres: &'a [MedialSphere],
     primitives: &'a [Simplex],
     /// The primitives, item by item.
     order: Vec<u32>,
-    /// Those of each item.
+    /// Range of `order` that each item takes.
     ranges: Vec<Range<usize>>,
 }
 
@@ -286,6 +286,7 @@ fn enclosing_sphere(members: impl Iterator<Item = MedialSphere> + Clone) -> (Vec
     );
     let mut center = lo * 0.5 + hi * 0.5;
     let mut best = (farthest(center).0, center);
+    /// Steps towards the farthest sphere, each shorter than the one before. With more the ball is smaller.
     const ROUNDS: usize = 24;
     for round in 1..=ROUNDS {
         let (distance, s) = farthest(center);

@@ -52,7 +52,7 @@ impl MedialMesh {
     }
 }
 
-/// All that decides what is built.
+/// Hash of all that decides what is built.
 fn key(vertices: &[Vector], indices: &[[u32; 3]], options: &BuildOptions) -> u64 {
     let mut hasher = DefaultHasher::new();
     env!("CARGO_PKG_VERSION").hash(&mut hasher);

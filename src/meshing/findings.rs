@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-/// Numbers of faults that a build found in its triangle mesh, and of repairs. [`crate::meshing::BuildReport::notes`] says the
-/// same in words.
+/// Numbers of faults that a build found in its triangle mesh, and of repairs. [`crate::meshing::BuildReport::notes`]
+/// says the same in words.
 ///
 /// A *patch* is a set of triangles that are joined across edges of exactly two triangles. It is *solid* if it
 /// bounds a volume, alone or together with others, else it is a *sheet*.
@@ -21,8 +21,8 @@ pub struct Findings {
     /// Triangles dropped because another has the same corners, in any order, but for those in
     /// [`Self::triangles_shared`].
     pub triangles_repeated: usize,
-    /// Triangles between two parts that touch, dropped in pairs of the same corners that face opposite ways: the solid is on
-    /// both sides of them.
+    /// Triangles between two parts that touch, dropped in pairs of the same corners that face opposite ways: the solid
+    /// is on both sides of them.
     pub triangles_shared: usize,
     /// Triangles without area. They join their neighbours and are covered; for all else they are ignored.
     pub triangles_without_area: usize,
@@ -52,7 +52,7 @@ pub struct Findings {
     pub triangles_thin: usize,
     /// Triangles of sheets (after long edges were halved) that were left out because they lie inside a solid.
     pub triangles_buried: usize,
-    /// Triangles that lie entirely inside a solid. They do not count in the error.
+    /// Number of triangles that lie entirely inside a solid. They do not count in the error.
     pub triangles_hidden: usize,
     /// Patches of which all triangles lie entirely inside a solid.
     pub patches_hidden: usize,
@@ -60,8 +60,8 @@ pub struct Findings {
     /// down to pieces of 0.6 % of the longest side. A larger piece then counts as outside if a part
     /// of it is, which may overstate the error.
     pub boundary_coarse: bool,
-    /// Whether fits ended early, after a fixed amount of work, because the surface is so tangled that its nearest points
-    /// take long to find: they may not have reached the least error.
+    /// Whether fits ended early, after a fixed amount of work, because the surface is so tangled that its nearest
+    /// points take long to find: they may not have reached the least error.
     pub fit_cut_short: bool,
     /// Whether solid patches overlap, or one passes through itself.
     pub overlapping: bool,

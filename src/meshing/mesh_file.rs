@@ -8,6 +8,10 @@
 //!
 //! Every reader ends in `Polygons::finish`, which checks indices, cuts polygons into triangles, and makes vertices
 //! at exactly the same place one.
+//!
+//! # Files
+//! - Formats: `obj.rs`, `stl.rs`, `ply.rs`, `off.rs`, `gltf.rs`.
+//! - Polygons cut into triangles: `polygon.rs`.
 
 #[cfg(feature = "gltf")]
 mod gltf;
@@ -29,7 +33,8 @@ use std::path::{Path, PathBuf};
 pub struct TriangleMesh {
     /// Positions of the corners; no two are equal.
     pub vertices: Vec<Vector>,
-    /// Three different vertices of each triangle, in the order of the file: usually counter-clockwise seen from outside.
+    /// Three different vertices of each triangle, in the order of the file: usually counter-clockwise seen from
+    /// outside.
     pub indices: Vec<[u32; 3]>,
 }
 
@@ -110,8 +115,8 @@ pub fn read(path: impl AsRef<Path>) -> Result<TriangleMesh, BuildError> {
 /// # Errors
 /// - [`BuildError::Syntax`] with the line (or byte offset, in a binary file) if the content ends early or
 ///   breaks the format.
-/// - [`BuildError::NotFinite`] for a coordinate that is not finite, [`BuildError::IndexOutOfRange`] for a vertex that is
-///   not there, in a binary file.
+/// - [`BuildError::NotFinite`] for a coordinate that is not finite, [`BuildError::IndexOutOfRange`] for a vertex that
+///   is not there, in a binary file.
 /// - [`BuildError::Empty`] if no triangle is left.
 ///
 /// ```

@@ -2,11 +2,12 @@
 //! `recipe/pipeline.rs` calls the stages in order.
 //!
 //! # Files
-//! - In the order of a build: `mesh_file.rs` (reads files), `surface/` (repair, creases), `axis/` (the mesh to start
-//!   from), `simplify/`, `refine/`, `certify/` (covers the surface, error, mass). `geometry/` serves all of them.
+//! - In the order of a build: `mesh_file.rs` (reads files, one reader for each format in `mesh_file/`), `surface/`
+//!   (repair, creases), `axis/` (the mesh to start from), `simplify/` (fewer primitives), `refine/` (a better fit),
+//!   `certify/` (covers the surface, error, mass). `geometry/` serves all of them.
 //! - `recipe/` decides which candidates are made, and which is returned. Each is a `draft.rs` until it is done.
-//! - Around a build: `options.rs`, `watch.rs` (progress), `findings.rs` (faults of the mesh), `cached.rs`,
-//!   `curve.rs`.
+//! - Around a build: `options.rs` (options and report), `watch.rs` (progress), `findings.rs` (faults of the mesh),
+//!   `cached.rs` (a folder of built meshes), `curve.rs` (the error at several numbers of primitives).
 
 mod axis;
 mod cached;
@@ -49,10 +50,9 @@ impl MedialMesh {
     /// order are turned round. Other damage (cracks, small openings, repeated triangles, overlapping parts) is
     /// repaired if possible, and [`BuildReport::findings`] counts it.
     ///
-    /// A build with some hundreds of primitives takes a second to half a minute in optimised code, a minute for a thread
-    /// (`docs/measurements/medial-mesh-error.md` has a table), over a minute with thousands, and many times as long
-    /// without optimisation. Build once and save the result
-    /// ([`MedialMesh::save_asset`]).
+    /// A build with some hundreds of primitives takes a second to half a minute in optimised code, a minute for a
+    /// thread (`docs/measurements/medial-mesh-error.md` has a table), over a minute with thousands, and many times as
+    /// long without optimisation. Build once and save the result ([`MedialMesh::save_asset`]).
     ///
     /// # Errors
     /// [`BuildError`] names the item and its value: [`BuildError::Option`] an option out of its range, other variants a

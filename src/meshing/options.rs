@@ -11,7 +11,8 @@ use crate::meshing::findings::Findings;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quality {
     /// A fifth of the time of [`Self::Balanced`], and one and a half to three times its error, of some creatures six
-    /// times. Edges are collapsed in the order of an estimated error (the quadric error of Q-MAT); nothing else is done.
+    /// times. Edges are collapsed in the order of an estimated error (the quadric error of Q-MAT); nothing else is
+    /// done.
     Fast,
     /// The default. After the work of [`Self::Fast`], edges are collapsed by the measured error, primitives are
     /// inserted where the error is largest, and centres and radii are fitted by least squares.
@@ -56,7 +57,7 @@ impl Creases {
         self.angle_or(SHARP)
     }
 
-    /// The same between flat faces.
+    /// The angle (rad) above which an edge between two flat faces is sharp; `None` where none is kept.
     pub(crate) fn angle_of_flat(self) -> Option<f64> {
         /// Angle just above the rounding of normals: faces are told apart by their vertices.
         const SHARP: f64 = 1e-6;
@@ -87,8 +88,8 @@ pub struct BuildOptions {
     /// Largest number of primitives (slabs, cones that belong to no slab, lone spheres). It decides what the collider
     /// costs. At least 1. With `None`, `max_error` decides the number; if that is `None` too, it is 500.
     pub primitives: Option<usize>,
-    /// Largest error ([`Hausdorff::error`] of the result), as a fraction of the longest side of the bounding box. Above 0.
-    /// Several numbers of primitives are tried ([`BuildReport::notes`]), and the smallest mesh that keeps to this
+    /// Largest error ([`Hausdorff::error`] of the result), as a fraction of the longest side of the bounding box. Above
+    /// 0. Several numbers of primitives are tried ([`BuildReport::notes`]), and the smallest mesh that keeps to this
     /// error is returned. If `primitives` is set as well, the mesh has at most that many. If no mesh keeps to the
     /// error, the best one found is returned, and [`BuildReport::target_reached`] is false. A build with `max_error`
     /// takes five to fifteen times as long as one for a given number of primitives.
@@ -123,8 +124,8 @@ impl Default for BuildOptions {
 /// ([`MedialMesh::from_trimesh_with_progress`](crate::MedialMesh::from_trimesh_with_progress)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Name of the running stage, in English: `"surface"`, `"simplify"`, `"refit"`, `"measure"` and others. Which stages
-    /// there are depends on the mesh and may change; they are for people to read.
+    /// Name of the running stage, in English: `"surface"`, `"simplify"`, `"refit"`, `"measure"` and others. Which
+    /// stages there are depends on the mesh and may change; they are for people to read.
     pub stage: &'static str,
     /// Share of the whole build that is done, from 0 to 1. It is estimated, and never falls.
     pub fraction: Real,
@@ -288,18 +289,20 @@ impl Limits {
         })
     }
 
-    /// Primitives up to which an exact result is looked for, be it only to tell of it: as many as are allowed, or the default
-    /// if that is more.
+    /// Primitives up to which an exact result is looked for, be it only to tell of it: as many as are allowed, or the
+    /// default if that is more.
     pub fn exact_up_to(&self) -> usize {
         let default = BuildOptions::default().primitives.unwrap_or(0);
         self.primitives.map_or(usize::MAX, |n| n.max(default))
     }
 
-    /// Samples of the surface that the medial mesh starts from: two for each primitive wanted, or
-    /// neighbours at about twice the error allowed. Measured up to 5,000 primitives: eight for each give
-    /// nothing more; half of the least loses a third at 500.
+    /// Number of samples of the surface that the medial mesh starts from: two for each primitive wanted, or
+    /// so many that neighbours are at about twice the error allowed. `area` is that of the surface (longest side 1).
+    /// Measured up to 5,000 primitives: eight for each give nothing more.
     pub fn samples(&self, area: f64) -> usize {
+        /// Least number of samples. With half of it, results at 500 primitives are a third worse.
         const LEAST: usize = 10_000;
+        /// Largest number of samples, which bounds the time and memory of a build.
         const MOST: usize = 200_000;
         let by_count = self.primitives.map_or(0, |n| n.saturating_mul(2));
         let by_error = self.max_error.map_or(0.0, |e| area / (4.0 * e * e));

@@ -24,17 +24,17 @@ const STAGES: [(&str, f64); 12] = [
     ("mass", 0.01),
 ];
 
-/// Items between two reports of [`Watch::every`]: below 10 ms even where each costs half a
-/// microsecond. The promise is 200 ms; more reports cost more than they serve.
+/// Items between two reports of [`Watch::every`]. A build is to answer a request to stop within 200 ms; items of half a
+/// microsecond take less than 10 ms between two reports. More frequent reports would only cost time.
 const EVERY: usize = 1 << 14;
 
-/// Share of what is left that an attempt has: how many there will be is not known.
+/// Share of the remaining progress that an attempt takes: how many attempts there will be is not known.
 const ATTEMPT: f64 = 0.25;
 
-/// Nodes and triangles that the searches of all fits of a build may look at: so many, and so many for each search.
-/// Clean meshes take 5 to 31 for each, the more the larger the error, a surface of 1,600 random triangles 430: each is
-/// as long as the body, and its box holds most of it. Searches for ways out of the solid add to the work, not to the number of
-/// searches. The first is five to ten seconds' work.
+/// Nodes and triangles that the searches of all fits of a build may look at: so many, and so many more for each search.
+/// The first is five to ten seconds' work. Clean meshes take 5 to 31 for each search, the more the larger the error; a
+/// surface of 1,600 random triangles takes 430, since each triangle is as long as the body, and its box holds most of
+/// it. Searches for ways out of the solid add to the work, not to the number of searches.
 const MOST_FIT_WORK: [u64; 2] = [100_000_000, 32];
 
 /// Bytes of an array, with what it has in reserve.

@@ -10,14 +10,14 @@ use crate::elementary::test_list::ElementaryTest;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::ROUNDING_ULPS;
 
-/// Centre at the start of the piece, chord, and radius grown by the sagitta.
-pub(super) type Ball = (Vec3<f64>, Vec3<f64>, f64);
+/// A ball on its way over a piece of the step: centre at the start, chord, and radius grown by the sagitta.
+pub(super) type SweptBall = (Vec3<f64>, Vec3<f64>, f64);
 
 /// Spheres of one primitive, or of one side of an elementary test, over a piece: position at the
 /// start, chord, and radius grown by the sagitta; the last again where there are fewer than four.
 #[derive(Clone, Copy)]
 pub(super) struct Balls {
-    spheres: [Ball; 4],
+    spheres: [SweptBall; 4],
     len: usize,
     /// Bound of the coordinates in play.
     pub(super) size: f64,
@@ -25,7 +25,7 @@ pub(super) struct Balls {
 
 impl Balls {
     /// One to four of them; `terms`: sizes of the numbers that their positions are sums of, beyond those.
-    pub(super) fn new(balls: impl ExactSizeIterator<Item = Ball>, terms: f64) -> Self {
+    pub(super) fn new(balls: impl ExactSizeIterator<Item = SweptBall>, terms: f64) -> Self {
         let len = balls.len();
         let mut spheres = [(Vec3::zero(), Vec3::zero(), 0.0); 4];
         let mut size = terms;
@@ -82,7 +82,7 @@ impl Balls {
         mixed.len = means.len();
         for (k, shares) in means.iter().enumerate() {
             let none = (Vec3::zero(), Vec3::zero(), 0.0);
-            let sum = |sum: Ball, (s, share): (&Ball, &f64)| {
+            let sum = |sum: SweptBall, (s, share): (&SweptBall, &f64)| {
                 (
                     sum.0 + s.0 * *share,
                     sum.1 + s.1 * *share,
@@ -94,7 +94,7 @@ impl Balls {
         mixed
     }
 
-    pub(super) fn all(&self) -> &[Ball] {
+    pub(super) fn all(&self) -> &[SweptBall] {
         &self.spheres[..self.len]
     }
 
@@ -153,8 +153,12 @@ impl Balls {
     }
 }
 
-/// Where a ball ends along a direction of this length ([`Balls::along`]).
-pub(super) fn end_along((center, chord, radius): &Ball, n: Vec3<f64>, length: f64) -> (f64, f64) {
+/// End of a ball along a direction of this length at the start of the piece, and how fast it moves.
+pub(super) fn end_along(
+    (center, chord, radius): &SweptBall,
+    n: Vec3<f64>,
+    length: f64,
+) -> (f64, f64) {
     (n.dot(*center) + length * radius, n.dot(*chord))
 }
 
@@ -212,8 +216,8 @@ pub(super) fn free_until(
     free
 }
 
-/// Fraction of the piece, from `from` on, up to which one direction keeps the hulls of two primitives apart by more than
-/// `contact`; `None`: up to `until`.
+/// Fraction of the piece, from `from` on, up to which one direction keeps the hulls of two primitives apart by more
+/// than `contact`; `None`: up to `until`.
 pub(super) fn held_until(
     balls: [&Balls; 2],
     n: Vec3<f64>,
@@ -337,7 +341,8 @@ fn holds(
     ends_hold(ends, span, least * length, contact * length)
 }
 
-/// The same, given where the spheres of each end along the direction, and how fast that changes.
+/// Does the same as [`holds`], given the end of each sphere along the direction and its rate. `least` and `contact` are
+/// in units of the length of the direction.
 pub(super) fn ends_hold(
     [far, near]: [&[(f64, f64)]; 2],
     [from, until]: [f64; 2],

@@ -4,7 +4,7 @@ use super::SpherePair;
 use crate::math::fast_hash::FastMap;
 use crate::math::lane::Vec3;
 
-/// No more contacts in a cell.
+/// Marks the end of the list of contacts in a cell.
 const END: u32 = u32::MAX;
 
 /// Cells of contacts by their points on the first body. A contact is in the cells of all places where it has been.
@@ -37,8 +37,8 @@ impl ContactGrid {
         self.len = 0;
     }
 
-    /// The last of `contacts` for which `is_wanted`, of those no farther from `point` than `apart` (a length) along each
-    /// axis. Contacts that were added since the last call come into the grid.
+    /// The last of `contacts` for which `is_wanted`, of those no farther from `point` than `apart` (a length) along
+    /// each axis. Contacts that were added since the last call come into the grid.
     pub(super) fn last_near(
         &mut self,
         contacts: &[SpherePair],
@@ -109,8 +109,8 @@ mod tests {
         }
     }
 
-    /// Contacts that are added, replaced by others beside them, and taken away: the last at each place is found as if all were
-    /// looked at.
+    /// Contacts that are added, replaced by others beside them, and taken away: the last at each place is found as if
+    /// all were looked at.
     #[test]
     fn the_last_contact_at_a_place_is_found() {
         let mut state = 26;

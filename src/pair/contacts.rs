@@ -19,18 +19,18 @@ use crate::math::lane::Vec3;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 
-/// Times that a node pair is split before directions are tried on it again, once they have failed on [`FAILED`] of the inner
-/// nodes, and on three of four. In threads, whose ridges lie in each other's grooves, directions keep few nodes apart but
-/// most primitives: with 1 a nut and its bolt take 7,300 tries, with 3 from the start 5,000.
+/// Times that a node pair is split before directions are tried on it again, once they have failed on [`FAILED`] of the
+/// inner nodes, and on three of four. In threads, whose ridges lie in each other's grooves, directions keep few nodes
+/// apart but most primitives: with 1 a nut and its bolt take 7,300 tries, with 3 from the start 5,000.
 const SPLITS: u8 = 3;
 
 /// Failures after which that is done: what are fewer costs less than it may save.
 const FAILED: u32 = 256;
 
-/// Contacts of two bodies at fixed poses: pairs of spheres within `prediction` (a length) of each other, all of them up to
-/// 2,048, and of more the nearest, with all within an eighth of `prediction`. `pos12` is the pose of the second body in
-/// the frame of the first. Computed in double precision; result and order depend on the input only. A pose that is not
-/// finite gives no contacts.
+/// Contacts of two bodies at fixed poses: pairs of spheres within `prediction` (a length) of each other, all of them up
+/// to 2,048, and of more the nearest, with all within an eighth of `prediction`. `pos12` is the pose of the second body
+/// in the frame of the first. Computed in double precision; result and order depend on the input only. A pose that is
+/// not finite gives no contacts.
 pub fn contacts(
     body1: &impl PrimitiveTree,
     body2: &impl PrimitiveTree,

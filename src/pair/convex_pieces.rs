@@ -1,16 +1,16 @@
 //! The part of the search for a first contact ([`super::search`]) that deals with convex pieces: parts of a body that
-//! are the hull of a few spheres, although many primitives make them up. One direction that keeps two pieces apart
-//! does so for all their primitives, and where none does, the pieces meet: only a few of their primitives are ever looked
+//! are the hull of a few spheres, although many primitives make them up. One direction that keeps two pieces apart does
+//! so for all their primitives, and where none does, the pieces meet: only a few of their primitives are ever looked
 //! at. Which pieces there are: `medial/convex_pieces.rs`; their contacts at fixed poses: [`super::face_contacts`].
 //!
 //! Conservative advancement (Mirtich 1996) along the direction of the largest gap of the hulls at one time after the
-//! other. Along chords ([`super::apart`]) and along the paths themselves ([`super::path_ends`]) a direction keeps them apart for a
-//! while.
+//! other. Along chords ([`super::apart`]) and along the paths themselves ([`super::path_ends`]) a direction keeps them
+//! apart for a while.
 //!
 //! **Pieces that touch at the start** and may sink in, or must come nearer to count
 //! ([`crate::elementary::InitialContact`]), have a gap of their own at which they meet. Where they are so deep in each
-//! other that the shortest way apart might lead on through, their primitives decide. If they may not sink in, those that are apart
-//! meet at the start; of those that overlap their primitives decide.
+//! other that the shortest way apart might lead on through, their primitives decide. If they may not sink in, those
+//! that are apart meet at the start; of those that overlap their primitives decide.
 
 use super::apart::{end_along, ends_hold};
 use super::deepening::given;
@@ -25,23 +25,23 @@ use crate::elementary::test_list::{OwnedFeatures, for_each_test};
 use crate::elementary::{InitialContact, ToiStatus};
 use crate::math::tolerance::ROUNDING_ULPS;
 
-/// Depth of two solid pieces in units of the thickness of the thinner, from which the shortest way apart may lead on through:
-/// there the middles of two alike pass each other.
+/// Depth of two solid pieces in units of the thickness of the thinner, from which the shortest way apart may lead on
+/// through: there the middles of two alike pass each other.
 const THROUGH: f64 = 2.0;
 
-/// The same of a piece in a surface.
+/// The same depth for a piece in a surface, in units of the thickness of the piece.
 const THROUGH_SURFACE: f64 = 1.0;
 
-/// How deep two solid pieces may get in the same units, to be settled as a whole. Their primitives, which decide beyond it,
-/// point out of thin pieces on both sides: at 1.5, thirty cards that are dropped on each other are not at rest after 150 steps,
-/// at 1.95 they sleep after 106.
+/// How deep two solid pieces may get in the same units, to be settled as a whole. Their primitives, which decide beyond
+/// it, point out of thin pieces on both sides: at 1.5, thirty cards that are dropped on each other are not at rest
+/// after 150 steps, at 1.95 they sleep after 106.
 const DEEPEST: f64 = 1.95;
 
-/// The same of a piece in a surface.
+/// The same depth for a piece in a surface, in units of the thickness of the piece.
 const DEEPEST_IN_SURFACE: f64 = 0.75;
 
-/// How much less than the gap at which pieces meet a step of the search aims at, in units of the tolerance. At 1 it would
-/// be the target distance itself, and what comes to it no nearer would not be found free.
+/// How much less than the gap at which pieces meet a step of the search aims at, in units of the tolerance. At 1 it
+/// would be the target distance itself, and what comes to it no nearer would not be found free.
 const PAST: f64 = 0.99;
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
@@ -69,8 +69,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         look
     }
 
-    /// The gap at which two pieces meet; `None` if their primitives decide. Notes that they touch at the start, where they do
-    /// and may.
+    /// The gap at which two pieces meet; `None` if their primitives decide. Notes that they touch at the start, where
+    /// they do and may.
     fn begin_pieces(&mut self, nodes: [u32; 2], time: f64) -> Option<Pieces> {
         let (a, b) = (self.sides.0.body, self.sides.1.body);
         let thicknesses = [thickness(a, nodes[0]), thickness(b, nodes[1])];
@@ -211,7 +211,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         }
     }
 
-    /// How near two pieces are at a time, from the gap of their hulls on.
+    /// The distance of two pieces at a time, found from the gap of their hulls.
     fn nearest(
         &self,
         nodes: [u32; 2],
@@ -309,16 +309,16 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         };
         if self.earliest.found.is_some_and(is_found) {
             self.found = None;
-            // Where they are nearer than the target at the start, faces that lie on each other may be far from where they are
-            // nearest.
+            // Where they are nearer than the target at the start, faces that lie on each other may be far from where
+            // they are nearest.
             let overlaps = self.earliest.status == ToiStatus::Overlapping;
             self.met = (!overlaps).then_some(met);
         }
         goes_on
     }
 
-    /// Adds to the pieces that met all others that lie on each other in the same plane then: triangles of one ground, blocks of
-    /// one body.
+    /// Adds to the pieces that met all others that lie on each other in the same plane then: triangles of one ground,
+    /// blocks of one body.
     pub(super) fn join_pieces(&mut self) {
         self.joined = None;
         let (Some(met), Some((_, found, _))) = (self.met, self.earliest.found) else {

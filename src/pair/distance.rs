@@ -14,9 +14,9 @@ use super::primitive_pair::PrimitivePair;
 use super::primitive_tree::PrimitiveTree;
 use super::sphere_pair::SpherePair;
 use crate::math::lane::Vec3;
+use crate::math::least_first::least_first;
 use crate::math::{Pose, Real};
 use crate::medial::tree::NodeKind;
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Which sphere pair is looked for.
@@ -132,7 +132,7 @@ pub fn near_spheres(
 /// The nearest pair of spheres so far.
 struct Best {
     pair: Option<SpherePair>,
-    /// Its distance, or the largest that counts.
+    /// Distance of the nearest pair found, or the largest that counts before one is found.
     limit: f64,
 }
 
@@ -168,23 +168,4 @@ struct Entry {
     of_hulls: bool,
 }
 
-impl PartialEq for Entry {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Entry {}
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Entry {
-    /// Reversed: `BinaryHeap` pops the largest.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other
-            .bound
-            .total_cmp(&self.bound)
-            .then(other.nodes.cmp(&self.nodes))
-    }
-}
+least_first!(Entry, bound, nodes);

@@ -8,7 +8,7 @@ use super::queue::{Candidate, Tested};
 use super::search::Search;
 use super::tips::Part;
 use crate::elementary::bracket::{Bracket, Limits, witness};
-use crate::elementary::distance::{nearest_in_test, signed_distance};
+use crate::elementary::distance::{Ball, nearest_in_test, signed_distance};
 use crate::elementary::path::RigidPath;
 use crate::elementary::test_list::{ElementaryTest, OwnedFeatures, for_each_test};
 use crate::elementary::{InitialContact, Loss, ToiStatus};
@@ -17,7 +17,8 @@ use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 
-type Spheres = [(Vec3<f64>, f64); 3];
+/// Three spheres, those of a primitive or a part of it.
+type Spheres = [Ball<f64>; 3];
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Ends unresolved: nothing meets before `time`, and nothing is known from there on. The witness is of
@@ -153,9 +154,9 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         pairs.map(distance).fold(f64::INFINITY, f64::min)
     }
 
-    /// Takes the nearest of all sphere pairs of the reported primitives at `lower` for the witness, or of what is left of
-    /// them where they touched at the start: a test that is proven free until then may be nearer than the one that was
-    /// found.
+    /// Makes the nearest sphere pair of the reported primitives at `lower` the witness. If parts of them touched at the
+    /// start, only the parts that remain count. A test that is proven free until `lower` may be nearer than the test
+    /// that was found.
     pub(super) fn settle(&mut self) {
         self.join_pieces();
         let Some((.., pair)) = self.earliest.found else {

@@ -1,6 +1,6 @@
 //! Contacts of two convex pieces at fixed poses: where a flat face of one lies about flat on the other, the corners of
-//! the polygon in which the two faces overlap, as in other engines (Sutherland and Hodgman, "Reentrant polygon clipping",
-//! 1974); else their nearest points. Each contact is a pair of spheres, as those of two primitives are.
+//! the polygon in which the two faces overlap, as in other engines (Sutherland and Hodgman, "Reentrant polygon
+//! clipping", 1974); else their nearest points. Each contact is a pair of spheres, as those of two primitives are.
 
 use super::hull_gap::{HullGap, PlacedHull, hull_gap, nearest_points};
 use super::placement::Placement;
@@ -14,8 +14,8 @@ use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
 /// rounding decides, and contacts change from step to step.
 const BETTER: f64 = 1.0e-3;
 
-/// By how much the deepest corner of two faces may be less deep than the hulls are, in units of that, for the nearest points
-/// to be no contact of their own.
+/// Share of the depth of the hulls by which the deepest corner of two faces may be less deep. If it is missing more,
+/// the nearest points of the hulls become a contact of their own.
 const MISSED: f64 = 0.05;
 
 /// Feature of the nearest points, which belong to no face.
@@ -30,8 +30,8 @@ const NUMBERED: usize = 256;
 /// A corner of a polygon, and its number: that of a corner, or of an edge and the edge that cuts it.
 type Corner = (Vec3<f64>, u32);
 
-/// Contacts of two pieces within `margin` (a length) of each other. `primitives` are those that the contacts are told of;
-/// points of the second are given in its frame, of which `place` is the pose.
+/// Contacts of two pieces within `margin` (a length) of each other. `primitives` are those that the contacts are told
+/// of; points of the second are given in its frame, of which `place` is the pose.
 pub(super) fn face_contacts(
     hulls: [&PlacedHull; 2],
     primitives: [u32; 2],
@@ -75,8 +75,8 @@ pub(super) struct FacingCorner {
     pub(super) points: [Vec3<f64>; 2],
 }
 
-/// The faces of two hulls that look at each other, if one is about flat to a direction from the first to the second, with the
-/// corners that are within `margin` of it.
+/// The faces of two hulls that look at each other, if one is about flat to a direction from the first to the second,
+/// with the corners that are within `margin` of it.
 pub(super) fn facing_faces(
     hulls: [&PlacedHull; 2],
     direction: Vec3<f64>,
@@ -142,7 +142,8 @@ pub(super) fn add_nearest(
     }
 }
 
-/// By how much the deepest corner is less deep than the hulls, of this gap, if it is missing: more than rounding.
+/// Length by which the deepest corner must be less deep than the hulls, whose gap this is, to count as missing: more
+/// than rounding.
 fn least_missed([a, b]: [&PlacedHull; 2], gap: f64) -> f64 {
     MISSED * gap.abs() + ROUNDING_ULPS * f64::from(Real::EPSILON) * (a.size() + b.size())
 }
@@ -163,8 +164,8 @@ fn polygon(hull: &PlacedHull, face: usize, n: Vec3<f64>) -> Vec<Corner> {
     corners.map(end).collect()
 }
 
-/// The polygon of a hull that looks along a direction: of its flattest face, or of all corners of a hull that has no more than one
-/// face could have.
+/// The polygon of a hull that looks along a direction: of its flattest face, or of all corners of a hull that has no
+/// more than one face could have.
 fn facing(hull: &PlacedHull, n: Vec3<f64>) -> Vec<Corner> {
     match flattest(hull, n) {
         Some((face, _)) => polygon(hull, face, n),
@@ -176,7 +177,7 @@ fn facing(hull: &PlacedHull, n: Vec3<f64>) -> Vec<Corner> {
     }
 }
 
-/// What of a polygon is inside the edges of another, seen along its normal.
+/// The part of a polygon that is inside the edges of another, seen along its normal.
 fn clipped(polygon: Vec<Corner>, outline: &[Corner], normal: Vec3<f64>) -> Vec<Corner> {
     let mut polygon = polygon;
     for (k, (from, _)) in outline.iter().enumerate() {

@@ -26,8 +26,8 @@ counters! {
         pub nodes: u64,
         /// Elementary tests that were computed, each counted once.
         pub tests: u64,
-        /// Looks at two convex pieces, or at a slab and a cylinder or cone, as a whole, each of which takes about as long
-        /// as 16 tests.
+        /// Looks at two convex pieces, or at a slab and a cylinder or cone, as a whole, each of which takes about as
+        /// long as 16 tests.
         pub looks: u64,
     }
 }
@@ -96,7 +96,7 @@ pub struct ToiResult {
     pub counts: Counts,
     /// How deep primitives may get that touched at the start ([`Query::deepest`]).
     pub deepest: f64,
-    /// What met ([`Query::met`]).
+    /// The primitives or faces that met ([`Query::met`]).
     pub met: Option<Met>,
     /// Where an impact acts ([`Query::middle`]).
     pub middle: Option<Vector>,
@@ -201,16 +201,16 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
     }
 
     /// How deep primitives may get that touched at the start and are allowed to sink in
-    /// ([`crate::elementary::InitialContact::Deepen`]): the smallest signed distance, minus the distance that
-    /// counts as touching, minus what they may sink in, in units of the thickness of the thinner of the two. Infinite if
-    /// none touched. It is complete as soon as it is proven that nothing meets before some time above 0.
+    /// ([`crate::elementary::InitialContact::Deepen`]): the smallest signed distance, minus the distance that counts as
+    /// touching, minus what they may sink in, in units of the thickness of the thinner of the two. Infinite if none
+    /// touched. It is complete as soon as it is proven that nothing meets before some time above 0.
     pub fn deepest(&self) -> f64 {
         let depths = self.search.iter().flat_map(|s| &s.touching).map(|t| t.1);
         depths.fold(f64::INFINITY, f64::min)
     }
 
-    /// The pairs of primitives, or of convex pieces, that touched at the start and may get that deep or deeper, in the units
-    /// of [`Self::deepest`]; `None` if there are none.
+    /// The pairs of primitives, or of convex pieces, that touched at the start and may get that deep or deeper, in the
+    /// units of [`Self::deepest`]; `None` if there are none.
     pub fn may_get_to(&self, depth: f64) -> Option<PairList> {
         let search = self.search.as_ref()?;
         let deep = search.touching.iter().filter(|t| t.1 <= depth);
@@ -268,8 +268,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
     }
 
     /// Middle of all faces that lie on each other in a contact of convex pieces, in the world frame, once the query is
-    /// settled: an impact acts there. It may be off both bodies, as between the legs of a table; `None` where no faces lie
-    /// on each other.
+    /// settled: an impact acts there. It may be off both bodies, as between the legs of a table; `None` where no faces
+    /// lie on each other.
     pub fn middle(&self, toi: &Toi) -> Option<Vector> {
         let search = self.search.as_ref()?;
         let met = search.met.as_ref()?;
@@ -277,7 +277,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         Some(self.origin(toi) + joined.middle().to_vector())
     }
 
-    /// What met, once the query is settled and has found a contact.
+    /// The primitives or faces that met, once the query is settled and has found a contact.
     pub fn met(&self) -> Option<Met> {
         let search = self.search.as_ref()?;
         let (_, found, primitives) = search.earliest.found?;

@@ -1,9 +1,9 @@
 //! How far two convex hulls of spheres are apart at fixed poses, or how deep in each other, and along which direction.
 //!
-//! Along any direction the gap of two hulls follows from their spheres, in double precision; it is never more than their
-//! distance. The directions across faces, and across an edge of each, come first: of two polyhedra that overlap, one of
-//! them has the largest gap (separating axes: Gottschalk, Lin and Manocha, "OBBTree", 1996). Else, where their gap is not
-//! enough, parry's GJK and EPA algorithms propose one more, in single precision.
+//! Along any direction the gap of two hulls follows from their spheres, in double precision; it is never more than
+//! their distance. The directions across faces, and across an edge of each, come first: of two polyhedra that overlap,
+//! one of them has the largest gap (separating axes: Gottschalk, Lin and Manocha, "OBBTree", 1996). Else, where their
+//! gap is not enough, parry's GJK and EPA algorithms propose one more, in single precision.
 
 use super::primitive_tree::PrimitiveTree;
 use crate::elementary::distance::Ball;
@@ -19,10 +19,12 @@ use parry3d::shape::SupportMap;
 /// A convex hull of spheres at a pose.
 pub(super) struct PlacedHull<'a> {
     pub(super) spheres: Vec<Ball<f64>>,
-    /// Its flat faces as they are in the body's frame, and their outward normals now. A primitive has none.
+    /// The flat faces of the hull in the frame of its body, and their outward normals at the pose. A primitive has
+    /// none.
     pub(super) faces: &'a [Face],
     pub(super) normals: Vec<Vec3<f64>>,
-    /// An edge of each direction, and the radius of all corners, where it has flat faces and edges alone but for that.
+    /// Edges, one of each direction, and the radius of all corners; `None` unless the hull is a polyhedron grown by
+    /// that radius.
     edges: Option<(&'a [[u32; 2]], f64)>,
 }
 
@@ -112,6 +114,7 @@ impl<'a> PlacedHull<'a> {
 
 /// The edges of one to three spheres of one radius.
 fn edges_of_simplex(spheres: &[MedialSphere]) -> Option<(&'static [[u32; 2]], Real)> {
+    /// The edges of a triangle, as indices of its corners.
     const TRIANGLE: [[u32; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
     let radius = spheres.first()?.radius;
     let edges = match spheres.len() {
@@ -123,14 +126,15 @@ fn edges_of_simplex(spheres: &[MedialSphere]) -> Option<(&'static [[u32; 2]], Re
     (spheres.iter().all(|s| s.radius == radius)).then_some((edges, radius))
 }
 
-/// What directions say of two hulls.
+/// The largest gap of two hulls along the directions tried.
 #[derive(Clone, Copy)]
 pub(super) struct HullGap {
     /// The largest gap along the directions tried, less its rounding: a lower bound of the distance.
     pub(super) gap: f64,
     /// Its direction, of length 1, from the first to the second.
     pub(super) direction: Vec3<f64>,
-    /// The nearest points of the two, or those where they are deepest in each other, as parry found them, if it was asked.
+    /// The nearest points of the two, or those where they are deepest in each other, as parry found them, if it was
+    /// asked.
     pub(super) nearest: Option<[Vec3<f64>; 2]>,
 }
 
@@ -156,7 +160,7 @@ pub(super) fn hull_gap(hulls: [&PlacedHull; 2], enough: f64) -> HullGap {
     best.found(moved.or(nearest))
 }
 
-/// The same with the nearest points of the two hulls, and a direction of a larger gap if there is one.
+/// Adds the nearest points of the two hulls, and takes a direction of a larger gap if there is one.
 pub(super) fn nearest_points(hulls: [&PlacedHull; 2], found: HullGap) -> HullGap {
     if found.nearest.is_some() {
         return found;
@@ -170,18 +174,21 @@ pub(super) fn nearest_points(hulls: [&PlacedHull; 2], found: HullGap) -> HullGap
     best.found(nearest)
 }
 
-/// How far hulls are moved apart along the best direction known, to ask for the direction in which they are nearest then,
-/// in units of the larger one's extent. No gap is less along that: of all directions it has the largest gap of the moved
-/// hulls, and moving them added to the gap along the best one as much as to any. EPA errs where hulls just touch, and GJK
-/// has no more than single precision; hulls that are apart by this much are not hard for it.
+/// How far hulls are moved apart along the best direction known, to ask for the direction in which they are nearest
+/// then, in units of the larger one's extent. No gap is less along that: of all directions it has the largest gap of
+/// the moved hulls, and moving them added to the gap along the best one as much as to any. EPA errs where hulls just
+/// touch, and GJK has no more than single precision; hulls that are apart by this much are not hard for it.
 const APART: f64 = 0.02;
 
-/// Gain in units of the gap from which hulls are moved apart once more, along the better direction, and how often at most.
+/// Gain of a direction over the one before, in units of the gap, from which hulls are moved apart once more along it.
 const BETTER: f64 = 1.0e-3;
+
+/// Largest number of times that hulls are moved apart.
 const ROUNDS: usize = 4;
 
-/// Directions across edges that are tried at most, times the spheres looked at for each: two boxes have about 200. Larger,
-/// and pieces of many edges take long; smaller, and fewer do without GJK and EPA. Where it is best was not measured.
+/// Directions across edges that are tried at most, times the spheres looked at for each: two boxes have about 200.
+/// Larger, and pieces of many edges take long; smaller, and fewer do without GJK and EPA. Where it is best was not
+/// measured.
 const MOST_EDGES: usize = 2048;
 
 /// The direction of the largest gap of two hulls among those tried.
@@ -210,9 +217,9 @@ impl<'a> Best<'a> {
         }
     }
 
-    /// Tries the directions across edges, if both are polyhedra with few. True if no other direction can have a larger gap
-    /// than the best tried, because they overlap; directions across faces were tried before. Two flat ones may lie in one
-    /// plane, in which others keep them apart.
+    /// Tries the directions across edges, if both are polyhedra with few. True if no other direction can have a larger
+    /// gap than the best tried, because they overlap; directions across faces were tried before. Two flat ones may lie
+    /// in one plane, in which others keep them apart.
     fn attempt_edges(&mut self) -> bool {
         let [a, b] = self.hulls;
         let (Some((of_a, first)), Some((of_b, second))) = (a.edges(), b.edges()) else {
@@ -233,8 +240,8 @@ impl<'a> Best<'a> {
         (is_solid(a) || is_solid(b)) && self.gap + first + second < 0.0
     }
 
-    /// Moves the hulls apart along the best direction, and tries those along which they are nearest then; no more as soon as the
-    /// gap is more than `enough`. The nearest points found last.
+    /// Moves the hulls apart along the best direction, and tries those along which they are nearest then; no more as
+    /// soon as the gap is more than `enough`. The nearest points found last.
     fn attempt_moved(&mut self, enough: f64) -> Option<[Vec3<f64>; 2]> {
         let [a, b] = self.hulls;
         let y = b.middle() - a.middle();
@@ -292,8 +299,8 @@ fn unit(hulls: [&PlacedHull; 2], y: Vec3<f64>) -> Option<f64> {
     (unit.is_normal() && y.length().is_finite()).then_some(unit)
 }
 
-/// How much less far than its farthest sphere another of a hull reaches along a direction, in units of the way between them, to
-/// be at the other end of an edge that is nearest.
+/// How much less far than its farthest sphere another of a hull reaches along a direction, in units of the way between
+/// them, to be at the other end of an edge that is nearest.
 const EDGE: f64 = 1.0e-3;
 
 /// Directions near `n` that the corners and edges farthest along it decide, in double precision: from corner to corner,
@@ -309,8 +316,8 @@ fn across([a, b]: [&PlacedHull; 2], n: Vec3<f64>) -> [Option<Vec3<f64>>; 4] {
     [Some(y), beside(e), beside(f), Some(e.cross(f))].map(|m| m.map(along))
 }
 
-/// The direction along which parry finds two hulls apart, or least deep in each other, and the points where they are, if the
-/// way from middle to middle is `y`. `unit`: their extent.
+/// The direction along which parry finds two hulls apart, or least deep in each other, and the points where they are,
+/// if the way from middle to middle is `y`. `unit`: their extent.
 fn proposed(
     [a, b]: [&PlacedHull; 2],
     y: Vec3<f64>,

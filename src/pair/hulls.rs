@@ -20,14 +20,14 @@ use crate::math::tolerance::ROUNDING_ULPS;
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 
-/// How deep a convex piece and a primitive are in each other, in units of the thickness of the thinner, for contacts that point
-/// into the piece to be left out; in another shape than a medial mesh, for those that do not push it the shortest way out
-/// (`parry/deep_pieces.rs`). Larger, and a body may stay where such contacts hold it; smaller, and more pairs are
-/// computed without the tree.
+/// How deep a convex piece and a primitive are in each other, in units of the thickness of the thinner, for contacts
+/// that point into the piece to be left out; in another shape than a medial mesh, for those that do not push it the
+/// shortest way out (`parry/deep_pieces.rs`). Larger, and a body may stay where such contacts hold it; smaller, and
+/// more pairs are computed without the tree.
 pub(crate) const DEEP: f64 = 0.25;
 
-/// How much deeper two hulls may be along a contact's normal than along the best direction. At 1 a capsule that lies on two
-/// faces of a box would have one contact; larger, and contacts through the whole of a piece count.
+/// How much deeper two hulls may be along a contact's normal than along the best direction. At 1 a capsule that lies on
+/// two faces of a box would have one contact; larger, and contacts through the whole of a piece count.
 const OUTWARD: f64 = 2.0;
 
 /// Primitives below a node.
@@ -143,8 +143,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
         }
     }
 
-    /// Contacts of two nodes that hold convex pieces within `margin` of each other; `None` where they do not, or may have
-    /// contacts that their primitives have to tell.
+    /// Contacts of two nodes that hold convex pieces within `margin` of each other; `None` where they do not, or may
+    /// have contacts that their primitives have to tell.
     pub(super) fn pieces_contacts(
         &mut self,
         [i, j]: [u32; 2],
@@ -176,8 +176,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
         }
     }
 
-    /// How near what two nodes hold is, if it is convex pieces, and they are within `margin` of each other and apart. Farther
-    /// ones have a gap beyond it and no primitives.
+    /// Distance of the convex pieces that two nodes hold, if they are within `margin` of each other and apart. Farther
+    /// ones get a gap beyond the margin and no primitives.
     pub(super) fn pieces_nearest(&mut self, nodes: [u32; 2], margin: f64) -> Option<Nearest> {
         let ((first, second), place) = (self.bodies, self.place);
         let pieces = [first.convex_piece(nodes[0]), second.convex_piece(nodes[1])];
@@ -202,8 +202,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
         ))
     }
 
-    /// Contacts of a convex piece and a primitive that are deep in each other: those of the piece's own primitives along which
-    /// the two come apart about as soon as they can. Others point into the piece.
+    /// Contacts of a convex piece and a primitive that are deep in each other: those of the piece's own primitives
+    /// along which the two come apart about as soon as they can. Others point into the piece.
     fn deep_contacts(
         &mut self,
         nodes: [u32; 2],

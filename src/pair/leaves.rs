@@ -264,8 +264,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         }
     }
 
-    /// Whether two primitives that touch at the start travel less in the step than any of their parts may sink in `by`, or
-    /// as much less as their axes are near. `direction` is between their nearest spheres.
+    /// Whether two primitives that touch at the start travel less in the step than any of their parts may sink in `by`,
+    /// or as much less as their axes are near. `direction` is between their nearest spheres.
     fn stays_shallow(
         &self,
         nodes: [u32; 2],
@@ -304,7 +304,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         self.list_tests_of(place, shares, balls, direction, time);
     }
 
-    /// The same, of what is listed already; `direction` is tried on all of them first.
+    /// Lists the elementary tests of the pair at place `of` in the list; `direction` is tried on all of them first.
     fn list_tests_of(
         &mut self,
         of: u32,

@@ -1,11 +1,12 @@
-//! Contacts of two medial meshes from a list of primitive pairs that may be near each other, wherever the list comes from.
+//! Contacts of two medial meshes from a list of primitive pairs that may be near each other, wherever the list comes
+//! from.
 //!
 //! The contacts of a pair of meshes depend on the set of its primitive pairs within the prediction distance, and on the
-//! order in which these are taken: of sphere pairs at the same place under the same normal the first of the nearest is kept.
-//! The order is that in which a walk down both trees comes to them (`Step`). It depends on the trees
-//! alone: what a search rules out is missing in its walk, and moves nothing else. So a list that holds all primitive
-//! pairs within the distance, sorted in this order, has the contacts of [`contacts()`] bit by bit, whatever else it
-//! holds: farther pairs add none.
+//! order in which these are taken: of sphere pairs at the same place under the same normal the first of the nearest is
+//! kept. The order is that in which a walk down both trees comes to them (`Step`). It depends on the trees alone: what
+//! a search rules out is missing in its walk, and moves nothing else. So a list that holds all primitive pairs within
+//! the distance, sorted in this order, has the contacts of [`contacts()`] bit by bit, whatever else it holds: farther
+//! pairs add none.
 
 use super::SpherePair;
 use super::contact_list::ContactList;
@@ -18,13 +19,13 @@ use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::medial::leaf_order::LeafOrder;
 
-/// Contacts of two meshes, equal to those of [`contacts()`] in every bit, if `listed` holds all pairs of their primitives
-/// within `prediction` (a length) of each other. It may hold others, in any order and repeatedly; pairs that do not
-/// exist are ignored. It is left in disorder.
+/// Contacts of two meshes, equal to those of [`contacts()`] in every bit, if `listed` holds all pairs of their
+/// primitives within `prediction` (a length) of each other. It may hold others, in any order and repeatedly; pairs that
+/// do not exist are ignored. It is left in disorder.
 ///
-/// A mesh with convex pieces is searched as if there were no list: pieces meet as a whole. So is a negative
-/// prediction: of primitives whose medial surfaces cross, only bounds decide then whether they are deep enough, and a list
-/// does not know the bounds of the search.
+/// A mesh with convex pieces is searched as if there were no list: pieces meet as a whole. So is a negative prediction:
+/// of primitives whose medial surfaces cross, only bounds decide then whether they are deep enough, and a list does not
+/// know the bounds of the search.
 pub fn contacts_of_listed(
     mesh1: &MedialMesh,
     mesh2: &MedialMesh,

@@ -1,5 +1,5 @@
-//! Primitives or faces that met in the first contact of two bodies. With them the contact is computed again where the bodies
-//! have moved and turned a little since.
+//! Primitives or faces that met in the first contact of two bodies. With them the contact is computed again where the
+//! bodies have moved and turned a little since.
 
 use super::placement::Placement;
 use crate::elementary::distance::nearest_in_test;
@@ -10,17 +10,18 @@ use crate::math::nearest::Nearest;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 
-/// What met first: two primitives, with the radii that counted, or faces of two convex pieces. Its contact can be computed at
-/// other poses.
+/// The primitives or faces that met first: two primitives, with the radii that counted, or faces of two convex pieces.
+/// The contact can be computed again at other poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met(Parts);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Parts {
-    /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]), and how many there are.
+    /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]), and how many there
+    /// are.
     Primitives([[MedialSphere; 3]; 2], [usize; 2]),
-    /// The middle of where faces lie on each other, in each body's frame, and the normal from the first to the second in
-    /// the frame of the body that it is of.
+    /// The middle of where faces lie on each other, in each body's frame, and the normal from the first to the second
+    /// in the frame of the body that it is of.
     Faces([Vec3<f64>; 2], Vec3<f64>, usize),
 }
 
@@ -41,13 +42,13 @@ impl Met {
         Self(Parts::Primitives(spheres, counts))
     }
 
-    /// Faces that lie on each other: nearest points of both, each in its body's frame, and the normal from the first to the
-    /// second, in the frame of the body `of`.
+    /// Faces that lie on each other: nearest points of both, each in its body's frame, and the normal from the first to
+    /// the second, in the frame of the body `of`.
     pub(super) fn faces(points: [Vec3<f64>; 2], normal: Vec3<f64>, of: usize) -> Self {
         Self(Parts::Faces(points, normal, of))
     }
 
-    /// The same with the second body as the first.
+    /// The same contact with the second body as the first.
     pub fn flipped(&self) -> Self {
         Self(match self.0 {
             Parts::Primitives([a, b], [m, n]) => Parts::Primitives([b, a], [n, m]),

@@ -6,14 +6,22 @@
 //!
 //! # Files
 //! - First contact in motion: `first_contact.rs` is the call and `search.rs` the search. Parts of the search:
-//!   `swept.rs` (one body in motion), `queue.rs`, `waiting.rs`, `leaves.rs` (two primitives), `convex_pieces.rs` (two
-//!   convex pieces) with `piece_contact.rs` and `patch.rs`, `deepening.rs`, `tips.rs`, `ending.rs`. Proofs that two are
-//!   apart: `apart.rs`, `path_ends.rs`.
-//! - Contacts at fixed poses: `contacts.rs`, in the order of `descent.rs`; of two primitives `primitive_pair.rs`, of two convex pieces (the blocks of a body
-//!   with flat faces) `face_contacts.rs`; from a list of primitive pairs `listed.rs`. `contact_list.rs` keeps the
-//!   nearest, with `contact_grid.rs`; `thinned.rs` and `held_back.rs` leave some out.
-//! - Distance at fixed poses: `distance.rs`. Proofs at fixed poses: `hulls.rs`, `hull_gap.rs`.
-//! - What spares a search: `outline.rs`, `near_pairs.rs`, `pair_list.rs`.
+//!   `swept.rs` (one body in motion), `queue.rs` (what may meet, the soonest first), `waiting.rs` (what is apart for a
+//!   while), `leaves.rs` (two primitives), `convex_pieces.rs` (two convex pieces), `deepening.rs` (contacts at the
+//!   start that may sink in a little), `tips.rs` (primitives without their thin ends), `ending.rs` (the answer).
+//! - Where bodies met: `met.rs` (the primitives or faces), `piece_contact.rs` (the place on two convex pieces),
+//!   `patch.rs` (flat faces on each other).
+//! - Proofs that two are apart: in motion `apart.rs` (along chords) and `path_ends.rs` (in exact rigid motion); at
+//!   fixed poses `hulls.rs` (bounds of hulls) and `hull_gap.rs` (their distance).
+//! - Contacts at fixed poses: `contacts.rs`, in the order of `descent.rs`; of two primitives `primitive_pair.rs`, of
+//!   two convex pieces `face_contacts.rs`, from a list of primitive pairs `listed.rs`. `contact_list.rs` keeps the
+//!   nearest, with the grid of `contact_grid.rs`; `thinned.rs` and `held_back.rs` leave some out. A contact itself:
+//!   `sphere_pair.rs`.
+//! - Distance at fixed poses: `distance.rs`.
+//! - What every query is given: `primitive_tree.rs` (a body as spheres under a tree), `placement.rs` (the second body
+//!   in the frame of the first).
+//! - What spares a search: `outline.rs` (a few directions for the whole bodies), `near_pairs.rs` and `pair_list.rs`
+//!   (primitive pairs that may come near each other).
 
 mod apart;
 mod contact_grid;

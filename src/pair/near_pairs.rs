@@ -1,23 +1,23 @@
 //! A list of the primitive pairs of two bodies that may come near each other, on a known motion and on others like
 //! it: a pair of bodies that is searched again and again in one step goes down its trees only to these.
 //!
-//! **What is listed.** On the motion known, from a time `t0` to the end of the step, all primitive pairs that the bounds of
-//! the search (`pair::search`) do not prove farther apart than a reach `r` plus a margin `m`.
+//! **What is listed.** On the motion known, from a time `t0` to the end of the step, all primitive pairs that the
+//! bounds of the search (`pair::search`) do not prove farther apart than a reach `r` plus a margin `m`.
 //!
-//! **How long it holds.** On another motion, from `t ≥ t0` to the same end, a point of a body is never farther from where the
-//! known motion has it at that time than the two motions drift apart. Let `e(τ)` be the difference of the positions of the
-//! centre of rotation, which is linear in time, `θ` the angle between both rotations at `t`, `ω` and `ω'` the angular
-//! velocities, and `ρ` the largest distance of a point of the body from that centre. The angle between the rotations grows
-//! by `n·(ω' − ω)` per time, where `n` is the axis of the rotation between them, because that rotation does not turn its
-//! own axis. So the distance of two bodies' points is off by no more than
+//! **How long it holds.** On another motion, from `t ≥ t0` to the same end, a point of a body is never farther from
+//! where the known motion has it at that time than the two motions drift apart. Let `e(τ)` be the difference of the
+//! positions of the centre of rotation, which is linear in time, `θ` the angle between both rotations at `t`, `ω` and
+//! `ω'` the angular velocities, and `ρ` the largest distance of a point of the body from that centre. The angle between
+//! the rotations grows by `n·(ω' − ω)` per time, where `n` is the axis of the rotation between them, because that
+//! rotation does not turn its own axis. So the distance of two bodies' points is off by no more than
 //!
 //! `d = max over t and end of |e₁ − e₂| + Σ ρ (θ + |ω' − ω| (end − t))`.
 //!
 //! While `d ≤ m`, primitives that are not listed stay farther apart than `r` ([`NearPairs::holds_for`]).
 //!
-//! **Why the answer is the same bit by bit.** A search of reach `r` finds no contact in pairs that stay farther apart than
-//! that. What it looks at, and in which order, changes only with a contact found, with the pairs that are left in the
-//! queue, whose order is that of their times, depths and nodes, and with nothing else. So without these pairs it
+//! **Why the answer is the same bit by bit.** A search of reach `r` finds no contact in pairs that stay farther apart
+//! than that. What it looks at, and in which order, changes only with a contact found, with the pairs that are left in
+//! the queue, whose order is that of their times, depths and nodes, and with nothing else. So without these pairs it
 //! looks at all others at the same times in the same order.
 
 use super::apart::free_until;
@@ -36,12 +36,12 @@ use std::sync::Arc;
 /// Angle in radians that a body turns at most on a motion that is listed for: more, and sagittas would list too much.
 const MOST_ANGLE: f64 = 0.5;
 
-/// Pairs on a list at most. Twice as many as there are bits: with more, as of a nut on its bolt, most of the trees is above
-/// some of them, and nothing is spared.
+/// Pairs on a list at most. Twice as many as there are bits: with more, as of a nut on its bolt, most of the trees is
+/// above some of them, and nothing is spared.
 const MOST: u32 = 2 * Bits::BITS;
 
-/// Primitive pairs, and pairs of convex pieces, that may come near each other, by the nodes of both trees above them. It may
-/// hold others.
+/// Primitive pairs, and pairs of convex pieces, that may come near each other, by the nodes of both trees above them.
+/// It may hold others.
 pub struct NearPairs {
     pairs: PairList,
     /// Motions that they are listed for, and the step's seconds from their start to its end.
@@ -67,8 +67,8 @@ impl NearPairs {
         }
     }
 
-    /// Lists what may come within `reach` plus `margin` (lengths) in `seconds`; of what is `left`, where it is known that
-    /// nothing else does. `None` for motions that turn too far or are not finite, and where too much is near.
+    /// Lists what may come within `reach` plus `margin` (lengths) in `seconds`; of what is `left`, where it is known
+    /// that nothing else does. `None` for motions that turn too far or are not finite, and where too much is near.
     pub fn new(
         bodies: (&impl PrimitiveTree, &impl PrimitiveTree),
         motions: &[NonlinearRigidMotion; 2],
@@ -157,8 +157,8 @@ impl NearPairs {
         self.nodes
     }
 
-    /// Whether all that comes within `reach` (a length) is listed, for motions that end with those of the list, `seconds`
-    /// after their start; `arms`: the largest distance of a point of each body from its centre of rotation.
+    /// Whether all that comes within `reach` (a length) is listed, for motions that end with those of the list,
+    /// `seconds` after their start; `arms`: the largest distance of a point of each body from its centre of rotation.
     pub fn holds_for(
         &self,
         motions: &[NonlinearRigidMotion; 2],

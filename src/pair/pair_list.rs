@@ -22,8 +22,7 @@ impl PairList {
     }
 }
 
-/// Of each node of a body, the bits of the nodes given that are below it, above it or itself; the n-th node given has the
-/// n-th bit.
+/// Bits for each node of a body: bit `n` is set if the n-th of the given nodes is below it, above it or itself.
 fn bits_of_nodes(body: &impl PrimitiveTree, nodes: impl Iterator<Item = u32>) -> Vec<Bits> {
     let mut bits: Vec<Bits> = Vec::new();
     for (n, node) in nodes.enumerate() {

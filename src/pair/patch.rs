@@ -1,6 +1,6 @@
-//! Where flat faces of two bodies lie on each other: one polygon for each pair of pieces, of which a plane of several triangles,
-//! or a body of several blocks, has many. An impact there acts at the middle of all of them, so that a plate that falls flat
-//! on one of two triangles and half on the other is struck as on one.
+//! Where flat faces of two bodies lie on each other: one polygon for each pair of pieces, of which a plane of several
+//! triangles, or a body of several blocks, has many. An impact there acts at the middle of all of them, so that a plate
+//! that falls flat on one of two triangles and half on the other is struck as on one.
 
 use crate::math::lane::Vec3;
 
@@ -30,7 +30,7 @@ impl Patch {
         Some(Self { measures })
     }
 
-    /// Both.
+    /// The two patches as one.
     pub(super) fn and(&self, other: &Self) -> Self {
         let both = |k: usize| {
             let ((m, a), (n, b)) = (self.measures[k], other.measures[k]);

@@ -1,13 +1,14 @@
 //! How long one direction keeps two convex pieces apart on the paths that rigid motion moves their spheres on, for
-//! [`super::convex_pieces`]. Chords, as in [`super::apart`], bound long spans better; this bounds short ones, at the end of
-//! which two pieces meet.
+//! [`super::convex_pieces`]. Chords, as in [`super::apart`], bound long spans better; this bounds short ones, at the
+//! end of which two pieces meet.
 
 use super::primitive_tree::PrimitiveTree;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::medial::MedialSphere;
 
-/// Where a sphere on its path ends along a unit direction, how fast that changes, and how fast at most the rate does.
+/// End of a sphere along a unit direction while it moves on its path: its place, its rate, and the largest
+/// acceleration.
 #[derive(Clone, Copy)]
 pub(super) struct PathEnd {
     pub(super) place: f64,
@@ -15,9 +16,9 @@ pub(super) struct PathEnd {
     pub(super) acceleration: f64,
 }
 
-/// How long a direction keeps the spheres of one hull farther than `least` beyond those of another on their paths; `None`
-/// if as long as is asked. A sphere is never farther from where its rate leads than half its acceleration times the
-/// square of the time.
+/// How long a direction keeps the spheres of one hull farther than `least` beyond those of another on their paths;
+/// `None` if as long as is asked. A sphere is never farther from where its rate leads than half its acceleration times
+/// the square of the time.
 pub(super) fn held_on_paths([far, near]: [&[PathEnd]; 2], least: f64, asked: f64) -> Option<f64> {
     let most = |ends: &[PathEnd]| ends.iter().map(|e| e.acceleration).fold(0.0, f64::max);
     let acceleration = most(far) + most(near);
@@ -40,8 +41,8 @@ pub(super) fn held_on_paths([far, near]: [&[PathEnd]; 2], least: f64, asked: f64
     (held < asked).then_some(held * (1.0 - 16.0 * f64::EPSILON))
 }
 
-/// Where the spheres of what a node holds end along a unit direction at a time, on its far side (`side` 1) or near side (-1),
-/// and how they go on.
+/// Ends along a unit direction of the spheres that a node holds, at a time, on their far side (`side` 1) or near side
+/// (-1).
 pub(super) fn path_ends(
     body: &impl PrimitiveTree,
     motion: &RigidMotion<f64>,

@@ -1,5 +1,5 @@
-//! Where two convex pieces meet, as the search for a first contact finds it ([`super::convex_pieces`]): at the middle of
-//! where faces of them lie on each other, so that what falls flat is struck evenly, or else at their nearest points.
+//! Where two convex pieces meet, as the search for a first contact finds it ([`super::convex_pieces`]): at the middle
+//! of where faces of them lie on each other, so that what falls flat is struck evenly, or else at their nearest points.
 
 use super::face_contacts::{FacingCorner, FacingFaces, facing_faces};
 use super::hull_gap::{HullGap, PlacedHull, nearest_points};
@@ -13,7 +13,7 @@ use crate::medial::MedialSphere;
 use crate::medial::thickness;
 use crate::medial::tree::NodeKind;
 
-/// How often the nearest primitives are asked for a better direction at most.
+/// Largest number of times that the nearest primitives are asked for a better direction.
 const ROUNDS: usize = 3;
 
 /// Two pieces that are looked at as a whole.
@@ -29,10 +29,10 @@ pub(super) struct Pieces {
     pub(super) known: Option<(f64, Nearest)>,
 }
 
-/// Where two pieces met, in the frame of the motions.
+/// Contact of two convex pieces, in the frame of the motions.
 #[derive(Clone, Copy)]
 pub(super) struct PiecesMet {
-    /// The bodies' nodes that hold them.
+    /// Nodes that hold the two pieces, one of each body.
     pub(super) nodes: [u32; 2],
     /// The primitives of them that are about nearest.
     pub(super) primitives: [u32; 2],
@@ -44,7 +44,7 @@ pub(super) struct PiecesMet {
     pub(super) normal: Vec3<f64>,
     /// The body with the flattest face, 0 or 1.
     pub(super) of: usize,
-    /// Where faces of them lie on each other, if they do.
+    /// Patch in which faces of the two lie on each other, if they do.
     pub(super) patch: Option<Patch>,
 }
 
@@ -69,19 +69,19 @@ impl PiecesMet {
     }
 }
 
-/// What a look at two nodes says of the convex pieces that they hold.
+/// Result of a look at the convex pieces that two nodes hold.
 pub(super) enum Look {
-    /// They do not meet.
+    /// The pieces do not meet.
     Free,
-    /// They do not meet before this time.
+    /// The pieces do not meet before this time.
     FreeUntil(f64),
-    /// They meet.
+    /// The pieces meet.
     Met(PiecesMet),
-    /// They hold no pieces, or their primitives decide.
+    /// The nodes hold no pieces, or their primitives have to decide.
     Split,
 }
 
-/// What a node holds at a time, as a hull.
+/// The convex hull of what a node holds, placed at a time.
 pub(super) fn placed<'a>(
     body: &'a impl PrimitiveTree,
     motion: &RigidMotion<f64>,
@@ -94,7 +94,8 @@ pub(super) fn placed<'a>(
     PlacedHull::of_node(body, node, point, direction)
 }
 
-/// Where faces of two hulls lie on each other along a direction, as deep as a gap says, and which of the two has the flattest.
+/// Patch in which faces of two hulls lie on each other along a direction, at the depth that `gap` says, and the hull (0
+/// or 1) with the flattest face.
 pub(super) fn patch(
     hulls: [&PlacedHull; 2],
     n: Vec3<f64>,
@@ -123,7 +124,7 @@ pub(super) struct Nearest {
 }
 
 impl Nearest {
-    /// Of which no primitives are known.
+    /// The distance of two hulls whose nearest primitives are not known.
     pub(super) fn of(hull: HullGap) -> Self {
         Self {
             hull,
@@ -132,8 +133,9 @@ impl Nearest {
         }
     }
 
-    /// The largest gap of two nodes' pieces that can be found, from that of their hulls on, with a pair of primitives that are
-    /// about nearest. `place` takes a point of a body's frame to where it is, `local` takes it back.
+    /// The largest gap of two nodes' pieces that can be found, starting from the gap of their hulls, and a pair of
+    /// primitives that are about nearest. `place` takes a point from a body's frame to the common one, `local` takes it
+    /// back.
     pub(super) fn search(
         ((first, second), nodes): ((&impl PrimitiveTree, &impl PrimitiveTree), [u32; 2]),
         (hulls, hull): ([&PlacedHull; 2], HullGap),
@@ -206,7 +208,7 @@ pub(super) fn nearest_primitive(body: &impl PrimitiveTree, node: u32, point: Vec
     nearest
 }
 
-/// Where spheres reach farthest along a unit direction.
+/// The farthest point of spheres along a unit direction.
 pub(super) fn farthest(spheres: &[Ball<f64>], n: Vec3<f64>) -> Vec3<f64> {
     let end = |s: &Ball<f64>| n.dot(s.0) + s.1;
     let most = spheres.iter().max_by(|a, b| end(a).total_cmp(&end(b)));

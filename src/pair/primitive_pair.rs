@@ -12,7 +12,7 @@ use super::primitive_tree::PrimitiveTree;
 use super::sphere_pair::SpherePair;
 use crate::elementary::certificate::ActiveFace;
 use crate::elementary::distance::{
-    Ends, crossing, deeper, face, family, is_beyond, nearest_in_family,
+    Ball, Ends, crossing, deeper, face, family, is_beyond, nearest_in_family,
 };
 use crate::elementary::first_contact::corner_weights;
 use crate::elementary::test_list::{Domain, ElementaryTest, OwnedFeatures, for_each_test};
@@ -33,12 +33,10 @@ const SAME_POINT: f64 = 1.0e-4;
 /// Feature of a pair whose medial surfaces cross: it belongs to no one test.
 const CROSSING: u32 = 1 << 17;
 
-type Ball = (Vec3<f64>, f64);
-
 /// Two primitives in the first body's frame.
 pub(super) struct PrimitivePair<'a> {
     indices: [u32; 2],
-    balls: [[Ball; 3]; 2],
+    balls: [[Ball<f64>; 3]; 2],
     shares: [OwnedFeatures; 2],
     place: &'a Placement,
 }
@@ -73,7 +71,7 @@ impl<'a> PrimitivePair<'a> {
         }
         let faces = self.along_faces();
         let (a, b) = self.spheres();
-        let size = |s: &[Ball]| s.iter().map(|s| s.0.taxicab() + s.1.abs()).sum::<f64>();
+        let size = |s: &[Ball<f64>]| s.iter().map(|s| s.0.taxicab() + s.1.abs()).sum::<f64>();
         let beyond = found.margin() + ROUNDING_ULPS * f64::EPSILON * (size(a) + size(b));
         let mut feature = 0;
         for_each_test(self.shares[0], self.shares[1], |test| {
@@ -90,7 +88,7 @@ impl<'a> PrimitivePair<'a> {
     fn along_faces(&self) -> [Option<Ends<f64>>; 2] {
         let (a, b) = self.spheres();
         let y = b[0].0 - a[0].0;
-        let of = |s: &[Ball], y: Vec3<f64>| {
+        let of = |s: &[Ball<f64>], y: Vec3<f64>| {
             let &[p, q, r] = s else { return None };
             let n = face([q.0 - p.0, r.0 - p.0], [q.1 - p.1, r.1 - p.1], y)?;
             Some(n * (1.0 / n.length()))
@@ -134,12 +132,12 @@ impl<'a> PrimitivePair<'a> {
     fn deepest(&self) -> (f64, Vec3<f64>) {
         let (a, b) = self.spheres();
         let middle =
-            |s: &[Ball]| s.iter().fold(Vec3::zero(), |m, b| m + b.0) * (1.0 / s.len() as f64);
+            |s: &[Ball<f64>]| s.iter().fold(Vec3::zero(), |m, b| m + b.0) * (1.0 / s.len() as f64);
         penetration::deepest(a, b, middle(b) - middle(a), 0.0)
     }
 
-    /// A crossing of any edge with the other's slab, owned or not: with one the nearest spheres mean
-    /// nothing for this pair.
+    /// The crossing of an edge of one primitive with the slab of the other, whether this pair owns the edge or not.
+    /// With a crossing the nearest spheres mean nothing for this pair.
     fn crossing(&self) -> Option<slab_crossing::Crossing<f64>> {
         let (a, b) = self.spheres();
         [crossing(a, u8::MAX, b), crossing(b, u8::MAX, a)]
@@ -149,7 +147,7 @@ impl<'a> PrimitivePair<'a> {
     }
 
     /// The spheres that count, of both.
-    pub(super) fn spheres(&self) -> (&[Ball], &[Ball]) {
+    pub(super) fn spheres(&self) -> (&[Ball<f64>], &[Ball<f64>]) {
         let [a, b] = &self.balls;
         (&a[..self.shares[0].spheres], &b[..self.shares[1].spheres])
     }

@@ -1,6 +1,6 @@
 //! Tree that a query searches: a hierarchy of bounding spheres with primitives of 1 to 3 spheres at its leaves. A
-//! medial mesh is one; loose primitives (the faces of a cuboid, a capsule, the triangles of a terrain near the body) are
-//! another.
+//! medial mesh is one; loose primitives (the faces of a cuboid, a capsule, the triangles of a terrain near the body)
+//! are another.
 
 use crate::elementary::test_list::OwnedFeatures;
 use crate::math::{Real, Vector};
@@ -120,8 +120,8 @@ impl PrimitiveTree for MedialMesh {
     }
 }
 
-/// Loose primitives from which on a list has a hierarchy of nodes: fewer are looked at one by one, which costs less in a
-/// search of many pieces, as each begins at the root.
+/// Loose primitives from which on a list has a hierarchy of nodes: fewer are looked at one by one, which costs less in
+/// a search of many pieces, as each begins at the root.
 const TREE_FROM: usize = 64;
 
 /// A node of a list: its bounding sphere, and what is below it.
@@ -134,8 +134,8 @@ pub struct PrimitiveList {
     /// A node for each primitive; in a hierarchy the root, and all below it.
     nodes: Vec<ListNode>,
     has_tree: bool,
-    /// Range of primitives of the part, for each primitive of a part that has ended: its first and the one behind its
-    /// last.
+    /// For each primitive of a part that is complete, the range of the part's primitives: its first, and the one behind
+    /// its last.
     parts: Vec<[u32; 2]>,
 }
 

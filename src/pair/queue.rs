@@ -4,9 +4,9 @@
 use super::deepening::Threshold;
 use super::tips::Part;
 use crate::elementary::test_list::ElementaryTest;
-use std::cmp::Ordering;
+use crate::math::least_first::least_first;
 
-/// What waits in the queue: a pair of nodes, a pair of (parts of) primitives, or an elementary test, of which it is
+/// An entry of the queue: a pair of nodes, a pair of primitives or parts of them, or an elementary test, of which it is
 /// not known yet whether the two meet.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Candidate {
@@ -78,25 +78,4 @@ impl Entry {
     }
 }
 
-impl PartialEq for Entry {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Entry {}
-impl PartialOrd for Entry {
-    #[inline]
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Entry {
-    /// Reversed: `BinaryHeap` pops the largest.
-    #[inline]
-    fn cmp(&self, other: &Self) -> Ordering {
-        (other.time.total_cmp(&self.time))
-            .then_with(|| other.depth.total_cmp(&self.depth))
-            .then_with(|| other.of.cmp(&self.of))
-            .then_with(|| other.candidate.cmp(&self.candidate))
-    }
-}
+least_first!(Entry, time + depth, of, candidate);

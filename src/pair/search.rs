@@ -7,7 +7,8 @@
 //!   moved along the chords, touch: the smaller root of a quadratic.
 //! - Two nodes cannot meet while a direction keeps their hulls apart: swept rectangles, which fit better than balls
 //!   ([`crate::medial::rectangle`]).
-//! - Two convex pieces of several primitives are looked at as a whole before their primitives are ([`super::convex_pieces`]).
+//! - Two convex pieces of several primitives are looked at as a whole before their primitives are
+//!   ([`super::convex_pieces`]).
 //! - Two primitives cannot meet while a direction keeps them apart ([`super::apart`]), nor can the spheres of one of
 //!   their elementary tests. "Meet" here means to come within the tolerance, so that what touches at the start is
 //!   found there.
@@ -33,10 +34,10 @@ use crate::math::motion::RigidMotion;
 use crate::medial::tree::NodeKind;
 use std::collections::BinaryHeap;
 
-/// Node pairs, proofs by directions, iterations of elementary tests (twice), looks at convex pieces ([`LOOK`] times) and
-/// pieces of one search, together, after which it ends unresolved. Interleaved combs of 1,236 primitives take a seventh of it,
-/// fast flights of such meshes a thirty-sixth. A query of endless turns ends after two tenths of a second.
-/// Larger, and it takes longer; smaller, and it knows less.
+/// Node pairs, proofs by directions, iterations of elementary tests (twice), looks at convex pieces ([`LOOK`] times)
+/// and pieces of one search, together, after which it ends unresolved. Interleaved combs of 1,236 primitives take a
+/// seventh of it, fast flights of such meshes a thirty-sixth. A query of endless turns ends after two tenths of a
+/// second. Larger, and it takes longer; smaller, and it knows less.
 const WORK: u64 = 1 << 19;
 
 /// Work of one look at two convex pieces, in elementary tests.
@@ -85,20 +86,21 @@ pub(super) struct Search<'a, A, B> {
     pub(super) earliest: Earliest<f64>,
     /// Parts of the primitives found that were tested.
     pub(super) found: Option<Tested>,
-    /// Pairs of the bodies' nodes, primitives or convex pieces, that touch at the start and may sink in, and how deep they
-    /// may get, in the units of [`super::first_contact::Query::deepest`].
+    /// Pairs of the bodies' nodes, primitives or convex pieces, that touch at the start and may sink in, and how deep
+    /// they may get, in the units of [`super::first_contact::Query::deepest`].
     pub(super) touching: Vec<([u32; 2], f64)>,
     /// Convex pieces looked at, by the bodies' nodes; `None` where their primitives decide.
     pub(super) convex: FastMap<[u32; 2], Option<Pieces>>,
-    /// The convex pieces found, where the contact found is of such.
+    /// The convex pieces that met, if the contact found is between pieces.
     pub(super) met: Option<PiecesMet>,
-    /// Where faces of these and of all others that meet with them lie on each other, once that is asked.
+    /// Patch in which the pieces found, and all others that meet with them, lie on each other; set when it is asked
+    /// for.
     pub(super) joined: Option<Patch>,
 }
 
 /// How far a search came.
 enum Reached {
-    /// Nothing meets before this time; not looked further.
+    /// Nothing meets before this time; the search has not looked further.
     Free(f64),
     /// The end of the piece, without an answer.
     End,

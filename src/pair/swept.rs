@@ -2,7 +2,7 @@
 //! along which the centres of its nodes and primitives move, and radii enlarged by the sagitta, which is how far a
 //! centre may be off its chord. Twin of `Side::chord` on a device: `sweep` in `shaders/swept.wgsl`.
 
-use super::apart::{Ball, Balls};
+use super::apart::{Balls, SweptBall};
 use super::outline::ActivePrimitives;
 use super::primitive_tree::PrimitiveTree;
 use crate::math::approach::first_touch;
@@ -41,6 +41,7 @@ pub(super) struct Swept {
     piece: u32,
 }
 
+/// Place of what is not swept yet.
 const NOT_YET: u32 = u32::MAX;
 
 /// Adds bits to those of one of a body's nodes.
@@ -60,7 +61,7 @@ pub(super) enum Touch {
     AtStart(f64),
     /// Contact at this share of the piece.
     At(f64),
-    /// No contact in the piece.
+    /// The two do not touch in this piece of the step.
     Never,
 }
 
@@ -98,7 +99,7 @@ pub(super) struct Side<'a, V> {
     nodes: Vec<Swept>,
     balls: Vec<Balls>,
     /// Balls of convex pieces, and the bound of the coordinates in play.
-    pieces: Vec<(Vec<Ball>, f64)>,
+    pieces: Vec<(Vec<SweptBall>, f64)>,
     /// Primitives that may meet the other side; `None`: all.
     left: Option<ActivePrimitives>,
     /// List of what may come near it, and which of the bodies this is.
@@ -129,8 +130,8 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         self.near = Some((near, side));
     }
 
-    /// Bits of swept nodes, those of what is below them added, by the body's nodes. What is below a convex piece that was
-    /// not split has its bits.
+    /// Bits of swept nodes, those of what is below them added, by the body's nodes. What is below a convex piece that
+    /// was not split has its bits.
     pub(super) fn gathered(&self, mut bits: Vec<Bits>) -> Vec<Bits> {
         bits.resize(self.nodes.len(), 0);
         let mut gathered = Vec::new();
@@ -212,15 +213,15 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         let Some(of) = self.body.convex_piece(node).filter(|_| piece == NOT_YET) else {
             return self.sweep_hull(at);
         };
-        let balls: Vec<Ball> = of.spheres.iter().map(|s| self.ball(s)).collect();
-        let size = |ball: &Ball| ball.0.taxicab() + ball.1.taxicab() + ball.2;
+        let balls: Vec<SweptBall> = of.spheres.iter().map(|s| self.ball(s)).collect();
+        let size = |ball: &SweptBall| ball.0.taxicab() + ball.1.taxicab() + ball.2;
         let size = balls.iter().map(size).sum::<f64>() + self.motion.terms();
         self.nodes[at as usize].piece = self.pieces.len() as u32;
         self.pieces.push((balls, size));
     }
 
     /// The spheres of a node's convex piece or primitive, which are swept, and the bound of the coordinates in play.
-    pub(super) fn piece(&self, at: u32) -> (&[Ball], f64) {
+    pub(super) fn piece(&self, at: u32) -> (&[SweptBall], f64) {
         match self.node(at).piece {
             NOT_YET => (self.hull(at).all(), self.hull(at).size),
             piece => {
@@ -230,7 +231,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         }
     }
 
-    fn ball(&self, s: &MedialSphere) -> Ball {
+    fn ball(&self, s: &MedialSphere) -> SweptBall {
         let (from, chord, sagitta) = self.chord(Vec3::from_vector(s.center));
         (from, chord, f64::from(s.radius) + sagitta)
     }
@@ -293,7 +294,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
 /// longer, fast queries a tenth; 1.5 is nearly as good.
 const SIMILAR: f64 = 3.0;
 
-/// Children that replace two swept nodes, not both of them leaves.
+/// Children that replace two swept nodes, at least one of which is not a leaf.
 pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
     sides: &mut (Side<A>, Side<B>),
     [i, j]: [u32; 2],

@@ -1,5 +1,5 @@
-//! Thins contacts out where a smooth body of many primitives has hundreds of them: of those at about one place under about
-//! one normal the nearest stays.
+//! Thins contacts out where a smooth body of many primitives has hundreds of them: of those at about one place under
+//! about one normal the nearest stays.
 
 use super::SpherePair;
 use crate::math::Real;

@@ -44,7 +44,8 @@ impl Part {
         })
     }
 
-    /// The same over a piece of the motions. A mean of points is no farther off its chord than the points in the mean.
+    /// The spheres of this part while they move over a piece of the step. A mean of points is no farther off its chord
+    /// than the points themselves.
     pub(super) fn of_swept(&self, all: &Balls) -> Balls {
         if self.is_whole() {
             return *all;
@@ -66,7 +67,7 @@ impl Part {
     }
 }
 
-/// What is left of a primitive without its tips: one or two parts.
+/// Parts of a primitive that remain without its tips: one or two.
 #[derive(Clone, Copy)]
 pub(super) struct Parts {
     parts: [Part; 2],
@@ -82,7 +83,7 @@ impl Parts {
         }
     }
 
-    /// The parts where the radius of a primitive is `kept` or more; all of it, if it is less everywhere.
+    /// Parts of a primitive where its radius is `kept` or more; the whole primitive if it is thinner everywhere.
     pub(super) fn without_tips(spheres: &[Ball<f64>], kept: f64) -> Self {
         let mut whole = Self::whole(spheres.len());
         let at = |k: usize| Part::whole(3).shares[k];

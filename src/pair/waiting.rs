@@ -35,7 +35,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         self.above_until(balls, &touching, time)
     }
 
-    /// The same, until what counts as contact of them; its factor is not applied.
+    /// Time until which directions prove two primitives farther apart than `threshold` from `time` on; `None` if as
+    /// long as the search asks. The factor of the threshold is not applied to the radii.
     pub(super) fn above_until(
         &self,
         balls: [&Balls; 2],

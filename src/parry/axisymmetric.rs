@@ -22,6 +22,7 @@
 //! decides how sharp the bound is, never whether it holds.
 
 use crate::math::lane::Vec3;
+use crate::math::sphere::Ball;
 use crate::math::{Pose, Real, Vector};
 use parry3d::shape::{Shape, TypedShape};
 
@@ -60,13 +61,13 @@ pub struct Place {
     pub axis: Vec3<f64>,
 }
 
-/// A sphere by its centre, relative to [`Place::origin`], and radius.
-pub type Ball = (Vec3<f64>, f64);
+/// Difference of two balls: of their centres, and of their radii.
+type Edge = (Vec3<f64>, f64);
 
 /// An interpolated sphere near the body.
 #[derive(Clone, Copy, Debug)]
 pub struct NearBall {
-    /// The sphere.
+    /// The sphere, with its centre relative to [`Place::origin`].
     pub ball: Ball,
     /// Distance of its centre to the body, 0 inside.
     pub apart: f64,
@@ -77,11 +78,11 @@ pub struct NearBall {
 impl NearBall {
     /// Signed distance of the sphere.
     pub fn distance(&self) -> f64 {
-        self.apart - self.ball.1
+        self.apart - self.ball.radius
     }
 
     /// Change of the signed distance along an edge: `edge` of the centre, `grow` of the radius.
-    fn slope(&self, (edge, grow): Ball) -> f64 {
+    fn slope(&self, (edge, grow): Edge) -> f64 {
         self.direction.dot(edge) - grow
     }
 }
@@ -177,8 +178,8 @@ impl Axisymmetric {
     }
 
     fn at(&self, place: &Place, ball: Ball) -> NearBall {
-        let y = ball.0.dot(place.axis);
-        let across = ball.0 - place.axis * y;
+        let y = ball.center.dot(place.axis);
+        let across = ball.center - place.axis * y;
         let rho = across.length();
         let foot = self.profile(y, rho);
         let (dy, d_rho) = (y - foot.0, rho - foot.1);
@@ -198,10 +199,12 @@ impl Axisymmetric {
 
     /// The interpolated sphere of 1 to 3 that is nearest; of none, a sphere at the origin.
     pub fn nearest(&self, place: &Place, balls: &[Ball]) -> NearBall {
-        let far = balls.iter().map(|ball| ball.0.length() + ball.1.abs());
+        let far = balls
+            .iter()
+            .map(|ball| ball.center.length() + ball.radius.abs());
         let sharp = SHARP * (self.reach() + far.fold(0.0, f64::max));
         match *balls {
-            [] => self.at(place, (Vec3::zero(), 0.0)),
+            [] => self.at(place, Ball::new(Vec3::zero(), 0.0)),
             [a] => self.at(place, a),
             [a, b] => self.along(place, a, edge(a, b), 1.0, sharp),
             [a, b, c, ..] => {
@@ -217,7 +220,7 @@ impl Axisymmetric {
         }
     }
 
-    fn along(&self, place: &Place, from: Ball, edge: Ball, until: f64, sharp: f64) -> NearBall {
+    fn along(&self, place: &Place, from: Ball, edge: Edge, until: f64, sharp: f64) -> NearBall {
         let ends = [from, moved(from, edge, until)];
         let is_sharp = |near: &NearBall| self.is_sharp(place, near, &ends, sharp);
         minimise(until, edge.0.length(), is_sharp, |x| {
@@ -229,18 +232,18 @@ impl Axisymmetric {
     /// Whether the bound of these corners along its direction is as large as the distance of a sphere, but for `sharp`.
     fn is_sharp(&self, place: &Place, near: &NearBall, corners: &[Ball], sharp: f64) -> bool {
         let m = near.direction;
-        let ends = corners.iter().map(|ball| m.dot(ball.0) - ball.1);
+        let ends = corners.iter().map(|ball| m.dot(ball.center) - ball.radius);
         let bound = ends.fold(f64::INFINITY, f64::min) - self.support(place, m);
         near.distance() - bound <= sharp
     }
 }
 
-fn edge(a: Ball, b: Ball) -> Ball {
-    (b.0 - a.0, b.1 - a.1)
+fn edge(a: Ball, b: Ball) -> Edge {
+    (b.center - a.center, b.radius - a.radius)
 }
 
-fn moved(from: Ball, edge: Ball, share: f64) -> Ball {
-    (from.0 + edge.0 * share, from.1 + edge.1 * share)
+fn moved(from: Ball, edge: Edge, share: f64) -> Ball {
+    Ball::new(from.center + edge.0 * share, from.radius + edge.1 * share)
 }
 
 /// Least member over `[0, until]` of a convex family, given with its slope; `size` is the length of

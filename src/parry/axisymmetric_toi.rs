@@ -3,17 +3,18 @@
 //! [`follow`] advances them as it does primitives, only less exactly.
 //!
 //! # Guarantee
-//! It is that of [`crate::elementary`], where `D(t)` is the signed distance of [`super::axisymmetric`], which sees bodies
-//! inside the cylinder or cone as overlapping, and never falls below minus the largest radius. For a contact,
+//! It is that of [`crate::elementary`], where `D(t)` is the signed distance of [`super::axisymmetric`], which sees
+//! bodies inside the cylinder or cone as overlapping, and never falls below minus the largest radius. For a contact,
 //! `upper = lower`, and `D` there is at most the tolerance. All is computed in double precision.
 
-use super::axisymmetric::{Axisymmetric, Ball, NearBall, Place, unit};
+use super::axisymmetric::{Axisymmetric, NearBall, Place, unit};
 use super::conservative_advancement::{Advance, CHASE_TOLERANCE_PER_SLACK, Limits, follow};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
 use crate::math::least_first::least_first;
 use crate::math::motion::RigidMotion;
+use crate::math::sphere::Ball;
 use crate::math::{Real, Vector};
 use crate::medial::tree::NodeKind;
 use crate::medial::{MedialMesh, MedialSphere};
@@ -27,9 +28,9 @@ use std::collections::BinaryHeap;
 /// primitives in fast rotation: 3.5 on average, 37 at most; 4 leaves a margin of 7.
 const CAP: u32 = 4;
 
-/// Iterations of one query after which it ends, unresolved, and how many more for each primitive of the mesh: no contact
-/// before what comes first then. Queries that turn less than 40 radians take a thousand. Larger, and a query of endless
-/// turns takes longer; smaller, and it knows less of them.
+/// Iterations of one query after which it ends, unresolved, and how many more for each primitive of the mesh: no
+/// contact before what comes first then. Queries that turn less than 40 radians take a thousand. Larger, and a query of
+/// endless turns takes longer; smaller, and it knows less of them.
 const WORK: [u32; 2] = [1 << 11, 1 << 4];
 
 /// Iterations of a primitive before it waits for its turn again. Not tuned; only speed depends on it.
@@ -179,7 +180,7 @@ impl Search<'_> {
 
     fn balls(&self, primitive: u32) -> ([Ball; 3], usize) {
         let (spheres, share) = PrimitiveTree::primitive(self.mesh, primitive);
-        let balls = spheres.map(|s| (Vec3::from_vector(s.center), f64::from(s.radius)));
+        let balls = spheres.map(|s| Ball::new(Vec3::from_vector(s.center), s.radius.into()));
         (balls, share.spheres.clamp(1, 3))
     }
 
@@ -194,7 +195,7 @@ impl Search<'_> {
             tolerance: self.tolerance + NODE_TOLERANCE * f64::from(radius),
             steps: NODE_STEPS,
         };
-        let ball = (Vec3::from_vector(center), f64::from(radius));
+        let ball = Ball::new(Vec3::from_vector(center), f64::from(radius));
         let advance = self.advance(body, &[ball], &limits);
         if !advance.separated {
             self.heap.push(Entry {
@@ -212,11 +213,12 @@ impl Search<'_> {
         let mut thinner = thickness;
         if let Some(cores) = &self.options.cores {
             let [loss, _] = cores.losses([thickness, Real::INFINITY]);
-            all = all.map(|(center, radius)| (center, radius - loss.of(radius)));
+            all = all.map(|s| Ball::new(s.center, s.radius - loss.of(s.radius)));
             thinner = thinner.min(cores.at_most);
         }
         let cap = CAP.saturating_mul(self.options.max_iterations);
-        let thinnest = all[..len].iter().map(|b| b.1).fold(f64::INFINITY, f64::min);
+        let radii = all[..len].iter().map(|b| b.radius);
+        let thinnest = radii.fold(f64::INFINITY, f64::min);
         let mut limits = Limits {
             start: entry.time,
             horizon: self.upper,
@@ -250,10 +252,10 @@ impl Search<'_> {
                 self.deepest = self.deepest.min(depth);
                 limits.start = if entry.spent == 0 { 0.0 } else { entry.time };
                 let tolerance = limits.tolerance;
-                let axis = all.map(|(center, _)| (center, 0.0));
+                let axis = all.map(|s| Ball::new(s.center, 0.0));
                 let axes = || self.advance(body, &axis[..len], &at_start).near.distance();
                 let threshold = Threshold::deepened(start, thinnest, by.into(), tolerance, axes);
-                all.iter_mut().for_each(|ball| ball.1 *= threshold.scale);
+                all.iter_mut().for_each(|b| b.radius *= threshold.scale);
                 limits.target = threshold.target;
                 limits.tolerance = threshold.tolerance;
             }
@@ -340,15 +342,15 @@ impl Search<'_> {
         let (out, apart) = match body {
             // A centre inside has no nearest point but the way out.
             Some(b) if apart <= 0.0 => {
-                let (out, way) = b.min_translation(&found.place, ball.0);
+                let (out, way) = b.min_translation(&found.place, ball.center);
                 (out, -way)
             }
             _ => (unit(found.near.direction), apart),
         };
         let world = |p: Vec3<f64>| (p + found.place.origin + origin).to_vector();
-        let foot = ball.0 - out * apart;
+        let foot = ball.center - out * apart;
         let points = [
-            ball.0 - out * (ball.1 - f64::from(border)),
+            ball.center - out * (ball.radius - f64::from(border)),
             foot + out * f64::from(border),
         ];
         let normal: Vector = (-out).to_vector();
@@ -363,7 +365,7 @@ impl Search<'_> {
             tolerance,
             normal,
             spheres: [
-                MedialSphere::new(world(ball.0), ball.1 as Real - border),
+                MedialSphere::new(world(ball.center), ball.radius as Real - border),
                 MedialSphere::new(world(foot), border),
             ],
             points: points.map(world),

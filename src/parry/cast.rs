@@ -22,17 +22,17 @@ use crate::pair::{PrimitiveTree, nearest_spheres};
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit};
 use parry3d::shape::Shape;
 
-/// Largest part of its way by which a straight cast may seem to come nearer although it slides, so near the other shape that
-/// the normal says little.
+/// Largest part of its way by which a straight cast may seem to come nearer although it slides, so near the other shape
+/// that the normal says little.
 const MOST_SLANT: Real = 0.5;
 
-/// Tolerance of a straight cast in units of the length by which one that slides seems to come nearer ([`approach_of_rounding`]).
-/// Larger, and rapier's character controller, which leaves gaps of a few micrometres more than it asks for, is stopped by
-/// what it only passes; smaller, and rounding of the poses decides.
+/// Tolerance of a straight cast in units of the length by which one that slides seems to come nearer
+/// ([`approach_of_rounding`]). Larger, and rapier's character controller, which leaves gaps of a few micrometres more
+/// than it asks for, is stopped by what it only passes; smaller, and rounding of the poses decides.
 const PRECISION: Real = 2.0;
 
-/// Height above a plane, in tolerances beyond the target distance, up to which a mesh counts as lying on it: an impact leaves
-/// it within one of them.
+/// Height above a plane, in tolerances beyond the target distance, up to which a mesh counts as lying on it: an impact
+/// leaves it within one of them.
 const LIES_ABOVE: Real = 2.0;
 
 /// First contact of a medial mesh with another shape, both moving rigidly, from `start` to `end`
@@ -51,7 +51,7 @@ pub struct Cast<'a> {
     pub times: [Real; 2],
     /// Distance at which they count as in contact.
     pub target_distance: Real,
-    /// What is made of contacts at the start.
+    /// How contacts at the start are treated.
     pub at_start: AtStart,
     /// Whether a contact at the start is the answer at least if the two approach, as for parry's straight casts.
     /// Without this, rapier's character controller would sink in.
@@ -70,7 +70,8 @@ impl Cast<'_> {
         self.toi_sliding(options, left, None)
     }
 
-    /// The same; flat faces on whose plane the mesh lies, with so much room to sink, are treated by `sliding.rs`.
+    /// Does the same as [`Self::toi`]. Flat faces on whose plane the mesh lies, no deeper than `sinks` allows, are left
+    /// out or become planes (`sliding.rs`).
     pub(crate) fn toi_sliding(
         &self,
         options: &ToiOptions,
@@ -153,8 +154,8 @@ impl Cast<'_> {
             toi = further.toi;
             counts += further.counts;
         }
-        // What slides along at the target distance is within the tolerance of a hit wherever it is, with a normal that may
-        // be off by as much as the tolerance lets the nearest points be. A hit it is where it comes nearer by more:
+        // What slides along at the target distance is within the tolerance of a hit wherever it is, with a normal that
+        // may be off by as much as the tolerance lets the nearest points be. A hit it is where it comes nearer by more:
         // otherwise a character could not step up along a wall.
         let slant = 2.0 * options.tolerance / self.target_distance.max(Real::MIN_POSITIVE);
         let slant = slant.sqrt().min(MOST_SLANT);
@@ -165,7 +166,8 @@ impl Cast<'_> {
             options.target_distance -= by;
             let nearer = query(&options)?;
             counts += nearer.counts;
-            // Two convex bodies on straight paths come nearer ever more slowly, so before the hit by this much at least.
+            // Two convex bodies on straight paths come nearer ever more slowly, so before the hit by this much at
+            // least.
             let back = nearer.toi.lower - by / way.dot(nearer.toi.normal).max(Real::MIN_POSITIVE);
             let lower = back.max(toi.lower);
             toi = nearer.toi;
@@ -189,7 +191,8 @@ impl Cast<'_> {
         is_convex(self.mesh) && other.map_or_else(|| self.other.is_convex(), is_convex)
     }
 
-    /// Length by which a straight cast that slides along the other shape seems to come nearer, for all that rounding does.
+    /// Length by which a straight cast that slides along the other shape seems to come nearer, for all that rounding
+    /// does.
     fn grazing(&self, motions: [&NonlinearRigidMotion; 2], way: Vector) -> Real {
         let places = motions.map(|m| m.start.translation.abs().max_element());
         let extent = self.mesh.aabb().extents().max_element();
@@ -362,8 +365,8 @@ impl Cast<'_> {
         Some(toi)
     }
 
-    /// The same answer; where medial surfaces cross at the start, with the normal and the points of the
-    /// deepest contact, which the query leaves open.
+    /// Adds to an answer the normal and the points of the deepest contact, where medial surfaces cross at the start:
+    /// the query leaves these open.
     fn with_normal(
         &self,
         mut toi: Toi,

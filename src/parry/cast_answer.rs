@@ -4,10 +4,9 @@ use crate::elementary::{Toi, ToiStatus};
 use crate::math::{Real, Vector};
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
 
-/// Length of normals of hits beyond 1: four ulps. rapier turns them into the world's frame, which took up to two off those of
-/// floors turned by a quarter (`scenes characters`). A normal
-/// that is shorter than 1 and straight up makes of a flat floor one that rapier's character controller slips on: it
-/// then drops the whole move (docs/host.md).
+/// Length of normals of hits beyond 1: four ulps. rapier turns them into the world's frame, which took up to two off
+/// those of floors turned by a quarter (`scenes characters`). A normal that is shorter than 1 and straight up makes of
+/// a flat floor one that rapier's character controller slips on: it then drops the whole move (docs/host.md).
 const LONGER: Real = 4.0 * Real::EPSILON;
 
 /// The hit of an answer. `start`: seconds at which the motions begin; `time`: seconds from there to the contact.

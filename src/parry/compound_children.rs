@@ -1,5 +1,5 @@
-//! The children of a compound that matter in a region of space, by the compound's hierarchy of boxes: a query of a level of
-//! thousands of tiles looks at the few around the body.
+//! The children of a compound that matter in a region of space, by the compound's hierarchy of boxes: a query of a
+//! level of thousands of tiles looks at the few around the body.
 
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Real, Vector};
@@ -8,15 +8,16 @@ use parry3d::partitioning::BvhNode;
 use parry3d::query::PointQuery;
 use parry3d::shape::Compound;
 
-/// Box around what is below a node of a compound's hierarchy, loosened by what parry's rounding of boxes and poses may take off.
-/// A child whose corners are far from its own origin, and moved back by its pose, may be off by more.
+/// Box around what is below a node of a compound's hierarchy, loosened by what parry's rounding of boxes and poses may
+/// take off. A child whose corners are far from its own origin, and moved back by its pose, may be off by more.
 fn holding(node: &BvhNode) -> Aabb {
     let aabb = node.aabb();
     let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
     aabb.loosened(ROUNDING_ULPS as Real * Real::EPSILON * size)
 }
 
-/// Children whose boxes `region` (in the compound's frame) meets, in ascending order. A region that is not a number meets all.
+/// Children whose boxes `region` (in the compound's frame) meets, in ascending order. A region that is not a number
+/// meets all.
 pub fn children_in(compound: &Compound, region: &Aabb) -> Vec<u32> {
     let meets = |node: &BvhNode| {
         let held = holding(node);
@@ -28,8 +29,8 @@ pub fn children_in(compound: &Compound, region: &Aabb) -> Vec<u32> {
     children
 }
 
-/// The least of a length (not negative) over all children, at most `Real::MAX`. That of a child must be no less than the
-/// distance of `point` to it, divided by `slack`.
+/// The least of a length (not negative) over all children, at most `Real::MAX`. That of a child must be no less than
+/// the distance of `point` to it, divided by `slack`.
 pub fn least_over_children(
     compound: &Compound,
     point: Vector,

@@ -15,20 +15,21 @@
 //! bodies, is taken instead where it is longer.
 //!
 //! Where faces and edges meet, the distance has a kink, and another direction takes over at once: that of a face that
-//! rolls over a rim turns with the face, that of two edges with neither. So `m` may turn with any `ν` as well: with that
-//! of the primitive, or as it has turned since the step before. In that frame `ν` stands for `ω` above, and a point `q`
-//! of the body, from its centre, moves with `(ω − ν) × q` and an acceleration of at most `(|ω × ν| + |ω − ν|²) |q|`: its
-//! support along `m` is at most `h(m + s m × (ω − ν))` and half of that times `s²`. The bound is concave in `s`, so
-//! between two times it is above its chord.
+//! rolls over a rim turns with the face, that of two edges with neither. So `m` may turn with any `ν` as well: with
+//! that of the primitive, or as it has turned since the step before. In that frame `ν` stands for `ω` above, and a
+//! point `q` of the body, from its centre, moves with `(ω − ν) × q` and an acceleration of at most `(|ω × ν| + |ω −
+//! ν|²) |q|`: its support along `m` is at most `h(m + s m × (ω − ν))` and half of that times `s²`. The bound is concave
+//! in `s`, so between two times it is above its chord.
 //!
 //! # Rounding
 //! Positions are sums of at most 16 rounded terms no larger than `scale`, the sum of all lengths in
 //! play, so that `ULPS` ulps of it cover the bound. A tolerance below [`CHASE_TOLERANCE_PER_SLACK`] times
 //! that slack is raised to it.
 
-use super::axisymmetric::{Axisymmetric, Ball, NearBall, Place, unit};
+use super::axisymmetric::{Axisymmetric, NearBall, Place, unit};
 use crate::math::lane::Vec3;
 use crate::math::motion::{PointPath, RigidMotion};
+use crate::math::sphere::Ball;
 
 /// Rounding slack in units of `f64::EPSILON × scale` (no unit); derived in the header, with a margin
 /// of 4.
@@ -38,12 +39,15 @@ const ULPS: f64 = 64.0;
 /// contact, and the last step needs room.
 pub const CHASE_TOLERANCE_PER_SLACK: f64 = 4.0;
 
-/// Chords by which a step along a direction that turns is told, and how much later the next time is at which it is tried
-/// first. Not tuned; only speed depends on them.
+/// Chords that narrow down when a direction that turns no longer keeps the two apart. Not tuned; only speed depends on
+/// it.
 const CHORDS: usize = 4;
+
+/// Ratio of the times at which such a direction is tried, until one is found at which it fails. Not tuned; only speed
+/// depends on it.
 const WIDER: f64 = 4.0;
 
-/// How one volume is followed.
+/// Limits of the time and the distance within which one volume is followed.
 #[derive(Clone, Copy)]
 pub struct Limits {
     /// Time until which the two are known to be free.
@@ -60,9 +64,9 @@ pub struct Limits {
 
 /// Knowledge of one volume: how far it is proven free.
 pub struct Advance {
-    /// No contact before.
+    /// Time before which there is no contact.
     pub lower: f64,
-    /// Within the tolerance at `lower`.
+    /// Whether the two are within the tolerance of contact at `lower`.
     pub met: bool,
     /// Proven free up to the horizon.
     pub separated: bool,
@@ -115,7 +119,7 @@ impl<'a> Chase<'a> {
         let [motion1, motion2] = motions;
         let pivot = motion2.point(Vec3::from_vector(body.center));
         let corners: [Corner; 3] = std::array::from_fn(|i| {
-            let (center, radius) = balls[i.min(balls.len() - 1)];
+            let Ball { center, radius } = balls[i.min(balls.len() - 1)];
             let path = motion1.point(center);
             Corner {
                 path,
@@ -150,15 +154,15 @@ impl<'a> Chase<'a> {
         let [motion1, motion2] = self.motions;
         let turned = [motion1.sin_cos(t), motion2.sin_cos(t)];
         let center = self.pivot.at(t, turned[1]);
-        let mut balls = [(Vec3::zero(), 0.0); 3];
+        let mut balls = [Ball::new(Vec3::zero(), 0.0); 3];
         let mut rates = [Vec3::zero(); 3];
         for (i, c) in self.corners().iter().enumerate() {
             let state = c.path.at(t, turned[0]);
             let p = state.position - center.position;
-            balls[i] = (p, c.radius);
+            balls[i] = Ball::new(p, c.radius);
             rates[i] = state.velocity - center.velocity;
         }
-        let distances = balls[..self.count].iter().map(|b| b.0.length());
+        let distances = balls[..self.count].iter().map(|b| b.center.length());
         let far = distances.fold(0.0, f64::max);
         let arms = self.largest(|c| c.path.terms()) + self.pivot.terms();
         let size = self.body.reach() + self.largest(|c| c.radius) + far + self.speed + arms;
@@ -173,7 +177,8 @@ impl<'a> Chase<'a> {
         }
     }
 
-    /// Bound of the acceleration of a corner seen from the body's centre, in a frame that turns by `turn`, within `left`.
+    /// Bound of a corner's acceleration seen from the body's centre within the time `left`, in a frame that turns by
+    /// the angle `turn` in the step.
     fn bend(&self, corner: &Corner, p: Vec3<f64>, turn: f64, left: f64) -> f64 {
         let farthest = p.length() + corner.speed * left;
         corner.path.acceleration
@@ -182,17 +187,21 @@ impl<'a> Chase<'a> {
             + turn * turn * farthest
     }
 
-    /// Least gap of the spheres above the target along the direction `m` from the body, and a time for which none closes
-    /// its own within `left`, if `m` turns with the body.
+    /// Least gap of the spheres above the target along the direction `m` from the body, and a time up to which no gap
+    /// closes within `left`, if `m` turns with the body.
     fn step(&self, moment: &Moment, m: Vec3<f64>, target: f64, left: f64) -> (f64, f64) {
         let support = self.body.support(&moment.place, m);
         let (turn, spin) = (self.motions[1].angle(), self.motions[1].angular_velocity());
         let (mut least, mut step) = (f64::MAX, f64::MAX);
         for ((p, corner), rate) in moment.balls.iter().zip(self.corners()).zip(moment.rates) {
-            let gap = m.dot(p.0) - p.1 - support - target - moment.slack;
+            let gap = m.dot(p.center) - p.radius - support - target - moment.slack;
             least = least.min(gap);
-            let rate = m.dot(rate - spin.cross(p.0));
-            step = step.min(first_root(gap, rate, self.bend(corner, p.0, turn, left)));
+            let rate = m.dot(rate - spin.cross(p.center));
+            step = step.min(first_root(
+                gap,
+                rate,
+                self.bend(corner, p.center, turn, left),
+            ));
         }
         // The zero direction: the distance is never below minus the largest radius.
         if -self.largest(|c| c.radius) - target > moment.slack {
@@ -201,7 +210,8 @@ impl<'a> Chase<'a> {
         (least, step)
     }
 
-    /// The same time if `m` turns with an angular velocity of its own, to within a few chords.
+    /// The time for which no sphere closes its gap along `m` within `left`, if `m` turns with the angular velocity
+    /// `spin`; found to within a few chords.
     fn step_turning(
         &self,
         moment: &Moment,
@@ -217,9 +227,9 @@ impl<'a> Chase<'a> {
         let mut ends = [(f64::MAX, 0.0, 0.0); 3];
         let corners = moment.balls.iter().zip(self.corners()).zip(moment.rates);
         for (end, ((p, corner), rate)) in ends.iter_mut().zip(corners) {
-            let rate = m.dot(rate - spin.cross(p.0));
-            let bend = self.bend(corner, p.0, turn, left) + swerve;
-            *end = (m.dot(p.0) - p.1, rate, bend);
+            let rate = m.dot(rate - spin.cross(p.center));
+            let bend = self.bend(corner, p.center, turn, left) + swerve;
+            *end = (m.dot(p.center) - p.radius, rate, bend);
         }
         let ends = &ends[..self.count];
         // A time, and the least gap then.

@@ -1,5 +1,5 @@
-//! The convex parts between which contacts are computed: of a medial mesh its convex pieces and lone primitives, of another
-//! shape itself or, of a compound, its children.
+//! The convex parts between which contacts are computed: of a medial mesh its convex pieces and lone primitives, of
+//! another shape itself or, of a compound, its children.
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::convex_pieces::ConvexPiece;
@@ -9,8 +9,8 @@ use parry3d::shape::{Compound, Shape, TypedShape};
 /// Slack of heights that are compared, in units of the sizes in play: about eight ulps of `f32`.
 const SLACK: Real = 1.0e-6;
 
-/// Tilt of parry's (GJK) normals that is allowed for, a slope. Of rings on tiles one in a hundred is off by more than 6e-5, one in
-/// seven thousand by more than 2e-4; what is off by more keeps its ghost.
+/// Tilt of parry's (GJK) normals that is allowed for, a slope. Of rings on tiles one in a hundred is off by more than
+/// 6e-5, one in seven thousand by more than 2e-4; what is off by more keeps its ghost.
 const TILT: Real = 1.0e-4;
 
 /// A step lower than this share of a body's size may count as level on account of that.
@@ -77,8 +77,8 @@ pub fn child_of<'a>(
     }
 }
 
-/// How far a child of a compound reaches along a unit direction of the compound's frame, a length; infinitely far where no
-/// support map tells.
+/// How far a child of a compound reaches along a unit direction of the compound's frame, a length; infinitely far where
+/// no support map tells.
 pub fn child_reach(compound: &Compound, child: u32, n: Vector) -> Real {
     let support = compound.shapes().get(child as usize);
     let support = support.and_then(|(pose, shape)| Some((pose, shape.as_support_map()?)));

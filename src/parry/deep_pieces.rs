@@ -1,9 +1,9 @@
-//! Contacts of convex pieces of a medial mesh that are deep in another convex shape: those that push the piece another
-//! way than the shortest one out are left out.
+//! Misdirected contacts of convex pieces of a medial mesh that are deep in another convex shape: those that push the
+//! piece another way than the shortest one out. They are removed.
 //!
-//! Of a mesh and another shape parry finds the contacts of each primitive for itself. Of a box put across a floor, some
-//! slabs are out sooner above it and others below: these pull the box to and fro, and throw it in the end. parry's EPA
-//! algorithm, asked for the piece as a whole, tells the way out of all of it.
+//! parry finds the contacts of each primitive of a mesh with another shape by itself. If a box is put across a floor,
+//! some of its slabs are out sooner above the floor and others below it: these pull the box to and fro, and in the end
+//! throw it. parry's EPA algorithm, asked for the piece as a whole, finds the way out of all of it.
 
 use super::convex_parts::child_of;
 use crate::math::fast_hash::FastMap;
@@ -14,11 +14,12 @@ use parry3d::query::ContactManifold;
 use parry3d::query::details::contact_support_map_support_map;
 use parry3d::shape::Shape;
 
-/// Cosine of the angle with the way out up to which a contact helps. No other was tried.
+/// Cosine of the angle between a contact's normal and the way out from which on the contact helps. No other value was
+/// tried.
 const HELPS: Real = 0.5;
 
-/// Leaves out contacts of deep pieces that do not help, as long as others of the piece do. The mesh is body `side` (0 or 1)
-/// of the manifolds; `other` is the other shape, and where it is in the mesh's frame.
+/// Removes contacts of deep pieces that do not push them the shortest way out, as long as others of the piece do. The
+/// mesh is body `side` (0 or 1) of the manifolds; `other` is the other shape, and its pose in the mesh's frame.
 pub fn leave_out<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),

@@ -1,8 +1,8 @@
 //! Distance of a medial mesh to one of parry's shapes at fixed poses, and the contact that attains it.
 //!
-//! The other shape is its surface as swept spheres ([`super::swept_sphere_parts`]), so the closed forms for two medial meshes
-//! serve here too. Cylinders and cones have closed forms of their own ([`super::axisymmetric`]). A centre inside a closed
-//! body counts as deep as its shortest way out is long ([`super::inside`]).
+//! The other shape is its surface as swept spheres ([`super::swept_sphere_parts`]), so the closed forms for two medial
+//! meshes serve here too. Cylinders and cones have closed forms of their own ([`super::axisymmetric`]). A centre inside
+//! a closed body counts as deep as its shortest way out is long ([`super::inside`]).
 //!
 //! parry's own answers come from its iterative GJK algorithm: they are off by up to 1e-3 of the distance at times, are
 //! missing for height fields and voxels, and are in the wrong frame for contacts of compounds with half-spaces.
@@ -12,6 +12,7 @@ use super::inside;
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::math::lane::Vec3;
 use crate::math::least_first::least_first;
+use crate::math::sphere::Ball;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::tree::NodeKind;
@@ -96,7 +97,8 @@ fn near(
     Ok((best, counts))
 }
 
-/// How far from the mesh the other's surface matters: some sphere's distance bounds that of the mesh.
+/// Distance from the mesh within which the other shape's surface matters, a length at most `max_distance`: the distance
+/// of any one sphere bounds that of the mesh.
 fn reach(mesh: &MedialMesh, other: &dyn Shape, pos21: &Pose, max_distance: Real) -> Real {
     let bounds = mesh.spheres().first().map(|s| {
         let center = pos21 * s.center;
@@ -151,7 +153,7 @@ fn nearest_axisymmetric(
     let border = f64::from(body.border);
     let ball = |(center, radius): (Vector, Real)| {
         let center = Vec3::from_vector(pos21 * center) - place.origin;
-        (center, f64::from(radius) + border)
+        Ball::new(center, f64::from(radius) + border)
     };
     let mut best: Option<(NearBall, u32)> = None;
     let mut limit = f64::from(limit);
@@ -188,7 +190,7 @@ fn nearest_axisymmetric(
     }
     let (near, primitive) = best?;
     let (out, distance) = out_of(body, &place, &near);
-    let (center, radius) = near.ball;
+    let Ball { center, radius } = near.ball;
     let shared = |p: Vec3<f64>| (p + place.origin).to_vector();
     let first = shared(center - out * (radius - border));
     let second = shared(center - out * (radius + distance - border));
@@ -204,8 +206,8 @@ fn nearest_axisymmetric(
 /// Unit direction from the body to a sphere, and the signed distance; of a centre inside, the way out.
 fn out_of(body: &Axisymmetric, place: &Place, near: &NearBall) -> (Vec3<f64>, f64) {
     if near.apart <= 0.0 {
-        let (out, way) = body.min_translation(place, near.ball.0);
-        return (out, -way - near.ball.1);
+        let (out, way) = body.min_translation(place, near.ball.center);
+        return (out, -way - near.ball.radius);
     }
     (unit(near.direction), near.distance())
 }

@@ -1,8 +1,8 @@
 //! Contacts of a single primitive with a triangle that parry finds wrongly: without a normal or deeper than the two are
 //! (its EPA algorithm now and then ends without a direction for small spheres on triangles of about their size), or not
-//! at all where they overlap. Where a cone's radii differ much, its tangent segment, which parry takes for what touches,
-//! is far from its lowest point, and of triangles that allow some normals only parry leaves out the nearest points. The
-//! nearest spheres take the place of such a contact. A single sphere's are those of parry's ball.
+//! at all where they overlap. Where a cone's radii differ much, its tangent segment, which parry takes for what
+//! touches, is far from its lowest point, and of triangles that allow some normals only parry leaves out the nearest
+//! points. The nearest spheres take the place of such a contact. A single sphere's are those of parry's ball.
 
 use super::inward_contacts::triangle;
 use crate::math::tolerance::ROUNDING_ULPS;
@@ -24,8 +24,8 @@ const ALLOWED: Real = 0.999;
 const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// Corrects the contacts of a mesh's primitives that belong to no convex piece. The mesh is body `side` (0 or 1) of the
-/// manifolds; `ground` are the triangles, and where they are in the mesh's frame. Where rapier allows some normals only, as
-/// with its flag for internal edges, nearest spheres of others are no contact.
+/// manifolds; `ground` are the triangles, and where they are in the mesh's frame. Where rapier allows some normals
+/// only, as with its flag for internal edges, nearest spheres of others are no contact.
 pub fn correct<M, C: Default + Copy>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),

@@ -1,6 +1,7 @@
-//! Contacts of a medial mesh with a flat face: a half-space, or a side of a cuboid, hull or cylinder that the mesh cannot
-//! reach past. The point of a hull of spheres that is nearest to a plane lies on one of the spheres, so the contacts are
-//! those of the spheres themselves, all with one normal. parry would run its iterative GJK algorithm for each primitive.
+//! Contacts of a medial mesh with a flat face: a half-space, or a side of a cuboid, hull or cylinder that the mesh
+//! cannot reach past. The point of a hull of spheres that is nearest to a plane lies on one of the spheres, so the
+//! contacts are those of the spheres themselves, all with one normal. parry would run its iterative GJK algorithm for
+//! each primitive.
 
 use super::shape_faces::{ROUNDING, flat_sides};
 use crate::math::lane::Vec3;
@@ -51,8 +52,9 @@ pub fn face(mesh: &MedialMesh, other: &dyn Shape, pose: &Pose, prediction: Real)
     })
 }
 
-/// Of the sides of a convex solid the one above which `region` is: further from the planes of all others, and from what else
-/// bounds the solid (`room`), than from the plane of this one.
+/// The side of a convex solid that `region` lies on: the region is deeper in the planes of all other sides, and farther
+/// from what else bounds the solid (`room`, a length), than it is deep in the plane of this one. `None` if there is no
+/// such side.
 fn side(
     sides: &[(Vector, Real)],
     region: &Aabb,
@@ -186,7 +188,8 @@ fn near(mesh: &MedialMesh, face: &Face, prediction: Real) -> Vec<[u32; 2]> {
     found
 }
 
-/// The mesh's and the other's in the order of the bodies.
+/// Puts the mesh's value and the other shape's in the order of the two bodies, of which the mesh is body `side` (0 or
+/// 1).
 fn in_order<T: Copy>([mesh, other]: [T; 2], side: usize) -> [T; 2] {
     if side == 0 {
         [mesh, other]

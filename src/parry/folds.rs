@@ -1,9 +1,10 @@
 //! Normals at the folds between the triangles of a ground.
 //!
-//! Where two triangles share an edge, what lies on the ground can be pushed along their normals only, or along one between
-//! these where the edge is a ridge. But a solver lets bodies sink in a little. The nearest point of what slides in a valley,
-//! just below the surface, is then the edge straight ahead, with a normal against the motion. A rounded part has its middle
-//! above the surface and its normal is right, but for what the part has sunk in: only within a flat surface is it corrected.
+//! Where two triangles share an edge, what lies on the ground can be pushed along their normals only, or along one
+//! between these where the edge is a ridge. But a solver lets bodies sink in a little. The nearest point of what slides
+//! in a valley, just below the surface, is then the edge straight ahead, with a normal against the motion. A rounded
+//! part has its middle above the surface and its normal is right, but for what the part has sunk in: only within a flat
+//! surface is it corrected.
 
 use super::shape_faces::Face;
 use super::sliding::ALIKE;
@@ -38,7 +39,8 @@ struct Met {
 }
 
 impl Met {
-    /// Unit normal of a triangle to the side of the mesh: that of its nearest point, unless this is beside the triangle.
+    /// Unit normal of a triangle to the side of the mesh: that of its nearest point, unless this is beside the
+    /// triangle.
     fn facing(&self, [a, b, c]: [Vector; 3]) -> Vector {
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let side = match normal.dot(self.normal) {
@@ -48,7 +50,8 @@ impl Met {
         normal * side.signum()
     }
 
-    /// Whether the mesh meets a face within a flat surface, of several triangles at most, and its normal is about `normal`.
+    /// Whether the mesh meets a face within a flat surface, of several triangles at most, and its normal is about
+    /// `normal`.
     fn is_within(
         &self,
         face: [Vector; 3],
@@ -122,8 +125,8 @@ pub fn correct_normal(
         let by = (turned - toi.normal) * toi.spheres[0].radius;
         toi.normal = turned;
         toi.points = toi.points.map(|p| p + by);
-        // The spheres that met tell of another normal. Where that of a solid's face stays as it is they are kept: heaps hand
-        // impulses on through them.
+        // The spheres that met tell of another normal. Where that of a solid's face stays as it is they are kept: heaps
+        // hand impulses on through them.
         let same = |_: &_| sliding.is_over_solids && n.dot(met.normal) >= SAME_NORMAL;
         found.met = found.met.filter(same);
     }
@@ -150,8 +153,9 @@ fn meets_at([a, b, c]: [Vector; 3], edge: [Vector; 2], at: Vector) -> bool {
     })
 }
 
-/// The normal nearest to that of `met` that is possible at its point of `face`: within the face its own, at an edge between
-/// it and another of the triangles that faces about the same way one of both or between these. `None` at any other edge.
+/// The normal nearest to that of `met` that is possible at its point of `face`: within the face its own, at an edge
+/// between it and another of the triangles that faces about the same way one of both or between these. `None` at any
+/// other edge.
 fn normal(
     face: [Vector; 3],
     others: impl Iterator<Item = [Vector; 3]> + Clone,

@@ -1,12 +1,12 @@
-//! Ghost contacts: contacts of a convex part of a body that its neighbours shield. A ball on a level plate of several slabs
-//! is near the rim of the next slab, which is within the plate or in line with its top, under a normal that is aslant; a
-//! solver that keeps the ball from that rim throws it up. So it is on a compound of level cuboids.
+//! Ghost contacts: contacts of a convex part of a body that its neighbours shield. A ball on a level plate of several
+//! slabs is near the rim of the next slab, which is within the plate or in line with its top, under a normal that is
+//! aslant; a solver that keeps the ball from that rim throws it up. So it is on a compound of level cuboids.
 //!
-//! A contact says that the other shape stays beyond a plane. It is a ghost of another, deeper contact with the same convex
-//! part of the other shape, if the body's part there reaches beyond the ghost's plane by more than the ghost's gap, while the
-//! ghost's own part stays behind the plane of the other. The other contact then keeps both parts from the other shape.
-//! In a corner neither plane has both parts behind it, and both contacts stay. This is of the poses at hand: what turns
-//! about a contact may meet a part that it shields now, and has that contact in the next step.
+//! A contact says that the other shape stays beyond a plane. It is a ghost of another, deeper contact with the same
+//! convex part of the other shape, if the body's part there reaches beyond the ghost's plane by more than the ghost's
+//! gap, while the ghost's own part stays behind the plane of the other. The other contact then keeps both parts from
+//! the other shape. In a corner neither plane has both parts behind it, and both contacts stay. This is of the poses at
+//! hand: what turns about a contact may meet a part that it shields now, and has that contact in the next step.
 
 use crate::math::{Real, Vector};
 
@@ -16,8 +16,8 @@ const PARALLEL: Real = 0.9999;
 /// Contacts of a part in one plane, whose unit normals differ by at most this length, are compared with others as one.
 const ONE_PLANE: Real = 1.0e-5;
 
-/// Each contact is compared with at most so many deeper ones that are no ghosts, of those of one part in one plane with
-/// the first: a body that lies on tiles has several contacts with each, and may meet a wall besides.
+/// Largest number of deeper contacts, none of them a ghost, that each contact is compared with. Contacts of one part in
+/// one plane count as one. A body that lies on tiles has several contacts with each, and may meet a wall besides.
 const COMPARED: usize = 128;
 
 /// A contact in the frame of a body of convex parts.
@@ -35,8 +35,8 @@ pub struct PartContact {
     pub gap: Real,
 }
 
-/// Whether each contact is a ghost. `reach` is how far a part reaches along a unit direction, a length; heights of a part
-/// that differ by up to its `slack`, a length, are equal.
+/// Whether each contact is a ghost. `reach` is how far a part reaches along a unit direction, a length; heights of a
+/// part that differ by up to its `slack`, a length, are equal.
 pub fn ghosts(
     contacts: &[PartContact],
     reach: impl Fn(u32, Vector) -> Real,
@@ -84,7 +84,7 @@ pub fn ghosts(
 mod tests {
     use super::*;
 
-    /// Parts that are boxes, by their centres and half sides.
+    /// The reach of parts that are boxes, by their centres and half sides.
     fn reach(boxes: &[(Vector, Vector)]) -> impl Fn(u32, Vector) -> Real {
         |part, n| {
             let (at, half) = boxes[part as usize];

@@ -33,21 +33,21 @@ pub fn approach_of_rounding(lengths: Real) -> Real {
     (SLIDE * lengths).clamp(Real::MIN_POSITIVE, Real::MAX)
 }
 
-/// What a cast makes of contacts at its start.
+/// How a cast treats contacts at its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AtStart {
-    /// They are the answer.
+    /// The contact at the start is the answer.
     Stop,
     /// The next, deeper contact is searched for.
     Deepen,
-    /// The same, but two primitives that are deeper than half way to their medial axes already may pass each other. So
-    /// rapier's sweeps let through what the solver did not keep out, as with the parts of rapier's own shapes: a body within
-    /// a platform that is open to it.
+    /// The next, deeper contact is searched for, but two primitives that are deeper than half way to their medial axes
+    /// already may pass each other. With this rapier's sweeps let a body move on that the solver did not keep out, as
+    /// they do with rapier's own shapes: a body within a platform that is open to it.
     Pass,
 }
 
 impl AtStart {
-    /// What parry's casts say of it.
+    /// The treatment that parry's flag for casts asks for.
     pub fn of(stop_at_penetration: bool) -> Self {
         match stop_at_penetration {
             true => Self::Stop,

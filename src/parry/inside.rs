@@ -88,9 +88,9 @@ fn most_to_hull(shape: &dyn Shape, hull: &ConvexPolyhedron, point: Vector) -> Re
     distances.fold(Real::MAX, Real::min)
 }
 
-/// Whether a point is proven to be farther from a hull than a distance, by a direction along which all corners are: the normal
-/// of a face, or away from the hull's middle, or from the nearest point of a face. Of faces of round sides parry keeps one
-/// for many, so that a normal is a direction to look along, not the side of a plane.
+/// Whether a point is proven to be farther from a hull than a distance, by a direction along which all corners are: the
+/// normal of a face, or away from the hull's middle, or from the nearest point of a face. Of faces of round sides parry
+/// keeps one for many, so that a normal is a direction to look along, not the side of a plane.
 fn is_beyond_hull(hull: &ConvexPolyhedron, point: Vector, distance: Real) -> bool {
     let ring = hull.vertices_adj_to_face();
     let corner = |k: u32| hull.points()[ring[k as usize] as usize];

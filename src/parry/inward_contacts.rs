@@ -1,10 +1,10 @@
-//! Contacts of convex pieces of a medial mesh with triangles that point into the piece or are too deep, which are left
-//! out.
+//! False contacts of convex pieces of a medial mesh with triangles: those whose normal points into the piece, and those
+//! deeper than the piece is in the triangle. They are removed.
 //!
-//! Of a mesh and triangles parry finds the contacts of each primitive for itself. The slab along an edge of a box is
+//! parry finds the contacts of each primitive of a mesh with triangles by itself. The slab along an edge of a box is
 //! thin: where a triangle cuts through it, its shortest way out of the triangle may be deeper into the ground, with all
-//! of the box behind it. The box as a whole has no contact there; what holds it up are other contacts. And where a
-//! primitive just touches the border of a triangle, parry's EPA algorithm may find it far below.
+//! of the box behind it. The box as a whole has no contact there; other contacts hold it up. And where a primitive just
+//! touches the border of a triangle, parry's EPA algorithm may find it far below.
 
 use super::manifold_points::places;
 use crate::math::fast_hash::FastSet;
@@ -15,16 +15,16 @@ use crate::medial::convex_pieces::ConvexPiece;
 use parry3d::query::ContactManifold;
 use parry3d::shape::{Shape, TrianglePseudoNormals, TypedShape};
 
-/// How much deeper than a piece its contacts may be told to be, in units of its thickness.
+/// Depth by which a contact of a piece may exceed the depth of the piece, in units of its thickness.
 const DEEPER: Real = 0.01;
 
 /// Rounding error of a piece's depth, in units of the triangle's coordinates in the mesh's frame.
 const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
-/// Leaves out deep contacts of a mesh's convex pieces along which the piece reaches beyond the contact by more than the
-/// contact's depth, as long as it has another deep one. Leaves out as well those that are deeper than the piece is in the
-/// triangle, as no contact of a part of it can be. The mesh is body `side` (0 or 1) of the manifolds; `ground` are the
-/// triangles, and where they are in the mesh's frame.
+/// Removes deep contacts of a mesh's convex pieces along which the piece reaches beyond the contact by more than the
+/// contact's depth, as long as the piece has another deep one. Also removes contacts that are deeper than the piece is
+/// in the triangle, which no contact of a part of it can be. The mesh is body `side` (0 or 1) of the manifolds;
+/// `ground` are the triangles, and their pose in the mesh's frame.
 pub fn leave_out<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
@@ -58,7 +58,8 @@ pub fn leave_out<M, C>(
         let piece = piece_of(m);
         let is_held = held.contains(&piece);
         let id = [m.subshape2, m.subshape1][side];
-        // The least distance of a contact that the piece may have there, asked for where any contact is deeper than rounding.
+        // The least distance of a contact that the piece may have there, asked for where any contact is deeper than
+        // rounding.
         let least = || {
             let piece = pieces.of_node(piece?)?;
             let (corners, normals) = triangle(ground, id)?;
@@ -81,8 +82,8 @@ pub fn leave_out<M, C>(
     }
 }
 
-/// The corners of a triangle of the ground in the mesh's frame, and what normals rapier allows there, if not all: mostly
-/// those at its front.
+/// The corners of a triangle of the ground in the mesh's frame, and what normals rapier allows there, if not all:
+/// mostly those at its front.
 pub fn triangle(
     (ground, pose): (&dyn Shape, &Pose),
     id: u32,
@@ -98,8 +99,9 @@ pub fn triangle(
     Some((triangle.vertices().map(|p| pose * p), normals))
 }
 
-/// The largest gap of a piece and a triangle along the directions across their faces, a length; negative where they overlap
-/// along all of these. Where the piece is more than `half` in a triangle that pushes to its front only, the one along that.
+/// The largest gap of a piece and a triangle along the directions across their faces, a length; negative where they
+/// overlap along all of these. Where the piece is more than `half` in a triangle that pushes to its front only, the one
+/// along that.
 fn gap(piece: &ConvexPiece, ([a, b, c], is_one_sided): ([Vector; 3], bool), half: Real) -> Real {
     let across = (b - a).cross(c - a).normalize_or_zero();
     let lowest = |n: Vector| {

@@ -1,5 +1,5 @@
-//! Points and normals of parry's contact manifolds in the frames of the two bodies: parry keeps them in those of the parts that
-//! touch.
+//! Points and normals of parry's contact manifolds in the frames of the two bodies: parry keeps them in those of the
+//! parts that touch.
 
 use crate::math::{Pose, Vector};
 use parry3d::query::ContactManifold;

@@ -27,11 +27,11 @@ const SAME_NORMAL: Real = ONE_DIRECTION as Real;
 /// of 27 cones (13° a joint) that hang in each other lose the notch that holds them, and never sleep.
 const SAME_PATCH: Real = 0.98;
 
-/// Width of a patch, in units of the thinner body's thickness, where contacts may have to serve for several steps. In these the
-/// place where two smooth bodies touch moves by more than that, and a body that has one contact there tips over it until
-/// contacts are computed again: with patches as wide as they are thick 65 of 180 pairs of rings that lie on each other rock
-/// on for ever, with this 9 of 360. Where bodies move faster, wide patches serve: what rolls loses no speed to a
-/// contact ahead of it.
+/// Width of a patch, in units of the thinner body's thickness, where contacts may have to serve for several steps. In
+/// these the place where two smooth bodies touch moves by more than that, and a body that has one contact there tips
+/// over it until contacts are computed again: with patches as wide as they are thick 65 of 180 pairs of rings that lie
+/// on each other rock on for ever, with this 9 of 360. Where bodies move faster, wide patches serve: what rolls loses
+/// no speed to a contact ahead of it.
 pub const NARROW: Real = 0.1;
 
 /// Writes the manifolds of two meshes at relative pose `pos12`. Contacts further apart than `prediction`
@@ -117,7 +117,7 @@ pub fn write_manifolds<M, C>(
     }
 }
 
-/// Writes one contact, in a manifold of its own that keeps the data of the one before.
+/// Writes one contact into a manifold of its own, which keeps the data of the manifold that was there before.
 pub fn write_one_point<M, C>(
     contact: Option<SpherePair>,
     pos12: &Pose,
@@ -174,8 +174,9 @@ fn without_ghosts<'a>(
     contacts
 }
 
-/// The contacts that have no deeper one of about the same normal within `width` times the thickness of the thinner mesh. Those of two
-/// convex pieces are no neighbours of one place, but the corners of the faces on which a body rests: all of them stay.
+/// The contacts that have no deeper one of about the same normal within `width` times the thickness of the thinner
+/// mesh. Those of two convex pieces are no neighbours of one place, but the corners of the faces on which a body rests:
+/// all of them stay.
 fn deepest_of_each_patch<'a>(
     contacts: impl Iterator<Item = &'a SpherePair>,
     meshes: [&MedialMesh; 2],

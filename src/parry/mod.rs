@@ -2,21 +2,25 @@
 //! casts, against medial meshes and all of parry's shapes.
 //!
 //! # Files
-//! - The entry: `dispatcher.rs`; the shape: `shape.rs`, of convex parts: `medial_part.rs`, with the normals that contacts of
-//!   these have for callers of parry's own dispatcher: `outward_normals.rs`; rays: `rays.rs`.
-//! - Contact manifolds: `contact_manifolds.rs` is what parry calls; it takes those of two meshes from `manifolds.rs`,
-//!   those on a flat face from `flat_face.rs`, and others from parry. Contacts of primitives that their neighbours hide are
-//!   left out (`ghost_contacts.rs`). Of parry's, those with triangles are replaced where they are wrong (`false_contacts.rs`)
-//!   or left out (`inward_contacts.rs`), wrong normals are turned (`touching_normals.rs`, `voxel_normals.rs`), and of
-//!   convex pieces deep in other shapes those are left out that push another way than the shortest (`deep_pieces.rs`).
-//!   `contact_reduction.rs` leaves the ones that bear the load, and `previous_contacts.rs` hands on the impulses of those before. Between which convex parts: `convex_parts.rs`.
-//!   Their points and normals: `manifold_points.rs`.
-//! - Casts: `cast.rs`, parry's answer `cast_answer.rs`. The other shape becomes swept spheres (`swept_sphere_parts.rs`: the place for a new shape), or
-//!   has closed forms of its own (`axisymmetric.rs` and its cast `axisymmetric_toi.rs`); `inside.rs` and
-//!   `initial_contacts.rs` treat what touches at the start. Only what is in `swept_region.rs` is looked at; of
-//!   a compound, the children that `compound_children.rs` finds there. Flat faces (`shape_faces.rs`) on whose plane a body lies are treated by `sliding.rs`,
-//!   normals at their edges corrected by `folds.rs`.
-//! - Distance: `distance.rs`.
+//! - The entry: `dispatcher.rs`. The shape: `shape.rs`, of convex parts (`medial_part.rs`). Rays: `rays.rs`. Distance:
+//!   `distance.rs`.
+//! - Contact manifolds: `contact_manifolds.rs` is what parry calls. It takes those of two meshes from `manifolds.rs`,
+//!   those on a flat face from `flat_face.rs`, and others from parry, between the convex parts that `convex_parts.rs`
+//!   lists. Points and normals of a manifold: `manifold_points.rs`.
+//! - Contacts of parry that are wrong: with triangles, those without a normal or too deep (`false_contacts.rs`) and
+//!   those that point into a convex piece (`inward_contacts.rs`); normals of edges that just touch a face
+//!   (`touching_normals.rs`) or voxels (`voxel_normals.rs`); contacts of convex pieces deep in other shapes that push
+//!   another way than the shortest (`deep_pieces.rs`). For callers of parry's own dispatcher, normals that point into a
+//!   convex piece: `outward_normals.rs`.
+//! - Which contacts stay: those of primitives that their neighbours hide go (`ghost_contacts.rs`), those that bear the
+//!   load stay (`contact_reduction.rs`), and impulses of the step before are handed on (`previous_contacts.rs`).
+//! - Casts: `cast.rs`, and the answer in parry's form `cast_answer.rs`. The other shape becomes swept spheres
+//!   (`swept_sphere_parts.rs`, the place for a new shape), or has closed forms of its own (`axisymmetric.rs` for
+//!   cylinders and cones; their casts `axisymmetric_toi.rs` and `conservative_advancement.rs`). What touches at the
+//!   start: `inside.rs` and `initial_contacts.rs`. Only what is in `swept_region.rs` is looked at; of a compound, the
+//!   children that `compound_children.rs` finds there.
+//! - Flat ground: its faces `shape_faces.rs`, a body that slides over them `sliding.rs`, normals at the folds between
+//!   them `folds.rs`.
 //! - What a pipeline tells the dispatcher for a step, muted pairs among it: `narrow_phase_plan.rs`.
 
 pub(crate) mod axisymmetric;

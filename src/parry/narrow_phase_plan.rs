@@ -1,8 +1,8 @@
 //! The plan that a pipeline gives its dispatcher for the time of rapier's step, [`NarrowPhasePlan`], and the account
 //! that the dispatcher gives back, [`Tally`].
 //!
-//! Pairs are found by an exact key: both shapes and every bit of the relative pose. So a contact that is known is exactly
-//! the one asked for, or it is computed on the spot.
+//! Pairs are found by an exact key: both shapes and every bit of the relative pose. So a contact that is known is
+//! exactly the one asked for, or it is computed on the spot.
 
 use crate::batch::{Job, PairJob, PairResult};
 use crate::math::counters::counters;
@@ -102,14 +102,14 @@ pub struct NarrowPhasePlan {
     pub muted: HashSet<PairKey>,
     /// Pairs that get only their deepest contact.
     pub single_point_pairs: SinglePointPairs,
-    /// What rapier's own sweeps of medial bodies find.
+    /// Answer to rapier's own sweeps of medial bodies.
     pub sweeps: Sweeps,
 }
 
-/// What rapier's own sweeps of medial bodies find: its casts of solid pairs in turning motion.
+/// Answer to rapier's own sweeps of medial bodies, which are casts of solid pairs in turning motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sweeps {
-    /// The same as others' casts: outside of rapier's step.
+    /// Sweeps are answered like all other casts, as outside of rapier's step.
     #[default]
     AsCasts,
     /// Nothing, because the event loop resolves what these bodies meet.

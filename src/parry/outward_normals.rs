@@ -1,20 +1,20 @@
-//! Normals that contacts of a primitive may have, where it is part of a convex piece of its mesh: those along which the piece
-//! reaches no further than the primitive. Along any other, another part of the piece sticks out further, so that the contact
-//! would be inside the solid: such a normal is turned to that of the nearest flat face of the piece that the primitive ends
-//! at, as parry does at internal edges of triangle meshes.
+//! Normals that contacts of a primitive may have, where it is part of a convex piece of its mesh: those along which the
+//! piece reaches no further than the primitive. Along any other, another part of the piece sticks out further, so that
+//! the contact would be inside the solid: such a normal is turned to that of the nearest flat face of the piece that
+//! the primitive ends at, as parry does at internal edges of triangle meshes.
 //!
-//! They are for callers of parry's own dispatcher, as rapier's character controller is one to find the ground, and for the
-//! surfaces of soft bodies: a box is of thin slabs, and a contact with the side of one would carry a character away. (parry asks for
-//! none where balls meet balls, and capsules capsules.) Our dispatcher looks at all contacts of a mesh together, and needs
-//! those too (`ghost_contacts.rs`, `touching_normals.rs`).
+//! They are for callers of parry's own dispatcher, as rapier's character controller is one to find the ground, and for
+//! the surfaces of soft bodies: a box is of thin slabs, and a contact with the side of one would carry a character
+//! away. (parry asks for none where balls meet balls, and capsules capsules.) Our dispatcher looks at all contacts of a
+//! mesh together, and needs those too (`ghost_contacts.rs`, `touching_normals.rs`).
 
 use super::convex_parts::Part;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use parry3d::query::details::NormalConstraints;
 
-/// How much further than the primitive the piece may reach, in units of the longest side of the mesh's box: parry's iterative algorithms find
-/// normals that are off by some 1e-4.
+/// How much further than the primitive the piece may reach, in units of the longest side of the mesh's box: parry's
+/// iterative algorithms find normals that are off by some 1e-4.
 const SLACK: Real = 1.0e-4;
 
 /// Normals of contacts of a primitive. parry wants what borrows nothing.
@@ -24,7 +24,8 @@ pub struct OutwardNormals {
 }
 
 impl OutwardNormals {
-    /// Those of a primitive of a mesh; `None` where they may be any.
+    /// The normals that contacts of a primitive may have; `None` where any is allowed, because the primitive is in no
+    /// convex piece.
     pub fn of(mesh: &MedialMesh, primitive: u32) -> Option<Self> {
         mesh.convex_pieces().node_of(primitive)?;
         Some(Self {

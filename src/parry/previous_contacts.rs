@@ -27,8 +27,8 @@ pub fn previous<M, C: Copy>(
         .collect()
 }
 
-/// Makes parry compute all contacts anew. It would otherwise go on from those in the manifolds, of which some were removed
-/// and some turned.
+/// Makes parry compute all contacts anew. It would otherwise go on from those in the manifolds, of which some were
+/// removed and some turned.
 pub fn force_full_update<M, C: Default + Copy>(manifolds: &mut [ContactManifold<M, C>]) {
     manifolds
         .iter_mut()

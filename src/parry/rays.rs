@@ -16,8 +16,8 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::query::{Ray, RayIntersection};
 use parry3d::shape::FeatureId;
 
-/// The point where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back inside, as in
-/// parry, and the time is in units of the length of the ray's direction.
+/// The point where a ray that starts inside the mesh leaves it; `None` if it starts outside. The normal points back
+/// inside, as in parry, and the time is in units of the length of the ray's direction.
 pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
     if !holds(mesh, ray.origin) {
         return None;
@@ -43,7 +43,7 @@ pub fn exit(mesh: &MedialMesh, ray: &Ray) -> Option<RayIntersection> {
     Some(RayIntersection::new(time, normal, FeatureId::Face(0)).with_subshape(primitive))
 }
 
-/// A point of the mesh's surface near a point inside, and its primitive: straight out of the primitive
+/// A point of the surface near a point inside the mesh, and its primitive: the way leads straight out of the primitive
 /// whose surface is nearest, as far as the union reaches. `None` for a point outside.
 pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> {
     let inside = |i: &u32| mesh.primitive(*i as usize).signed_distance(point).distance <= 0.0;
@@ -63,8 +63,8 @@ pub fn surface_point(mesh: &MedialMesh, point: Vector) -> Option<(Vector, u32)> 
 }
 
 /// Unit direction straight out of a primitive from a point in it: away from the centre of the nearest sphere. Where the
-/// point is that centre, to rounding, it is across a plane that touches the sphere and its neighbours, which on a sharp rim or at
-/// a tip passes through the point; of several such planes it is one that faces `along` more.
+/// point is that centre, to rounding, it is across a plane that touches the sphere and its neighbours, which on a sharp
+/// rim or at a tip passes through the point; of several such planes it is one that faces `along` more.
 fn way_out(balls: &[Ball; 3], point: Vec3<f64>, along: Vec3<f64>) -> Vec3<f64> {
     let nearest = exact::nearest_to_point(balls, point);
     let out = -nearest.y;
@@ -177,9 +177,10 @@ impl RayFrame {
     }
 }
 
-/// The point where a ray enters one primitive: the time in units of the length of the ray's direction, up to `most`, and the outward
-/// normal. A ray that starts inside enters at once, with no normal, if the primitive is `solid`; else it is where it leaves,
-/// with the normal that points back inside, as in parry. A ray without direction enters only what is solid and holds it.
+/// The point where a ray enters one primitive: the time in units of the length of the ray's direction, up to `most`,
+/// and the outward normal. A ray that starts inside enters at once, with no normal, if the primitive is `solid`; else
+/// it is where it leaves, with the normal that points back inside, as in parry. A ray without direction enters only
+/// what is solid and holds it.
 pub fn enter(
     primitive: &MedialPrimitive,
     ray: &Ray,

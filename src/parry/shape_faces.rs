@@ -1,5 +1,5 @@
-//! The flat faces of parry's shapes: of cuboids and hulls, rounded or not, also in compounds, and of triangle meshes, height
-//! fields and voxels.
+//! The flat faces of parry's shapes: of cuboids and hulls, rounded or not, also in compounds, and of triangle meshes,
+//! height fields and voxels.
 
 use super::compound_children::children_in;
 use crate::math::tolerance::ROUNDING_ULPS;
@@ -87,8 +87,8 @@ pub fn flat_sides(shape: &dyn Shape) -> Vec<(Vector, Real)> {
     }
 }
 
-/// Calls `see` on each flat face of `shape`, placed at `pose`. Of meshes, height fields and voxels those that `region` (in the
-/// frame that it is placed in) meets; of compounds those of the children in or near it.
+/// Calls `see` on each flat face of `shape`, placed at `pose`. Of meshes, height fields and voxels those that `region`
+/// (in the frame that it is placed in) meets; of compounds those of the children in or near it.
 pub fn for_each_flat_face(
     shape: &dyn Shape,
     pose: &Pose,
@@ -126,8 +126,8 @@ pub fn for_each_flat_face(
             }
         }
         TypedShape::Compound(c) => {
-            // A mesh counts as over a rectangle up to its radius beyond each side, so that past a corner, and above, it is up
-            // to √3 radii off. The region holds the mesh, so that half its sides is a radius or more.
+            // A mesh counts as over a rectangle up to its radius beyond each side, so that past a corner, and above, it
+            // is up to √3 radii off. The region holds the mesh, so that half its sides is a radius or more.
             let half = region.half_extents();
             let beyond = Aabb::new(region.mins - half, region.maxs + half);
             for i in children_in(c, &seen_from(pose, &beyond)) {

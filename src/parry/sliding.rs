@@ -1,4 +1,5 @@
-//! Flat faces of a ground over which a mesh slides: triangles, and faces of voxels, cuboids and hulls, in compounds too.
+//! Flat faces of a ground over which a mesh slides: triangles, and faces of voxels, cuboids and hulls, in compounds
+//! too.
 //!
 //! A flat ground is cut into triangles, and a body that lies on it is within the contact distance of each that it comes
 //! over. Its nearest point is then on an edge in front of the body, with a normal against the motion, and a body
@@ -8,9 +9,9 @@
 //! there is thrown back along the plane's normal. For another face on whose own plane the body lies this holds where it
 //! faces about the same way as the ground: beside a ledge, with nothing below, a body may meet an edge from any side.
 //!
-//! Along a chord a height is linear in time, and a path of an acceleration up to `a` is off its chord by `a t² / 8` at most.
-//! A point that turns with the mesh by `ω₁` at `r`, seen from a ground that turns by `ω₂`, `d` from its axis, has up to
-//! `ω₁² r + ω₂² d + 2 ω₂ v`.
+//! Along a chord a height is linear in time, and a path of an acceleration up to `a` is off its chord by `a t² / 8` at
+//! most. A point that turns with the mesh by `ω₁` at `r`, seen from a ground that turns by `ω₂`, `d` from its axis, has
+//! up to `ω₁² r + ω₂² d + 2 ω₂ v`.
 
 use super::shape_faces::{Face, has_flat_faces};
 use crate::math::lane::Vec3;
@@ -27,7 +28,8 @@ pub struct Sinks {
     pub lies: Real,
     /// Deepest in the step, if the face is to be no obstacle.
     pub to: Real,
-    /// The same, from the depth at the start on; not asked of solids.
+    /// Largest change of the depth within the step, if the face is to be no obstacle; faces of solids are not asked for
+    /// it.
     pub by: Real,
 }
 
@@ -47,7 +49,8 @@ pub struct Sliding<'a> {
     sinks: Sinks,
     /// Planes of the faces below the mesh on which it lies.
     grounds: Vec<Lying>,
-    /// Whether no face of a surface (a mesh, height field or voxel) was looked at: folds are between those only.
+    /// Whether only faces of solids were looked at. Folds are between faces of a surface (a mesh, height field or
+    /// voxels).
     pub is_over_solids: bool,
 }
 
@@ -91,8 +94,8 @@ pub struct Lying {
     is_over: bool,
 }
 
-/// Rounding error of the heights of corners over a face, in units of their coordinates: eight ulps. More, and a fin may count
-/// as part of the ground that it stands on; less only lets bodies stumble.
+/// Rounding error of the heights of corners over a face, in units of their coordinates: eight ulps. More, and a fin may
+/// count as part of the ground that it stands on; less only lets bodies stumble.
 const CORNERS: Real = 8.0 * Real::EPSILON;
 
 impl Lying {
@@ -114,8 +117,8 @@ impl Lying {
 pub const ALIKE: f64 = 0.5;
 
 impl<'a> Sliding<'a> {
-    /// For a mesh over a ground. It counts as lying on a plane up to the distance `target`. `None` for shapes without flat
-    /// faces.
+    /// For a mesh over a ground. It counts as lying on a plane up to the distance `target`. `None` for shapes without
+    /// flat faces.
     pub fn new(
         (mesh, ground): (&'a MedialMesh, &dyn Shape),
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
@@ -165,8 +168,9 @@ impl<'a> Sliding<'a> {
         }
     }
 
-    /// How the mesh lies on the plane of a face, or on that of a ground above it, where it can meet the face along the plane's
-    /// normal only, or not at all. A ground of a solid stays an obstacle, met along its normal: others are left out for it.
+    /// How the mesh lies on the plane of a face, or on that of a ground above it, where it can meet the face along the
+    /// plane's normal only, or not at all. A ground of a solid stays an obstacle, met along its normal: others are left
+    /// out for it.
     pub fn treats(&self, face: Face) -> Option<Lying> {
         let Some(ground) = self.ground_above(face) else {
             let lying = self.lies_on(face);
@@ -184,9 +188,9 @@ impl<'a> Sliding<'a> {
         self.grounds.iter().any(is_alike)
     }
 
-    /// The normal of a face's plane, to the side of the mesh, if the mesh lies on it once it is at `pose` in the ground's frame,
-    /// and it faces about the same way as a ground on which the mesh lies now. There the mesh comes from a ground up a
-    /// slope, and its nearest point is on the fold between the two, straight ahead.
+    /// The normal of a face's plane, to the side of the mesh, if the mesh lies on it once it is at `pose` in the
+    /// ground's frame, and it faces about the same way as a ground on which the mesh lies now. There the mesh comes
+    /// from a ground up a slope, and its nearest point is on the fold between the two, straight ahead.
     pub fn comes_to_lie(&self, face: Face, pose: &Pose) -> Option<Vector> {
         let there = Self {
             poses: [Placed::new(pose); 2],
@@ -231,7 +235,8 @@ impl<'a> Sliding<'a> {
         sides.find_map(|side| self.lies_on_side(face, across, *side))
     }
 
-    /// The same on one side: that of the normal (1), about which the corners turn to the left, or the other (-1).
+    /// How the mesh lies on one side of a face, if it does: the side of the normal (1), about which the corners turn to
+    /// the left, or the other (-1).
     fn lies_on_side(&self, face: Face, across: Vec3<f64>, side: f64) -> Option<Lying> {
         let corners = face.corners;
         let corner = |k: usize| Vec3::<f64>::from_vector(corners[k % corners.len()]);

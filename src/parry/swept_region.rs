@@ -7,7 +7,7 @@ use crate::pair::PrimitiveTree;
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::NonlinearRigidMotion;
 
-/// The same motion, its clock set to `time`.
+/// The motion with its clock set to `time`.
 pub fn started(motion: &NonlinearRigidMotion, time: Real) -> NonlinearRigidMotion {
     if time == 0.0 {
         return *motion;

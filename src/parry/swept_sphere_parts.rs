@@ -35,16 +35,17 @@ pub struct Parts<'a> {
     /// parry's subshape of each primitive: child, triangle, segment, cell or voxel.
     primitive_subshapes: Vec<u32>,
     axisymmetric_subshapes: Vec<u32>,
-    /// What leaves flat faces out.
+    /// The slide of the searched mesh, by which flat faces are left out; `None` if none are.
     pub(super) sliding: Option<Sliding<'a>>,
     /// The faces of surfaces that it left out, as triangles.
     pub(super) left_out: Vec<[Vector; 3]>,
-    /// Primitives that the searched mesh can meet along a plane's normal only, and that unit normal, to the side of the mesh.
+    /// Primitives that the searched mesh can meet along a plane's normal only, and that unit normal, to the side of the
+    /// mesh.
     pub(super) normals: Vec<(u32, Vector)>,
 }
 
 impl<'a> Parts<'a> {
-    /// No parts yet; flat faces along which the mesh that is searched only slides will be left out.
+    /// An empty list of parts. Flat faces along which the searched mesh only slides will be left out.
     pub fn under(sliding: Option<Sliding<'a>>) -> Self {
         Self {
             sliding,
@@ -113,8 +114,8 @@ pub fn thickness(shape: &dyn Shape) -> Real {
     }
 }
 
-/// Adds the surface of `shape`, in whose frame the parts are, as far as it meets `region`, and gives the parts a hierarchy.
-/// Returns `false` for a shape that has no such surface: a custom one, or a compound with one in the region.
+/// Adds the surface of `shape`, in whose frame the parts are, as far as it meets `region`, and gives the parts a
+/// hierarchy. Returns `false` for a shape that has no such surface: a custom one, or a compound with one in the region.
 pub fn add_shape(parts: &mut Parts, shape: &dyn Shape, region: &Aabb) -> bool {
     let added = add_surface(parts, shape, &Pose::IDENTITY, region);
     parts.primitives.build_tree();
@@ -214,7 +215,8 @@ fn add_cuboid(parts: &mut Parts, cuboid: &Cuboid, pose: &Pose, border: Real, reg
     add_faces(parts, cuboid, all_faces(), pose, kind, region);
 }
 
-/// Some faces of a cuboid, each by axis and side, as far as `region` (in the parts' frame) meets them. `kind` has no corners.
+/// Some faces of a cuboid, each by axis and side, as far as `region` (in the parts' frame) meets them. `kind` has no
+/// corners.
 fn add_faces(
     parts: &mut Parts,
     cuboid: &Cuboid,

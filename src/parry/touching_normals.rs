@@ -1,10 +1,10 @@
-//! Normals of contacts of a mesh with a convex shape along which the two are not as far apart as the contact says. Where
-//! sharp edges just touch a face, the direction that parry's iterative algorithms find is noise: a slab that stands on a
-//! table has normals to its sides, and trips over them.
+//! Normals of contacts of a mesh with a convex shape along which the two are not as far apart as the contact says.
+//! Where sharp edges just touch a face, the direction that parry's iterative algorithms find is noise: a slab that
+//! stands on a table has normals to its sides, and trips over them.
 //!
-//! The gap of two convex bodies is their largest gap along any direction, so a normal is right if the gap along it is that of
-//! the contact. Where it is not, but that along the normal of a flat face of either body nearly is ([`ROOM`]), it is turned
-//! to that.
+//! The gap of two convex bodies is their largest gap along any direction, so a normal is right if the gap along it is
+//! that of the contact. Where it is not, but that along the normal of a flat face of either body nearly is ([`ROOM`]),
+//! it is turned to that.
 
 use super::convex_parts::{Part, child_of, part_number, slack};
 use super::manifold_points::places;
@@ -15,12 +15,13 @@ use crate::medial::MedialMesh;
 use parry3d::query::ContactManifold;
 use parry3d::shape::Shape;
 
-/// How much smaller than the contact's gap that along a face's normal may be, in units of the prediction distance, if that
-/// along the contact's own normal is smaller still. With none, bodies that lie aslant over the end of a table stumble there.
+/// How much smaller than the contact's gap that along a face's normal may be, in units of the prediction distance, if
+/// that along the contact's own normal is smaller still. With none, bodies that lie aslant over the end of a table
+/// stumble there.
 const ROOM: Real = 0.02;
 
-/// Turns wrong normals to those of faces. The mesh is body `side` (0 or 1) of the manifolds; `other` is the other shape, and
-/// where it is in the mesh's frame.
+/// Turns wrong normals to those of faces. The mesh is body `side` (0 or 1) of the manifolds; `other` is the other
+/// shape, and where it is in the mesh's frame.
 pub fn correct<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
@@ -85,14 +86,14 @@ pub fn correct<M, C>(
 /// A part of the mesh, and a convex shape at a pose in the mesh's frame.
 type Two<'a> = (Part<'a>, (&'a dyn Shape, &'a Pose));
 
-/// The gap of two along a unit direction out of the mesh, negative where they overlap along it. `None` for what has no
-/// support map.
+/// Gap of two shapes along a unit direction out of the mesh, negative where they overlap along it. `None` for a shape
+/// without a support map.
 fn gap_along((part, (shape, pose)): &Two, n: Vector) -> Option<Real> {
     let nearest = shape.as_support_map()?.support_point(pose, -n);
     Some(n.dot(nearest) - part.reach(n))
 }
 
-/// Of the normals of flat faces of either, the one of the largest gap, if that is `least` or more.
+/// The normal with the largest gap among those of the flat faces of both shapes, if that gap is `least` or more.
 fn flat_normal(two: &Two, least: Real) -> Option<Vector> {
     let (part, (shape, pose)) = two;
     let of_shape = flat_sides(*shape).into_iter();

@@ -1,7 +1,7 @@
 //! Normals of contacts of sharp edges with voxels. parry asks for the contacts of a primitive with a box around all
-//! neighbouring voxels, by GJK, whose direction is noise where the two just touch: a slab that stands on a flat floor then
-//! has contacts to its sides. What touches a face can be pushed along its normal only, and at the border of several along
-//! one between theirs. Of rounded parts GJK sees what is within their surface, which does not touch.
+//! neighbouring voxels, by GJK, whose direction is noise where the two just touch: a slab that stands on a flat floor
+//! then has contacts to its sides. What touches a face can be pushed along its normal only, and at the border of
+//! several along one between theirs. Of rounded parts GJK sees what is within their surface, which does not touch.
 
 use super::manifold_points::places;
 use super::shape_faces::free_faces;
@@ -17,12 +17,12 @@ const ON_FACE: Real = 0.01;
 /// Cosine with the nearest normal that is possible from which a normal is left as it is (8°).
 const POSSIBLE: Real = 0.99;
 
-/// Cosine with the only face that a contact is on, from which a normal is turned to that of the face (down to 6° below its
-/// plane). A normal below that is left: the mesh is on the other side.
+/// Cosine with the only face that a contact is on, from which a normal is turned to that of the face (down to 6° below
+/// its plane). A normal below that is left: the mesh is on the other side.
 const AWAY: Real = -0.1;
 
-/// Turns normals that the deepest contact cannot have to the nearest that it can. The mesh is body `side` (0 or 1) of the
-/// manifolds, and the voxels are at `pose` in its frame.
+/// Turns normals that the deepest contact cannot have to the nearest that it can. The mesh is body `side` (0 or 1) of
+/// the manifolds, and the voxels are at `pose` in its frame.
 pub fn correct<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),

@@ -198,7 +198,7 @@ fn balls_all_round_a_box_have_its_distance() {
 /// Contacts go on when a body slides from the middle of a face to its edge, where parry takes over, and
 /// back, whoever made the list before.
 #[test]
-fn a_list_goes_from_hand_to_hand() {
+fn contacts_go_on_while_a_body_slides_over_an_edge_and_back() {
     let dispatcher = MedialDispatcher::default().chain(DefaultQueryDispatcher);
     let mesh = MedialMesh::torus(0.4, 0.1, 27).expect("a ring");
     let table = Cuboid::new(Vector::new(1.0, 0.5, 1.0));

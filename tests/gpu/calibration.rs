@@ -46,7 +46,7 @@ fn text_that_is_no_calibration_is_refused_by_line() {
 }
 
 #[test]
-fn auto_goes_by_it() {
+fn auto_asks_the_gpu_from_the_calibrated_batch_size_on() {
     if scene::gpu(scene::options()).is_none() {
         return;
     }

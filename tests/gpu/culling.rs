@@ -337,7 +337,7 @@ fn buffers_grown_for_a_failed_batch_serve_the_next() {
 
 /// The families made to break a certificate: what the device calls free stays apart, by the oracle.
 #[test]
-fn no_extreme_within_reach_is_free() {
+fn extreme_pairs_that_the_device_calls_free_stay_apart() {
     let Some(mut gpu) = scene::gpu(scene::options()) else {
         return;
     };

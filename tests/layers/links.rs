@@ -1,5 +1,5 @@
-//! The links between pages lead somewhere: each names a page that is there, and a heading of it if it names one. The paths
-//! of source files that the maps of the code name are there.
+//! The links between pages lead somewhere: each names a page that is there, and a heading of it if it names one. The
+//! paths of source files that the maps of the code name are there.
 
 use std::collections::HashSet;
 use std::fs;

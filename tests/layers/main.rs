@@ -1,8 +1,9 @@
 //! The import rules of the design, checked on the source text: imports go down the layers only, and
-//! each foreign library stays in its layer. And the links between pages lead somewhere.
+//! each foreign library stays in its layer. The links between pages lead somewhere, and each folder lists its files.
 
 mod circles;
 mod links;
+mod maps;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -405,7 +405,7 @@ fn a_write_that_fails_leaves_nothing() {
 }
 
 #[test]
-fn a_reader_that_went_away_is_no_failure() {
+fn info_succeeds_when_its_reader_closes_the_pipe() {
     let directory = scratch("pipe");
     MedialMesh::ball(1.0)
         .unwrap()

@@ -31,7 +31,7 @@ fn smallest(mesh: &Mesh, max_error: f32, quality: Quality) -> usize {
 }
 
 #[test]
-fn planted_bodies_take_what_they_are_made_of() {
+fn planted_bodies_get_as_many_primitives_as_they_are_made_of() {
     // Its facets are off by 0.2 (1 − cos 5.6°), .14 % of its length.
     let one_cone = capsule(0.3, 0.2, 32, 12);
     assert_eq!(smallest(&one_cone, 0.015, Quality::Balanced), 1);

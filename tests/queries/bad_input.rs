@@ -49,7 +49,7 @@ fn assert_refused(a: &[MovingSphere], b: &[MovingSphere]) {
 }
 
 #[test]
-fn counts() {
+fn no_spheres_or_more_than_three_are_refused() {
     let good = [sphere(4.0)];
     for count in [0, 4, 5, 100] {
         assert_refused(&good, &vec![sphere(0.0); count]);
@@ -57,7 +57,7 @@ fn counts() {
 }
 
 #[test]
-fn values() {
+fn spheres_out_of_range_are_refused() {
     let good = [sphere(4.0)];
     for bad in BAD {
         for place in 0..7 {
@@ -82,7 +82,7 @@ fn values() {
 }
 
 #[test]
-fn options() {
+fn options_that_are_not_finite_promise_nothing() {
     let (a, b) = ([sphere(0.0)], [sphere(4.0)]);
     for bad in BAD {
         for place in 0..3 {
@@ -100,7 +100,7 @@ fn options() {
 }
 
 #[test]
-fn motions() {
+fn motions_that_are_not_finite_are_refused() {
     let spheres = [MedialSphere::new(Vector::ZERO, 1.0)];
     let good = NonlinearRigidMotion::identity();
     for bad in BAD {

@@ -46,7 +46,7 @@ fn hits_come_in_the_share_intended() {
 
 /// A third at least of the queries that meet twice are apart in between.
 #[test]
-fn two_contacts_are_two() {
+fn queries_made_to_meet_twice_come_apart_in_between() {
     let mut rng = Rng::new(200);
     let (mut twice, mut possible) = (0, 0);
     for k in 0..QUERIES {
@@ -66,7 +66,7 @@ fn two_contacts_are_two() {
 
 /// Every number of a query is an `f32`, so that no precision under test rounds it.
 #[test]
-fn numbers_are_single() {
+fn numbers_of_queries_need_no_more_than_f32() {
     let mut rng = Rng::new(300);
     for family in Family::ALL {
         let query = family.query([3, 3], true, &mut rng);

@@ -165,7 +165,7 @@ fn certified_query_finds_contacts_that_the_paper_misses() {
 /// The guarantee holds for other distances than 0: kept apart, or let sink in, as deep as the
 /// thinnest ends are thick.
 #[test]
-fn target_distance() {
+fn the_guarantee_holds_at_other_target_distances() {
     let families = [
         Family::LargeRotation,
         Family::Overlapping,

@@ -78,7 +78,7 @@ fn bounds_of_the_distance_meet() {
 
 /// |c1 − c2| − r1 − r2, also for concentric and for enclosed spheres.
 #[test]
-fn two_spheres() {
+fn spheres_are_as_far_as_their_centres_less_their_radii() {
     let mut rng = Rng::new(2);
     for _ in 0..1000 {
         let (c1, c2) = (rng.in_ball(), rng.in_ball() * [0.0, 1.0][rng.below(2)]);
@@ -90,7 +90,7 @@ fn two_spheres() {
 
 /// Two slabs of constant radii whose triangles cross: the distance is −(r1 + r2), at the crossing.
 #[test]
-fn crossing_slabs() {
+fn crossing_slabs_are_as_deep_as_the_sum_of_their_radii() {
     let mut rng = Rng::new(3);
     for _ in 0..1000 {
         let (r1, r2) = (rng.range(0.0, 0.3), rng.range(0.0, 0.3));
@@ -107,7 +107,7 @@ fn crossing_slabs() {
 
 /// Sphere and cone by golden-section search over the cone's parameter.
 #[test]
-fn sphere_and_cone() {
+fn sphere_and_cone_are_as_far_as_a_search_finds() {
     let mut rng = Rng::new(4);
     for _ in 0..1000 {
         let ends = [
@@ -132,7 +132,7 @@ fn sphere_and_cone() {
 
 /// Two spheres on straight paths: the smaller root of |y + t d|² = R².
 #[test]
-fn two_spheres_in_flight() {
+fn spheres_in_flight_meet_at_the_smaller_root() {
     let mut rng = Rng::new(5);
     let mut hits = 0;
     for _ in 0..2000 {
@@ -166,7 +166,7 @@ fn two_spheres_in_flight() {
 /// A sphere that flies straight at a cone. With half angle θ, sin θ = (r0 − r1)/L, the point of the
 /// mantle at height z is `x cos θ + z sin θ − r0` away from a centre at (x, z).
 #[test]
-fn sphere_flies_at_a_cone() {
+fn a_flying_sphere_meets_a_cone_where_the_formula_says() {
     let mut rng = Rng::new(6);
     for _ in 0..1000 {
         let (r0, r1) = (rng.range(0.1, 0.5), rng.range(0.1, 0.5));
@@ -185,7 +185,7 @@ fn sphere_flies_at_a_cone() {
 
 /// A sphere that turns about the origin, past one at rest: |c − p|² = ρ² + p² − 2ρp cos(φ − ωt).
 #[test]
-fn sphere_turns_past_a_sphere() {
+fn a_turning_sphere_meets_one_at_rest_when_the_formula_says() {
     let mut rng = Rng::new(7);
     let mut later = 0;
     for _ in 0..1000 {
@@ -302,7 +302,7 @@ fn small_steps_find_the_same_contact() {
 
 /// Weights that prove the upper bound are weights: not negative, sum 1.
 #[test]
-fn weights_are_weights() {
+fn weights_are_not_negative_and_sum_to_one() {
     let mut rng = Rng::new(9);
     for _ in 0..1000 {
         let mut corners = Corners::new();

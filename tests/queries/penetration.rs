@@ -102,7 +102,7 @@ fn check<S: Scalar>(a: &Spheres, b: &Spheres, rng: &mut Rng) {
 /// Primitives whose medial surfaces cross at the origin, in every combination that can: an edge
 /// crosses a triangle, two triangles cross; and two edges, which meet in a point.
 #[test]
-fn crossing_surfaces() {
+fn crossing_surfaces_are_as_deep_as_a_search_finds() {
     let mut rng = Rng::new(1);
     for k in 0..600 {
         let counts = [[3, 3], [3, 2], [2, 3], [2, 2]][k % 4];

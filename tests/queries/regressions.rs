@@ -174,7 +174,7 @@ fn no_target_is_deeper_than_the_thinnest_place() {
 /// their middles come into contact. Started at the end, the iteration finds it; started at the
 /// beginning it settles on the first pair.
 #[test]
-fn the_papers_figure_3() {
+fn the_papers_iteration_misses_figure_3_when_it_begins_at_the_start() {
     // The rod dips at one end and rises at the other: its first nearest sphere rises.
     let a = [
         sphere([-1.0, 0.0, 0.0], 0.1, [0.0; 3]),

@@ -93,7 +93,7 @@ fn body_behind_an_edge_that_has_passed_is_stopped() {
 
 /// At a first contact the bodies approach along the normal told, however deep thick parts are in each other beside it.
 #[test]
-fn normals_are_of_what_meets() {
+fn bodies_approach_along_the_normal_of_their_first_contact() {
     let mut rng = Rng::new(11);
     let mut met = 0;
     for case in 0..QUERIES {

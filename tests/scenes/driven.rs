@@ -16,7 +16,7 @@ fn ball(radius: Real) -> ColliderBuilder {
 /// A bar that turns at 100 rad/s, which nothing stops, hits a ball at radius 0.15 m: of equal normal
 /// speed there, `v' = 2 ω r` along the path of the contact.
 #[test]
-fn a_turning_paddle() {
+fn a_turning_paddle_throws_a_ball_at_twice_its_own_speed() {
     for kind in [
         RigidBodyType::KinematicVelocityBased,
         RigidBodyType::KinematicPositionBased,

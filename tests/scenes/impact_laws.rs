@@ -127,7 +127,7 @@ fn as_many_balls_leave_newtons_cradle_as_came_in() {
 /// A ball strikes two that touch, at 1 m/s, in the middle. By symmetry both leave at 30 degrees, and with the impact law
 /// at both contacts at (1 + e) √3/5 m/s; the first keeps 1 − 0.6 (1 + e).
 #[test]
-fn two_contacts_at_once() {
+fn balls_struck_at_two_contacts_at_once_leave_by_the_impact_law() {
     for restitution in [1.0, 0.5] {
         for law in LAWS {
             let ends = |hertz| {

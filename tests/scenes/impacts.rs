@@ -258,7 +258,7 @@ fn slow_and_sleeping_scenes_run_no_continuous_query() {
 
 /// The same meeting in worlds a hundred times smaller, with rapier told so.
 #[test]
-fn another_length_unit() {
+fn bodies_meet_in_worlds_of_another_length_unit() {
     for scale in [0.01, 100.0] {
         let ends =
             [-0.2, 0.2].map(|z| MedialSphere::new(Vector::new(0.0, 0.0, z * scale), 0.05 * scale));

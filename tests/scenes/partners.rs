@@ -72,7 +72,7 @@ fn colliders_aside_of_their_body() {
 
 /// A rack of three bars on one body against another: momentum and energy stay, and nothing passes.
 #[test]
-fn several_colliders_on_a_body() {
+fn a_body_of_several_colliders_keeps_momentum_and_energy() {
     for shift in [0.0, 0.13, 0.3] {
         let (mut world, handles, _) = crossed(60.0, |_, b| b, |_, c| smooth(c));
         for y in [-0.4, 0.4] {
@@ -172,7 +172,7 @@ fn new_and_moved_bodies_meet_in_their_first_step() {
 /// A pair tied by a joint meets a third body: nothing passes, and momentum stays. Where the joint
 /// turns contacts off, the tied two fly through each other.
 #[test]
-fn joints_and_multibodies() {
+fn jointed_bodies_meet_others_as_free_ones_do() {
     let rope = |contacts: bool| RopeJointBuilder::new(100.0).contacts_enabled(contacts);
     for contacts in [true, false] {
         let (mut world, handles, _) = crossed(60.0, |_, b| b, |_, c| smooth(c));
@@ -237,7 +237,7 @@ fn joints_and_multibodies() {
 
 /// An eccentric impact of bodies that may not turn is a central one.
 #[test]
-fn locked_rotations_stay() {
+fn bodies_with_locked_rotations_do_not_turn_in_eccentric_impacts() {
     let body = |k: usize, b: RigidBodyBuilder| {
         let at = Vector::new([2.0, -2.0][k], 0.15 * k as Real, 0.15 * k as Real);
         b.pose(Pose::new(at, Vector::new(1.5 * k as Real, 0.0, 0.0)))
@@ -271,7 +271,7 @@ fn locked_rotations_stay() {
 /// Forces, gravity scale and damping make bodies fast, or slow, within the step: what counts is the
 /// motion that they make. Equal bodies swap what each has in its flight alone.
 #[test]
-fn forces_gravity_scale_and_damping() {
+fn bodies_meet_at_the_speeds_that_forces_and_damping_make() {
     type Change = fn(&mut RigidBody, Real);
     let changes: [(&str, Real, Change); 4] = [
         ("force", 0.0, |b, side| {
@@ -345,7 +345,7 @@ fn skins_meet_first() {
 }
 
 #[test]
-fn steps_of_changing_length() {
+fn bodies_meet_in_steps_of_changing_length() {
     for phase in 0..16 {
         let shifted = |k: usize, b: RigidBodyBuilder| {
             let x = [2.0 + 0.05 * phase as Real, -2.0][k];

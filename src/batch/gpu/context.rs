@@ -11,7 +11,7 @@ use wgpu::{
     RequestAdapterOptions,
 };
 
-/// Which device to take and how much of it.
+/// Choice of the device and of how much of it is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GpuOptions {
     /// Whether an adapter that computes on the CPU will do.
@@ -179,7 +179,7 @@ impl Context {
         Ok(())
     }
 
-    /// Gives the device up as a driver does that resets it.
+    /// Loses the device, as when a driver resets it.
     pub fn lose(&self) {
         self.device.destroy();
         self.fault.set(GpuError::Lost {

@@ -201,7 +201,7 @@ impl Cull {
         expected.max(least).min(room(context, pairs))
     }
 
-    /// Waits for what the last submission found, and has it taken; returns the seconds of the shader.
+    /// Waits for the results of the last submission and hands them over; returns the seconds that the shader took.
     pub(super) async fn read(
         &mut self,
         context: &Context,

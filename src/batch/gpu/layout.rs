@@ -97,7 +97,7 @@ twins! {
         room: u32 = "u32",
         /// How many primitive pairs there is room for on the list.
         near_room: u32 = "u32",
-        /// Another number in each batch, on every entry of the list.
+        /// Number of the batch, on every entry of the list.
         stamp: u32 = "u32",
     }
     /// Two primitives that are not proven free.
@@ -120,8 +120,8 @@ pub const OPEN: u32 = 1 << 30;
 pub const GIVEN_UP: u32 = 1 << 31;
 /// Threads of a group.
 pub const THREADS: usize = 64;
-/// Threads of a group that walks down trees: fewer, so that a few hundred mesh pairs keep more of a
-/// device busy than a few of its parts.
+/// Threads of a workgroup that walks down trees. Few, so that the work of a few hundred mesh pairs spreads over more of
+/// the device's processors.
 pub const WALKS: usize = 8;
 /// Texels in a row of the records: with the portable limit of 8,192 rows they hold the portable limit
 /// of a binding.
@@ -131,17 +131,18 @@ pub const MAX_GROUPS: u32 = 65_535;
 
 /// Rounds of the search for a direction. Fewer prove less, and nothing wrong.
 const GILBERT_ROUNDS: u32 = 6;
-/// Pairs of split nodes and primitive pairs that a walk down two trees holds at once. Of primitive pairs it hands on those
-/// that it has when that gets too many; a walk with more nodes to split is given up.
+/// Pairs of split nodes and primitive pairs that a walk down two trees holds at once. Of primitive pairs it hands on
+/// those that it has when that gets too many; a walk with more nodes to split is given up.
 pub const WALK_ROOM: u32 = 128;
 /// Primitive pairs that a walk finds, about, before it is given up: the CPU has what is that entangled.
 pub const WALK_FINDS: u32 = 1024;
 /// Node pairs and primitive pairs that a walk takes up before it is given up.
 const WALK_LOOKS: u32 = 4096;
-/// The same of walks for first contacts, which the CPU finds without looking at all that meets. Their looks are a part of
-/// the CPU's cap (`MAX_PIECES` in `sweep.rs`).
+/// Node pairs and primitive pairs that a walk for a first contact takes up before it is given up. Fewer than
+/// [`WALK_LOOKS`], since the CPU finds first contacts without looking at all that meets, and a part of the CPU's own
+/// cap (`MAX_PIECES` in `sweep.rs`).
 const FIRST_LOOKS: u32 = 1024;
-/// The same as [`WALK_FINDS`] for walks for first contacts.
+/// Primitive pairs that a walk for a first contact finds, about, before it is given up.
 const FIRST_FINDS: u32 = 128;
 /// Node pairs that a walk takes up before it looks whether it is done: less, and the next mesh pair is
 /// fetched for one thread at a time; more, and threads that are done wait longer.

@@ -7,10 +7,12 @@
 //! Each batch takes one submission and one map. In steps that are like those before nothing is allocated, neither
 //! on the GPU nor by this crate on the CPU. Every failure is a [`GpuError`], after which the CPU does the work.
 //!
-//! - What is proven: `cull.rs` (mesh pairs), `near.rs` (the list that comes back), `elementary.rs` (elementary
-//!   tests).
-//! - What is sent: `sweep.rs` (motions), `meshes.rs`, `layout.rs` (twins of the shaders' structs), `texels.rs`.
-//! - The device: `context.rs`, `shaders.rs`, `stage.rs`, `transfer.rs`, `clock.rs`.
+//! # Files
+//! - What is proven: `cull.rs` (mesh pairs), `near.rs` (the list that comes back), `elementary.rs` (elementary tests).
+//! - What is sent: `sweep.rs` (motions), `meshes.rs` (trees and primitives), `layout.rs` (twins of the shaders'
+//!   structs), `texels.rs` (records in a texture).
+//! - The device: `context.rs` (opens it and keeps its errors), `shaders.rs` (their source texts), `stage.rs` (one
+//!   compute pipeline), `transfer.rs` (copies there and back), `clock.rs` (how long a shader runs).
 
 mod clock;
 mod context;

@@ -59,7 +59,7 @@ impl Proposals {
         }
     }
 
-    /// Forgets everything; room is kept.
+    /// Forgets all entries; memory is kept.
     pub fn clear(&mut self) {
         self.each.clear();
         self.near.clear();
@@ -121,8 +121,8 @@ impl Proposals {
         found
     }
 
-    /// Puts an entry among those of its mesh pair. What the mesh pair has no room or no primitive for is counted as well,
-    /// or left out: then the count is not right.
+    /// Puts an entry among those of its mesh pair. What the mesh pair has no room or no primitive for is counted as
+    /// well, or left out: then the count is not right.
     fn place(&mut self, entry: &Near, ranges: &[[Range; 2]]) {
         let pair = entry.pair as usize;
         let (Some(ranges), Some(found)) = (ranges.get(pair), self.found.get_mut(pair)) else {

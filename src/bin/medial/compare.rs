@@ -32,9 +32,10 @@ use std::time::Instant;
 pub const SIZE: Real = 1.0;
 /// Points on each surface (a count) at which errors are measured, besides its vertices.
 const POINTS: usize = 20_000;
-/// Heaps whose steps are timed, and bodies in each (counts). A heap falls as chance will have it, and takes half or twice
-/// as long as another.
+/// Number of heaps whose steps are timed. A heap falls as chance will have it, and takes half or twice as long as
+/// another.
 const HEAPS: u64 = 4;
+/// Number of bodies in each heap.
 const BODIES: usize = 12;
 /// Share of the progress bar at which the medial mesh is built.
 const BUILT: f32 = 0.6;
@@ -71,7 +72,7 @@ struct Comparison {
     triangles: usize,
     /// Longest side of the bounding box, in the unit of the file.
     longest_side: f32,
-    /// Bodies in each heap, heaps, and steps of each.
+    /// Number of bodies in each heap, of heaps, and of steps of each.
     bodies: usize,
     heaps: u64,
     steps: usize,

@@ -19,16 +19,19 @@ const LINE: Real = 0.006;
 const SPACING: Real = SIZE / 100.0;
 /// Direction from the middle of a body to the eye, of any length.
 const TOWARDS_EYE: Vector = Vector::new(0.75, 1.03, 2.35);
-/// Opening angle of the pictures (rad), and the share of it that a body fills.
+/// Opening angle of the pictures (rad).
 const FIELD_OF_VIEW: Real = 0.42;
+/// Share of the picture that a body fills.
 const FILLED: Real = 0.92;
 /// Cosine of the angle between two triangles, 40°, from which on the edge between them is drawn sharp.
 const CREASE: Real = 0.766;
 /// Distances (m) from primitives that differ by less are the same.
 const SAME: Real = SIZE / 500.0;
+/// Colour of the triangle mesh.
 const SLATE: Vector = Vector::new(0.35, 0.37, 0.42);
-/// Colours of a surface that is where the mesh is, and of one that is as far off as any point.
+/// Colour of a surface that is where the mesh is.
 const EXACT: Vector = Vector::new(0.80, 0.82, 0.85);
+/// Colour of a surface that is as far off as any point.
 const OFF: Vector = Vector::new(0.85, 0.06, 0.03);
 
 /// Figures that are written into the picture.

@@ -45,7 +45,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The same failure, with the file it is about; most errors of files name it already.
+    /// The failure, with the file it is about added; most errors of files name it already.
     pub fn of(self, path: &Path) -> Self {
         if self.to_string().contains(&path.display().to_string()) {
             return self;
@@ -69,6 +69,6 @@ pub struct Failed {
     /// The triangle mesh.
     #[serde(serialize_with = "crate::output::path")]
     pub input: PathBuf,
-    /// Why.
+    /// The error, in words.
     pub error: String,
 }

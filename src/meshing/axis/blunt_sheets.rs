@@ -1,9 +1,9 @@
 //! Leaves out sheets of a convex body's medial axis between two faces that lie nearly in one plane, and bounds what is
 //! lost without them.
 //!
-//! A ball of such a sheet, of radius `r` and touching faces of a group that differ by up to the angle `φ`, lies within another's
-//! as one climbs the roof to the next sheet that is kept: the radius grows there by `cos φ` or more of the way, which
-//! is no longer than the larger radius. So `r (1 − cos φ)` is what is lost.
+//! A ball of such a sheet, of radius `r` and touching faces of a group that differ by up to the angle `φ`, lies within
+//! another's as one climbs the roof to the next sheet that is kept: the radius grows there by `cos φ` or more of the
+//! way, which is no longer than the larger radius. So `r (1 − cos φ)` is what is lost.
 
 use crate::math::fast_hash::FastMap;
 use crate::meshing::geometry::bounds::Point;

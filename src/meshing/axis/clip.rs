@@ -29,8 +29,8 @@ const TRUE_RADIUS: f64 = 0.7;
 /// Step beyond the medial axis, over the radius there.
 const BEYOND: f64 = 0.05;
 
-/// Guess of the distance from a ball's centre to the surface, over its radius: samples lie on it, but for a shift. Only time
-/// depends on it.
+/// Guess of the distance from a ball's centre to the surface, over its radius: samples lie on it, but for a shift. Only
+/// time depends on it.
 const ABOUT: f64 = 1.01;
 
 /// Half the side of the cube whose corners are added to the samples, so that no Voronoi polygon of a

@@ -1,12 +1,13 @@
 //! A body of flat faces as a union of convex polyhedra, which may overlap.
 //!
 //! # Method
-//! The planes of all faces cut space into cells, each inside the body or outside (its winding number says which). A convex
-//! polyhedron bounded by some of the planes is in the body if no outer cell is on its side of all of them: one bit for each
-//! plane, so this is a comparison of words. Starting with all planes around an inner cell, planes are given up one by one
-//! as long as that holds. What is left is a largest piece about the cell, in the order in which planes were tried; of
-//! several orders the one is taken whose piece covers most of what is not covered yet. Pieces that overlap leave no seam
-//! within the body, where parts that merely adjoin would have faces, and their spheres no radius.
+//! The planes of all faces cut space into cells, each inside the body or outside (its winding number says which). A
+//! convex polyhedron bounded by some of the planes is in the body if no outer cell is on its side of all of them: one
+//! bit for each plane, so this is a comparison of words. Starting with all planes around an inner cell, planes are
+//! given up one by one as long as that holds. What is left is a largest piece about the cell, in the order in which
+//! planes were tried; of several orders the one is taken whose piece covers most of what is not covered yet. Pieces
+//! that overlap leave no seam within the body, where parts that merely adjoin would have faces, and their spheres no
+//! radius.
 
 use crate::error::BuildError;
 use crate::meshing::geometry::convex::{Convex, Plane};
@@ -20,11 +21,11 @@ pub const MOST_PLANES: usize = 64;
 /// Cells at most: a ring of 24 sides has 1,251, a gear of eight teeth 1,299.
 const MOST_CELLS: usize = 6_000;
 
-/// Pieces at most.
+/// Largest number of pieces.
 const MOST_PIECES: usize = 64;
 
-/// Orders in which planes are tried for each piece. With one a star of eight points takes seven pieces, with four or more it
-/// takes five.
+/// Orders in which planes are tried for each piece. With one a star of eight points takes seven pieces, with four or
+/// more it takes five.
 const ORDERS: u64 = 32;
 
 /// Half the side of the box that is cut (longest side of the body 1, centred).
@@ -33,8 +34,8 @@ const FAR: f64 = 1.0;
 /// The plane of the box's sides.
 const BOX: u32 = u32::MAX;
 
-/// Cells of less volume than this (longest side 1) are left out: slivers between planes that are nearly one. Where one of
-/// them was more than that, it shows in the error that is measured, and the pieces are not used.
+/// Volume (longest side 1) below which a cell is left out: a sliver between planes that are nearly one. If a cell was
+/// more than that, it shows in the measured error, and the pieces are not used.
 const NO_VOLUME: f64 = 1e-12;
 
 /// A cell inside the body.
@@ -143,8 +144,8 @@ pub struct Piece {
     pub solid: Convex,
 }
 
-/// The convex pieces whose union is the body with these faces, in a box of side 1 about the origin; `None` where they are
-/// too many, or where rounding spoils them. Points within `on` of a plane are on it.
+/// The convex pieces whose union is the body with these faces, in a box of side 1 about the origin; `None` where they
+/// are too many, or where rounding spoils them. Points within `on` of a plane are on it.
 pub fn convex_pieces(
     planes: &[Plane],
     on: f64,

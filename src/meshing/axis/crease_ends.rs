@@ -34,7 +34,7 @@ impl Clipper<'_> {
         CLIP_REACH * of_a.max(of_b).max((a - b).length())
     }
 
-    /// The corner nearest to where the samples of three groups are.
+    /// The corner of the surface nearest to the place where samples of three groups meet.
     fn corner_end(&mut self, ab: [u32; 2], third: Option<Sample>) -> Option<u32> {
         let [a, b] = ab.map(|v| &self.samples[v as usize]);
         let mut groups: Vec<u32> = [*a, *b]

@@ -13,8 +13,10 @@ use crate::meshing::surface::samples::{
 };
 use crate::meshing::watch::Watch;
 
-/// Distance between pairs along a crease, and of each half of a pair from it, over that of samples.
+/// Distance between two pairs along a crease, in units of the distance between samples on its faces.
 const PAIRS: f64 = 0.8;
+
+/// Distance of each half of a pair from the crease, in units of the distance between pairs.
 const OFFSET: f64 = 0.35;
 
 /// Pairs are this much nearer to each other at least, over their own distance, than steps are along a
@@ -27,8 +29,11 @@ const HALVINGS: usize = 4;
 /// A half may be off its face by this share of its offset.
 const OFF_FACE: f64 = 0.2;
 
-/// Samples along a reflex edge, over the distance of samples: their step, and how near others may be.
+/// Largest distance between samples along a reflex edge, in units of the distance between samples on its faces.
 const REFLEX_STEP: f64 = 0.9;
+
+/// Distance to an earlier sample within which a reflex edge gets none, in the same unit. It must be below
+/// [`REFLEX_STEP`], or neighbours along the edge would keep each other out.
 const REFLEX_GAP: f64 = 0.6;
 
 /// Samples of a body with creases.

@@ -12,10 +12,16 @@ use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::direction;
 use crate::meshing::watch::Watch;
 
-/// Edges that are off by more (longest side 1) are split, in so many passes; what is still off by more than the
-/// last belongs to no sheet: two balls of samples that have nothing to do with each other.
+/// Distance (longest side 1) by which the ball at the middle of an edge may stick out of the solid before the edge is
+/// split. Larger, and the initial mesh has that error; smaller, and it has more triangles.
 const SPLIT: f64 = 5e-4;
+
+/// Passes of splitting, each of which looks at the edges that the one before made. Each halves the edges at most once.
 const PASSES: usize = 3;
+
+/// Distance (longest side 1) by which the ball at the middle of an edge may stick out after the last pass. An edge that
+/// is off by more lies in no sheet of the medial axis: it joins balls of unrelated places, and is left out with its
+/// triangles.
 const DROP: f64 = 3e-3;
 
 /// Edges shorter than this (longest side 1) are not looked at.

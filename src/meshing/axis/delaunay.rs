@@ -11,8 +11,9 @@
 //! inside together.
 //!
 //! # Limits
-//! - The points start in one tetrahedron that encloses them all, 64 times their extent away, which is dropped at the end. Nearly flat tetrahedra on the convex hull, of circumspheres
-//!   larger than that, may be missing. Balls inside a surface never are.
+//! - The points start in one tetrahedron that encloses them all, 64 times their extent away, which is dropped at the
+//!   end. Nearly flat tetrahedra on the convex hull, of circumspheres larger than that, may be missing. Balls inside a
+//!   surface never are.
 //! - The predicates are exact while no product of five coordinate differences underflows: extents
 //!   of 1e-50 to 1e50 are safe.
 
@@ -72,7 +73,7 @@ impl Delaunay {
         if !(side > 0.0 && side.is_finite()) {
             return Ok(Self::default());
         }
-        let mut work = Work::new(points, &bounds);
+        let mut work = Triangulation::new(points, &bounds);
         for (done, index) in insertion_order(points, &bounds).into_iter().enumerate() {
             if done % TICK == 0 {
                 tick(done)?;
@@ -99,12 +100,14 @@ struct Face {
     opposite: usize,
 }
 
-struct Work {
+/// The triangulation while points are inserted.
+struct Triangulation {
     points: Vec<Coord3D<f64>>,
     cells: Vec<Cell>,
     alive: Vec<bool>,
     /// Insertion in which a cell was last in the cavity.
     in_cavity: Vec<u32>,
+    /// Number of points inserted so far.
     insertion: u32,
     free: Vec<u32>,
     /// A live cell near the last point.
@@ -113,7 +116,7 @@ struct Work {
     boundary: Vec<Face>,
 }
 
-impl Work {
+impl Triangulation {
     fn new(points: &[Point], bounds: &Bounds) -> Self {
         let reach = ENCLOSING * bounds.longest_side();
         let low = bounds.center() - Point::new(reach, reach, reach);

@@ -134,6 +134,7 @@ impl<'a> Body<'a> {
 
     /// All two-dimensional faces of the roof.
     pub fn polygons(&self) -> Vec<Polygon> {
+        /// All pairs of the four sides that meet in a corner.
         const PAIRS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
         let mut seen: FastSet<(u32, [u32; 2])> = FastSet::default();
         let mut polygons = Vec::new();

@@ -14,14 +14,18 @@ use crate::meshing::surface::creases::Creases;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
 
-/// Distance between samples over the radius of the largest ball around, and how far around that is, over the distance
-/// elsewhere. So a box keeps its samples' distance up to its edges and corners.
+/// Distance between samples where matter is thin, in units of the radius of the largest ball around.
 const PER_RADIUS: f64 = 1.0;
+
+/// How far "around" reaches, in units of the distance between samples where matter is thick. Balls that touch a face
+/// near a convex edge are small, however thick the body is; smaller, and the edges of a box would count as thin.
 const AROUND: f64 = 2.0;
 
-/// Least distances, over the one elsewhere, that are tried: the first by which there are at most so many times as many
-/// samples is taken.
+/// Least distances between samples that are tried, in units of the distance where matter is thick. The first that keeps
+/// to [`MOST_SAMPLES`] is taken; if none does, samples have one distance everywhere.
 const LEAST: [f64; 3] = [0.3, 0.5, 0.7];
+
+/// Ratio to which thin matter may raise the number of samples. Time and memory of a build grow with it.
 const MOST_SAMPLES: f64 = 2.5;
 
 /// Balls found at points of faces.

@@ -1,5 +1,5 @@
-//! The roof of a prism over a polygon with holes, as balls and slabs: exact, as the medial axis of a convex polyhedron is,
-//! and with flat sheets at reflex edges too.
+//! The roof of a prism over a polygon with holes, as balls and slabs: exact, as the medial axis of a convex polyhedron
+//! is, and with flat sheets at reflex edges too.
 //!
 //! # Derivation
 //! Let `t(x)` be the roof over the polygon (`wavefront.rs`) and `h` half the prism's height. The ball of radius
@@ -23,8 +23,8 @@ const SEEDS: u64 = 4;
 /// The cells and the top of a roof have the polygon's area but for this share.
 const SAME_AREA: f64 = 1e-3;
 
-/// The balls and slabs of the prism over `loops` (in the plane `z = 0`, matter on their left), from `z = −half` to `half`.
-/// Nodes of the roof joined by ridges shorter than `same` are one. `None` where the polygon is not simple.
+/// The balls and slabs of the prism over `loops` (in the plane `z = 0`, matter on their left), from `z = −half` to
+/// `half`. Nodes of the roof joined by ridges shorter than `same` are one. `None` where the polygon is not simple.
 pub fn prism_axis(loops: &[Vec<Point>], half: f64, same: f64) -> Option<Draft> {
     (0..SEEDS).find_map(|seed| {
         let roof = polygon_roof(loops, half, seed)?;
@@ -32,8 +32,8 @@ pub fn prism_axis(loops: &[Vec<Point>], half: f64, same: f64) -> Option<Draft> {
     })
 }
 
-/// Those balls and slabs of a prism that are of given edges of its polygon alone: the sheets between these and the caps, and
-/// the walls between two of them.
+/// Balls and slabs that only some edges of the polygon contribute: the sheets between these edges and the caps, and the
+/// walls between two of them.
 pub fn prism_axis_of(loops: &[Vec<Point>], half: f64, same: f64, is_of: &[bool]) -> Option<Draft> {
     let roof = polygon_roof(loops, half, 0)?;
     let mut lift = Lift::new(loops, half, roof, same);
@@ -46,7 +46,7 @@ struct Lift<'a> {
     loops: &'a [Vec<Point>],
     half: f64,
     roof: PolygonRoof,
-    /// Of each node the one that stands for it.
+    /// For each node of the roof, the node that stands for it.
     own: Vec<u32>,
     draft: Draft,
     /// The balls of a node: above and below, or the same in the middle.
@@ -104,7 +104,7 @@ impl<'a> Lift<'a> {
         }
     }
 
-    /// All of it.
+    /// The medial mesh of the whole prism; `None` if its sheets do not add up to the area of the polygon.
     fn whole(mut self) -> Option<Draft> {
         let mut area = self.cells(&|_| true)?;
         area += self.top();

@@ -1,8 +1,9 @@
 //! A prism as its thick part, which is a prism of fewer edges, and ribs: what is thinner.
 //!
 //! The outline moves inward by a depth, and the lines of the edges that are left, moved back, bound the thick part: the
-//! opening of the outline. Edges that are gone by then are of ribs (teeth, webs, thin walls). A rib is exact, as the part of
-//! the prism's roof that is over its edges, or one or two upright plates with round rims, which are a few slabs.
+//! opening of the outline. Edges that are gone by then are of ribs (teeth, webs, thin walls). A rib is exact, as the
+//! part of the prism's roof that is over its edges, or one or two upright plates with round rims, which are a few
+//! slabs.
 
 use crate::meshing::axis::prism_axis::{prism_axis, prism_axis_of};
 use crate::meshing::axis::wavefront::{PolygonRoof, RoofEdge, polygon_roof};
@@ -10,21 +11,21 @@ use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Point, direction};
 use std::f64::consts::SQRT_2;
 
-/// Lines that meet at a smaller angle than this (rad) are one.
+/// Angle (rad) between two lines below which they are one.
 const SAME_LINE: f64 = 0.02;
 
-/// A ridge from a corner of the outline is not of a plate where the corner is at most this many radii from the ball at its
-/// other end: at right angles it is 1.41.
+/// A ridge from a corner of the outline is not of a plate where the corner is at most this many radii from the ball at
+/// its other end: at right angles it is 1.41.
 const STICKS_OUT: f64 = 1.6;
 
 /// How ribs are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rib {
-    /// As parts of the roof.
+    /// Ribs are parts of the roof, which is exact.
     Exact,
-    /// As a plate over each ridge.
+    /// Each rib is a plate over its ridge.
     Plate,
-    /// As two plates, one along each side.
+    /// Each rib is two plates, one along each side.
     TwoPlates,
 }
 
@@ -33,7 +34,7 @@ pub struct Opened<'a> {
     outline: &'a [Vec<Point>],
     /// Half the thickness of the thickest ribs.
     thin: f64,
-    /// Of each edge of the outline whether it is of a rib. Some are.
+    /// For each edge of the outline, whether it belongs to a rib. At least one does.
     pub is_rib: Vec<bool>,
     /// Loops around the thick part: none where all is ribs.
     pub loops: Vec<Vec<Point>>,
@@ -59,8 +60,8 @@ impl<'a> Opened<'a> {
         })
     }
 
-    /// The balls and slabs of the prism from `z = −half` to `half` whose thick part is that over `thick`. Ridges shorter than
-    /// `same` are points.
+    /// The balls and slabs of the prism from `z = −half` to `half` whose thick part is that over `thick`. Ridges
+    /// shorter than `same` are points.
     pub fn draft(&self, thick: &[Vec<Point>], half: f64, same: f64, rib: Rib) -> Option<Draft> {
         let draft = match thick.is_empty() {
             true => Draft::default(),
@@ -216,7 +217,7 @@ fn outward([p, q]: [Point; 2]) -> Point {
     Point::new(along.y, -along.x, 0.0)
 }
 
-/// The corners of the polygon whose edges lie on some of the sides of another.
+/// Corners of the polygon that some sides (`left`) of another leave, once they are made longer or shorter to meet.
 fn corners(left: &[usize], sides: &[[Point; 2]]) -> Option<Vec<Point>> {
     let out = |side: usize| outward(sides[side]);
     let mut lines: Vec<usize> = Vec::new();

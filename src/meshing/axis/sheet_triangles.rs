@@ -66,7 +66,7 @@ pub fn sheet_triangles(
     (triangles, lost)
 }
 
-/// Height of a triangle over its longest edge, and that.
+/// Height of a triangle over its longest edge, and the length of that edge.
 fn height([a, b, c]: [Point; 3]) -> (f64, f64) {
     let sides = [b - a, c - b, a - c].map(|side| side.length());
     let longest = sides.into_iter().fold(0.0, f64::max);

@@ -118,7 +118,7 @@ impl PrimitiveList {
         Ok(())
     }
 
-    /// Leaves out triangles inside solid matter; says how many.
+    /// Leaves out triangles inside solid matter; returns their number.
     fn drop_buried(&mut self, tree: &TriangleTree, watch: &mut Watch) -> Result<usize, BuildError> {
         let mut inside = Vec::with_capacity(self.points.len());
         for (i, &p) in self.points.iter().enumerate() {
@@ -136,8 +136,8 @@ impl PrimitiveList {
         Ok(before - self.triangles.len())
     }
 
-    /// A strip narrower than a cell has become an edge, a speck a point: they stay as cones and
-    /// balls.
+    /// Makes a draft of the sheets. A strip narrower than a cell has become an edge, and a speck a point: they stay as
+    /// cones and balls.
     fn into_draft(self, watch: &mut Watch) -> Result<Draft, BuildError> {
         let mut draft = Draft::default();
         let mut index_of: FastMap<u32, u32> = FastMap::default();

@@ -8,8 +8,10 @@ use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 
-/// Radii at which shrinking starts and ends (longest side 1).
+/// Radius at which shrinking starts (longest side 1). No ball inside a body whose longest side is 1 is larger.
 const LARGEST_BALL: f64 = 0.5;
+
+/// Radius at which shrinking ends (longest side 1). A ball of this radius may reach out of the surface.
 pub const SMALLEST_BALL: f64 = 1e-3;
 
 /// The largest ball inside the surface that touches `p`, where the inward normal is `n`.

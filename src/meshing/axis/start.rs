@@ -40,8 +40,8 @@ pub struct Start {
     pub sheet_patches: usize,
 }
 
-/// The initial medial mesh from about `count` samples of the solid patches, or up to four times as many where they are of
-/// thin walls; `findings` is told what turned out too thin and what is buried.
+/// The initial medial mesh from about `count` samples of the solid patches, or up to four times as many where they are
+/// of thin walls; `findings` is told what turned out too thin and what is buried.
 pub fn start(
     surface: &Surface,
     tree: &TriangleTree,
@@ -107,8 +107,8 @@ pub fn start(
 /// samples are touched, or in whose patch, where there are no samples.
 fn thin_triangles(surface: &Surface, samples: &[Sample], touched: &[bool]) -> Vec<bool> {
     let patches = surface.patch_of.iter().max().map_or(0, |&p| p as usize + 1);
-    let mut of_patch = vec![Tally::default(); patches];
-    let mut of_vertex = vec![Tally::default(); surface.vertices.len()];
+    let mut of_patch = vec![TouchedSamples::default(); patches];
+    let mut of_vertex = vec![TouchedSamples::default(); surface.vertices.len()];
     for (sample, &touched) in samples.iter().zip(touched) {
         let t = sample.triangle as usize;
         of_patch[surface.patch_of[t] as usize].add(touched);
@@ -128,14 +128,14 @@ fn thin_triangles(surface: &Surface, samples: &[Sample], touched: &[bool]) -> Ve
     triangles.map(is_thin).collect()
 }
 
-/// How many samples are touched by balls, of how many.
+/// Count of samples, and of those among them that balls touch.
 #[derive(Clone, Copy, Default)]
-struct Tally {
+struct TouchedSamples {
     touched: u32,
     all: u32,
 }
 
-impl Tally {
+impl TouchedSamples {
     fn add(&mut self, touched: bool) {
         self.touched += u32::from(touched);
         self.all += 1;

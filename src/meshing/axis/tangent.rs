@@ -12,22 +12,31 @@ use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::creases::Creases;
 
-/// Steps of Newton's method, and the residual at which it has converged (longest side 1).
+/// Largest number of steps of Newton's method; a ball that needs more is given up.
 const STEPS: usize = 30;
+
+/// Distance between a ball and each of its planes at which Newton's method has converged (longest side 1).
 const CONVERGED: f64 = 1e-10;
 
-/// Faces that a ball was found to reach into beyond those it was given, at most.
+/// Largest number of faces that are added to the given ones because a converged ball reached into them.
 const MORE_FACES: usize = 5;
 
-/// A converged ball may reach into another face by this without the face being added, and by this where
-/// no more are (longest side 1).
+/// Depth (longest side 1) by which a converged ball may reach into another face without that face being added. It must
+/// be above rounding, or faces that the ball touches anyway would be added.
 const TOUCHES: f64 = 1e-7;
+
+/// Depth (longest side 1) by which a ball may reach into another face when no more faces are added; one that
+/// reaches deeper is given up.
 const REACHES_IN: f64 = 1e-6;
 
-/// Planes are one when their normals are this close (cosine) and their points within this (longest side
-/// 1) and this share of the radius.
+/// Cosine of the angle between the normals of two planes above which they may be one.
 const SAME_NORMAL: f64 = 0.9999;
+
+/// Distance (longest side 1) between the points of two planes below which they may be one;
+/// [`SAME_POINT_SHARE`] of the ball's radius is added to it.
 const SAME_POINT: f64 = 1e-3;
+
+/// Part of that distance that grows with the ball, in units of its radius.
 const SAME_POINT_SHARE: f64 = 0.05;
 
 /// A ball touches a face from outside where this is above the cosine of the angle between their normals.

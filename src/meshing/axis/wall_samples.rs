@@ -1,6 +1,6 @@
-//! How many samples thin walls need. Samples nearer to each other than a wall is thick give balls between its faces. Samples more
-//! than twice as far apart as that give none, and the wall becomes slabs (`start.rs`). In between a wall is partly both, and
-//! neither fits: cups whose walls are .8 or 1 % of their height came out 7 to 10 % off.
+//! How many samples thin walls need. Samples nearer to each other than a wall is thick give balls between its faces.
+//! Samples more than twice as far apart as that give none, and the wall becomes slabs (`start.rs`). In between a wall
+//! is partly both, and neither fits: cups whose walls are .8 or 1 % of their height came out 7 to 10 % off.
 
 use crate::error::BuildError;
 use crate::meshing::axis::shrinking_ball::{SMALLEST_BALL, shrink_from};
@@ -16,14 +16,14 @@ const PROBES: usize = 1_000;
 /// Distances between samples, over the thickness, between which a wall is neither balls nor slabs.
 const NEITHER: [f64; 2] = [1.15, 2.3];
 
-/// Multiples of the count that are tried.
+/// Multiples of the number of samples that are tried.
 const TIMES: [usize; 3] = [1, 2, 4];
 
 /// Share of the surface that may be neither.
 const MOST: f64 = 0.25;
 
-/// The number of samples, `count` or up to four times as many: the fewest with which little of the surface is of walls in
-/// between; `count` if there is no such number.
+/// The number of samples, `count` or up to four times as many: the fewest with which little of the surface is of walls
+/// in between; `count` if there is no such number.
 pub fn samples_for_walls(
     surface: &Surface,
     tree: &TriangleTree,

@@ -1,20 +1,21 @@
-//! The roof over a polygon with holes: the edges of the polygon move inward at one speed, and the corners of the shrinking
-//! outline trace its ridges and valleys, up to a height. Seen from above this is the straight skeleton (Aichholzer,
-//! Aurenhammer, Alberts and Gärtner, "A novel type of skeleton for polygons", 1995).
+//! The roof over a polygon with holes: the edges of the polygon move inward at one speed, and the corners of the
+//! shrinking outline trace its ridges and valleys, up to a height. Seen from above this is the straight skeleton
+//! (Aichholzer, Aurenhammer, Alberts and Gärtner, "A novel type of skeleton for polygons", 1995).
 //!
 //! All is linear in the height: a ball about a point of the roof, of its height, touches the edge that the point's cell
 //! is of, and lies in the polygon. At a reflex corner the roof is lower than the distance to the corner, and its edges
 //! are straight, where those of the medial axis are parabolas.
 //!
 //! # Method
-//! The next of all events is looked for again after each: an edge that vanishes, or a reflex corner that meets an edge and
-//! splits the outline. Lines are turned and moved a little at random ([`PERTURBATION`]), so that no two events coincide
-//! and no corner is between parallel edges.
+//! The next of all events is looked for again after each: an edge that vanishes, or a reflex corner that meets an edge
+//! and splits the outline. Lines are turned and moved a little at random ([`PERTURBATION`]), so that no two events
+//! coincide and no corner is between parallel edges.
 
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::random::Random;
 
-/// Lines are turned by up to this (rad) and moved by as much (longest side 1): far below what the roof is to be near to.
+/// Lines are turned by up to this (rad) and moved by as much (longest side 1): far below what the roof is to be near
+/// to.
 const PERTURBATION: f64 = 1e-7;
 
 /// An event this much before the last, and a corner this far beyond the end of an edge, are rounding.
@@ -39,7 +40,7 @@ struct Corner {
     next: usize,
     /// The node of the roof where it began.
     from: u32,
-    /// Where it would be at height 0, and how far it moves as that grows by 1.
+    /// Place that the corner would have at height 0, and the way that it moves as the height grows by 1.
     start: Point,
     speed: Point,
     is_reflex: bool,
@@ -54,7 +55,7 @@ impl Corner {
 
 /// A ridge or a valley of the roof.
 pub struct RoofEdge {
-    /// Its nodes.
+    /// Nodes at the two ends.
     pub ends: [u32; 2],
     /// The edges of the polygon whose cells it bounds.
     pub sides: [usize; 2],
@@ -66,10 +67,10 @@ pub struct RoofEdge {
 pub struct PolygonRoof {
     /// Points `(x, y, height)`. The first are the corners of the polygon, in order.
     pub nodes: Vec<Point>,
-    /// Its ridges and valleys.
+    /// Ridges and valleys.
     pub edges: Vec<RoofEdge>,
-    /// What is left of the outline at the height at which it ends: loops of nodes, and the edge of the polygon that follows
-    /// each.
+    /// The shrunken outline at the height at which the roof ends: loops of nodes, each with the edge of the polygon
+    /// that follows it.
     pub top: Vec<Vec<(u32, usize)>>,
 }
 
@@ -85,8 +86,8 @@ enum Event {
     Splits(usize, usize),
 }
 
-/// The roof over a polygon up to `height`: loops around it, matter on their left. `None` where it is not simple, or where
-/// rounding spoilt it: another `seed` may do.
+/// The roof over a polygon up to `height`: loops around it, matter on their left. `None` where it is not simple, or
+/// where rounding spoilt it: another `seed` may do.
 pub fn polygon_roof(loops: &[Vec<Point>], height: f64, seed: u64) -> Option<PolygonRoof> {
     if crosses_itself(loops) {
         return None;
@@ -177,7 +178,7 @@ impl Wavefront {
         })
     }
 
-    /// When a corner is on a line.
+    /// Height at which a moving corner reaches a moving line.
     fn meets(&self, corner: &Corner, line: usize) -> f64 {
         let line = self.lines[line];
         (line.offset - line.normal.dot(corner.start)) / (line.normal.dot(corner.speed) - 1.0)
@@ -342,7 +343,7 @@ fn crosses_itself(loops: &[Vec<Point>]) -> bool {
     edges.iter().enumerate().any(crosses)
 }
 
-/// To the left of a direction.
+/// Unit vector to the left of a direction.
 fn inward(along: Point) -> Point {
     Point::new(-along.y, along.x, 0.0)
 }

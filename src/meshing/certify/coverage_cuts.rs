@@ -1,28 +1,34 @@
 //! Cuts a piece of a face where the part that one primitive covers ends.
 //!
-//! The signed distance to a primitive is the least `|p − c| − r` over its balls. That is convex in the point and the ball's
-//! weights together, so its minimum over the weights is convex in the point (Boyd and Vandenberghe, *Convex Optimization*,
-//! 2004, §3.2.5). What a primitive covers of an edge of a piece is therefore one interval, and the polygon through the ends
-//! of the intervals is covered whole. Halves of halves would go on along the whole line at which one primitive's part ends
-//! and the next one's begins.
+//! The signed distance to a primitive is the least `|p − c| − r` over its balls. That is convex in the point and the
+//! ball's weights together, so its minimum over the weights is convex in the point (Boyd and Vandenberghe, *Convex
+//! Optimization*, 2004, §3.2.5). What a primitive covers of an edge of a piece is therefore one interval, and the
+//! polygon through the ends of the intervals is covered whole. Halves of halves would go on along the whole line at
+//! which one primitive's part ends and the next one's begins.
 
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::subdivide::longest_edge_sq;
 
-/// What sticks out of the primitive by no more than this (longest side 1) counts as covered: where a slab touches a flat
-/// face, distances are of rounding.
+/// Distance (longest side 1) by which a point may stick out of a primitive and still count as covered: where a slab
+/// touches a flat face, distances are rounding errors.
 const TOLERANCE: f64 = 1e-9;
 
-/// The end of an interval is found to this distance from the primitive, or in so many steps.
+/// Depth in the primitive (longest side 1) at which a point counts as the end of the covered interval. The point
+/// found is always covered; a deeper one leaves more of the piece uncovered.
 const EXACT: f64 = 1e-10;
+
+/// Largest number of steps in the search for that end. With fewer it may be deeper.
 const STEPS: usize = 16;
 
 /// Steps of the search for a covered point between two that are not; each leaves .62 of the edge.
 const SEARCH: usize = 12;
 
-/// A cut that leaves the primitive less than this share of a piece gets nowhere; nor does one of a piece lower than this
-/// (longest side 1). So the number of cuts is bounded.
+/// Share of a piece's area that a primitive has to cover for a cut along it: less gets nowhere. It bounds the number of
+/// cuts.
 const LEAST_SHARE: f64 = 0.1;
+
+/// Height of a piece over its longest edge (longest side of the body 1) below which it is not cut. It bounds the number
+/// of cuts too.
 const LEAST_HEIGHT: f64 = 1e-4;
 
 /// Parts of a piece: those that the primitive covers, and the others.
@@ -76,7 +82,8 @@ pub fn cut_covered(t: &[Point; 3], distance: impl Fn(Point) -> f64) -> Option<Cu
     Some(Cut { inner, outer })
 }
 
-/// Where a convex function of `x`, of these values at 0 and 1, is at most 0.
+/// The interval of `x`, from 0 to 1, in which a convex function is at most 0, given its values at 0 and 1; `None` if
+/// there is none.
 fn interval(at_0: f64, at_1: f64, f: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
     let inside = match (at_0 <= 0.0, at_1 <= 0.0) {
         (true, true) => return Some((0.0, 1.0)),
@@ -101,6 +108,7 @@ fn interval(at_0: f64, at_1: f64, f: impl Fn(f64) -> f64) -> Option<(f64, f64)> 
 /// A place between 0 and 1 where a convex function is at most 0, and its value there, by golden sections (Kiefer,
 /// "Sequential minimax search for a maximum", 1953).
 fn below_zero(f: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
+    /// The golden ratio less 1: with it one of the two inner places serves again in the next step.
     const GOLDEN: f64 = 0.618_033_988_749_895;
     let (mut from, mut to) = (0.0, 1.0);
     let value = |x: f64| (x, f(x));

@@ -32,9 +32,11 @@ const POINTS: usize = 30_000;
 /// three passes settle nearly all.
 const DILATION_PASSES: usize = 8;
 
-/// Longest edge of the smallest pieces of the certificate (longest side 1), up to 500 primitives. A piece that needs
-/// two primitives costs up to this much growth. More primitives have smaller errors: it shrinks as their own size does.
+/// Longest edge of the smallest pieces of the certificate (longest side 1), up to [`FINEST_UP_TO`] primitives. A piece
+/// that needs two primitives makes one of them grow by up to this much.
 const FINEST: f64 = 0.002;
+
+/// Number of primitives above which the smallest pieces shrink as primitives do: more primitives have smaller errors.
 const FINEST_UP_TO: f64 = 500.0;
 
 /// Passes of the certificate before all balls grow alike. Measured: 2 to 5 are needed.
@@ -170,7 +172,7 @@ struct Prover<'a> {
     tree: &'a PrimitiveTree<'a>,
     /// The primitive that held the piece before.
     hint: u32,
-    /// Largest distance by which a piece was missed.
+    /// Largest distance by which the solid failed to cover a piece.
     worst: f64,
     /// Squared length of the longest edge of the smallest pieces.
     finest_sq: f64,

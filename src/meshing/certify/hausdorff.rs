@@ -46,19 +46,25 @@ const WAY_OUT: f64 = 0.05;
 /// Step off the surface that tells an enclosed part from the outside (longest side 1).
 const OFF_SURFACE: f64 = 1e-4;
 
-/// Ways along which a piece of the source is moved out of the solid, and the share of its way by which each turns away from
-/// what was in the way of the one before. Faces that meet in a reflex edge are enlarged to cover rounding, and stand in
-/// each other's way: two ways more for a corner of three.
+/// Directions along which a piece of the source is moved to get out of the solid. Faces that meet in a reflex edge
+/// are enlarged to cover rounding, and stand in each other's way: a corner of three needs two directions more than the
+/// normal.
 const WAYS: usize = 3;
+
+/// How far each direction turns away from what was in the way of the one before, in units of its length.
 const TILT: f64 = 0.05;
 
-/// Way out (longest side 1) that is tried too where a piece is nearly on the boundary, turned by as much as need be: in a
-/// slit the other side is near. Twice what bodies are enlarged by.
+/// Length of a second way out (longest side 1), tried where a piece is nearly on the boundary. Its direction turns as
+/// far as need be, since in a slit the other side is near. Twice the length by which bodies are enlarged to cover
+/// rounding.
 const SLIT: f64 = 5e-6;
 
-/// Pieces that either direction may take on average, and more for each primitive: about 0.2 s, and 0.3 s per
-/// thousand. Bug and dolphin at 500 primitives keep to a quarter of the error with that.
+/// Pieces that the search in either direction (source to solid, solid to source) may examine before it becomes coarser:
+/// about 0.2 s.
 const PIECES: f64 = 3e5;
+
+/// Pieces more for each primitive: about 0.3 s per thousand primitives. With both, the slack need not
+/// grow above a quarter of the error for bug and dolphin at 500 primitives.
 const PIECES_PER_PRIMITIVE: f64 = 500.0;
 
 /// Measures how far a medial mesh is from a triangle mesh, both in the same frame and unit. Distances are in that
@@ -244,9 +250,8 @@ impl FromSource<'_> {
         Look::Distance(out)
     }
 
-    /// Whether each point of a triangle is within `allowed` of the boundary: it sticks out of one
-    /// primitive by no more, and moved by as much or less, along its normal or a little away from what stands beside it,
-    /// it is all outside.
+    /// Whether each point of a triangle is within `allowed` of the boundary: it sticks out of one primitive by no more,
+    /// and moved by as much or less, along its normal or a little away from what stands beside it, it is all outside.
     fn is_settled(&self, corners: &[Point; 3], center: Point, normal: Point, allowed: f64) -> bool {
         let to_hint = |p: Point| self.solid.distance_to(self.hint, p);
         if allowed < 0.0

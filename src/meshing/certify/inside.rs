@@ -15,8 +15,8 @@ use std::collections::BinaryHeap;
 /// below any error.
 const ON_BOUNDARY: f64 = 1e-7;
 
-/// Length (longest side 1) by which a way out of the solid may be overstated in any case: half of what bodies are enlarged
-/// by to cover rounding. Without it, bodies with steps of 1e-5 take three times as long.
+/// Length (longest side 1) by which a way out of the solid may be overstated in any case: half of what bodies are
+/// enlarged by to cover rounding. Without it, bodies with steps of 1e-5 take three times as long.
 const WAY_OUT_LENGTH: f64 = 1e-6;
 
 /// How much larger the next cube is in which an exit is searched, and how much larger the first is than the depth: with
@@ -118,7 +118,7 @@ impl<'a> Solid<'a> {
         self.tree.ball(near)
     }
 
-    /// The same as [`Self::nearest`], if its signed distance is at most `limit` on either side.
+    /// Does the same as [`Self::nearest`], if the signed distance is at most `limit` on either side; `None` otherwise.
     pub fn nearest_if_near(&self, p: Point, limit: f64, hint: u32) -> Option<Nearest> {
         let near = self.tree.nearest_between(p, -limit, limit, hint);
         (near.signed.distance.abs() <= limit).then_some(near)
@@ -216,8 +216,8 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// The nearest exit in a cube around a point as [`Self::nearest_exit`]. Cells that the boundary may cross are searched,
-    /// nearest first.
+    /// The nearest exit in a cube around a point as [`Self::nearest_exit`]. Cells that the boundary may cross are
+    /// searched, nearest first.
     fn exit_within(&self, cube: Cell, [way, enough]: [f64; 2], share: f64, mut hint: u32) -> Exit {
         let p = cube.center;
         let mut best = Exit {
@@ -261,7 +261,8 @@ impl<'a> Solid<'a> {
 pub struct Exit {
     /// Length of the way.
     pub distance: f64,
-    /// Where it ends; `None` if none is shorter than the limit, which `distance` is then.
+    /// Point where the way ends. `None` if no way is shorter than the limit of the search; `distance` is then that
+    /// limit.
     pub point: Option<Point>,
     /// Cells that the search for it looked at.
     pub cells: u64,

@@ -14,10 +14,12 @@ use crate::error::BuildError;
 /// Distances below this (longest side 1) have the slack of this one: nobody needs them closer.
 const SMALL: f64 = 2e-3;
 
-/// A search may be ahead of its budget by this share of it: large errors lie close together. From
-/// there the slack doubles with each further [`STEP`], and falls again when the rest catches up.
-/// Uniform errors, from which no piece stands out, need it.
+/// Share of its budget by which a search may be ahead of the part of the surface that is done, since large errors lie
+/// close together. Beyond it the slack grows, until the rest catches up; surfaces with the same error everywhere, from
+/// which no piece stands out, would otherwise take far more than the budget.
 const AHEAD: f64 = 0.5;
+
+/// Share of the budget with each of which, beyond [`AHEAD`], the slack doubles.
 const STEP: f64 = 0.125;
 
 /// Pieces smaller than this (longest side 1) are not cut, whatever they may hide.
@@ -30,11 +32,13 @@ const WIDE: usize = 8_192;
 /// them.
 const POLISH: f64 = 0.02;
 
-/// Pieces examined at most for that.
+/// Largest number of pieces examined for that.
 const POLISH_BUDGET: usize = 4_000;
 
-/// How many pieces that is, and the share of the largest distance that each must reach.
+/// Largest number of pieces with large distances that are searched again for that.
 const LEADERS: usize = 32;
+
+/// Share of the largest distance found so far that a piece has to exceed to be searched again.
 const LEADING: f64 = 0.8;
 
 /// Pieces between two reports of progress: where a fit is far off, each may take ten milliseconds.
@@ -114,7 +118,7 @@ pub struct Search<'a, S: Side> {
     effort: Effort,
     /// Pieces that gave large distances.
     leaders: Vec<(f64, S::Piece)>,
-    /// No point of a piece that was given up is farther than this.
+    /// Bound of the distances in the pieces that were too small to cut.
     given_up: f64,
     /// Pieces to examine, those examined, and the share of the surface that is done.
     budget: f64,

@@ -1,11 +1,11 @@
 //! Mass properties of what a source surface encloses, at unit density.
 //!
 //! A simple closed surface is integrated exactly, by the divergence theorem, as a sum over tetrahedra (parry's is in
-//! single precision, and off by a thousandth for thin bodies). Where patches overlap that counts matter twice, and where
-//! they have openings it depends on the origin. Then volume integrals are summed along a lattice of parallel lines: on
-//! each the winding number rises and falls by 1 from triangle to triangle, and matter is where it
-//! is at least 1. The lines' direction is incommensurable with the axes: along an axis they would
-//! all miss a thin wall, or all hit it.
+//! single precision, and off by a thousandth for thin bodies). Where patches overlap that counts matter twice, and
+//! where they have openings it depends on the origin. Then volume integrals are summed along a lattice of parallel
+//! lines: on each the winding number rises and falls by 1 from triangle to triangle, and matter is where it is 1 or
+//! more. The lines' direction is incommensurable with the axes: along an axis they would all miss a thin wall, or all
+//! hit it.
 
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
@@ -76,9 +76,9 @@ fn exact(surface: &Surface) -> Option<MassProperties> {
 struct Crossing {
     row: i32,
     column: i32,
-    /// Along the line.
+    /// Place along the line.
     at: f64,
-    /// Change of the winding number.
+    /// Change of the winding number at the crossing.
     change: i32,
 }
 

@@ -1,7 +1,12 @@
 //! Certificates of a result: that it covers the surface, how far it is off, its mass.
 //!
-//! `enclose.rs` raises radii until the solid covers the surface, and proves it; `hausdorff.rs` measures the error, by
-//! the branch and bound of `largest.rs`; `mass.rs` has the mass of the source.
+//! # Files
+//! - It covers the surface: `enclose.rs` raises radii until it does, and proves it; `coverage_cuts.rs` cuts faces where
+//!   the part that one primitive covers ends.
+//! - Its error: `hausdorff.rs`, by the branch and bound of `largest.rs`.
+//! - The solid itself: `inside.rs` (the union of the primitives), `primitive_tree.rs` (signed distance to it),
+//!   `prepared_primitives.rs` (distance to one primitive for many points).
+//! - The mass of the source: `mass.rs`.
 
 mod coverage_cuts;
 pub(crate) mod enclose;

@@ -24,8 +24,8 @@ struct Edge {
     axis: Point,
     radius: f64,
     growth: f64,
-    /// One over the squared length, and over that less the growth squared; 0 where one ball contains
-    /// the other, which `end` names.
+    /// Inverse of the squared length, and of the squared length less the squared growth of the radius; 0 where one ball
+    /// contains the other, which `end` names.
     inverse: f64,
     inverse_discriminant: f64,
     end: f64,
@@ -103,7 +103,8 @@ impl Prepared {
         }
     }
 
-    /// Whether the signed distance of `p` is above `limit` for certain, by how far the balls reach along a unit vector.
+    /// Whether the signed distance of `p` is certainly above `limit`: proven by how far the balls reach along the unit
+    /// vector `way`.
     #[inline]
     pub fn is_beyond(&self, p: Point, way: Point, limit: f64) -> bool {
         let [ab, ac, _] = &self.edges;
@@ -154,6 +155,7 @@ impl Prepared {
     }
 }
 
+/// Start of a search for the least distance: farther than any point.
 const NONE: Signed = Signed {
     distance: f64::INFINITY,
     weights: [1.0, 0.0, 0.0],

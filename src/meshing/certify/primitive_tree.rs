@@ -165,8 +165,8 @@ impl<'a> PrimitiveTree<'a> {
         best
     }
 
-    /// The same as [`Self::nearest`] where the smallest signed distance is between `least` and `most`; elsewhere some
-    /// primitive, of a signed distance that is not either.
+    /// Does the same as [`Self::nearest`] if the smallest signed distance is between `least` and `most`. Otherwise it
+    /// returns some primitive whose signed distance is not between them either.
     pub fn nearest_between(&self, p: Point, least: f64, most: f64, hint: u32) -> Nearest {
         let mut best = self.hinted(hint, p);
         if best.signed.distance >= least {

@@ -17,8 +17,10 @@ const CHUNK: usize = 512;
 /// on one core, below the 0.2 s within which a cancelled build returns.
 const BATCH: usize = 16;
 
-/// Items of a chunk that take some ten times as long each as a look-up, and some hundred times.
+/// Items in a chunk where each takes some ten times as long as a look-up in a tree. Only speed depends on it.
 pub const COSTLY: usize = 32;
+
+/// Items in a chunk where each takes some hundred times as long as a look-up in a tree. Only speed depends on it.
 pub const VERY_COSTLY: usize = 2;
 
 /// Joins what `map` makes of each chunk of `items`, in order.
@@ -30,7 +32,7 @@ pub fn map_chunks<T: Sync, R: Send>(
     map_chunks_of(CHUNK, items, watch, map)
 }
 
-/// What `map` makes of each item, in order, in chunks of [`COSTLY`] or [`VERY_COSTLY`] items.
+/// Results of `map` for all items, in order. The items are worked on in chunks of [`COSTLY`] or [`VERY_COSTLY`].
 pub fn map_each<T: Sync, R: Send>(
     chunk: usize,
     items: &[T],

@@ -56,7 +56,7 @@ impl Convex {
         }
     }
 
-    /// All corners, once for each face that they are of.
+    /// All corners, each once for every face that it is of.
     pub fn corners(&self) -> impl Iterator<Item = Point> + Clone + '_ {
         self.faces
             .iter()
@@ -81,8 +81,8 @@ impl Convex {
     }
 
     /// The parts below and above a plane, whose new face is of plane `index`; `None` for a part that has no thickness.
-    /// Points within `on` of the plane are on it: planes through vertices that were rounded miss each other's corners by
-    /// less.
+    /// Points within `on` of the plane are on it: planes through vertices that were rounded miss each other's corners
+    /// by less.
     pub fn cut(&self, plane: &Plane, index: u32, on: f64) -> [Option<Self>; 2] {
         let depths = || self.corners().map(|p| plane.depth(p));
         [1.0, -1.0].map(|sign| {
@@ -116,13 +116,13 @@ impl Convex {
     }
 }
 
-/// A height, or 0 where it is within `on`.
+/// The height, or 0 if it is within `on`.
 fn off(height: f64, on: f64) -> f64 {
     if height.abs() <= on { 0.0 } else { height }
 }
 
-/// The parts of a convex polygon below and above a plane; `None` for one that is a point or an edge. Points within `on` of
-/// the plane are on it. A polygon that lies on it is below.
+/// The parts of a convex polygon below and above a plane; `None` for one that is a point or an edge. Points within `on`
+/// of the plane are on it. A polygon that lies on it is below.
 pub fn cut_polygon(corners: &[Point], plane: &Plane, on: f64) -> [Option<Vec<Point>>; 2] {
     let height = |sign: f64| move |p: Point| off(sign * plane.depth(p), on);
     let is_above = |sign: f64| corners.iter().any(|p| height(sign)(*p) > 0.0);

@@ -127,6 +127,7 @@ impl FourPoints {
 /// sum. Radii and limits that are taken off or compared with are no larger.
 #[inline]
 pub fn slack(p: Point, reach: f64) -> f64 {
+    /// The sum of these errors, rounded up, over the sum of both lengths (no unit).
     const ULPS: f64 = 16.0 * f32::EPSILON as f64;
     ULPS * (reach + p.x.abs().max(p.y.abs()).max(p.z.abs()))
 }

@@ -1,4 +1,12 @@
 //! Boxes, triangles, trees and orders of points: what every stage of a build computes with.
+//!
+//! # Files
+//! - Points and boxes: `bounds.rs`, four boxes side by side `four_boxes.rs`.
+//! - Triangles: `triangle.rs` (nearest point, solid angle), `nearest_triangle.rs` (distances to many),
+//!   `triangle_tree.rs` (distance and winding number), `subdivide.rs` (into smaller ones), `polygon_triangles.rs` (a
+//!   polygon with holes cut into triangles).
+//! - Planes: `convex.rs` (convex polyhedra cut by them), `quadric.rs` (squared distances of a sphere to them).
+//! - Helpers: `chunks.rs` (work on all cores), `random.rs` (seeded), `union_find.rs` (groups of indices).
 
 pub(crate) mod bounds;
 pub(crate) mod chunks;

@@ -18,8 +18,8 @@ pub fn polygon_area(points: &[Point]) -> f64 {
     0.5 * twice.sum::<f64>()
 }
 
-/// Triangles of what loops of points bound, matter on their left: `at` gives the places of points in the plane. What is not
-/// simple, by rounding, is cut too, as well as can be.
+/// Triangles of what loops of points bound, matter on their left: `at` gives the places of points in the plane. What is
+/// not simple, by rounding, is cut too, as well as can be.
 pub fn polygon_triangles(loops: Vec<Vec<u32>>, at: impl Fn(u32) -> Point) -> Vec<[u32; 3]> {
     let area = |around: &Vec<u32>| {
         let fan = around.windows(2);

@@ -20,7 +20,8 @@ use crate::meshing::geometry::bounds::{Point, direction, perpendicular};
 /// against any curvature that planes give, large against rounding.
 const TIKHONOV: f64 = 1e-9;
 
-/// sin² of the angle between two edges of a slab, the longer taken for both (a pure number), below which it counts as a cone.
+/// sin² of the angle between two edges of a slab, the longer taken for both (a pure number), below which it counts as a
+/// cone.
 const COLLINEAR_SIN_SQ: f64 = 1e-20;
 
 type Vector4 = [f64; 4];
@@ -136,8 +137,8 @@ fn coordinates(ball: &Ball) -> Vector4 {
     [c.x, c.y, c.z, ball.radius]
 }
 
-/// Outward unit normals of the two planes that touch three balls, if there are any. Where the centres are nearly in a line
-/// there are none: the slab is as thin as a cone, and its edges carry the error.
+/// Outward unit normals of the two planes that touch three balls, if there are any. Where the centres are nearly in a
+/// line there are none: the slab is as thin as a cone, and its edges carry the error.
 pub fn slab_normals(balls: [Ball; 3]) -> Option<[Point; 2]> {
     let [a, b, c] = balls.map(|ball| ball.center);
     let longest_sq = (b - a).length_sq().max((c - a).length_sq());

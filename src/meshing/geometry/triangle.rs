@@ -15,8 +15,8 @@ pub fn solid_angle_of(p: Point, t: &[Point; 3]) -> f64 {
     2.0 * numerator.atan2(denominator)
 }
 
-/// The middle of a triangle, and points near its corners and the middles of its sides: by a share of the way from these to
-/// the middle.
+/// The middle of a triangle, and points near its corners and the middles of its sides: by a share of the way from these
+/// to the middle.
 pub fn points_inside(corners: &[Point; 3], share: f64) -> [Point; 7] {
     let [a, b, c] = *corners;
     let middle = (a + b + c) * (1.0 / 3.0);

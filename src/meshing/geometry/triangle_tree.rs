@@ -1,9 +1,9 @@
 //! A tree of boxes over the source triangles, in double precision: distance and winding number.
 //!
-//! Distances: `nearest_triangle.rs`. Winding number: Jacobson et al., "Robust Inside-Outside Segmentation using Generalized Winding
-//! Numbers" (2013), with the far field of Barill et al., "Fast Winding Numbers for Soups and
-//! Clouds" (2018): seen from afar, a group of triangles is one dipole at its centroid, whose
-//! moment is the sum of its area vectors.
+//! Distances: `nearest_triangle.rs`. Winding number: Jacobson et al., "Robust Inside-Outside Segmentation using
+//! Generalized Winding Numbers" (2013), with the far field of Barill et al., "Fast Winding Numbers for Soups and
+//! Clouds" (2018): seen from afar, a group of triangles is one dipole at its centroid, whose moment is the sum of its
+//! area vectors.
 
 use crate::error::BuildError;
 use crate::meshing::geometry::bounds::{Bounds, Point, coordinate, direction};
@@ -150,8 +150,8 @@ impl TriangleTree {
         }
     }
 
-    /// Point of the surface at the distance of [`Self::distance_from`]; adds the number of nodes and triangles that were
-    /// looked at to `work`.
+    /// Point of the surface at the distance of [`Self::distance_from`]; adds the number of nodes and triangles that
+    /// were looked at to `work`.
     pub fn closest_counted(&self, p: Point, hint: u32, work: &mut u64) -> (Point, u32) {
         let (_, triangle) = self.distance_counted(p, hint, work);
         let corners = &self.nearest.corners()[triangle as usize];
@@ -206,16 +206,19 @@ impl TriangleTree {
         (closest_on_triangle(p, corners), nearest)
     }
 
-    /// Signed distance to the surface: negative behind the nearest triangle. Near an edge several
-    /// are equally near; the one seen most from above decides. A wrong sign can only happen within
-    /// rounding of such a tie, or where the surface is open.
+    /// Signed distance to the surface, negative inside (behind the nearest triangle). `guess` is the likely distance;
+    /// only the time depends on it.
+    ///
+    /// At an edge or a corner several triangles are equally near, and `p` may be before one and behind another. The
+    /// triangle from whose plane `p` is farthest decides, since its side is the clearest. The sign can be wrong only if
+    /// two of them tie to within rounding, or near a hole of the surface.
     pub fn signed_distance(&self, p: Point, guess: f64) -> f64 {
         self.signed_within(p, guess)
             .or_else(|| self.signed_within(p, f64::INFINITY))
             .unwrap_or(f64::INFINITY)
     }
 
-    /// [`Self::signed_distance`], if the surface is within `limit`.
+    /// The signed distance, if the surface is within `limit`; `None` otherwise.
     pub fn signed_within(&self, p: Point, limit: f64) -> Option<f64> {
         let distance = (self.closest_within(p, limit)? - p).length();
         let mut height = 0.0f64;
@@ -310,6 +313,7 @@ fn build(
 }
 
 impl Node {
+    /// A node without triangles.
     const EMPTY: Self = Self {
         bounds: Bounds::EMPTY,
         first: 0,

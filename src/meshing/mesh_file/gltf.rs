@@ -11,7 +11,8 @@ use gltf::mesh::Mode;
 use gltf::{Accessor, Document, Node, Primitive, Semantic};
 use nalgebra::{Matrix4, Point3};
 
-/// Most vertices, and triangles, of a scene: one mesh may hang on many nodes, so the file's size is no bound.
+/// Largest number of vertices, and of triangles, of a scene. The size of the file is no bound, since one mesh may hang
+/// on many nodes.
 const MOST: usize = 100_000_000;
 
 /// Reads the scene that the file opens with, or all of it where it names none.

@@ -21,7 +21,7 @@ pub struct Candidate {
     pub before: Option<Hausdorff>,
     pub notes: Vec<String>,
     pub variant: Variant,
-    /// With how many primitives it would be exact, where it is not.
+    /// Number of primitives with which it would be exact, where it is not.
     pub exact_with: Option<usize>,
 }
 

@@ -1,5 +1,5 @@
-//! The medial mesh of a prism: its profile with as many edges as the count allows, and the roof over that, which is exact
-//! for it (`prism_axis.rs`), or its thick part and ribs (`ribs.rs`), which take fewer slabs.
+//! The medial mesh of a prism: its profile with as many edges as the count allows, and the roof over that, which is
+//! exact for it (`prism_axis.rs`), or its thick part and ribs (`ribs.rs`), which take fewer slabs.
 
 use crate::error::BuildError;
 use crate::math::Real;
@@ -15,17 +15,25 @@ use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::profile::{Profile, fewer};
 use crate::meshing::watch::Watch;
 
-/// Thicknesses within which profiles are brought to fewer edges (longest side 1), and their ratio.
+/// Largest thickness within which a profile is brought to fewer edges (longest side 1): the coarsest prism that is
+/// tried.
 const THICKEST: f64 = 0.05;
+
+/// Thickness at which the search for a profile ends (longest side 1), if the count of primitives has not ended it
+/// before.
 const THINNEST: f64 = 1e-4;
+
+/// Ratio of each thickness to the one before. Nearer to 1, and more profiles are tried, in more time.
 const STEP: f64 = 0.85;
 
-/// Half the thickness below which parts are ribs (longest side 1), and the thickness within which what is left is brought to
-/// fewer edges, over that of the profile.
+/// Half of the thickness below which parts of a profile are ribs (longest side 1). All are tried.
 const THIN: [f64; 6] = [0.015, 0.02, 0.03, 0.045, 0.065, 0.09];
+
+/// Thickness within which a profile without its ribs is brought to fewer edges, in units of the thickness within which
+/// the whole profile was. All are tried.
 const COARSER: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 
-/// Profiles of more edges are not tried with ribs: roofs take time that grows with the third power of the count.
+/// Largest number of edges of a profile that is tried with ribs: the time for a roof grows with the third power of it.
 const MOST_RIBBED: usize = 256;
 
 /// Ridges shorter than this share of the thickness are points. With 1 the count is hardly less.
@@ -34,23 +42,24 @@ const SAME: f64 = 0.25;
 /// Radii are larger by this (longest side 1): what is covered needs no proof by the smallest pieces then.
 const MARGIN: f64 = 1e-5;
 
-/// A draft that is off by more than so many thicknesses, at few samples, is not of the body: it is no prism, but for its
-/// outline.
+/// Distance, in units of the thickness, by which a draft may be off at a few samples. One that is off by more does not
+/// fit the body, which then is a prism by its outline alone.
 const FAR: f64 = 4.0;
 
-/// A prism that is off by no more than this (longest side 1) is not fitted as well: fits of prisms by 200 primitives are
-/// off by .002 to .006.
+/// Largest error (longest side 1) of a prism that is returned without a fit besides: fits of prisms by 200 primitives
+/// are off by .002 to .006.
 pub const NEAR: f64 = 2.5e-3;
 
 /// The balls and slabs of a prism near to a body.
 struct Prism {
     draft: Draft,
     count: usize,
-    /// It is off by no more at few samples, or not of the body.
+    /// Largest distance (longest side 1) by which it may be off at a few samples; a draft that is off by more is not of
+    /// the body.
     far: f64,
     /// The edges of its profile.
     edges: usize,
-    /// What it consists of, in words.
+    /// Description of its parts, for the report.
     parts: String,
 }
 
@@ -150,7 +159,7 @@ impl Source {
     }
 }
 
-/// What prisms consist of.
+/// Construction of prisms.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     /// Roofs alone.

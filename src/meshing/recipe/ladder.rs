@@ -1,8 +1,8 @@
-//! Gives a collapsed medial mesh for any number of primitives, in whatever order they are asked for, from two collapses:
-//! one for up to [`LARGE`] primitives, and one for more, which measures costs from the start.
+//! Gives a collapsed medial mesh for any number of primitives, in whatever order they are asked for, from two
+//! collapses: one for up to [`LARGE`] primitives, and one for more, which measures costs from the start.
 //!
-//! Neither depends on where it stops. So the state is kept each time the number has halved, and a mesh of any number only
-//! needs the collapse from the kept state above it.
+//! Neither depends on where it stops. So the state is kept each time the number has halved, and a mesh of any number
+//! only needs the collapse from the kept state above it.
 
 use crate::error::BuildError;
 use crate::meshing::geometry::bounds::Point;
@@ -36,7 +36,8 @@ impl<'a> Ladder<'a> {
         self.on_the_way(count, count > LARGE, watch)
     }
 
-    /// The same, from the collapse to many primitives where it is `large`.
+    /// The medial mesh with at most `count` primitives, from the collapse to many primitives if `large`, else from the
+    /// other.
     fn on_the_way(
         &mut self,
         count: usize,

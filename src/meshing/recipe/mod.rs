@@ -1,8 +1,10 @@
 //! Which candidates a build makes, in which order, and which of them it returns.
 //!
-//! - The order: `pipeline.rs`. A possible result: `candidate.rs`.
+//! # Files
+//! - The order: `pipeline.rs`. What it starts from: `source.rs`. A possible result: `candidate.rs`.
 //! - Exact ones: `polyhedron.rs` (convex), `pieces.rs` (flat faces), `extruded.rs` (prisms, gears with ribs).
-//! - Fitted ones: `ladder.rs`, `counts.rs` (how many primitives), `tightened.rs`, `smallest.rs` (for a given error).
+//! - Fitted ones: `ladder.rs` (a collapsed mesh for any number of primitives), `counts.rs` (how many primitives),
+//!   `tightened.rs` (covers the surface closely), `smallest.rs` (for a given error).
 
 pub(crate) mod candidate;
 pub(crate) mod counts;

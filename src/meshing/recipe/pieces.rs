@@ -57,8 +57,8 @@ impl Source {
         Ok(None)
     }
 
-    /// The parts of a source of convex parts that overlap and are not hidden, and how far its corners may be beside them;
-    /// `None` where one of them is not convex.
+    /// The parts of a source of convex parts that overlap and are not hidden, and how far its corners may be beside
+    /// them; `None` where one of them is not convex.
     fn own_parts(
         &self,
         flat: f64,
@@ -88,8 +88,8 @@ impl Source {
         Ok(Some((parts, flat)))
     }
 
-    /// The pieces that the planes of all faces make, where corners are off these by at most `flat`, and how far the source's
-    /// corners may be beside them; `None` where there are too many.
+    /// Convex pieces between the planes of all faces, for corners that are off these planes by at most `flat`, and the
+    /// distance by which the source's corners may be outside them. `None` where there are too many pieces.
     fn parts_by_faces(
         &self,
         flat: f64,
@@ -112,8 +112,8 @@ impl Source {
         Ok(pieces.map(|pieces| (parts(pieces), beside)))
     }
 
-    /// The medial axes of convex pieces whose union is the body, if they have at most `most` primitives, and are off by less
-    /// than `close`; the source's corners may be `beside` them.
+    /// The medial axes of convex pieces whose union is the body, if they have at most `most` primitives, and are off by
+    /// less than `close`; the source's corners may be `beside` them.
     fn of_parts(
         &self,
         parts: &[Part],
@@ -235,8 +235,8 @@ impl Source {
     }
 }
 
-/// Planes of faces less those that are others, of which faces look the other way or are apart: all corners of a face lie
-/// within `on` of them. And how far they do at most, beyond `flat`.
+/// Planes of faces less those that are others, of which faces look the other way or are apart: all corners of a face
+/// lie within `on` of them. And how far they do at most, beyond `flat`.
 fn distinct(surface: &Surface, faces: &FlatFaces, flat: f64, on: f64) -> (Vec<Plane>, f64) {
     let mut corners = vec![Vec::new(); faces.planes.len()];
     for &(t, face) in &faces.face_of {

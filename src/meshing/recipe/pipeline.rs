@@ -16,8 +16,8 @@ use crate::meshing::simplify::shared_count::Parts;
 use crate::meshing::surface::boundary::solid_boundary;
 use crate::meshing::watch::Watch;
 
-/// The plain collapses of two medial meshes of one body are compared by few samples: the one whose largest
-/// residual is above this many of the other's is not fitted.
+/// Ratio of the largest residuals, at few samples, of the plain collapses of two medial meshes of a body. One that is
+/// worse than the other by more than this is not fitted.
 const HOPELESS: f64 = 2.0;
 
 /// Samples for tens of primitives.
@@ -65,7 +65,8 @@ impl Source {
         }
     }
 
-    /// The medial mesh of balls inside and of slabs: of few samples where it is only to be smaller than one that is exact.
+    /// The medial mesh of balls inside and of slabs: of few samples where it is only to be smaller than one that is
+    /// exact.
     pub fn start(&mut self, few: bool, watch: &mut Watch) -> Result<Start, BuildError> {
         let count = match few {
             true => FEW_SAMPLES,
@@ -186,8 +187,8 @@ impl Source {
         Ok(best)
     }
 
-    /// The smallest medial mesh whose error is at most `limit`, or the best that there is; `exact` is one that keeps it and may
-    /// be larger than it takes.
+    /// The smallest medial mesh whose error is at most `limit`, or the best that there is; `exact` is one that keeps it
+    /// and may be larger than it takes.
     fn within(
         &self,
         limit: f64,

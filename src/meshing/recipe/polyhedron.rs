@@ -18,9 +18,10 @@ use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::flat_faces::{FLAT, FlatFaces, convex_faces};
 use crate::meshing::watch::Watch;
 
-/// A medial mesh is exact when it is nowhere farther off than this (longest side 1), of which half is left to the
-/// rounding of its balls to `f32`.
+/// Distance (longest side 1) by which a medial mesh that counts as exact may be off anywhere.
 pub const EXACT: f64 = 1e-6;
+
+/// Part of [`EXACT`] that the construction may use up (longest side 1); the rest is for the rounding of balls to `f32`.
 const EXACT_HERE: f64 = 0.6 * EXACT;
 
 /// Corners of the roof this near are one (longest side 1): tried in order.
@@ -79,8 +80,8 @@ pub fn known(uncovered: f64, bloat: f64) -> Hausdorff {
     }
 }
 
-/// Faces at most of a convex polyhedron whose axis has so many primitives: three edges or more bound a face, two faces share
-/// one, and each has a slab or more.
+/// Faces at most of a convex polyhedron whose axis has so many primitives: three edges or more bound a face, two faces
+/// share one, and each has a slab or more.
 pub fn faces_of(primitives: usize) -> usize {
     primitives - primitives / 3
 }

@@ -30,13 +30,17 @@ const STEP: f64 = 1.5;
 /// The result's count is the least that keeps the limit within one part in this many; fits scatter more.
 const CLOSE: usize = 50;
 
-/// Number of primitives up to which each count below the result is tried, until [`FAILURES`] in turn break the limit.
+/// Number of primitives up to which each smaller count is tried in turn, since small counts scatter.
 const EACH: usize = 64;
+
+/// Counts in turn that may break the limit of the error before smaller ones are given up.
 const FAILURES: usize = 3;
 
-/// Counts in ratio [`STEP`] end where this many in turn gain less than [`GAIN`] of the error together: it is then that
-/// of the samples that the medial mesh is made from.
+/// Counts in ratio [`STEP`] after which the search for a sufficient count ends if together they gained less than
+/// [`GAIN`]. The error is then that of the samples that the medial mesh is made from, which no count lowers.
 const STALLED: usize = 3;
+
+/// Share of the error that [`STALLED`] counts have to gain together.
 const GAIN: f64 = 0.1;
 
 /// Least count at which a stall is believed.
@@ -45,7 +49,7 @@ const FINE: usize = 500;
 /// Plain collapses whose largest residuals differ by less than this share are as good.
 const FLAT: f64 = 1.02;
 
-/// The medial meshes of one body, and what was tried of them.
+/// Search over the medial meshes of one body, with what was tried of them.
 struct Search<'a, 'b> {
     source: &'a Source,
     ladders: Vec<&'a mut Ladder<'b>>,
@@ -67,7 +71,7 @@ struct Found {
 pub enum Smallest {
     /// A medial mesh that keeps the limit.
     Found(Box<Candidate>),
-    /// No count keeps the limit; more primitives than these gain nothing, or are not allowed.
+    /// No count keeps the limit. More primitives than this many gain nothing, or are not allowed.
     OutOfReach(usize),
 }
 
@@ -116,7 +120,8 @@ impl Source {
 }
 
 impl Search<'_, '_> {
-    /// The least count found, or the one from which on more of them gain nothing.
+    /// The smallest number of primitives found that keeps the limit, or else the number from which on more of them gain
+    /// nothing.
     fn run(&mut self, top: usize, watch: &mut Watch) -> Result<Result<Found, usize>, BuildError> {
         let Some(mut count) = self.first(top, watch)? else {
             return Ok(Err(self.flat_from(top, watch)?));

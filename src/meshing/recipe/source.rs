@@ -19,7 +19,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// A surface of which nothing is known to be hidden.
+    /// The source of a build, none of whose surface is known to be hidden yet.
     pub fn new(surface: Surface, tree: TriangleTree, limits: Limits) -> Self {
         Self {
             surface,

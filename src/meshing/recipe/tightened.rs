@@ -26,21 +26,29 @@ pub const GAIN_OF_TIGHT: f64 = 1.5;
 /// little is gained.
 const OFFSET: f64 = 0.6;
 
-/// Rounds end with one that leaves more than this share of the least error so far, or after so many.
+/// Share of the least error so far at or above which a round's error ends the rounds: another would gain little.
 const GAIN: f64 = 0.98;
+
+/// Largest number of rounds.
 const ROUNDS: usize = 4;
 
-/// Fits in a round, and iterations of each; after each but the last, points that are off are added to the samples.
+/// Fits in a round. Between two of them, points that are off are added to the samples.
 const FITS: usize = 2;
+
+/// Iterations of each fit.
 const ITERATIONS: usize = 3;
 
 /// Share of a build's budget of fits beyond which no round begins.
 const BUDGET: f64 = 1.0;
 
-/// Points that are examined between two fits, besides vertices, and how far one sticks out, or how deep it is, to become a
-/// sample, as shares of the error.
+/// Points of the surface that are examined between two fits, besides its vertices.
 const POINTS: usize = 30_000;
+
+/// Distance by which a point sticks out of the draft to become a sample, in units of the error.
 const STICKS_OUT: f64 = 0.02;
+
+/// Depth of a point inside the draft at which it becomes a sample, in units of the error. It is above [`OFFSET`], the
+/// depth that the fit aims at.
 const DEEP: f64 = 0.75;
 
 impl Source {

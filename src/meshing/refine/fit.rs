@@ -25,11 +25,14 @@ pub const SMALL: usize = 200;
 /// stay below the size of the primitives, for bulges between samples are not seen.
 const ENVELOPE_SPACING: [f64; 3] = [0.01, 0.007, 0.005];
 
-/// Samples of the surface for each primitive, up to [`LARGE`] and above, besides [`LEAST_SAMPLES`];
-/// and the most in all. With ten for each of 2,000 the largest error lies between samples, a third
-/// above what the fit sees.
+/// Samples of the surface for each primitive, up to [`LARGE`] primitives and above. With ten for each of 2,000
+/// the largest error lies between samples, a third above what the fit sees.
 const SAMPLES_PER_PRIMITIVE: [usize; 2] = [10, 15];
+
+/// Samples of the surface besides those for each primitive.
 const LEAST_SAMPLES: usize = 3_000;
+
+/// Largest number of samples of the surface, without its vertices. Each iteration of a fit looks at all of them.
 const MOST_SAMPLES: usize = 33_000;
 
 /// Share of a build's budget of fits that may be spent before drafts are made to cover the surface more closely: of
@@ -76,7 +79,7 @@ impl Collapsed {
     }
 }
 
-/// Primitives of a start; the rest is inserted.
+/// Number of primitives of a start; the rest is inserted.
 pub fn start_count(most: usize) -> usize {
     let share = if most > LARGE { 0.85 } else { 0.8 };
     ((most as f64 * share) as usize).max(8).min(most)
@@ -136,11 +139,13 @@ pub fn collapse(
     Ok((first, smaller, kept))
 }
 
-/// A body is round when this factor more primitives, and all counts beyond, better the plain collapse
-/// to a small count by less than [`FLAT`]: all errors are then those of the samples and of the source's
-/// own facets. Plain collapses of a ring of 1,536 triangles: .0032 at 50, .0023 to .0029 from 200 to
-/// 5,000; those of the bug .027 at 50, .0044 at 5,000.
+/// Ratio of the count asked for to a small one from which on it is tested whether the body is round: whether all larger
+/// counts lower the error of the plain collapse by less than [`FLAT`]. The errors are then those of the samples and of
+/// the source's own facets.
 const ROUND_FROM: usize = 10;
+
+/// Ratio by which larger counts may lower the error of a round body's plain collapse. Errors of a ring of 1,536
+/// triangles (longest side 1): .0032 at 50, .0023 to .0029 from 200 to 5,000; of the bug .027 at 50, .0044 at 5,000.
 const FLAT: f64 = 1.5;
 
 /// Place among the `smaller` counts of the least that a round body needs; `None` where it is not round.
@@ -173,13 +178,14 @@ pub fn round_from(
     Ok(None)
 }
 
-/// Swaps of small counts, and of larger ones. With fewer iterations most rounds of the latter fail.
+/// Swaps of up to [`SMALL`] primitives.
 const SMALL_SWAPS: Swaps = Swaps {
     share: 0.15,
     rounds: 6,
     insertions: 3,
     iterations: 6,
 };
+/// Swaps of more primitives. With fewer iterations most rounds fail.
 const SWAPS: Swaps = Swaps {
     share: 0.06,
     rounds: 3,

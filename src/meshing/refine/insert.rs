@@ -14,11 +14,13 @@ use crate::meshing::refine::refit::Target;
 use crate::meshing::refine::residuals::{GUESS, Row};
 use crate::meshing::watch::Watch;
 
-/// Errors below this (longest side 1) call for no primitive.
+/// Error (longest side 1) below which no primitive is inserted.
 const NEGLIGIBLE: f64 = 1e-5;
 
-/// Weights above these lie in the middle of a cone, and of a slab; below, at an end or edge.
+/// Weight (0 to 1) of both balls of a cone above which a place lies in its middle, and not at an end.
 const MIDDLE_OF_CONE: f64 = 0.25;
+
+/// Weight (0 to 1) of all balls of a slab above which a place lies in its middle, and not at an edge or a corner.
 const MIDDLE_OF_SLAB: f64 = 0.15;
 
 /// Between balls on creases radii are smaller than this (longest side 1).
@@ -30,7 +32,7 @@ const ENDS: usize = 9;
 /// A tip's cone may bulge out by this share of the error that it mends.
 const BULGE: f64 = 0.8;
 
-/// An edge of more faces is not split: each would cost a primitive.
+/// Largest number of faces at an edge that is split: each face costs a primitive.
 const FACES_AT_EDGE: usize = 3;
 
 /// Inserts up to `budget` primitives; gives the number added.
@@ -90,7 +92,7 @@ enum Place {
     Edge(usize),
     /// A ball in the middle of a slab.
     Slab,
-    /// Nothing: an end, seen from inside.
+    /// No ball: the sample is at an end and does not stick out.
     End,
 }
 

@@ -21,13 +21,13 @@ use crate::meshing::simplify::merged_neighborhood::Merged;
 use crate::meshing::watch::Watch;
 use std::collections::BinaryHeap;
 
-/// Weight of the root mean square beside the largest distance.
+/// Weight of the root mean square of the distances, beside the largest one.
 const RMS: f64 = 0.5;
 
 /// Weight of the quadric's error (a length), which orders collapses that measure alike.
 const QUADRIC: f64 = 1e-3;
 
-/// A cost that rose by less than this since it was pushed is still taken.
+/// Ratio to which a cost may have risen since it was queued and still be taken.
 const STALE: f64 = 1.1;
 
 /// Bulges below this (longest side 1) cost nothing: far below any error worth a primitive.
@@ -194,7 +194,7 @@ impl<'a> Measure<'a> {
         best
     }
 
-    /// Measured cost of a collapse; anything above `enough` once it exceeds that.
+    /// Measured cost of a collapse. It ends early, with some value above `enough`, once the cost exceeds that.
     fn cost(&self, s: &Simplifier, after: &Merged, ball: &Ball, accepted: f64, enough: f64) -> f64 {
         let balls = &s.complex().balls;
         let [a, b] = after.edge;

@@ -22,12 +22,17 @@ use crate::meshing::refine::residuals::{
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
 
-/// Floor of a row's weight, over the largest: rows without error still hold what is right.
+/// Least weight of a row, in units of the largest weight. Without it, rows without error would not hold what is right
+/// already.
 const WEIGHT_FLOOR: f64 = 0.02;
 
-/// Damping at the start, and its bounds.
+/// Damping of each ball at the start of a fit (no unit; larger means smaller steps).
 const DAMPING: f64 = 1e-2;
+
+/// Least damping. A ball whose energy falls again and again would otherwise reach 0, and then move freely.
 const LEAST_DAMPING: f64 = 1e-4;
+
+/// Largest damping. A ball whose energy grew several times would otherwise hardly move again.
 const MOST_DAMPING: f64 = 1e3;
 
 /// Share of the linear step that is taken: assignments lag behind.

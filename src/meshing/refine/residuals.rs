@@ -21,8 +21,8 @@ use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::{Watch, bytes_of};
 
-/// Share of its length by which a way out of the solid may be overstated. With a third of it searches look at 1.7 to 2 times as
-/// many cells for a sample, and the M16 nut and bolt of 500 primitives are off by the same to 2 %.
+/// Share of its length by which a way out of the solid may be overstated. With a third of it searches look at 1.7 to 2
+/// times as many cells for a sample, and the M16 nut and bolt of 500 primitives are off by the same to 2 %.
 const WAY_OUT: f64 = 0.15;
 
 /// Nodes of a tree that take as long to look at as a cell of a search for a way out.
@@ -46,7 +46,7 @@ pub struct Row {
     pub weight: f64,
     /// Point of the sample.
     pub point: Point,
-    /// Index of its primitive.
+    /// Index of the primitive that the sample is of.
     pub primitive: u32,
 }
 
@@ -60,7 +60,7 @@ pub struct EnvelopeSample {
     triangle: u32,
 }
 
-/// No triangle yet, or no primitive: the sample before, which is likely near, gives the hint.
+/// Marks a sample without a triangle or a primitive yet: the sample before, which is likely near, gives the hint.
 pub const UNKNOWN: u32 = u32::MAX;
 
 impl EnvelopeSample {
@@ -275,16 +275,17 @@ fn envelope_rows(
     })
 }
 
-/// Whether a sample is within the solid, its way out along its normal is longer than `beyond`, and the nearest point of the
-/// primitive that is deepest there is within others.
+/// Whether a sample is inside the solid, its way out along its normal is longer than `beyond`, and the nearest point of
+/// the primitive that is deepest there is inside other primitives.
 pub fn is_far_inside(solid: &Solid, sample: &Sample, near: &Nearest, beyond: f64) -> bool {
     near.signed.distance < 0.0
         && !solid.is_out(sample.point + sample.normal * beyond, near.primitive)
         && solid.onto_boundary(sample.point, near).is_none()
 }
 
-/// End of a way out of the solid from a sample that [`is_far_inside`], which is longer than the shortest by at most [`WAY_OUT`] of
-/// it, or is no longer than `beyond`; `hint` is a primitive near it. Nodes that the search looked at are added to `work`.
+/// End of a way out of the solid from a sample that [`is_far_inside`], which is longer than the shortest by at most
+/// [`WAY_OUT`] of it, or is no longer than `beyond`; `hint` is a primitive near it. Nodes that the search looked at are
+/// added to `work`.
 pub fn way_out(
     solid: &Solid,
     sample: &Sample,

@@ -14,10 +14,9 @@ use crate::meshing::watch::Watch;
 /// Cosine of the angle between two faces at an edge below which one lies on the other.
 const FOLDED: f64 = 0.99;
 
-/// Weight of the planes that hold the medial mesh's boundary, for a solid and for thin sheets,
-/// whose boundary is the surface's own.
+/// Weight of the planes that hold the boundary of a solid's medial mesh in place.
 pub const BOUNDARY_WEIGHT_SOLID: f64 = 0.1;
-/// See [`BOUNDARY_WEIGHT_SOLID`].
+/// Weight of the planes that hold the boundary of a thin sheet in place, which is the boundary of the surface itself.
 pub const BOUNDARY_WEIGHT_SHEET: f64 = 1.0;
 
 /// Radius (longest side 1) below which both balls of an edge, if no crease's, make it a sheet's.
@@ -65,7 +64,7 @@ pub fn quadrics(
     Ok(quadrics)
 }
 
-/// The planes that hold the medial mesh's boundary at an edge of one face or none.
+/// Adds the planes that hold the boundary of the medial mesh in place, at an edge of one face or none.
 fn add_end(complex: &Complex, [a, b]: [u32; 2], weight: f64, quadrics: &mut [Quadric]) {
     let balls = &complex.balls;
     let is_thin = |v: u32| (1e-9..THIN).contains(&balls[v as usize].radius);

@@ -22,8 +22,11 @@ use crate::meshing::watch::{Watch, bytes_of};
 /// A merged ball may stick out of the solid by this share of its radius; at low counts good ones do.
 const BULGE: f64 = 0.2;
 
-/// A collapse waits where its measured cost is above the one in the queue by this share, and more than rounding.
+/// Ratio of a collapse's measured cost to the one it has in the queue, above which it goes back into the queue with the
+/// measured cost. Larger, and collapses leave the order of their costs.
 const STALE: f64 = 1.05;
+
+/// Cost below which a difference is rounding (longest side 1): costs of about 0 would otherwise always count as stale.
 const NO_COST: f64 = 1e-10;
 
 /// A medial mesh on its way to fewer primitives.
@@ -62,8 +65,8 @@ impl<'a> Simplifier<'a> {
         Self::with_quadrics(complex, quadrics, tree, watch)
     }
 
-    /// Does the same as [`Self::new`] for a medial mesh with creases, which knows the planes that its balls touch;
-    /// `flat` says that all faces are.
+    /// A simplifier for a medial mesh with creases, which knows the planes that its balls touch; `flat` says that all
+    /// faces are flat.
     pub fn creased(
         mesh: CreasedMesh,
         flat: bool,
@@ -108,8 +111,8 @@ impl<'a> Simplifier<'a> {
         Ok(simplifier)
     }
 
-    /// Says that the balls lie inside the solid and touch samples of its surface, `spacing` apart, as
-    /// yet: seen from a ball of radius r, a flat surface bulges in by r − √(r² − spacing²) between them.
+    /// Takes note that the balls lie inside the solid and still touch samples of its surface, `spacing` apart. Seen
+    /// from a ball of radius r, a flat surface bulges in by r − √(r² − spacing²) between two of them.
     pub fn touching(mut self, spacing: f64) -> Self {
         for (clear, ball) in self.clear.iter_mut().zip(&self.complex.balls) {
             let clear_sq = ball.radius * ball.radius - spacing * spacing;
@@ -118,8 +121,8 @@ impl<'a> Simplifier<'a> {
         self
     }
 
-    /// Sets whether costs are measured from the first collapse on where much sticks out: many primitives can keep what few
-    /// lose anyway.
+    /// Sets whether costs are measured from the first collapse on where much sticks out: many primitives can keep what
+    /// few lose anyway.
     pub fn set_measures_early(&mut self, early: bool) {
         self.measures_early = early;
     }

@@ -47,16 +47,17 @@ pub fn fold_cost(complex: &Complex, [a, b]: [u32; 2], ball: &Ball) -> f64 {
     FOLD_COST * sum
 }
 
-/// How far the ball that both ends of an edge become, and the middles of what is around it, stick out of the
-/// solid; 0 where none does.
+/// Distance by which the merged ball of an edge, and the middles of the primitives around it, stick out of the solid; 0
+/// where none does.
 pub fn stick_out(complex: &Complex, tree: &TriangleTree, ab: [u32; 2], ball: &Ball) -> f64 {
     let middles = ab.into_iter().flat_map(|v| middles(complex, ab, v, ball));
     let out = |b: Ball| b.radius + tree.signed_distance(b.center, 1.2 * b.radius.max(GUESS));
     middles.chain([*ball]).map(out).fold(0.0, f64::max)
 }
 
-/// Lower bound on what [`stick_out`] gives, which is far quicker to tell: 0 up to `least`. Balls no thicker than `least` are
-/// not seen, nor those whose centres are outside the solid by more than their radius.
+/// Lower bound of [`stick_out`], found far more quickly; 0 if nothing is found to stick out by more than `least`
+/// (longest side 1). Balls no thicker than `least` are not looked at, nor those whose centres are outside the solid by
+/// more than their radius.
 pub fn stick_out_beyond(
     least: f64,
     complex: &Complex,

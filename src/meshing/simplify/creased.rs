@@ -18,7 +18,7 @@ const MOST_ENDS: f64 = 0.1;
 
 /// A medial mesh that runs into creases, and those.
 pub struct Creased<'a> {
-    /// The medial mesh, of all samples.
+    /// The medial mesh made from all samples.
     pub simplifier: Simplifier<'a>,
     /// The convex creases.
     pub creases: Vec<[Point; 2]>,

@@ -6,17 +6,20 @@ use crate::meshing::simplify::ball_quadrics::stability;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::simplify::crease_cost::{fold_cost, stick_out, stick_out_beyond};
 
-/// Added to the error before the stability ratio scales it (Q-MAT's `k`, in units of the longest
-/// side): orders the collapses that cost nothing by their stability.
+/// Length (longest side 1) added to the error before the stability ratio scales it (Q-MAT's `k`). Collapses that cost
+/// nothing are ordered by their stability through it.
 const FLAT_COST: f64 = 1e-5;
 
-/// The same in a medial mesh with creases, whose faces' planes are exact: [`FLAT_COST`] hides errors of
-/// up to .003.
+/// The same term in a medial mesh with creases, where the planes of faces are exact: [`FLAT_COST`] would hide errors of
+/// up to .003 (longest side 1).
 const EXACT_FLAT_COST: f64 = 1e-9;
 
-/// A merged ball of a smaller radius (longest side 1) is on a crease, and has none; one that would have less
-/// than the second overshot it by more than rounding and the quadric's pull.
+/// Radius (longest side 1) below which a merged ball lies on a convex crease and is given radius 0. Balls on a crease
+/// have radius 0, and the minimiser of a quadric misses that by rounding.
 const ON_CREASE: f64 = 1e-7;
+
+/// Radius (longest side 1) at or below which the minimiser has left the solid through the crease and is not used.
+/// A negative radius nearer to 0 is due to rounding and to the other planes in the quadric, and becomes 0.
 const BEHIND_CREASE: f64 = -1e-3;
 
 /// Floor under the stability ratio. Measured: 0 to 0.2 loses fins and ears (error .015 for .006 at
@@ -27,17 +30,18 @@ const STABILITY_FLOOR: f64 = 0.3;
 /// nearly singular there and says nothing.
 const REACH: f64 = 3.0;
 
-/// Weight of the square of how far what is around a merged ball sticks out of the solid. Quadrics do not see it
-/// where sheets bend. With 40 a CAD part of 500 primitives is off by a fifth less and a nut by a twentieth, but a threaded rod
-/// of 200 by an eighth more.
+/// Weight of the square of how far what is around a merged ball sticks out of the solid. Quadrics do not see it where
+/// sheets bend. With 40 a CAD part of 500 primitives is off by a fifth less and a nut by a twentieth, but a threaded
+/// rod of 200 by an eighth more.
 const STICK_OUT: f64 = 4.0;
 
-/// Number of primitives below which all that sticks out is measured. From the first collapse on that takes ten seconds
-/// more, and gains nothing.
+/// Number of primitives below which it is measured how far merged balls stick out. From the first collapse on that
+/// would take ten seconds more, and gain nothing.
 const MEASURED: usize = 10_000;
 
-/// Length (longest side 1) by which something must stick out to be measured before, on the way to many primitives: of
-/// 180,000 of a nut's thread one place in a hundred was off by .008 when 10,000 were left, which no fit mends.
+/// Length (longest side 1) from which on a merged ball that sticks out is measured even above [`MEASURED`] primitives.
+/// Without it, of 180,000 primitives of a nut's thread one place in a hundred was off by .008 when 10,000 were left,
+/// which no fit mends.
 const FAR: f64 = 1e-3;
 
 impl Simplifier<'_> {

@@ -9,8 +9,11 @@ use crate::math::least_first::least_first;
 use crate::meshing::watch::bytes_of;
 use std::collections::BinaryHeap;
 
-/// The heap takes this share of what waits, and all of it when there is no more than [`FEW`].
+/// Each time the heap is empty it takes the cheapest one in this many of the waiting collapses. Only speed depends on
+/// it.
 const SHARE: usize = 8;
+
+/// Number of waiting collapses up to which the heap takes all of them. Only speed depends on it.
 const FEW: usize = 512;
 
 /// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).
@@ -32,7 +35,7 @@ least_first!(Candidate, cost, a, b);
 #[derive(Clone)]
 pub struct Queue {
     heap: BinaryHeap<Candidate>,
-    /// All that cost more than `limit`.
+    /// Collapses that cost more than `limit`, in no order.
     later: Vec<Candidate>,
     limit: f64,
 }
@@ -62,7 +65,7 @@ impl Queue {
         }
     }
 
-    /// The cheapest that is `current`.
+    /// Takes out the cheapest collapse that is `current`.
     pub fn pop(&mut self, current: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
         loop {
             while let Some(candidate) = self.heap.pop() {

@@ -2,9 +2,9 @@
 //! of its triangles but the pieces with matter on both sides, which are hidden.
 //!
 //! A triangle that another part passes through is cut along the planes of all faces if these are flat and few
-//! (`flat_boundary.rs`). Otherwise it is halved until its pieces lie on one side; of the smallest, those that are partly
-//! hidden stay. What is hidden: `hidden.rs`. Small openings have lids there. Folds (`folds.rs`) that matter encloses are hidden
-//! too.
+//! (`flat_boundary.rs`). Otherwise it is halved until its pieces lie on one side; of the smallest, those that are
+//! partly hidden stay. What is hidden: `hidden.rs`. Small openings have lids there. Folds (`folds.rs`) that matter
+//! encloses are hidden too.
 
 use crate::error::BuildError;
 use crate::meshing::findings::Findings;
@@ -21,23 +21,32 @@ use crate::meshing::watch::Watch;
 /// Distance before and behind the surface at which the winding number is asked for (longest side 1).
 const OFF: f64 = 2e-4;
 
-/// Pieces with edges up to this are not halved (longest side 1); those with longer ones than the second are, for
-/// seven probes would miss what passes through them.
+/// Longest edge of the smallest pieces (longest side 1), which are not halved. Smaller, and the boundary is known more
+/// finely, in more time.
 const FINEST: f64 = 0.006;
+
+/// Longest edge of a piece (longest side 1) above which it is halved in any case: seven probes would miss what passes
+/// through it.
 const LARGE: f64 = 0.08;
 
 /// How far the points of a piece that are looked at are from its border, as a share of the way to the middle.
 const INWARD: f64 = 0.1;
 
-/// Triangles and points that winding numbers may look at, and pieces that may be kept, before larger pieces are tried:
-/// so many, and so many for each triangle. The first is a few seconds' work, an eighth of which bodies of
-/// overlapping parts took at most; the second lets meshes of very many triangles look at each.
+/// Triangles and points that winding numbers may look at before larger pieces are tried: so many, and so many more for
+/// each triangle. The first is a few seconds' work, of which bodies of overlapping parts took an eighth at most; the
+/// second lets meshes of very many triangles look at each.
 const MOST_WORK: [usize; 2] = [100_000_000, 4_000];
+
+/// Pieces that may be kept before larger pieces are tried: so many, and so many more for each triangle.
 const MOST_PIECES: [usize; 2] = [200_000, 2];
 
-/// How much larger pieces become at least and at most at a time, and the largest length in the builder's frame.
+/// Factor by which pieces become larger at least, each time the work was too much.
 const COARSER: f64 = 2.0;
+
+/// Factor by which pieces become larger at most at a time, where little of the surface was done before the work ended.
 const COARSEST: f64 = 16.0;
+
+/// A length above that of all edges in the builder's frame (longest side 1): pieces of that size are whole triangles.
 const SPAN: f64 = 2.0;
 
 /// Share of the area that is lost by rounding.

@@ -208,8 +208,8 @@ fn is_convex(surface: &Surface, edge: &SharpEdge) -> bool {
     heights.into_iter().fold(0.0, farthest) < 0.0
 }
 
-/// Pairs of triangles that share an edge, or have only needles between them, and the edge; of several
-/// the shortest.
+/// Pairs of triangles that share an edge or have only needles between them, each with that edge; if a pair shares
+/// several, the shortest.
 fn adjacent(
     surface: &Surface,
     watch: &mut Watch,

@@ -28,7 +28,7 @@ impl Use {
     }
 }
 
-/// All edges, by their lower vertex: sorting them in one go would be slower, and silent meanwhile.
+/// All edges of a mesh, grouped by their lower vertex. Sorting them at once would be slower, and report no progress.
 pub struct Edges {
     /// Place where the uses of each lower vertex begin; one more for the end.
     start: Vec<u32>,

@@ -14,12 +14,13 @@ use crate::meshing::watch::Watch;
 /// Flat faces at most: each triangle is cut along those that pass near it.
 const MOST_FACES: usize = 256;
 
-/// Pieces at most, hidden or not. Twenty boxes at random in one are cut into 18,000, in a second and a half, and forty into
-/// 121,000, in seven.
+/// Pieces at most, hidden or not. Twenty boxes at random in one are cut into 18,000, in a second and a half, and forty
+/// into 121,000, in seven.
 const MOST_PIECES: usize = 200_000;
 
-/// Distance from the surface at which winding numbers are asked for, in units of how near to a plane points are on it. Larger,
-/// and small pieces are judged by what is beside them: at 16, one of twenty boxes in one was 6e-5 of the size inside.
+/// Distance from the surface at which winding numbers are asked for, in units of how near to a plane points are on it.
+/// Larger, and small pieces are judged by what is beside them: at 16, one of twenty boxes in one was 6e-5 of the size
+/// inside.
 const OFF: f64 = 2.0;
 
 /// A piece of a triangle, and the triangle.

@@ -10,15 +10,16 @@ use crate::meshing::watch::Watch;
 /// sizes from the origin.
 pub const FLAT: f64 = 5e-7;
 
-/// How flat the faces of a body are: at most so many times its [`rounding`], tried in order. With the second, vertices may be
-/// moved by a millionth of the size; with the third by a hundred-thousandth, as a part of 5 cm is that is written in metres
-/// with six decimals.
+/// Tolerances of flat faces that are tried in order, in units of the body's [`rounding`]. With the second, vertices may
+/// be off by a millionth of the size; with the third by a hundred-thousandth, as in a part of 5 cm that is written in
+/// metres with six decimals.
 pub const FLATNESS: [f64; 3] = [1.0, 4.0, 40.0];
 
-/// Points this many times as far from a plane as a corner of a flat face may be are on it.
+/// Distance from a plane up to which a point is on it, in units of the distance that corners of a flat face may have.
 pub const ON: f64 = 2.0;
 
-/// How far rounding to `f32` moves the source's vertices (longest side 1), some sizes from its origin or more.
+/// Distance (longest side 1) by which rounding to `f32` moves the source's vertices, which may be some sizes from its
+/// origin or more.
 pub fn rounding(surface: &Surface) -> f64 {
     let far = surface.frame.center.length() / surface.frame.scale;
     FLAT.max(0.5 * f64::from(f32::EPSILON) * far)
@@ -46,8 +47,8 @@ struct Face {
     weight: f64,
 }
 
-/// The faces that the triangles `body` of a surface make; `None` where there are more than `most`, where a triangle is off
-/// the plane of its face by more than `flat` (longest side 1), or where they bound no convex body.
+/// The faces that the triangles `body` of a surface make; `None` where there are more than `most`, where a triangle is
+/// off the plane of its face by more than `flat` (longest side 1), or where they bound no convex body.
 pub fn convex_faces(
     surface: &Surface,
     body: Vec<usize>,

@@ -10,7 +10,7 @@ use crate::meshing::watch::Watch;
 /// Winding number inside matter.
 const INSIDE: f64 = 0.5;
 
-/// Tells what is inside matter, folds or not.
+/// Folds of a surface: tells which points are inside matter, with folds counted as matter.
 pub struct Folds<'a> {
     tree: &'a TriangleTree,
     /// The trees of patches that bound matter by themselves.

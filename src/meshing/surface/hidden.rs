@@ -28,7 +28,8 @@ impl Hidden<'_> {
         is_inside(p + normal * self.off) && is_inside(p - normal * self.off)
     }
 
-    /// The same where what looks like a void is a fold of the surface's own patch.
+    /// Whether there is matter behind a point of the surface and before it, if a fold of the surface's own patch, which
+    /// looks like a void, counts as matter.
     pub fn is_in_fold(&mut self, p: Point, patch: u32, normal: Point) -> bool {
         let mut is_inside = |p: Point| self.folds.is_inside(p, patch, &mut self.work);
         is_inside(p + normal * self.off) && is_inside(p - normal * self.off)

@@ -1,8 +1,13 @@
 //! Makes the surface of a solid from triangles: repair, orientation, creases, the boundary of what overlaps.
 //!
-//! `repair.rs` calls the stages: `weld.rs`, `shared_faces.rs`, `orient.rs` (with the loose seams of `sew.rs`), `seams.rs`, `patches.rs`
-//! (matter or sheet), `openings.rs`; their result is `checked_surface.rs`. Where it overlaps itself: `boundary.rs`,
-//! with `flat_boundary.rs`, `hidden.rs` and `folds.rs`. Sharp edges: `creases.rs`; flat faces: `flat_faces.rs`; prisms: `profile.rs`.
+//! # Files
+//! - The stages, which `repair.rs` calls: `weld.rs` (vertices at one place), `shared_faces.rs` (faces that two parts
+//!   share), `orient.rs` (patches that face one way, with the loose seams of `sew.rs`), `seams.rs` (edges along
+//!   others), `patches.rs` (matter or sheet), `openings.rs` (rims and lids). Their result is `checked_surface.rs`.
+//! - Where it overlaps itself: `boundary.rs` (triangles with matter on one side only), exactly for flat faces
+//!   `flat_boundary.rs`; `hidden.rs` (points with matter on both sides), `folds.rs` (parts turned inside out).
+//! - What later stages ask of it: `edges.rs` (edges and shells), `creases.rs` (sharp edges), `flat_faces.rs`,
+//!   `profile.rs` (prisms), `samples.rs` (points spread evenly).
 
 pub(crate) mod boundary;
 pub(crate) mod checked_surface;

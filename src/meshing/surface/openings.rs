@@ -23,8 +23,10 @@ const UNDECIDED: f64 = 0.3;
 /// Lids are of openings whose area is at most this share of their patch's.
 const MOST_OPEN: f64 = 0.2;
 
-/// Points of a rim that a lid is looked at towards, at most, and the shares of the way: something else may cover the middle.
+/// Largest number of points of a rim towards which a lid is probed, besides its middle, which something else may cover.
 const RIM: usize = 16;
+
+/// Places of these probes, as shares of the way from the lid's middle to the rim.
 const SHARES: [f64; 3] = [0.5, 0.25, 0.75];
 
 /// A rim of open edges of one patch.

@@ -23,7 +23,7 @@ use crate::meshing::watch::Watch;
 pub struct Patch {
     /// Whether the patch uses each of its edges an even number of times: it ends nowhere.
     pub closed: bool,
-    /// Whether its triangles cannot all face the same way.
+    /// Whether no choice makes all triangles of the patch face the same way.
     pub twisted: bool,
     /// Signed volume about the origin; means something where the patch is closed.
     pub volume: f64,
@@ -31,10 +31,10 @@ pub struct Patch {
     pub area: f64,
     /// How many triangles it has.
     pub triangles: usize,
-    /// How many of them were turned round.
+    /// Number of triangles that were turned round.
     pub turned: usize,
-    /// The first of the patches that are joined to it along loose seams, and face the same way as it does: itself if there
-    /// are none.
+    /// The first of the patches that are joined to it along loose seams, and face the same way as it does: itself if
+    /// there are none.
     pub sewn: u32,
 }
 

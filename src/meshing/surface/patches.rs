@@ -22,11 +22,11 @@ use crate::meshing::watch::Watch;
 /// Points looked at, by area. A winding number costs about 10 µs.
 const POINTS: usize = 4_096;
 
-/// Points of each patch at least.
+/// Least number of points of each patch.
 const POINTS_PER_PATCH: u32 = 6;
 
-/// Open patches below this share of the area, with what is sewn to them, are judged together: a soup of triangles is
-/// either a body that fell apart or nothing.
+/// Share of the area below which open patches, with what is sewn to them, are judged together: a soup of triangles is
+/// either a body that fell apart or no solid at all.
 const CRUMB: f64 = 1e-3;
 
 /// Distance behind the surface at which the winding number is asked for (longest side 1): below

@@ -1,5 +1,5 @@
-//! The profile of a body that is a prism: two caps across an axis and walls along it. Its outline is brought to fewer edges,
-//! within a thickness.
+//! The profile of a body that is a prism: two caps across an axis and walls along it. Its outline is brought to fewer
+//! edges, within a thickness.
 
 use crate::meshing::geometry::bounds::{Point, direction, perpendicular};
 use crate::meshing::geometry::polygon_triangles::polygon_area;
@@ -12,7 +12,8 @@ const SQUARE: f64 = 1e-3;
 /// Normals of large triangles from which axes are tried: each, and what is square to two of them.
 const NORMALS: usize = 4;
 
-/// Share of the area that may be neither cap nor wall: small fillets and chamfers. How much they matter is measured.
+/// Share of the area that may be neither cap nor wall, as small fillets and chamfers are. The error that this makes is
+/// measured afterwards.
 const NEITHER: f64 = 0.03;
 
 /// Corners of a cap are in one plane but for this (longest side 1).
@@ -28,7 +29,7 @@ const HALVINGS: usize = 12;
 pub struct Profile {
     /// Directions: two across it, and its axis.
     axes: [Point; 3],
-    /// Its middle along the axis.
+    /// Middle of the prism along the axis.
     middle: f64,
     /// Half its height.
     pub half: f64,
@@ -198,7 +199,8 @@ pub fn fewer(points: &[Point], thickness: f64) -> Option<Vec<Point>> {
     Some((0..ends.len()).map(corner).collect())
 }
 
-/// Where runs begin that lie within `thickness` across the line between their ends: each as long as can be.
+/// Indices at which runs of points begin. All points of a run lie within `thickness` across the line between its ends,
+/// and each run is as long as can be.
 fn runs(points: &[Point], thickness: f64) -> Vec<usize> {
     let n = points.len();
     let fits = |from: usize, to: usize| {

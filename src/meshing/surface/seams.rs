@@ -1,5 +1,5 @@
-//! Seams: an edge of one triangle along which the edges of others run, cut at more vertices (T-junctions), and chains of
-//! edges along each other, cut at different vertices.
+//! Seams: an edge of one triangle along which the edges of others run, cut at more vertices (T-junctions), and chains
+//! of edges along each other, cut at different vertices.
 //!
 //! Nothing is missing there but a sliver without area between the edge and the chain of the others, or between two
 //! chains. Such slivers close the surface, and no vertex moves.
@@ -10,7 +10,7 @@ use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::surface::edges::Edges;
 use crate::meshing::watch::Watch;
 
-/// A chain's vertices may be off the edge by this (longest side 1): modellers round to four digits.
+/// Distance (longest side 1) by which vertices of a chain may be off the edge: modellers round to four digits.
 const OFF: f64 = 1e-4;
 
 /// Vertices of two chains along each other, at most.

@@ -6,15 +6,17 @@ use crate::math::fast_hash::FastMap;
 use crate::meshing::geometry::bounds::{Point, coordinate};
 use crate::meshing::watch::Watch;
 
-/// Widest gap of a loose seam, as a share of the edge's length and at most (longest side 1).
+/// Widest gap of a loose seam, in units of the edge's length.
 const GAP: f64 = 0.1;
+
+/// Widest gap of a loose seam, however long its edge is (longest side 1).
 const MOST_GAP: f64 = 5e-3;
 
 /// Factor by which whatever else runs along an edge is farther from it than its partner; otherwise more than two meet
 /// there, and who belongs together is not known.
 const CLEARLY: f64 = 3.0;
 
-/// Edges looked at for each at most: more lie close together in a tangle only.
+/// Largest number of edges that each edge is compared with. Only in a tangle do more lie close together.
 const MOST_NEAR: usize = 256;
 
 /// Cosine of the sharpest angle of a loose seam: layers that lie on each other end at the same place too.
@@ -35,7 +37,7 @@ pub struct OpenEdge {
 pub struct Seam {
     /// Places of the two among the open edges.
     pub edges: [usize; 2],
-    /// Whether both run the same way: then one of the triangles must be turned for both to face one way.
+    /// Whether both run the same way, so that one of the triangles must be turned for both to face one way.
     pub against: bool,
 }
 
@@ -124,7 +126,7 @@ fn gap(ends: &[Point; 2]) -> f64 {
     (GAP * (ends[1] - ends[0]).length()).min(MOST_GAP)
 }
 
-/// Power of two that the length has; edges along each other have the same or neighbouring ones.
+/// Exponent of the power of two that the length has. Edges along each other have the same or neighbouring ones.
 fn octave(ends: &[Point; 2]) -> Option<i32> {
     let length = (ends[1] - ends[0]).length();
     (length > 0.0).then(|| length.log2().floor() as i32)

@@ -1,8 +1,8 @@
-//! Leaves out the faces that two parts share where they touch: triangles given once with either orientation, with matter on
-//! both sides. They bound nothing.
+//! Leaves out the faces that two parts share where they touch: triangles given once with either orientation, with
+//! matter on both sides. They bound nothing.
 //!
-//! Such a pair adds nothing to the winding number, so that of the other triangles tells what is around it. It counts those
-//! parts alone whose surface is closed, where it is a whole number. What is not inside these is a sheet with two
+//! Such a pair adds nothing to the winding number, so that of the other triangles tells what is around it. It counts
+//! those parts alone whose surface is closed, where it is a whole number. What is not inside these is a sheet with two
 //! sides, of which one stays.
 
 use crate::error::BuildError;
@@ -57,7 +57,8 @@ pub fn leave_out_shared(
     Ok(())
 }
 
-/// The triangles but for the pairs, of those parts that these leave closed: each edge is used as often one way as the other.
+/// The triangles but for the pairs, of those parts that these leave closed: each edge is used as often one way as the
+/// other.
 fn closed_parts(
     welded: &Welded,
     is_pair: &[bool],

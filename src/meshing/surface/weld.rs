@@ -23,7 +23,8 @@ pub struct Welded {
     pub triangles: Vec<[u32; 3]>,
     /// Places of the triangles that were given equally often with either orientation.
     pub both_ways: Vec<usize>,
-    /// Triangles of two vertices or one that no other triangle has: segments and points.
+    /// Triangles that welding left with two vertices or one, unless another triangle has these too: segments and
+    /// points.
     pub collapsed: Vec<[u32; 3]>,
     /// How far a vertex was moved at most (longest side 1).
     pub moved: f64,
