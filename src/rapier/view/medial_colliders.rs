@@ -197,7 +197,7 @@ impl MedialCollider {
     pub fn turn(&self, seconds: Real) -> Option<Turn> {
         let motion = &self.motion;
         let angle = motion.start.rotation.inverse() * motion.angvel * seconds;
-        (angle != Vector::ZERO).then(|| Turn {
+        (angle != Vector::ZERO).then_some(Turn {
             angle,
             center: motion.local_center,
         })
