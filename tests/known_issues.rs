@@ -436,7 +436,7 @@ fn an_inside_out_part_spoils_a_kit_of_boxes() {
 }
 
 /// A wheel of few cones that rolls slowly on rapier's grounds stops sooner than rapier's compound of as many capsules: in a step
-/// it turns by less than half a side, and the next corner comes down on the ground ahead of the axle.
+/// it rolls by less than a third of a cone's length, and the next cone comes down on the ground ahead of the axle.
 #[test]
 fn slow_wheels_of_few_cones_roll_slower_than_rapiers_own() {
     let [own, ours] = [false, true].map(|m| rolled(m, Ground::Cuboid, (32, 0.1), 0.3));

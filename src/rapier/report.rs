@@ -68,7 +68,7 @@ counters! {
         pub frozen: usize,
         /// How much of [`crate::MedialOptions::budget`] was spent: node pairs and elementary tests for first contacts, and
         /// looks at two convex pieces as a whole, each of which counts as 16. Where a step looked at all colliders after all
-        /// ([`Self::completed`]), what it had searched before is not counted.
+        /// ([`Self::completed`]), its first search is not counted.
         pub spent: u64,
         /// Bodies that stopped before the step's end because the budget was spent: it is not known whether their path
         /// is free beyond that point. They go on in the next step, at the speed they had, unless its budget does not pay for

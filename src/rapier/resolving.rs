@@ -8,7 +8,7 @@ use crate::rapier::impacts::toi_query::Work;
 use crate::rapier::state::State;
 use crate::rapier::step_args::StepArgs;
 use crate::rapier::step_plan::StepPlan;
-use crate::rapier::view::participants::Contacts;
+use crate::rapier::view::participants::{Contacts, Participants};
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
 
@@ -33,18 +33,18 @@ impl State {
         let wild = std::mem::take(&mut plan.wild);
         wild.take_back(&mut plan.view, &rules, world.narrow_phase, parameters.dt);
         let depth = plan.depth.max(depth);
-        if plan.participants.is_none() {
+        let Some(participants) = plan.participants.take() else {
             return self.among_all(world, args, (plan, depth), work);
-        }
-        if let Some(outcome) = self.among_participants(world, args, (plan, depth), work) {
+        };
+        let among = self.among_participants(world, args, (plan, &participants, depth), work);
+        let still = participants.still();
+        if let Some(outcome) = among {
+            plan.participants = Some(participants);
             return outcome;
         }
-        if let Some(participants) = plan.participants.take() {
-            let whole = StepView::take(world.sets(parameters, None));
-            let still = participants.still();
-            plan.view
-                .complete(whole, still, parameters, sets, world.multibody_joints);
-        }
+        let whole = StepView::take(world.sets(parameters, None));
+        let view = &mut plan.view;
+        view.complete(whole, still, parameters, sets, world.multibody_joints);
         // How deep the others are was not looked at.
         self.among_all(world, args, (plan, Real::INFINITY), work)
     }
@@ -69,29 +69,26 @@ impl State {
         &mut self,
         world: &World,
         args: StepArgs,
-        (plan, depth): (&mut StepPlan, Real),
+        (plan, participants, depth): (&mut StepPlan, &Participants, Real),
         work: &mut Work,
     ) -> Option<Outcome> {
-        let participants = plan.participants.take()?;
         let still = participants.still();
         let mut active = world.islands.active_bodies();
-        let wakes = active.any(|h| !plan.view.index.contains_key(&h) && still.pose(h).is_some());
-        let resolved = (!wakes).then(|| {
-            let before = (plan.view.clone(), *work, self.placed.left_to_solver());
-            let contacts = Contacts {
-                participants: Some(&participants),
-                ..Contacts::of_all(world.narrow_phase, depth)
-            };
-            let resolved = self.resolve(world, args, (plan, contacts), work);
-            if resolved.is_none() {
-                let left;
-                (plan.view, *work, left) = before;
-                self.placed.leave_again(left);
-            }
-            resolved
-        });
-        plan.participants = Some(participants);
-        resolved.flatten()
+        if active.any(|h| !plan.view.index.contains_key(&h) && still.pose(h).is_some()) {
+            return None;
+        }
+        let before = (plan.view.clone(), *work, self.placed.left_to_solver());
+        let contacts = Contacts {
+            participants: Some(participants),
+            ..Contacts::of_all(world.narrow_phase, depth)
+        };
+        let resolved = self.resolve(world, args, (plan, contacts), work);
+        if resolved.is_none() {
+            let left;
+            (plan.view, *work, left) = before;
+            self.placed.leave_again(left);
+        }
+        resolved
     }
 
     fn resolve(

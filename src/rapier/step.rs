@@ -75,8 +75,9 @@ impl State {
             self.moved = Some(moved_before(world.bodies, world.colliders, unit));
         }
         let multibodies = &mut *world.multibody_joints;
+        let parameters = args.parameters;
         self.links
-            .place_new(world.bodies, multibodies, world.colliders, unit);
+            .place_new(world.bodies, multibodies, world.colliders, parameters);
         // Filters are asked before rapier has moved colliders to where the user put their bodies.
         world
             .bodies
@@ -127,6 +128,8 @@ impl State {
             self.recycled.forget(ids);
         }
         report.add_answered(tally.counts);
+        self.links
+            .note(world.bodies, world.multibody_joints, world.colliders);
         self.kept = (!plan.view.followed).then_some(plan);
         (report, outcome.stopped)
     }

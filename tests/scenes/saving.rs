@@ -82,6 +82,40 @@ fn a_loaded_world_of_pressed_bodies_falls_asleep_at_the_same_time() {
     }
 }
 
+/// A rope of rings that hangs by a multibody from a body that moves to and fro at up to 2 m/s.
+#[test]
+fn a_loaded_rope_on_a_moving_hand_goes_on_bit_by_bit() {
+    let mut world = PhysicsWorld::new();
+    let hand = RigidBodyBuilder::kinematic_velocity_based().translation(Vector::Y * 4.0);
+    let hand = world.insert_body(hand);
+    let mut above = hand;
+    for k in 0..4 {
+        let at = Vector::new(0.0, 3.2 - 0.8 * k as Real, 0.0);
+        let link = ColliderBuilder::medial_mesh(ring(12, 0.3, 0.05));
+        let (link, _) = world.insert(RigidBodyBuilder::dynamic().translation(at), link);
+        let joint = SphericalJointBuilder::new()
+            .local_anchor1(Vector::NEG_Y * 0.4)
+            .local_anchor2(Vector::Y * 0.4);
+        world.insert_multibody_joint(above, link, joint);
+        above = link;
+    }
+    let step = |world: &mut PhysicsWorld, pipeline: &mut MedialPipeline, k: usize| {
+        let speed = Vector::X * (2.0 * (k as Real * 0.1).sin());
+        world.bodies[hand].set_linvel(speed, true);
+        pipeline.step(world);
+    };
+    let mut pipeline = attached(&mut world);
+    (0..77).for_each(|k| step(&mut world, &mut pipeline, k));
+    let saved = save_world(&world).expect("a world that can be saved");
+    let mut loaded = load_world(&saved).expect("what was saved");
+    let mut other = attached(&mut loaded);
+    for k in 77..300 {
+        step(&mut world, &mut pipeline, k);
+        step(&mut loaded, &mut other, k);
+        assert_eq!(bits(&world), bits(&loaded), "step {k}");
+    }
+}
+
 /// Steps both worlds; the first step at which they differ.
 fn first_difference(
     [a, b]: [&mut PhysicsWorld; 2],

@@ -55,6 +55,8 @@ pub fn muted(
     } else {
         0.0
     };
+    // Of the whole step, of which parts before a stop may have spent some.
+    let most = work.spent() + policy.budget_left(work).min(policy.budget / 4);
     for pair in sweep(view, policy.dt, margin) {
         let [p, q] = pair.map(|k| &view.parts[k]);
         let plane = p.shape.as_halfspace().or(q.shape.as_halfspace());
@@ -67,7 +69,7 @@ pub fn muted(
         }
         let known = narrow_phase.contact_pair(p.handle, q.handle);
         let medial = if p.medial().is_some() { p } else { q };
-        match reason(view, policy, rules, pair, work) {
+        match reason(view, policy, rules, (pair, most), work) {
             Some(reason) => {
                 let [m1, m2] = pair.map(|k| view.motion(k, 0.0).start);
                 let key = PairKey::new(&*p.shape, &*q.shape, &m1.inv_mul(&m2));
@@ -103,14 +105,14 @@ fn reason(
     view: &StepView,
     policy: &CcdPolicy,
     rules: &Rules,
-    pair: [usize; 2],
+    (pair, most): ([usize; 2], u64),
     work: &mut Work,
 ) -> Option<Reason> {
     let may_bounce = policy.may_bounce(view, pair);
     let is_fast = policy.is_fast(view, pair, 0.0, policy.tuning.muted);
     if !(may_bounce || is_fast)
         || policy.speculates(view, pair)
-        || policy.budget_left(work) <= policy.budget - policy.budget / 4
+        || work.spent() >= most
         || !rules.respond(view, pair)
     {
         return None;
