@@ -4,6 +4,7 @@
 #[allow(dead_code)] // Shared with `tests/scenes`.
 mod scenes {
     pub mod bodies;
+    pub mod changed_shapes;
     pub mod combs;
     pub mod let_go;
     pub mod linking;
@@ -17,6 +18,7 @@ use rapier3d::prelude::*;
 use rapier3d_medial::MedialDispatcher;
 use rapier3d_medial::prelude::*;
 use scenes::bodies::{boxes, plateau};
+use scenes::changed_shapes::heap;
 use scenes::combs::Dropped;
 use scenes::let_go::let_go;
 use scenes::oneway::plates;
@@ -442,4 +444,13 @@ fn slow_wheels_of_few_cones_roll_slower_than_rapiers_own() {
     let [own, ours] = [false, true].map(|m| rolled(m, Ground::Cuboid, (32, 0.1), 0.3));
     println!("{ours} m/s after 3 s, rapier's own {own}");
     assert!(ours < own - 0.02, "{ours} m/s, rapier's own {own}: mended?");
+}
+
+/// In one or two of 120 heaps whose bodies get other shapes a pair hangs in each other in the end, here by 11 mm: whether and
+/// where is chance. In 23 of the first 24 heaps none is deeper than 6.9 mm, as with rapier's own shapes
+/// (`scenes put_in_place`).
+#[test]
+fn a_pair_hangs_in_each_other_in_a_heap_of_changed_shapes() {
+    let depth = heap(20).depth;
+    assert!(depth > 0.0069, "{depth} m deep: mended?");
 }

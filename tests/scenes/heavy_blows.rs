@@ -80,7 +80,6 @@ fn thrown(medial: bool, speed: Real, seed: u64) -> (usize, f64, Real) {
 /// None of the rings is below the ground, which is the plane at height 0.
 #[test]
 fn no_ring_is_driven_into_the_ground_by_a_heavy_one() {
-    let mut pressed = 0;
     for speed in [20.0, 60.0] {
         for seed in [1, 2, 3] {
             let [ours, own] = [true, false].map(|medial| thrown(medial, speed, seed));
@@ -89,15 +88,17 @@ fn no_ring_is_driven_into_the_ground_by_a_heavy_one() {
                  compounds {:.1} ms, lowest {:.3}",
                 ours.0, ours.1, ours.2, own.1, own.2
             );
-            // The middle of a ring that stands or lies on the ground is a radius of its tube above it or higher. The most that
-            // the guard allows is that one is pressed in by half of that.
+            // The middle of a ring that stands or lies on the ground is a radius of its tube above it or higher. In one of
+            // these six throws one is pressed in by half of that, the most that the guard allows.
+            let least = match (speed, seed) {
+                (60.0, 2) => 0.49,
+                _ => 0.75,
+            };
             assert!(
-                ours.2 > 0.49 * MINOR,
+                ours.2 > least * MINOR,
                 "{speed} m/s, seed {seed}: {}",
                 ours.2
             );
-            pressed += usize::from(ours.2 < 0.75 * MINOR);
         }
     }
-    assert!(pressed <= 1, "{pressed} of six");
 }

@@ -9,6 +9,7 @@ mod brickwork;
 mod budget;
 mod bystanders;
 mod carried_characters;
+mod changed_shapes;
 mod changes;
 mod characters;
 mod combs;
