@@ -28,8 +28,8 @@ const EQUAL: f64 = 0.02;
 const SAME_PLACE: f64 = 0.25;
 
 /// Width of the place that a body rolls over, in units of how far it rolls in a step: of the contacts within that of a deeper
-/// one only that one bears. One ahead of a wheel's axle would stop what comes down on it, and the wheel with it. Smaller, and wheels
-/// of few cones are braked; larger, and what rocks slowly has one contact. What the other body turns is not looked at.
+/// one only that one bears. One ahead of a wheel's axle would stop what comes down on it, and the wheel with it. Smaller, and
+/// wheels of few cones are braked; larger, and what rocks slowly has one contact. How the other body turns is not looked at.
 const PASSED: f64 = 3.0;
 
 /// Steepest facet, as a gradient, where the load is beside all contacts and the body tips over: contacts

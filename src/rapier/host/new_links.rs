@@ -26,8 +26,8 @@ struct Hold(RigidBodyHandle, JointAxesMask, Pose);
 
 impl KnownLinks {
     /// Moves the links of multibodies with medial colliders to where their joints hold them, by the sum that rapier makes at
-    /// the start of its step of `dt` seconds, where a joint is new or was changed since the last step. Links whose root was
-    /// moved are left to rapier.
+    /// the start of its step, where a joint is new or was changed since the last step. Links whose root was moved are left
+    /// to rapier.
     pub fn place_new(
         &self,
         bodies: &mut RigidBodySet,
