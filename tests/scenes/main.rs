@@ -52,6 +52,7 @@ mod held;
 mod impact_laws;
 mod impacts;
 mod knots;
+mod length_units;
 mod let_go;
 mod level_grounds;
 mod limits;

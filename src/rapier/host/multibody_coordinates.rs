@@ -135,11 +135,11 @@ fn coordinates(
     let coords = joint.coords();
     let mut ways: [Vec<Real>; 3] = Default::default();
     for i in free(0) {
-        let way = between.translation[i] - coords[i];
+        // Back to zero first: so it ends exactly where it is to go, however far rapier's step took it.
         let [first, second, last] = &mut ways;
-        first.push(0.0);
+        first.push(-coords[i]);
         second.push(0.0);
-        last.push(way);
+        last.push(between.translation[i]);
     }
     let mut turns = free(3);
     let hinge = turns.next().filter(|_| turns.next().is_none());

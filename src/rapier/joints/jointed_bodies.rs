@@ -25,8 +25,8 @@ const PIECE_TURN: Real = 0.125;
 /// The most pieces of a step if nothing else is met.
 const MOST_PIECES: Real = 64.0;
 
-/// Opening that joints may gain, a length or an angle, from which they count as not closed: what is this far off says
-/// nothing of where bodies go, which then go straight, and rapier's next step closes the joints.
+/// Opening that joints may gain, in units of rapier's length unit or in radians, from which they count as not closed: what
+/// is this far off says nothing of where bodies go, which then go straight, and rapier's next step closes the joints.
 const UNCLOSED: f64 = 1.0e-2;
 
 /// Result of closing joints: the bodies moved, and until when.
@@ -193,18 +193,14 @@ impl Joints {
         let mut targets = locked.clone();
         targets.extend(system.stop_at_limits(&before, seconds));
         let stops = targets.len() > locked.len();
-        let is_closed = |system: &System, targets: &[f64]| {
-            let mut left = system.openings().into_iter().zip(targets);
-            left.all(|(now, target)| (now - target).abs() <= UNCLOSED)
-        };
         let mut after = system.integrate(&before, seconds, &targets);
-        if stops && !is_closed(&system, &targets) {
+        if stops && system.left_open(&targets).1 > UNCLOSED {
             // Joints pass limits rather than open.
             system = self.system(view, &[from], time, |b| inertia(view, b));
             after = system.integrate(&before, seconds, &locked);
             targets = locked;
         }
-        if !is_closed(&system, &targets) {
+        if system.left_open(&targets).1 > UNCLOSED {
             return Piece::default();
         }
         let own: Vec<Twist> = system

@@ -11,7 +11,8 @@ use crate::rapier::view::link_angles::{LinkAngles, shortest};
 use rapier3d::dynamics::{GenericJoint, MultibodyLink};
 use std::f32::consts::PI;
 
-/// How near its limit a joint stands at it, a length or an angle: what rounding and closing joints leave.
+/// How near its limit a joint stands at it, in units of rapier's length unit or in radians: what rounding and closing
+/// joints leave.
 const AT_LIMIT: Real = 1.0e-3;
 
 /// A limited axis of a joint that is not locked, or the linear ones together whose distance a rope limits.
@@ -123,17 +124,23 @@ impl Limit {
         }
     }
 
-    /// Whether a joint that is `at` stands at a limit.
-    pub fn is_reached(&self, at: Real) -> bool {
-        let [min, max] = self.range;
-        at >= max - AT_LIMIT || at <= min + AT_LIMIT
+    /// [`AT_LIMIT`] of this one, a length or an angle, where rapier's length unit is `unit`.
+    fn near(&self, unit: Real) -> Real {
+        let is_angle = self.axes.trailing_zeros() >= 3;
+        if is_angle { AT_LIMIT } else { AT_LIMIT * unit }
+    }
+
+    /// Whether a joint that is `at` stands at a limit. `unit`: rapier's length unit.
+    pub fn is_reached(&self, at: Real, unit: Real) -> bool {
+        let ([min, max], near) = (self.range, self.near(unit));
+        at >= max - near || at <= min + near
     }
 
     /// Whether a joint that is `at` stands at a limit, does not leave it at a rate, and is pushed on there.
-    pub fn holds(&self, at: Real, rate: Real, push: Real) -> bool {
-        let [min, max] = self.range;
-        let at_max = at >= max - AT_LIMIT && rate >= -AT_LIMIT && push > 0.0;
-        at_max || (at <= min + AT_LIMIT && rate <= AT_LIMIT && push < 0.0)
+    pub fn holds(&self, at: Real, rate: Real, push: Real, unit: Real) -> bool {
+        let ([min, max], near) = (self.range, self.near(unit));
+        let at_max = at >= max - near && rate >= -near && push > 0.0;
+        at_max || (at <= min + near && rate <= near && push < 0.0)
     }
 
     /// Position at which a joint that is `at`, and would be `next`, has to stop, if it has to: at its limit, or where

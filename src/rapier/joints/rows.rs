@@ -27,6 +27,8 @@ pub struct Row {
     pub jacobian: [Twist; 2],
     /// A length or an angle.
     pub opening: Real,
+    /// Whether it is an angle.
+    pub is_angle: bool,
 }
 
 impl Row {
@@ -84,6 +86,7 @@ impl Ends {
             bodies: self.bodies,
             jacobian: [[-n, -arms[0].cross(n)], [n, arms[1].cross(n)]],
             opening,
+            is_angle: false,
         }
     }
 
@@ -93,6 +96,7 @@ impl Ends {
             bodies: self.bodies,
             jacobian: [[Vector::ZERO, -n], [Vector::ZERO, n]],
             opening,
+            is_angle: true,
         }
     }
 }

@@ -13,7 +13,8 @@ impl System<'_> {
     /// for a system.
     pub fn stand_at_limits(&mut self, twists: &[Twist], push: impl Fn(&Self) -> Vec<Twist>) {
         let limits = self.limits(&self.poses);
-        let stands = |(_, limit, row): &(usize, Limit, Row)| limit.is_reached(row.opening);
+        let unit = self.unit;
+        let stands = |(_, limit, row): &(usize, Limit, Row)| limit.is_reached(row.opening, unit);
         let mut standing: Vec<_> = limits.filter(stands).collect();
         for _ in 0..STOPPING_ROUNDS {
             if standing.is_empty() {
@@ -23,7 +24,7 @@ impl System<'_> {
             let known = self.stops.len();
             standing.retain(|(j, limit, row)| {
                 let [rate, push] = [twists, &pushed].map(|t| row.along(t) as Real);
-                let holds = limit.holds(row.opening, rate, push);
+                let holds = limit.holds(row.opening, rate, push, self.unit);
                 if holds {
                     self.stops.push((*j, *limit));
                 }

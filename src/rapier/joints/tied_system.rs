@@ -24,8 +24,12 @@ const REGULAR: f64 = 1.0e-4;
 /// Times that joints are closed in a piece of a motion: each leaves about a quarter of the opening.
 const CLOSING_STEPS: usize = 8;
 
-/// Opening that is left, a length or an angle in radians; of bodies far from each other more, by the rounding of their
-/// poses.
+/// Share of the opening that one of these may leave with the directions of the piece's start. Where it leaves more, as of
+/// light links on long levers, the next goes along the directions of the poses now.
+const SLOW: f64 = 0.5;
+
+/// Opening that is left, in units of rapier's length unit or in radians; of bodies far from each other more, by the
+/// rounding of their poses.
 const CLOSED: f64 = 1.0e-5;
 
 /// Rounding of a pose in single precision, relative to its distance from the origin.
@@ -38,6 +42,8 @@ pub struct System<'a> {
     inertias: Vec<Inertia>,
     /// Centres of mass in the frames of the bodies.
     centers: Vec<Vector>,
+    /// rapier's length unit.
+    pub(super) unit: Real,
     /// Point that is taken from all positions, which are the more exact for it.
     origin: Vector,
     start: Vec<Pose>,
@@ -77,6 +83,7 @@ impl<'a> System<'a> {
         let mut system = Self {
             inertias,
             centers: bodies.iter().map(center).collect(),
+            unit: view.unit,
             origin,
             poses: start.clone(),
             start,
@@ -216,22 +223,24 @@ impl<'a> System<'a> {
             .iter()
             .map(|p| p.translation.length())
             .fold(0.0, Real::max);
-        let closed = CLOSED.max(ROUNDING * f64::from(size));
+        let closed = CLOSED.max(ROUNDING * f64::from(size / self.unit));
         self.displace(twists, seconds);
         let mut twists = twists.to_vec();
-        let mut changed = false;
+        let mut before = f64::INFINITY;
         for _ in 0..CLOSING_STEPS {
-            let left = self.openings().into_iter().zip(targets);
-            let left: Vec<f64> = left.map(|(now, target)| now - target).collect();
-            if left.iter().all(|o| o.abs() <= closed) {
+            let (left, most) = self.left_open(targets);
+            if most <= closed {
                 break;
             }
-            changed = true;
+            if most > SLOW * before {
+                self.factor();
+            }
+            before = most;
             let mut moves = vec![[Vector::ZERO; 2]; self.bodies.len()];
             self.subtract(left, &mut moves);
             self.displace(&moves, 1.0);
         }
-        if changed {
+        if before.is_finite() {
             for (k, twist) in twists.iter_mut().enumerate() {
                 if !self.is_infinite(k) {
                     let (way, turn) = self.moved[k];
@@ -248,6 +257,21 @@ impl<'a> System<'a> {
     pub fn openings(&self) -> Vec<f64> {
         let rows = self.rows_now();
         rows.iter().map(|r| f64::from(r.opening)).collect()
+    }
+
+    /// How far each is from being open by a target, a length or an angle, and the most of them, in units of rapier's length
+    /// unit or in radians.
+    pub fn left_open(&self, targets: &[f64]) -> (Vec<f64>, f64) {
+        let (mut left, mut most) = (Vec::new(), 0.0);
+        for (row, target) in self.rows_now().iter().zip(targets) {
+            let off = f64::from(row.opening) - target;
+            let unit = if row.is_angle { 1.0 } else { self.unit.into() };
+            // What is no number is not closed.
+            let size = off.abs() / unit;
+            most = f64::max(most, if size.is_nan() { f64::INFINITY } else { size });
+            left.push(off);
+        }
+        (left, most)
     }
 
     /// How far each is where rapier's step ended.

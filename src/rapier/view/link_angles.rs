@@ -7,6 +7,9 @@ use std::f32::consts::TAU;
 /// Difference of angles, in radians, that is not made up for by whole turns: what rounding makes.
 const NO_TURN: Real = 1.0e-4;
 
+/// Sum of angles, in radians, from which single precision no longer tells rotations: rapier's step left all bounds.
+const LOST: Real = 1.0e4;
+
 /// How far a link of a multibody has turned: rapier sums the angles about the three axes of its joint, with all whole
 /// turns, beside the rotation that they made.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,9 +31,18 @@ impl LinkAngles {
     }
 
     /// Displacements that take a link from what rapier has, `of`, to a rotation, of which the last is the shortest turn
-    /// there, and the others whole turns: so its angles go on from these. `free`: the axis of a hinge.
+    /// there, and the others whole turns: so its angles go on from these. Sums that are lost are set to zero first.
+    /// `hinge`: the axis of a hinge.
     pub fn goes_on(&self, of: &Self, rotation: Rotation, hinge: Option<usize>) -> [Vector; 3] {
         let turn = |from: Rotation| shortest(rotation * from.inverse()).to_scaled_axis();
+        if of.angles.abs().max_element() > LOST {
+            let back = -of.angles;
+            let last = match hinge {
+                Some(axis) => Vector::AXES[axis] * (self.angles + turn(self.rotation))[axis],
+                None => turn(Rotation::from_scaled_axis(back) * of.rotation),
+            };
+            return [back, Vector::ZERO, last];
+        }
         let last = turn(of.rotation);
         let left = self.angles + turn(self.rotation) - of.angles - last;
         if let Some(axis) = hinge {
@@ -69,4 +81,37 @@ pub fn unwrapped(turn: Vector, expected: Vector, n: Real) -> Vector {
         return made.normalize() * (made.length() / TAU).round() * TAU;
     }
     turn + axis * (((made.dot(axis) - turn.length()) / TAU).round() * TAU)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// rapier's `MultibodyJoint::apply_displacement` of a joint with three free angles.
+    fn turned_by_rapier(rotation: Rotation, displacements: [Vector; 3]) -> Rotation {
+        let turn = |rotation, by| Rotation::from_scaled_axis(by) * rotation;
+        displacements.into_iter().fold(rotation, turn)
+    }
+
+    #[test]
+    fn a_link_gets_to_its_rotation_however_far_rapier_turned_it() {
+        let target = Rotation::from_scaled_axis(Vector::new(0.3, -1.1, 0.7));
+        for size in [1.0, 40.0, 3.0e3, 1.0e6, 1.0e12, 3.0e16] {
+            let before = LinkAngles {
+                rotation: Rotation::from_scaled_axis(Vector::new(-0.2, 0.4, 2.9)),
+                angles: Vector::new(6.1, 0.4, 9.2),
+            };
+            let now = LinkAngles {
+                rotation: Rotation::from_scaled_axis(Vector::new(2.0, 0.1, -0.9)),
+                angles: Vector::new(0.13, -0.41, 1.0) * size,
+            };
+            let displacements = before.goes_on(&now, target, None);
+            let end = turned_by_rapier(now.rotation, displacements);
+            let off = shortest(end * target.inverse()).to_scaled_axis().length();
+            assert!(off < 1.0e-3, "{off} rad off from angles of {size} rad");
+            let [first, _, last] = before.goes_on(&now, target, Some(0));
+            let hinge = now.angles.x + first.x + last.x;
+            assert!(hinge.abs() < 40.0, "a hinge at {hinge} rad");
+        }
+    }
 }

@@ -65,6 +65,8 @@ pub struct StepView {
     pub bodies: Vec<Body>,
     /// Colliders that are solid and enabled.
     pub parts: Vec<Part>,
+    /// rapier's length unit.
+    pub unit: Real,
     /// Whether the motions are those that rapier's step made.
     pub followed: bool,
     /// Place of each body in `bodies`.
@@ -81,6 +83,7 @@ impl StepView {
         let mut view = Self {
             bodies: vec![Body::ground()],
             parts: Vec::new(),
+            unit: sets.parameters.length_unit,
             followed: false,
             index: FastMap::default(),
             others_bounce: sets.participants.is_some_and(|p| p.still().bounce()),
