@@ -41,6 +41,30 @@ fn links_and_pipes_stay() {
     assert!(still.file_type().is_fifo());
 }
 
+/// Several meshes go into a folder: where the output has the name of a file, or is one, nothing is made.
+#[test]
+fn several_meshes_do_not_go_into_a_file() {
+    let directory = scratch("several");
+    for name in ["first.obj", "second.obj"] {
+        fs::write(directory.join(name), CORNER).unwrap();
+    }
+    fs::write(directory.join("notes"), "kept").unwrap();
+    for output in ["both.medial", "both.ma", "notes"] {
+        let run = medial(
+            &directory,
+            &["build", "first.obj", "second.obj", "-o", output],
+        );
+        let message = text(&run.stderr);
+        assert!(
+            !run.status.success() && message.contains(output),
+            "{message}"
+        );
+        assert!(message.contains("name a folder"), "{message}");
+        assert!(!directory.join(output).is_dir());
+    }
+    assert_eq!(fs::read(directory.join("notes")).unwrap(), b"kept");
+}
+
 /// JSON cannot hold a path that is not UTF-8: its bytes are replaced there, and the file has its own name.
 #[cfg(target_os = "linux")]
 #[test]

@@ -24,6 +24,8 @@ pub enum PlanError {
     MeshOutput(PathBuf),
     #[error("{0}: the output is a picture; name a file that ends in .png")]
     PictureOutput(PathBuf),
+    #[error("{0}: several meshes go into a folder, and this is the name of a file; name a folder")]
+    FileForSeveral(PathBuf),
     #[error("{0}: no such directory")]
     NoDirectory(PathBuf),
     #[error("{0}: no triangle mesh in it (obj, stl, ply, off, glb, gltf)")]
@@ -54,6 +56,9 @@ pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, P
     let single = matches!(inputs, [only] if !only.is_dir());
     let into_folder = !single || output.is_dir();
     if into_folder && !output.is_dir() {
+        if ends_in(output, &["ma", "medial"]) || output.is_file() {
+            return Err(PlanError::FileForSeveral(output.to_owned()));
+        }
         check_parent(output)?;
         std::fs::create_dir(output).map_err(|source| PlanError::Folder {
             path: output.to_owned(),
