@@ -49,7 +49,7 @@ fn several_meshes_do_not_go_into_a_file() {
         fs::write(directory.join(name), CORNER).unwrap();
     }
     fs::write(directory.join("notes"), "kept").unwrap();
-    for output in ["both.medial", "both.ma", "notes"] {
+    for output in ["both.medial", "both.ma", "both.obj", "notes"] {
         let run = medial(
             &directory,
             &["build", "first.obj", "second.obj", "-o", output],

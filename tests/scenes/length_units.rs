@@ -12,7 +12,7 @@ const LINKS: usize = 6;
 /// Distance of two links' centres, in units.
 const LENGTH: Real = 0.25;
 
-/// A world whose lengths are so many metres.
+/// A world in which one unit is `unit` metres.
 struct Scene {
     world: PhysicsWorld,
     unit: Real,
@@ -100,7 +100,7 @@ impl Scene {
         self
     }
 
-    /// Poses and velocities after each step, in units.
+    /// Bits of poses and velocities after each step, in units.
     fn run(mut self, steps: usize) -> Vec<u32> {
         let mut pipeline = MedialPipeline::new(MedialOptions::default());
         let mut states = Vec::new();

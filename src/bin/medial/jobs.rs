@@ -24,7 +24,9 @@ pub enum PlanError {
     MeshOutput(PathBuf),
     #[error("{0}: the output is a picture; name a file that ends in .png")]
     PictureOutput(PathBuf),
-    #[error("{0}: several meshes go into a folder, and this is the name of a file; name a folder")]
+    #[error(
+        "{0} has the name of a file: several meshes, or a folder of them, go into a folder; name a folder"
+    )]
     FileForSeveral(PathBuf),
     #[error("{0}: no such directory")]
     NoDirectory(PathBuf),
@@ -41,7 +43,7 @@ pub enum PlanError {
 }
 
 /// One job per mesh; a folder stands for all meshes in it. Several meshes go into the folder
-/// `output`, which is made if it is not there; a single one goes to the file, or into the folder.
+/// `output`, which is made if it is not there and does not have the name of a mesh; a single one goes to the file, or into the folder.
 ///
 /// What goes into a folder is baked if `bake` says so.
 pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, PlanError> {
@@ -56,7 +58,8 @@ pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, P
     let single = matches!(inputs, [only] if !only.is_dir());
     let into_folder = !single || output.is_dir();
     if into_folder && !output.is_dir() {
-        if ends_in(output, &["ma", "medial"]) || output.is_file() {
+        let is_mesh = ends_in(output, &["ma", "medial"]) || MeshFormat::of(output).is_some();
+        if is_mesh || output.is_file() {
             return Err(PlanError::FileForSeveral(output.to_owned()));
         }
         check_parent(output)?;

@@ -124,7 +124,7 @@ impl Limit {
         }
     }
 
-    /// [`AT_LIMIT`] of this one, a length or an angle, where rapier's length unit is `unit`.
+    /// How near this limit a joint stands at it, a length or an angle, where rapier's length unit is `unit`.
     fn near(&self, unit: Real) -> Real {
         let is_angle = self.axes.trailing_zeros() >= 3;
         if is_angle { AT_LIMIT } else { AT_LIMIT * unit }
@@ -136,7 +136,7 @@ impl Limit {
         at >= max - near || at <= min + near
     }
 
-    /// Whether a joint that is `at` stands at a limit, does not leave it at a rate, and is pushed on there.
+    /// Whether a joint that is `at` stands at a limit, does not leave it at a rate (per second), and is pushed on there.
     pub fn holds(&self, at: Real, rate: Real, push: Real, unit: Real) -> bool {
         let ([min, max], near) = (self.range, self.near(unit));
         let at_max = at >= max - near && rate >= -near && push > 0.0;

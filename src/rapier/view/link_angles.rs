@@ -7,7 +7,8 @@ use std::f32::consts::TAU;
 /// Difference of angles, in radians, that is not made up for by whole turns: what rounding makes.
 const NO_TURN: Real = 1.0e-4;
 
-/// Sum of angles, in radians, from which single precision no longer tells rotations: rapier's step left all bounds.
+/// Turn in a step, in radians, from which a link's angles are lost: rapier's step left all bounds, and single precision
+/// may not tell whole turns of so many.
 const LOST: Real = 1.0e4;
 
 /// How far a link of a multibody has turned: rapier sums the angles about the three axes of its joint, with all whole
@@ -31,11 +32,12 @@ impl LinkAngles {
     }
 
     /// Displacements that take a link from what rapier has, `of`, to a rotation, of which the last is the shortest turn
-    /// there, and the others whole turns: so its angles go on from these. Sums that are lost are set to zero first.
-    /// `hinge`: the axis of a hinge.
+    /// there, and the others whole turns: so its angles go on from these. Angles that are lost are set to zero first; then
+    /// those of a hinge, whose axis is `hinge`, are the sum they should be, others those of the shortest turn.
     pub fn goes_on(&self, of: &Self, rotation: Rotation, hinge: Option<usize>) -> [Vector; 3] {
         let turn = |from: Rotation| shortest(rotation * from.inverse()).to_scaled_axis();
-        if of.angles.abs().max_element() > LOST {
+        let made = (of.angles - self.angles).abs().max_element();
+        if made.is_finite() && made > LOST {
             let back = -of.angles;
             let last = match hinge {
                 Some(axis) => Vector::AXES[axis] * (self.angles + turn(self.rotation))[axis],
@@ -109,9 +111,25 @@ mod tests {
             let end = turned_by_rapier(now.rotation, displacements);
             let off = shortest(end * target.inverse()).to_scaled_axis().length();
             assert!(off < 1.0e-3, "{off} rad off from angles of {size} rad");
-            let [first, _, last] = before.goes_on(&now, target, Some(0));
-            let hinge = now.angles.x + first.x + last.x;
-            assert!(hinge.abs() < 40.0, "a hinge at {hinge} rad");
+        }
+    }
+
+    #[test]
+    fn a_hinge_keeps_its_whole_turns_however_far_rapier_turned_it() {
+        let hinge = |angle: Real| LinkAngles {
+            rotation: Rotation::from_rotation_x(angle),
+            angles: Vector::X * angle,
+        };
+        for (from, to) in [(6.1, 6.4), (31.0, 29.5), (2.0e4, 2.0e4 + 0.25)] {
+            for now in [from + 1.0, from - 9.0, 3.0e6, -1.0e12, 3.0e16].map(hinge) {
+                let turns = hinge(from).goes_on(&now, hinge(to).rotation, Some(0));
+                let end = turns.iter().fold(now.angles.x, |sum, turn| sum + turn.x);
+                assert!(
+                    (end - to).abs() < 0.01,
+                    "{end} rad for {to}, from {}",
+                    now.angles.x
+                );
+            }
         }
     }
 }

@@ -83,7 +83,7 @@ impl StepView {
         let mut view = Self {
             bodies: vec![Body::ground()],
             parts: Vec::new(),
-            unit: sets.parameters.length_unit,
+            unit: sets.parameters.length_unit.max(Real::MIN_POSITIVE),
             followed: false,
             index: FastMap::default(),
             others_bounce: sets.participants.is_some_and(|p| p.still().bounce()),
