@@ -30,7 +30,8 @@ pub enum Quality {
 /// Bodies with flat faces are exact if the number of primitives allows it: their medial axis is used, or, if they are
 /// not convex, those of convex pieces. Prisms are so with any angle, others if all their edges are sharper than it, and
 /// none without edges. Other closed bodies whose surface does not overlap itself are built twice, with sharp edges and
-/// without, and the result with the smaller error is returned ([`Quality::Fast`] builds only the one without). [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
+/// without, and the result with the smaller error is returned ([`Quality::Fast`] builds only the one without).
+/// [`BuildReport::variant`] and [`BuildReport::notes`] say which it is.
 ///
 /// ```
 /// use rapier3d_medial::prelude::*;
