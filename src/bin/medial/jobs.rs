@@ -43,7 +43,8 @@ pub enum PlanError {
 }
 
 /// One job per mesh; a folder stands for all meshes in it. Several meshes go into the folder
-/// `output`, which is made if it is not there and does not have the name of a mesh; a single one goes to the file, or into the folder.
+/// `output`, which is made if it is not there and does not have the name of a mesh; a single one goes to the file, or
+/// into the folder.
 ///
 /// What goes into a folder is baked if `bake` says so.
 pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, PlanError> {
