@@ -3,11 +3,11 @@
 //! serves too, since it runs on threads of its own.
 //!
 //! `cargo bench --features gpu --bench gpu_host`, with `-- --json FILE` the same figures as JSON. A world on the CPU
-//! gives the poses. Of each step all pairs of near boxes are asked for, some times on each side in turn; *contacts* is what a
-//! batch takes on the CPU, *host* what sending it, and finishing it by the lists, takes on the same thread. Then the
-//! world is stepped on both backends: *step* is all of `MedialPipeline::step`, and *wall* its time on the clock, waiting
-//! included; with `parallel` all times are the clock's. `--scene TEXT` measures the scenes whose name contains the text,
-//! and only so that of 10,000 bodies.
+//! gives the poses. Of each step all pairs of near boxes are asked for, some times on each side in turn; *contacts* is
+//! what a batch takes on the CPU, *host* what sending it, and finishing it by the lists, takes on the same thread. Then
+//! the world is stepped on both backends: *step* is all of `MedialPipeline::step`, and *wall* its time on the clock,
+//! waiting included; with `parallel` all times are the clock's. `--scene TEXT` measures the scenes whose name contains
+//! the text, and only so that of 10,000 bodies.
 
 #[allow(dead_code, reason = "no hash of results is printed here")]
 mod common;

@@ -5,8 +5,8 @@
 //! cargo run --release --features gpu --example many_worlds
 //! cargo run --release --features gpu --example many_worlds -- --worlds 1000 --steps 60
 //! ```
-//! Options: `--worlds N` (default 256), `--steps N` (default 120), `--hardware` (takes no adapter that is itself code on the
-//! CPU). Exits with 1 when a world differs from itself alone.
+//! Options: `--worlds N` (default 256), `--steps N` (default 120), `--hardware` (takes no adapter that is itself code
+//! on the CPU). Exits with 1 when a world differs from itself alone.
 
 mod common;
 

@@ -8,15 +8,15 @@
 //! `--quality fast|balanced|best` (default balanced), `--out FILE` (default
 //! target/medial_table/table.md).
 //!
-//! Writes Markdown, after each row. Lengths have the longest side of the source's box as the unit, as in
-//! the paper. H is measured with parry's triangle meshes, not with the builder's trees: at all vertices
-//! of both surfaces and at points on each that no fit has seen, so many that on the source each stands for
-//! a square whose side, "apart", is a fifth of the builder's error or less; the solid's boundary is drawn
-//! with triangles of a quarter of it. "Before" is the builder's own measure of what it enclosed, by points that no fit has seen
-//! either; class, variant, edges kept (those that may be, of the source) and hidden (share of the source's area inside
-//! matter) are what it reports; uncovered and bloat are its own too, and ± is by how much a distance may exceed them between
-//! the points that it looked at. MB is the largest resident set during the build, where the system tells
-//! it (Linux), and what of it the builder's arrays are.
+//! Writes Markdown, after each row. Lengths have the longest side of the source's box as the unit, as in the paper. H
+//! is measured with parry's triangle meshes, not with the builder's trees: at all vertices of both surfaces and at
+//! points on each that no fit has seen, so many that on the source each stands for a square whose side, "apart", is a
+//! fifth of the builder's error or less; the solid's boundary is drawn with triangles of a quarter of it. "Before" is
+//! the builder's own measure of what it enclosed, by points that no fit has seen either; class, variant, edges kept
+//! (those that may be, of the source) and hidden (share of the source's area inside matter) are what it reports;
+//! uncovered and bloat are its own too, and ± is by how much a distance may exceed them between the points that it
+//! looked at. MB is the largest resident set during the build, where the system tells it (Linux), and what of it the
+//! builder's arrays are.
 //!
 //! Last comes a ring at 27 primitives beside parry's convex decomposition, both against the true ring.
 

@@ -169,8 +169,8 @@ fn bodies_whose_pose_is_set_in_each_step_never_fall_asleep() {
     assert!(sleeps(false) && !sleeps(true));
 }
 
-/// A floor whose normal comes out straight up and shorter than 1 by rounding is a slope that characters slip on: they stand
-/// still for some of their moves. So the normals of hits that this crate tells are longer than 1.
+/// A floor whose normal comes out straight up and shorter than 1 by rounding is a slope that characters slip on: they
+/// stand still for some of their moves. So the normals of hits that this crate tells are longer than 1.
 #[test]
 fn characters_stand_still_where_rounding_makes_normals_short() {
     let way = |shape: &SharedShape, turn: Vector| {
@@ -204,8 +204,8 @@ fn characters_stand_still_where_rounding_makes_normals_short() {
     }
 }
 
-/// Bodies that slept when their joint was removed wake together, however far apart, and rapier tells so by a call that its
-/// documentation hides.
+/// Bodies that slept when their joint was removed wake together, however far apart, and rapier tells so by a call that
+/// its documentation hides.
 #[test]
 fn sleeping_islands_wake_as_a_whole() {
     let mut world = PhysicsWorld::new();

@@ -168,8 +168,8 @@ fn crossed_edges_of_no_thickness_tremble() {
     assert!(ends.iter().all(|end| end.speed < 0.2), "they are not still");
 }
 
-/// The event loop resolves the contacts of two pairs one after the other. An elastic rod that falls flat on two bars at 2 m/s,
-/// and should leave at this speed without turning, turns by 2.9 rad/s (rapier's own capsule: 1.1 to 1.2).
+/// The event loop resolves the contacts of two pairs one after the other. An elastic rod that falls flat on two bars at
+/// 2 m/s, and should leave at this speed without turning, turns by 2.9 rad/s (rapier's own capsule: 1.1 to 1.2).
 #[test]
 fn a_rod_that_falls_on_two_bars_turns() {
     let mut world = PhysicsWorld::new();
@@ -195,9 +195,9 @@ fn a_rod_that_falls_on_two_bars_turns() {
     assert!(turns > 2.0, "{turns} rad/s");
 }
 
-/// Pairs without joints bounce in the event loop where nothing pulls on them ([`Effects::restitution`]), though others that
-/// have joints may press on them: two blocks without weight between two fingers with motors rattle on, where they rest in
-/// the solver.
+/// Pairs without joints bounce in the event loop where nothing pulls on them ([`Effects::restitution`]), though others
+/// that have joints may press on them: two blocks without weight between two fingers with motors rattle on, where they
+/// rest in the solver.
 #[test]
 fn weightless_blocks_pressed_through_others_rattle() {
     let speed = |effects: Effects| {
@@ -235,9 +235,10 @@ fn weightless_blocks_pressed_through_others_rattle() {
     assert!(ours > 0.05, "they move by {ours} only");
 }
 
-/// A ball of which the vertical axis is locked, and which moves down, touches the ground below its centre, where nothing can
-/// give way. Of rapier's ball the lever is 0, of a medial one it is what rounding leaves, and rapier's solver divides by
-/// its square. (rapier's own capsules and compounds get thousands of rad/s.) In the event loop such contacts give no impulse.
+/// A ball of which the vertical axis is locked, and which moves down, touches the ground below its centre, where
+/// nothing can give way. Of rapier's ball the lever is 0, of a medial one it is what rounding leaves, and rapier's
+/// solver divides by its square. (rapier's own capsules and compounds get thousands of rad/s.) In the event loop such
+/// contacts give no impulse.
 #[test]
 fn ball_driven_along_a_locked_axis_spins_in_rapiers_solver() {
     let spin = |collider: ColliderBuilder| {
@@ -291,8 +292,8 @@ fn crossed_needles_never_sleep() {
     assert!(own == 20 && ours < 20, "{ours}, {own}");
 }
 
-/// A table whose front legs hang over a cliff no longer lies on the plateau as a whole, so its rear legs meet the cliff's
-/// edge from behind. A body without such legs does not (`bodies_slide_off_a_plateau_as_rapiers_do`).
+/// A table whose front legs hang over a cliff no longer lies on the plateau as a whole, so its rear legs meet the
+/// cliff's edge from behind. A body without such legs does not (`bodies_slide_off_a_plateau_as_rapiers_do`).
 #[test]
 fn rear_legs_meet_the_edge_of_a_cliff_from_behind() {
     let parts = [
@@ -328,8 +329,8 @@ fn rear_legs_meet_the_edge_of_a_cliff_from_behind() {
     assert!(own > 7.9 && ours < 7.5, "{ours} m/s, rapier's {own}");
 }
 
-/// Thin plates that fall back into a one-way platform end on it more often than rapier's cuboids, which mostly fall through.
-/// Likely because the hook is asked about each slab of a plate, and about a cuboid once.
+/// Thin plates that fall back into a one-way platform end on it more often than rapier's cuboids, which mostly fall
+/// through. Likely because the hook is asked about each slab of a plate, and about a cuboid once.
 #[test]
 fn plates_that_fall_back_into_a_oneway_platform_are_pressed_out_on_top() {
     let [ours, own] = [true, false].map(plates);
@@ -337,9 +338,9 @@ fn plates_that_fall_back_into_a_oneway_platform_are_pressed_out_on_top() {
     assert!(ours.on_top > 2 * own.on_top, "{ours:?}, of cuboids {own:?}");
 }
 
-/// A card between cuboids 30 times as heavy: rapier's contacts give way by more than half its thickness (its own rounded
-/// cuboids in place of the cards come to rest 4 mm deep in the others), which would take its medial plane through theirs. So impacts hold the stack up in every
-/// step, at some 50 ms, and it never sleeps.
+/// A card between cuboids 30 times as heavy: rapier's contacts give way by more than half its thickness (its own
+/// rounded cuboids in place of the cards come to rest 4 mm deep in the others), which would take its medial plane
+/// through theirs. So impacts hold the stack up in every step, at some 50 ms, and it never sleeps.
 #[test]
 fn cards_between_heavy_cuboids_never_sleep() {
     let half = Vector::new(0.4, 0.003, 0.3);
@@ -372,9 +373,9 @@ fn cards_between_heavy_cuboids_never_sleep() {
     assert!(asleep[0].is_some() && asleep[1].is_none(), "{asleep:?}");
 }
 
-/// Two rings that a joint pressed into each other, in each other still when it lets go of them, and whirl about each other at 10 to
-/// 20 m/s: the event loop keeps them apart at half their thickness, to which the whirling presses them. (With damping both
-/// kinds come apart.)
+/// Two rings that a joint pressed into each other, in each other still when it lets go of them, and whirl about each
+/// other at 10 to 20 m/s: the event loop keeps them apart at half their thickness, to which the whirling presses them.
+/// (With damping both kinds come apart.)
 #[test]
 fn rings_that_whirl_in_each_other_are_deeper_than_rapiers() {
     let mean = |medial: bool| {
@@ -386,9 +387,9 @@ fn rings_that_whirl_in_each_other_are_deeper_than_rapiers() {
     assert!(ours > own + 0.005, "{ours} {own}");
 }
 
-/// parry merges the faces of a hull that are about as one into one of a single normal, without the corners between them: of a
-/// box with a roof 8 mm high it keeps one tilted face. Its surface is what medial bodies are held against, so that they are
-/// off by some of these 8 mm there; rapier's own shapes are held against the corners.
+/// parry merges the faces of a hull that are about as one into one of a single normal, without the corners between
+/// them: of a box with a roof 8 mm high it keeps one tilted face. Its surface is what medial bodies are held against,
+/// so that they are off by some of these 8 mm there; rapier's own shapes are held against the corners.
 #[test]
 fn blunt_roofs_of_hulls_are_not_where_they_are() {
     let corner = |k: u8| {
@@ -411,9 +412,9 @@ fn blunt_roofs_of_hulls_are_not_where_they_are() {
     assert!(off > 100, "{off} of 400 are off");
 }
 
-/// Triangles that touching parts share are known by being given in both orientations. Those of a part that is inside out are
-/// not, and stay in the solid as inner walls: four boxes round one edge, of which one is inside out, come out a tenth off;
-/// with all of them one way they are exact.
+/// Triangles that touching parts share are known by being given in both orientations. Those of a part that is inside
+/// out are not, and stay in the solid as inner walls: four boxes round one edge, of which one is inside out, come out a
+/// tenth off; with all of them one way they are exact.
 #[test]
 fn an_inside_out_part_spoils_a_kit_of_boxes() {
     let at = |k: usize| Vector::new([0.0, 0.4, 0.4, 0.0][k], 0.0, [0.0, 0.0, 0.5, 0.5][k]);
@@ -437,8 +438,9 @@ fn an_inside_out_part_spoils_a_kit_of_boxes() {
     assert!(error > 0.1, "{error}: mended?");
 }
 
-/// A wheel of few cones that rolls slowly on rapier's grounds stops sooner than rapier's compound of as many capsules: in a step
-/// it rolls by less than a third of a cone's length, and the next cone comes down on the ground ahead of the axle.
+/// A wheel of few cones that rolls slowly on rapier's grounds stops sooner than rapier's compound of as many capsules:
+/// in a step it rolls by less than a third of a cone's length, and the next cone comes down on the ground ahead of the
+/// axle.
 #[test]
 fn slow_wheels_of_few_cones_roll_slower_than_rapiers_own() {
     let [own, ours] = [false, true].map(|m| rolled(m, Ground::Cuboid, (32, 0.1), 0.3));
@@ -446,8 +448,8 @@ fn slow_wheels_of_few_cones_roll_slower_than_rapiers_own() {
     assert!(ours < own - 0.02, "{ours} m/s, rapier's own {own}: mended?");
 }
 
-/// In one or two of 120 heaps whose bodies get other shapes a pair hangs in each other in the end, here by 11 mm: whether and
-/// where is chance. In 23 of the first 24 heaps none is deeper than 6.9 mm, as with rapier's own shapes
+/// In one or two of 120 heaps whose bodies get other shapes a pair hangs in each other in the end, here by 11 mm:
+/// whether and where is chance. In 23 of the first 24 heaps none is deeper than 6.9 mm, as with rapier's own shapes
 /// (`scenes put_in_place`).
 #[test]
 fn a_pair_hangs_in_each_other_in_a_heap_of_changed_shapes() {

@@ -192,8 +192,8 @@ fn empty(scene: &str, hertz: f64, steps: usize) -> World {
     }
 }
 
-/// A ring and another body without weight that approach each other at a speed, and surely meet or clearly pass: tubes of
-/// three quarters the radius would meet too, or there are 3 to 28 cm between the bodies.
+/// A ring and another body without weight that approach each other at a speed, and surely meet or clearly pass: tubes
+/// of three quarters the radius would meet too, or there are 3 to 28 cm between the bodies.
 fn flight(scene: &str, shape: usize, speed: f64, meets: bool, random: &mut Random) -> World {
     let radius = RING[1];
     let dt = 1.0 / 60.0;

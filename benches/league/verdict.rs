@@ -150,7 +150,8 @@ impl Flights {
     }
 }
 
-/// Fails where rings are linked at the start that were not planted so: pairs are, neighbours in the list, and no others.
+/// Fails where rings are linked at the start that were not planted so: pairs are, neighbours in the list, and no
+/// others.
 pub fn check_planted(league: &League) -> Result<(), String> {
     let is_thrown = |w: &&World| ["heap", "pairs"].iter().any(|s| w.scene.starts_with(s));
     for world in league.worlds.iter().filter(is_thrown) {

@@ -1,5 +1,5 @@
-//! Spur gears with involute teeth of module 2 mm and a pressure angle of 20°, in a row on fixed axles. A tooth is a strip of
-//! slabs along its middle: the spheres there that touch both flanks.
+//! Spur gears with involute teeth of module 2 mm and a pressure angle of 20°, in a row on fixed axles. A tooth is a
+//! strip of slabs along its middle: the spheres there that touch both flanks.
 
 use super::Setting;
 use super::nut::steel;

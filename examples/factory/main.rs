@@ -1,5 +1,5 @@
-//! Threads, pegs and gears at real scale, as in NVIDIA's Factory: metres and kilograms, millimetres of thread, tenths of a
-//! millimetre of play. Everything is made in code.
+//! Threads, pegs and gears at real scale, as in NVIDIA's Factory: metres and kilograms, millimetres of thread, tenths
+//! of a millimetre of play. Everything is made in code.
 //!
 //! ```text
 //! cargo run --release --example factory
@@ -8,8 +8,9 @@
 //! `--unit M` (rapier's length unit, default 0.001), `--thread NAME` (of the nuts one alone, such as "M8 tight"),
 //! `--out DIR` (where the picture goes; default target/factory).
 //!
-//! Exits with 1 where a medial nut leaves its thread, one that is turned by a torque jams, its advance is 2 % off the pitch,
-//! a peg jams, or the gears' ratio is off by more than 0.1 %. Nuts that go down by their weight alone may be slow.
+//! Exits with 1 where a medial nut leaves its thread, one that is turned by a torque jams, its advance is 2 % off the
+//! pitch, a peg jams, or the gears' ratio is off by more than 0.1 %. Nuts that go down by their weight alone may be
+//! slow.
 
 #[path = "../common/mod.rs"]
 mod common;

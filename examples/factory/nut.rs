@@ -58,8 +58,8 @@ pub struct Descent {
 }
 
 impl Descent {
-    /// Advance in a turn over the pitch, of a nut that made one more from half a turn on: the slope of the line nearest to
-    /// all its ways from there. Its ends alone may be off by its axial play.
+    /// Advance in a turn over the pitch, of a nut that made one more from half a turn on: the slope of the line nearest
+    /// to all its ways from there. Its ends alone may be off by its axial play.
     pub fn advance(&self, thread: &Thread) -> Option<f64> {
         let begun = self.ways.iter().position(|[turns, _]| *turns >= 0.5)?;
         let ways = &self.ways[begun..];

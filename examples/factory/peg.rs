@@ -1,4 +1,5 @@
-//! Pegs of 8 mm that slide by their weight into holes with 0.05 mm of play, as in Factory: a round one and a square one.
+//! Pegs of 8 mm that slide by their weight into holes with 0.05 mm of play, as in Factory: a round one and a square
+//! one.
 
 use super::nut::steel;
 use super::solid::Mesh;

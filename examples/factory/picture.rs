@@ -1,4 +1,5 @@
-//! The nut on its bolt in a picture, at the start, half way and in the end; a millimetre is drawn as a tenth of a metre.
+//! The nut on its bolt in a picture, at the start, half way and in the end; a millimetre is drawn as a tenth of a
+//! metre.
 
 use super::common::light::facets;
 use super::common::mesh::Mesh;

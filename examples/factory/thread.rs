@@ -1,10 +1,11 @@
-//! Metric screw threads with the proportions of ISO 68-1: the analytic profile in double precision, a medial mesh planted on
-//! it, and a triangle mesh of it.
+//! Metric screw threads with the proportions of ISO 68-1: the analytic profile in double precision, a medial mesh
+//! planted on it, and a triangle mesh of it.
 //!
-//! A ridge of 60° is a strip of slabs wound round the axis. In its cross-section a sphere whose centre is `d` below the apex
-//! of the two flanks touches both where its radius is `d sin 30° = d / 2`. The strip lies between a helix of such spheres at
-//! the crest and one whose spheres touch the flanks at the root; a cone is the bolt's core. The nut's spheres of the root
-//! overlap from turn to turn, so its strip is its wall. All is about the y axis, in metres, and right-handed.
+//! A ridge of 60° is a strip of slabs wound round the axis. In its cross-section a sphere whose centre is `d` below the
+//! apex of the two flanks touches both where its radius is `d sin 30° = d / 2`. The strip lies between a helix of such
+//! spheres at the crest and one whose spheres touch the flanks at the root; a cone is the bolt's core. The nut's
+//! spheres of the root overlap from turn to turn, so its strip is its wall. All is about the y axis, in metres, and
+//! right-handed.
 
 use super::solid::Mesh;
 use rapier3d::prelude::*;
@@ -24,8 +25,8 @@ pub struct Thread {
     pub play: f64,
     /// Height of the nut and distance of its flats, metres.
     pub nut: [f64; 2],
-    /// Straight pieces in a turn of the bolt. The more there are, the closer it is to the true thread, and the more contacts
-    /// with slightly different normals rapier's solver gets, in which a nut without friction slows down.
+    /// Straight pieces in a turn of the bolt. The more there are, the closer it is to the true thread, and the more
+    /// contacts with slightly different normals rapier's solver gets, in which a nut without friction slows down.
     pub pieces: usize,
 }
 
@@ -41,8 +42,8 @@ const fn metric(name: &'static str, mm: [f64; 5], pieces: usize) -> Thread {
     }
 }
 
-/// From Factory's loosest to its tightest: the play of M20 loose and M8 tight is Factory's, that of the others has the same
-/// share of the pitch (0.228 loose, 0.12 tight).
+/// From Factory's loosest to its tightest: the play of M20 loose and M8 tight is Factory's, that of the others has the
+/// same share of the pitch (0.228 loose, 0.12 tight).
 pub const THREADS: [Thread; 5] = [
     metric("M20 loose", [20.0, 2.5, 0.57, 18.0, 30.0], 20),
     metric("M16 loose", [16.0, 2.0, 0.456, 14.8, 24.0], 20),
@@ -200,8 +201,8 @@ impl Thread {
         0.5 * (self.radii(Part::Bolt)[0] + self.radii(Part::Nut)[0])
     }
 
-    /// Friction above which the nut does not go down by its weight, by theory: the tangent of the slope of the thread where
-    /// the flanks touch, times the cosine of half the angle of the flanks.
+    /// Friction above which the nut does not go down by its weight, by theory: the tangent of the slope of the thread
+    /// where the flanks touch, times the cosine of half the angle of the flanks.
     pub fn locks_at(&self) -> f64 {
         self.pitch / (TAU * self.middle()) * 0.75_f64.sqrt()
     }

@@ -153,8 +153,8 @@ fn correct<M, C>(
     }
 }
 
-/// Leaves out ghost contacts of the mesh's parts. The mesh is body `side` of the manifolds, and the other shape at `pose` in
-/// its frame.
+/// Leaves out ghost contacts of the mesh's parts. The mesh is body `side` of the manifolds, and the other shape at
+/// `pose` in its frame.
 fn leave_out_ghosts<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (mesh, side): (&MedialMesh, usize),
@@ -179,8 +179,8 @@ fn leave_out_childrens_ghosts<M, C>(
     leave_out_ghosts_of(manifolds, (1 - side, reach), number, slack);
 }
 
-/// Leaves out ghost contacts of the parts of body `side`, which reach as far as `reach` tells, up to their `slack`; `number` is
-/// that of the other shape's convex part.
+/// Leaves out ghost contacts of the parts of body `side`, which reach as far as `reach` tells, up to their `slack`;
+/// `number` is that of the other shape's convex part.
 fn leave_out_ghosts_of<M, C>(
     manifolds: &mut [ContactManifold<M, C>],
     (side, reach): (usize, impl Fn(u32, Vector) -> Real),
@@ -208,8 +208,8 @@ fn leave_out_ghosts_of<M, C>(
 /// A mesh and which of the two shapes it is, the pose of the second shape in the frame of the first, and both shapes.
 type Pair<'a> = ((&'a MedialMesh, usize), &'a Pose, [&'a dyn Shape; 2]);
 
-/// The manifolds of a mesh and a shape with a flat face under it, if it has one, and whether they go on from those of the
-/// step before: manifolds of parry's have to hand their impulses on.
+/// The manifolds of a mesh and a shape with a flat face under it, if it has one, and whether they go on from those of
+/// the step before: manifolds of parry's have to hand their impulses on.
 fn write_on_flat<M, C>(
     ((mesh, side), pos12, [g1, g2]): Pair,
     prediction: Real,
@@ -237,8 +237,8 @@ where
     Some(goes_on)
 }
 
-/// parry's manifolds of a mesh and another shape. It knows its own again; those of a flat face it would begin anew, without
-/// what the user's hooks keep in them.
+/// parry's manifolds of a mesh and another shape. It knows its own again; those of a flat face it would begin anew,
+/// without what the user's hooks keep in them.
 fn write_by_parry<M, C>(
     ((mesh, side), pos12, [g1, g2]): Pair,
     prediction: Real,

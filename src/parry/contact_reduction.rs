@@ -4,9 +4,9 @@
 //!
 //! Seen along the normal, contact `i` is at `u_i` with a gap `d_i`. A body that is pressed down with its centre of mass
 //! over `c` comes to lie on the facet above `c` of the lower convex hull of all `(u_i, d_i)`. That facet attains the
-//! smallest `Σ λ_i d_i` with `Σ λ_i u_i = c`, `Σ λ_i = 1`, `λ ≥ 0`, which the simplex method finds: it has three
-//! rows, and a pivot is a change of one corner. A fourth contact makes the facet wider; one that does not touch counts
-//! the less, the higher it is above the facet, since the body stands on the others before it comes down there. Where `c` is
+//! smallest `Σ λ_i d_i` with `Σ λ_i u_i = c`, `Σ λ_i = 1`, `λ ≥ 0`, which the simplex method finds: it has three rows,
+//! and a pivot is a change of one corner. A fourth contact makes the facet wider; one that does not touch counts the
+//! less, the higher it is above the facet, since the body stands on the others before it comes down there. Where `c` is
 //! beside all contacts the body tips over, and the deepest contact is among the four.
 
 use super::manifold_points::{normals, places};
@@ -27,9 +27,10 @@ const EQUAL: f64 = 0.02;
 /// Contacts nearer to each other than this are one, in units of the prediction distance; as in rapier.
 const SAME_PLACE: f64 = 0.25;
 
-/// Width of the place that a body rolls over, in units of how far it rolls in a step: of the contacts within that of a deeper
-/// one only that one bears. One ahead of a wheel's axle would stop what comes down on it, and the wheel with it. Smaller, and
-/// wheels of few cones are braked; larger, and what rocks slowly has one contact. How the other body turns is not looked at.
+/// Width of the place that a body rolls over, in units of how far it rolls in a step: of the contacts within that of a
+/// deeper one only that one bears. One ahead of a wheel's axle would stop what comes down on it, and the wheel with it.
+/// Smaller, and wheels of few cones are braked; larger, and what rocks slowly has one contact. How the other body turns
+/// is not looked at.
 const PASSED: f64 = 3.0;
 
 /// Steepest facet, as a gradient, where the load is beside all contacts and the body tips over: contacts
@@ -39,11 +40,12 @@ const STEEPEST: f64 = 0.02;
 /// Area from which a contact makes the support wider, in units of the square of the largest distance from the centre.
 const WIDER: f64 = 1.0e-3;
 
-/// A contact that does not touch counts for less, in proportion to the smaller of its gap and its height above the facet, in
-/// units of the prediction distance, but for no less than this part.
+/// A contact that does not touch counts for less, in proportion to the smaller of its gap and its height above the
+/// facet, in units of the prediction distance, but for no less than this part.
 const HIGH: f64 = 0.3;
 
-/// Factor for contacts that bore before, which keeps the choice from flickering between contacts that are worth the same.
+/// Factor for contacts that bore before, which keeps the choice from flickering between contacts that are worth the
+/// same.
 const BORE: f64 = 1.15;
 
 /// Pivots after which the facet found so far has to do.
@@ -81,9 +83,9 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// How far the body rolls in the step over what it touches at `p` under a normal, a length: the turn about axes across the
-    /// normal times the height of its centre, but no farther than the point turns. A turntable does not roll, nor does a coin
-    /// that wobbles on its edge: it turns about a line through the point.
+    /// How far the body rolls in the step over what it touches at `p` under a normal, a length: the turn about axes
+    /// across the normal times the height of its centre, but no farther than the point turns. A turntable does not
+    /// roll, nor does a coin that wobbles on its edge: it turns about a line through the point.
     fn rolls(&self, p: Vector, normal: Vector) -> Real {
         let arm = p - self.center;
         let across = self.angle - normal * self.angle.dot(normal);
@@ -170,8 +172,9 @@ pub fn choose<M, C: Copy>(
     }
 }
 
-/// The manifolds that have contacts, in groups of about one normal, much as rapier makes them. Its normal of a group is that
-/// of the first manifold, however far apart that is; here those that touch, up to a gap of `equal`, come first in each.
+/// The manifolds that have contacts, in groups of about one normal, much as rapier makes them. Its normal of a group is
+/// that of the first manifold, however far apart that is; here those that touch, up to a gap of `equal`, come first in
+/// each.
 fn groups<M, C>(manifolds: &[ContactManifold<M, C>], equal: f64) -> Vec<Vec<usize>> {
     let is_apart = |m: &usize| {
         let mut gaps = manifolds[*m].points.iter().map(|p| f64::from(p.dist));
@@ -222,9 +225,9 @@ fn without_doubles(seen: &mut Vec<Seen>, radius: f64) -> Vec<[usize; 2]> {
     doubles
 }
 
-/// Four of the contacts: the corners of the facet above the origin; if it lacks one, also the deepest, to which the body tips
-/// over; then those that make the area over which the body stands largest, or are farthest from the others where none makes
-/// it larger.
+/// Four of the contacts: the corners of the facet above the origin; if it lacks one, also the deepest, to which the
+/// body tips over; then those that make the area over which the body stands largest, or are farthest from the others
+/// where none makes it larger.
 fn bearing(seen: &[Seen], prediction: f64) -> Vec<usize> {
     let (corners, plane) = facet(seen);
     let mut bear: Vec<usize> = corners.into_iter().flatten().collect();

@@ -86,13 +86,12 @@ pub struct MedialOptions {
     pub effects: Effects,
     /// The CPU or a GPU, for contacts and first contacts of many pairs. The results are the same, bit by bit.
     pub backend: Backend,
-    /// How much work the search for first contacts may do in a step, counted in tests of pairs of tree nodes and of pairs
-    /// of primitives, each of which takes about a microsecond. A look at two convex pieces, parts of bodies with flat
-    /// faces, or at a slab beside a cylinder or cone counts as 16. Once the budget is spent, a body whose path is not
-    /// searched to the end stops where it is proven free, and goes on in the next step at the speed it had, unless the
-    /// budget of that step does not pay for its first impact
-    /// ([`crate::StepReport::waiting`] counts such bodies). So these bodies lose time, but pass through nothing. With 0,
-    /// every body that would need a search waits.
+    /// How much work the search for first contacts may do in a step, counted in tests of pairs of tree nodes and of
+    /// pairs of primitives, each of which takes about a microsecond. A look at two convex pieces, parts of bodies with
+    /// flat faces, or at a slab beside a cylinder or cone counts as 16. Once the budget is spent, a body whose path is
+    /// not searched to the end stops where it is proven free, and goes on in the next step at the speed it had, unless
+    /// the budget of that step does not pay for its first impact ([`crate::StepReport::waiting`] counts such bodies).
+    /// So these bodies lose time, but pass through nothing. With 0, every body that would need a search waits.
     pub budget: u64,
 }
 

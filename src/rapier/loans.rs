@@ -17,8 +17,8 @@ pub struct Loans {
 }
 
 impl Loans {
-    /// Gives them what the view of a step and its multibodies that gain energy ask for; `moved` are the bodies that impacts
-    /// moved in the step before.
+    /// Gives them what the view of a step and its multibodies that gain energy ask for; `moved` are the bodies that
+    /// impacts moved in the step before.
     pub fn give(
         (view, wild): (&StepView, &WildMultibodies),
         (effects, moved): (&EffectSettings, &[RigidBodyHandle]),

@@ -1,13 +1,13 @@
 //! Medial colliders in rapier (layer 6): what a user calls, and what is done before and after rapier's step.
 //!
-//! A step in order (`step.rs`): it takes a view of the world (`view/`) and makes the plan of the step (`planning.rs`, by
-//! the rules of `contacts/`: the contacts that rapier will ask for, and the pairs that are muted, that is kept from its
-//! solver); then rapier steps; then the impacts within the step that rapier missed are resolved (`resolving.rs`, by
+//! A step in order (`step.rs`): it takes a view of the world (`view/`) and makes the plan of the step (`planning.rs`,
+//! by the rules of `contacts/`: the contacts that rapier will ask for, and the pairs that are muted, that is kept from
+//! its solver); then rapier steps; then the impacts within the step that rapier missed are resolved (`resolving.rs`, by
 //! `impacts/` and `joints/`). What rapier 0.36 has to be told in roundabout ways is in `host/`.
 //!
 //! # Files
-//! - What users call: `pipeline.rs`, and between two steps `prepare.rs`; `integration/` adds to rapier's builders. Settings:
-//!   `effects.rs`, the constants of the event loop `tuning.rs`. What a step tells: `report.rs`.
+//! - What users call: `pipeline.rs`, and between two steps `prepare.rs`; `integration/` adds to rapier's builders.
+//!   Settings: `effects.rs`, the constants of the event loop `tuning.rs`. What a step tells: `report.rs`.
 //! - What a step is taken with: `step_args.rs`, rapier's sets `world.rs`. Its plan: `step_plan.rs`; what
 //!   bodies are given for the length of rapier's step: `loans.rs`. What is kept from step to step: `state.rs`.
 

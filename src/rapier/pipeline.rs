@@ -101,9 +101,9 @@ impl MedialPipeline {
     /// Prepares a world to be stepped by this pipeline: the narrow phase (the part of rapier that computes contacts)
     /// asks this pipeline first, and parry after that. A query dispatcher that you have set yourself is replaced;
     /// nothing else in the world changes. For a new world you need not call this: a pipeline that is not attached yet
-    /// attaches itself in its first step. Call it after the world was loaded, or put back to an earlier state as netcode
-    /// does, or its narrow phase was replaced, and only then: bodies that you have moved since the last step are taken
-    /// for moved by impacts.
+    /// attaches itself in its first step. Call it after the world was loaded, or put back to an earlier state as
+    /// netcode does, or its narrow phase was replaced, and only then: bodies that you have moved since the last step
+    /// are taken for moved by impacts.
     pub fn attach(&mut self, world: &mut PhysicsWorld) {
         self.attach_sets(&mut world.narrow_phase);
     }

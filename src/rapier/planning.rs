@@ -1,5 +1,5 @@
-//! Plans a step before rapier takes it: the view of the world, the pairs that are muted, and the contacts that rapier will
-//! ask for.
+//! Plans a step before rapier takes it: the view of the world, the pairs that are muted, and the contacts that rapier
+//! will ask for.
 
 use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Sweeps};
 use crate::rapier::contacts::candidates::{self, Candidates};
@@ -119,8 +119,8 @@ impl State {
         }
     }
 
-    /// What rapier's own sweeps find. Fixed partners are the event loop's as all others are, and rapier would stop bodies
-    /// before.
+    /// What rapier's own sweeps find. Fixed partners are the event loop's as all others are, and rapier would stop
+    /// bodies before.
     fn sweeps(&self, world: &World, census: &Census) -> Sweeps {
         let off = |e: &Effects| e.continuous == Effect::Off;
         let takes_all = !self.settings.effects.any(off) && !census.any_modified;

@@ -1,5 +1,5 @@
-//! Sends the contacts of the next step to a GPU between two steps: in a browser, where no step can wait for one, and for many
-//! worlds at once.
+//! Sends the contacts of the next step to a GPU between two steps: in a browser, where no step can wait for one, and
+//! for many worlds at once.
 
 use crate::batch::{Batch, PairJob};
 use crate::rapier::contacts::candidates;

@@ -20,12 +20,12 @@ counters! {
     pub struct StepReport {
         /// Number of enabled medial colliders in the world.
         pub medial_colliders: usize,
-        /// Colliders that the step looked at for impacts: all but sensors, or, in a world of many still ones, those that move and
-        /// those near them, as long as nothing gets to others ([`Self::completed`]). Summed over the steps between stops; 0 where
-        /// nothing moves.
+        /// Colliders that the step looked at for impacts: all but sensors, or, in a world of many still ones, those
+        /// that move and those near them, as long as nothing gets to others ([`Self::completed`]). Summed over the
+        /// steps between stops; 0 where nothing moves.
         pub participants: usize,
-        /// Times that a step had left out still colliders and looked at all of them after all, because something may have got to
-        /// one, or rapier woke one.
+        /// Times that a step had left out still colliders and looked at all of them after all, because something may
+        /// have got to one, or rapier woke one.
         pub completed: usize,
         /// Pairs of medial colliders, at least one of the two awake, whose bounding boxes were near each other at the
         /// start of the step.
@@ -66,13 +66,13 @@ counters! {
         /// Bodies that had too many impacts in the step (more than 16): they stopped before its
         /// end, or were carried along by what pushed them.
         pub frozen: usize,
-        /// How much of [`crate::MedialOptions::budget`] was spent: node pairs and elementary tests for first contacts, and
-        /// looks at two convex pieces as a whole, each of which counts as 16. Where a step looked at all colliders after all
-        /// ([`Self::completed`]), its first search is not counted.
+        /// How much of [`crate::MedialOptions::budget`] was spent: node pairs and elementary tests for first contacts,
+        /// and looks at two convex pieces as a whole, each of which counts as 16. Where a step looked at all colliders
+        /// after all ([`Self::completed`]), its first search is not counted.
         pub spent: u64,
         /// Bodies that stopped before the step's end because the budget was spent: it is not known whether their path
-        /// is free beyond that point. They go on in the next step, at the speed they had, unless its budget does not pay for
-        /// its first impact.
+        /// is free beyond that point. They go on in the next step, at the speed they had, unless its budget does not
+        /// pay for its first impact.
         pub waiting: usize,
         /// Times that the whole world stopped at a first contact ([`crate::Effects::stop`]). Each stop makes another
         /// step, whose work is included in all counters.

@@ -1,5 +1,5 @@
-//! Resolves the impacts within the step that rapier has just taken: among the colliders that take part, or among all where
-//! something may get to another ([decision 23](../../docs/decisions/0023-bystanders.md)).
+//! Resolves the impacts within the step that rapier has just taken: among the colliders that take part, or among all
+//! where something may get to another ([decision 23](../../docs/decisions/0023-bystanders.md)).
 
 use crate::math::Real;
 use crate::rapier::impacts::event_loop;
@@ -13,8 +13,9 @@ use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
 
 impl State {
-    /// Finds and resolves the impacts within the step that rapier has just taken. `depth` is that of the deepest contact that
-    /// rapier was given, a length. Where all colliders had to be looked at, the plan has no participants afterwards.
+    /// Finds and resolves the impacts within the step that rapier has just taken. `depth` is that of the deepest
+    /// contact that rapier was given, a length. Where all colliders had to be looked at, the plan has no participants
+    /// afterwards.
     pub fn impacts(
         &mut self,
         world: &World,
@@ -63,8 +64,8 @@ impl State {
         resolved.unwrap_or_default()
     }
 
-    /// The impacts among those that take part; `None` if something may get to a collider that does not. View and work are
-    /// then as they were.
+    /// The impacts among those that take part; `None` if something may get to a collider that does not. View and work
+    /// are then as they were.
     fn among_participants(
         &mut self,
         world: &World,

@@ -85,8 +85,8 @@ impl State {
         near_what_moves::find(&mut self.still, sets, world.islands, least)
     }
 
-    /// The medial colliders of the whole world, of which those that do not take part are where they were; `None` where all
-    /// take part. rapier asks for contacts of some that touch although none of them moves.
+    /// The medial colliders of the whole world, of which those that do not take part are where they were; `None` where
+    /// all take part. rapier asks for contacts of some that touch although none of them moves.
     pub fn bystanders(
         &mut self,
         world: &World,

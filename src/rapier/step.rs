@@ -1,5 +1,5 @@
-//! One step, in order: the plan (`planning.rs`: who may meet whom, and the contacts that rapier will ask for), rapier's own
-//! step, the impacts within it (`resolving.rs`), and the report.
+//! One step, in order: the plan (`planning.rs`: who may meet whom, and the contacts that rapier will ask for), rapier's
+//! own step, the impacts within it (`resolving.rs`), and the report.
 
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::Tally;

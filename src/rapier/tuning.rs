@@ -1,12 +1,12 @@
 //! The constants of the event loop, in one place so that `cargo bench --bench effects -- --sweep` can vary them.
 //! None needs tuning by users.
 //!
-//! Each but [`Tuning::press`] and [`Tuning::lies`], which are for flat faces and for triangles, was halved and
-//! doubled alone, in 1,458 flights of two fast bodies, and in heaps of 27 loops at 20, 60 and 150 m/s, with restitution 0
+//! Each but [`Tuning::press`] and [`Tuning::lies`], which are for flat faces and for triangles, was halved and doubled
+//! alone, in 1,458 flights of two fast bodies, and in heaps of 27 loops at 20, 60 and 150 m/s, with restitution 0
 //! (measured at commit 343b3fc) and 0.9, where energy is judged. With no value was a contact missed or invented, a loop
-//! linked wrongly, or, at 0.9, energy gained, and the median error of the first change of velocity stayed within
-//! 0.01. Where something else moves, the constant says so; with all others, depth stays within 0.1 of the radii,
-//! and the number of queries within a quarter.
+//! linked wrongly, or, at 0.9, energy gained, and the median error of the first change of velocity stayed within 0.01.
+//! Where something else moves, the constant says so; with all others, depth stays within 0.1 of the radii, and the
+//! number of queries within a quarter.
 
 use crate::math::Real;
 
@@ -23,11 +23,11 @@ pub struct Tuning {
     pub floor: Real,
     /// How thick a blunt tip has to be, in units of the local thickness, not to pass through what it touches
     /// ([`crate::elementary::Cores::tips`]). At 0 sharp edges that are pressed into each other freeze their bodies: in
-    /// three heaps of 12 blocks with flat faces 308 times in 240 steps, at 0.1 33 times, at 0.2 twice; their corners get
-    /// 2.4 cm into the ground at 0.1 and 3.7 cm at 0.2, of a thickness of 17.5 cm.
+    /// three heaps of 12 blocks with flat faces 308 times in 240 steps, at 0.1 33 times, at 0.2 twice; their corners
+    /// get 2.4 cm into the ground at 0.1 and 3.7 cm at 0.2, of a thickness of 17.5 cm.
     pub tips: Real,
-    /// Relative travel in a step where a pair may meet, in units of the thickness, from which the pair is muted. Between this
-    /// and [`Self::fast`] both the solver and the loop have it.
+    /// Relative travel in a step where a pair may meet, in units of the thickness, from which the pair is muted.
+    /// Between this and [`Self::fast`] both the solver and the loop have it.
     pub muted: Real,
     /// Gap at which a fast pair counts as in contact, in units of rapier's length unit, and of the
     /// thickness, whichever is less.
@@ -47,12 +47,13 @@ pub struct Tuning {
     /// How much deeper a touching fast pair may get in one go, in units of the thickness.
     pub sink: Real,
     /// How much deeper a pair of bodies with flat faces that is below the floor may get in one go, in units of the
-    /// thickness; the nearer their axes are, the less (`pair/deepening.rs`). Two walls of bricks of which some are 10,000
-    /// times as heavy as others make 406 and 2,322 impacts in 400 steps at 0.02, and about 9,800 without. At 0.04 a frame
-    /// that is pressed against a wall still moves when the press has stopped. Rings have none of this: a heavy one would
-    /// drive a light one into the ground.
+    /// thickness; the nearer their axes are, the less (`pair/deepening.rs`). Two walls of bricks of which some are
+    /// 10,000 times as heavy as others make 406 and 2,322 impacts in 400 steps at 0.02, and about 9,800 without. At
+    /// 0.04 a frame that is pressed against a wall still moves when the press has stopped. Rings have none of this: a
+    /// heavy one would drive a light one into the ground.
     pub press: Real,
-    /// The least that a pair may get deeper in one go, in units of the gap. At 0 it would never leave its first contact.
+    /// The least that a pair may get deeper in one go, in units of the gap. At 0 it would never leave its first
+    /// contact.
     pub hair: Real,
     /// Impacts of a body in one step after which it stays where it is. Halved and doubled, 1.7 times and
     /// half as many bodies do at 150 m/s, for 0.75 and 1.33 times the queries.
@@ -63,11 +64,11 @@ pub struct Tuning {
     /// Times that the world stops in one step. Each costs a step; after the last one impulses take the
     /// rest, so fewer only make impacts less exact: at half, 0.7 impulses a flight instead of 0.3.
     pub max_stops: usize,
-    /// Speed up to which nothing bounces where no force pulls, in units of rapier's length unit per second. Far below what
-    /// can be seen; ten times as large, and boxes of elastic bodies lose a hundredth of their energy.
+    /// Speed up to which nothing bounces where no force pulls, in units of rapier's length unit per second. Far below
+    /// what can be seen; ten times as large, and boxes of elastic bodies lose a hundredth of their energy.
     pub least_bounce: Real,
-    /// Depth up to which a body lies on the plane of a face, in units of rapier's length unit, beyond what gravity presses
-    /// it in: bodies that slide are not that deep, and what is deeper beside a face may strike its edge.
+    /// Depth up to which a body lies on the plane of a face, in units of rapier's length unit, beyond what gravity
+    /// presses it in: bodies that slide are not that deep, and what is deeper beside a face may strike its edge.
     pub lies: Real,
     /// Depth from which bodies in an impact are pushed apart, in units of the thickness.
     pub push_from: Real,

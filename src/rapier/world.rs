@@ -16,7 +16,8 @@ use rapier3d::dynamics::{
 use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline};
 
-/// rapier's sets of a world, to be changed by its step: the arguments of [`PhysicsPipeline::step`] but for the parameters and what the user hooks in.
+/// rapier's sets of a world, to be changed by its step: the arguments of [`PhysicsPipeline::step`] but for the
+/// parameters and what the user hooks in.
 pub struct World<'a> {
     pub pipeline: &'a mut PhysicsPipeline,
     pub gravity: Vector,
@@ -76,9 +77,9 @@ impl World<'_> {
         self.multibody_joints.multibodies().next().is_some() || !self.soft_bodies.is_empty()
     }
 
-    /// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies that are elsewhere now. Queries
-    /// between steps find their colliders there. Colliders of these and no others are marked as moved: by that a loaded world
-    /// knows them ([`crate::rapier::host::sleep_timers::moved_before`]).
+    /// Writes what impacts did to bodies and multibodies to rapier's sets; returns the bodies that are elsewhere now.
+    /// Queries between steps find their colliders there. Colliders of these and no others are marked as moved: by that
+    /// a loaded world knows them ([`crate::rapier::host::sleep_timers::moved_before`]).
     pub fn write_back(
         &mut self,
         view: &StepView,

@@ -110,8 +110,8 @@ fn the_facet_under_the_load_bears() {
     );
 }
 
-/// Corners of a wheel with 96 sides, 25 cm under its axle, and of one beside it. Turned by 0.06 rad in a step it passes over
-/// 4.5 cm in three: one of its corners bears there. A coin that spins upright on one of them keeps all.
+/// Corners of a wheel with 96 sides, 25 cm under its axle, and of one beside it. Turned by 0.06 rad in a step it passes
+/// over 4.5 cm in three: one of its corners bears there. A coin that spins upright on one of them keeps all.
 #[test]
 fn one_contact_bears_where_a_wheel_rolls() {
     let [axle, side] = [0.25, 2.0 * std::f32::consts::PI / 96.0];
@@ -170,11 +170,11 @@ fn deep_contacts_stay_where_the_body_tips_over() {
     }
 }
 
-/// Contacts of a ring that leans on a wall, from its centre of mass, and gaps: the deepest bears, whichever way the ring is
-/// turned about the normal.
+/// Contacts of a ring that leans on a wall, from its centre of mass, and gaps: the deepest bears, whichever way the
+/// ring is turned about the normal.
 ///
-/// Symptom: leaning rings came to rest four times as deep in the ground as rapier's own. Cause: where the load is beside all
-/// contacts, the choice depended on directions that no contact has.
+/// Symptom: leaning rings came to rest four times as deep in the ground as rapier's own. Cause: where the load is
+/// beside all contacts, the choice depended on directions that no contact has.
 #[test]
 fn the_deepest_contact_bears_whichever_way_the_body_is_turned() {
     let contacts = [
@@ -200,8 +200,8 @@ fn the_deepest_contact_bears_whichever_way_the_body_is_turned() {
     }
 }
 
-/// rapier solves contacts under normals within 5° as one group, under the normal of its first manifold. Contacts that touch
-/// give it theirs.
+/// rapier solves contacts under normals within 5° as one group, under the normal of its first manifold. Contacts that
+/// touch give it theirs.
 #[test]
 fn what_touches_gives_its_normal_to_the_group() {
     let tilted = Vector::new(0.07, 1.0, 0.0).normalize();

@@ -287,7 +287,8 @@ fn a_face_far_from_its_own_origin_is_there() {
     }
 }
 
-/// A card that comes down flat on a ring, a link or a frame is told to touch it where both are, not in the hole between.
+/// A card that comes down flat on a ring, a link or a frame is told to touch it where both are, not in the hole
+/// between.
 #[test]
 fn witnesses_of_flat_contacts_are_on_both_bodies() {
     let mut rng = Rng::new(73);

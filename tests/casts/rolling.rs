@@ -1,6 +1,6 @@
-//! Flat plates that roll, rock and slide close to cylinders and cones: neither late, nor never, nor unresolved. There the
-//! distance stays small and has kinks. Judged by the distance in `f64` at dense times, found by section over the plate,
-//! along which it is convex.
+//! Flat plates that roll, rock and slide close to cylinders and cones: neither late, nor never, nor unresolved. There
+//! the distance stays small and has kinks. Judged by the distance in `f64` at dense times, found by section over the
+//! plate, along which it is convex.
 
 use crate::rng::Rng;
 use crate::rotating::{rotation, vector};

@@ -1,4 +1,5 @@
-//! Straight casts that come down on a plane at a small angle, as a character's do: where they hit, against the plane in `f64`.
+//! Straight casts that come down on a plane at a small angle, as a character's do: where they hit, against the plane in
+//! `f64`.
 
 use crate::rng::Rng;
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher, ShapeCastOptions};
@@ -12,9 +13,9 @@ const GROUND: Vector = Vector::new(5.0, 0.5, 5.0);
 /// What the gap at a hit may be off the target distance, a length: what rounding makes of coordinates up to 3 m.
 const OFF: f64 = 4.0e-6;
 
-/// Symptom: hits at less than 30 degrees were 0.1 mm nearer than the target distance. Cause: what may only slide along is
-/// searched again that much nearer, and the hit was told there. Symptom: what began less than .1 mm farther off than the target
-/// distance was hit at time 0, so that characters stood still on flat ground. Cause: that was the tolerance.
+/// Symptom: hits at less than 30 degrees were 0.1 mm nearer than the target distance. Cause: what may only slide along
+/// is searched again that much nearer, and the hit was told there. Symptom: what began less than .1 mm farther off than
+/// the target distance was hit at time 0, so that characters stood still on flat ground. Cause: that was the tolerance.
 #[test]
 fn shallow_casts_hit_at_their_target_distance() {
     let half = Vector::new(0.3, 0.2, 0.25);
@@ -73,7 +74,8 @@ fn shallow_casts_hit_at_their_target_distance() {
 /// Half sides of the rectangle in the middle of a plate, and the radius of its rim (m).
 const PLATE: [f64; 3] = [0.4, 0.3, 0.05];
 
-/// Distance of the rectangles of two plates in one plane that do not overlap: of the second at a place, turned by an angle.
+/// Distance of the rectangles of two plates in one plane that do not overlap: of the second at a place, turned by an
+/// angle.
 fn between_rectangles(place: [f64; 2], angle: f64) -> f64 {
     let (sin, cos) = angle.sin_cos();
     let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
@@ -92,9 +94,9 @@ fn between_rectangles(place: [f64; 2], angle: f64) -> f64 {
     distances.into_iter().fold(f64::MAX, f64::min)
 }
 
-/// Plates that overlap by their rims and lie in one plane: no direction across their faces or edges says how deep they are in each
-/// other. Symptom: some that come apart were told to hit later. The distance of convex bodies on straight paths is a convex
-/// function of time, so what grows at the start never shrinks.
+/// Plates that overlap by their rims and lie in one plane: no direction across their faces or edges says how deep they
+/// are in each other. Symptom: some that come apart were told to hit later. The distance of convex bodies on straight
+/// paths is a convex function of time, so what grows at the start never shrinks.
 #[test]
 fn plates_in_one_plane_that_come_apart_do_not_hit() {
     let [x, z, radius] = PLATE.map(|length| length as Real);

@@ -134,8 +134,8 @@ fn points_are_projected_on_the_surface() {
     assert!(within > CASES / 4, "{within}");
 }
 
-/// Points in boxes, and on their faces, edges and corners, where spheres have no radius and so no direction of their own:
-/// the surface is as far away as the nearest face.
+/// Points in boxes, and on their faces, edges and corners, where spheres have no radius and so no direction of their
+/// own: the surface is as far away as the nearest face.
 #[test]
 fn points_in_and_on_boxes_are_projected_on_the_nearest_face() {
     let mut rng = Rng::new(41);
@@ -196,8 +196,8 @@ fn enters_box(origin: [f64; 3], dir: [f64; 3], half: [f64; 3]) -> Option<(f64, [
     (enter.0 < leave && enter.0 > 0.0).then_some(enter)
 }
 
-/// Rays enter flat faces where these are. parry's iteration for convex shapes was off by up to four thousandths of the size
-/// on such faces, and missed one ray in 20,000.
+/// Rays enter flat faces where these are. parry's iteration for convex shapes was off by up to four thousandths of the
+/// size on such faces, and missed one ray in 20,000.
 #[test]
 fn rays_enter_boxes_where_their_faces_are() {
     let mut rng = Rng::new(23);
@@ -281,8 +281,8 @@ fn rays_without_direction_hit_what_holds_them() {
     assert!((10..40).contains(&held), "{held} inside");
 }
 
-/// A slab without flat sides, a cone with a ball in it: its tip is where it is, and a ray leaves there with a normal that points
-/// back. Points on the axes of three balls in a row get out across the cone that they are in.
+/// A slab without flat sides, a cone with a ball in it: its tip is where it is, and a ray leaves there with a normal
+/// that points back. Points on the axes of three balls in a row get out across the cone that they are in.
 #[test]
 fn slabs_without_flat_sides_are_left_across_their_cones() {
     let ball = |x: Real, y: Real, radius: Real| MedialSphere::new(Vector::new(x, y, 0.0), radius);

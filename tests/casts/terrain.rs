@@ -25,8 +25,8 @@ fn terrain() -> TriMesh {
     TriMesh::new((0..side * side).map(point).collect(), triangles).expect("a terrain")
 }
 
-/// Symptom: boxes slept up to 2 cm deep in a terrain. Cause: the slabs along their edges, which are thin, had contacts with
-/// triangles that led further in.
+/// Symptom: boxes slept up to 2 cm deep in a terrain. Cause: the slabs along their edges, which are thin, had contacts
+/// with triangles that led further in.
 #[test]
 fn contacts_of_a_box_in_a_terrain_do_not_lead_through_it() {
     let half = Vector::new(0.35, 0.08, 0.25);

@@ -1,5 +1,5 @@
-//! Sheets and wires without thickness, which cylinders and cones must not pass, and bodies of any size, which are told apart
-//! where they are: by closed forms in `f64`.
+//! Sheets and wires without thickness, which cylinders and cones must not pass, and bodies of any size, which are told
+//! apart where they are: by closed forms in `f64`.
 
 use crate::rng::Rng;
 use crate::rotating::vector;
@@ -21,7 +21,8 @@ fn sheet(scale: Real) -> MedialMesh {
     MedialMesh::new(corners.to_vec(), vec![], vec![[0, 1, 2], [0, 2, 3]]).expect("a sheet")
 }
 
-/// How far a solid of the axis `up` reaches down from its middle: a cylinder of half a height and a radius, or the cone in it.
+/// How far a solid of the axis `up` reaches down from its middle: a cylinder of half a height and a radius, or the cone
+/// in it.
 fn reach(is_cone: bool, up: Vector, [half, radius]: [f64; 2]) -> f64 {
     let cosine = f64::from(up.y);
     let rim = radius * (1.0 - cosine * cosine).max(0.0).sqrt();
@@ -156,8 +157,8 @@ fn balls_of_any_size_are_as_far_from_rounded_bodies_as_they_are() {
     }
 }
 
-/// Hulls of many sides, of whose faces parry merges those that are about as one, and flat ones hold what is in them, and nothing
-/// else.
+/// Hulls of many sides, of whose faces parry merges those that are about as one, and flat ones hold what is in them,
+/// and nothing else.
 #[test]
 fn hulls_of_round_and_flat_bodies_hold_what_is_in_them() {
     let mut rng = Rng::new(74);

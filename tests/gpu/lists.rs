@@ -1,5 +1,5 @@
-//! Lists of primitive pairs that may come within reach, against brute force by the oracle: none is left out, and few are
-//! listed that do not. What makes a list not whole is found.
+//! Lists of primitive pairs that may come within reach, against brute force by the oracle: none is left out, and few
+//! are listed that do not. What makes a list not whole is found.
 
 use crate::ccd::contact::first_contact;
 use crate::ccd::motion::Paths;
@@ -157,8 +157,9 @@ fn whole_lists_are_taken() {
     assert_eq!(near, [vec![[0, 0]], vec![[3, 1], [4, 6], [1, 0]], vec![]]);
 }
 
-/// A driver that ends loops early, or runs a part of what it was given: a proof that is missing, an entry that is, one of a
-/// batch before, one too many, one that names nothing. The mesh pair goes to the CPU, and its neighbours keep theirs.
+/// A driver that ends loops early, or runs a part of what it was given: a proof that is missing, an entry that is, one
+/// of a batch before, one too many, one that names nothing. The mesh pair goes to the CPU, and its neighbours keep
+/// theirs.
 #[test]
 fn lists_that_are_not_whole_are_not_taken() {
     let [a, b] = [entry(0, [0, 5]), entry(3, [2, 9])];

@@ -155,7 +155,8 @@ fn worlds_prepared_between_steps_are_the_same() {
     );
 }
 
-/// Worlds of their own, each with a pipeline without a device: one submission a step serves all, until the device is lost.
+/// Worlds of their own, each with a pipeline without a device: one submission a step serves all, until the device is
+/// lost.
 #[test]
 fn worlds_that_share_a_device_are_the_same() {
     if gpu(options()).is_none() {

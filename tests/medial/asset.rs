@@ -354,8 +354,8 @@ fn forged_trees_are_refused() {
     }
 }
 
-/// A tree that splits off one primitive at a time is as deep as it has primitives: what goes down it recursively would need
-/// a stack without end.
+/// A tree that splits off one primitive at a time is as deep as it has primitives: what goes down it recursively would
+/// need a stack without end.
 #[test]
 fn forged_trees_that_are_too_deep_are_refused() {
     let comb = |count: usize| {

@@ -326,9 +326,9 @@ fn meshes_are_scaled_turned_and_baked() {
     assert!((mesh.mass_properties(1.0).mass() - 6.0).abs() < 1e-4);
 }
 
-/// Ctrl-C ends the build soon and in order: nothing is left, not even an unfinished file. The mesh comes through a pipe,
-/// which the command opens once it listens for Ctrl-C: so the first one always comes in time, on any machine. The later
-/// ones come while it builds, or after it.
+/// Ctrl-C ends the build soon and in order: nothing is left, not even an unfinished file. The mesh comes through a
+/// pipe, which the command opens once it listens for Ctrl-C: so the first one always comes in time, on any machine. The
+/// later ones come while it builds, or after it.
 #[cfg(unix)]
 #[test]
 fn ctrl_c_leaves_nothing() {

@@ -1,5 +1,5 @@
-//! The command line program and paths that are no plain files: links, pipes, folders, names that are not UTF-8; and that
-//! each message names the file and what is wrong with it.
+//! The command line program and paths that are no plain files: links, pipes, folders, names that are not UTF-8; and
+//! that each message names the file and what is wrong with it.
 
 use crate::cli::{CORNER, assert_fails, medial, scratch, text};
 use rapier3d_medial::MedialMesh;
@@ -7,8 +7,8 @@ use serde_json::Value;
 use std::fs;
 use std::process::Command;
 
-/// A file at the end of a link is replaced, and a pipe is written to: neither is replaced by a file of its own. (As root
-/// the program once put a file in the place of `/dev/full`.)
+/// A file at the end of a link is replaced, and a pipe is written to: neither is replaced by a file of its own. (As
+/// root the program once put a file in the place of `/dev/full`.)
 #[cfg(unix)]
 #[test]
 fn links_and_pipes_stay() {

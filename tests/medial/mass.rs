@@ -157,8 +157,8 @@ fn slabs_of_one_radius_have_the_closed_form_however_thin_and_however_turned() {
     }
 }
 
-/// A taper's volume: the frustum between the tangent circles and the two caps they cut. Its centre and inertia by 20,000
-/// discs.
+/// A taper's volume: the frustum between the tangent circles and the two caps they cut. Its centre and inertia by
+/// 20,000 discs.
 #[test]
 fn tapered_cone_has_the_closed_form() {
     let (r1, r2, length) = (0.5f64, 0.2f64, 1.0f64);

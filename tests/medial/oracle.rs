@@ -55,8 +55,8 @@ fn between((a, r): Ball, (b, s): Ball, x: f64) -> Ball {
     ([0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * x), r + (s - r) * x)
 }
 
-/// Smallest |p − c| − r over the spheres between two, in closed form: at the foot of `p`, moved along by `h s / √(1 − s²)`,
-/// with `h` the distance from the line and `s` the slope of the radius.
+/// Smallest |p − c| − r over the spheres between two, in closed form: at the foot of `p`, moved along by `h s / √(1 −
+/// s²)`, with `h` the distance from the line and `s` the slope of the radius.
 fn on_cone(p: [f64; 3], first: Ball, second: Ball) -> f64 {
     let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] - b[k]);
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -82,8 +82,8 @@ fn on_cone(p: [f64; 3], first: Ball, second: Ball) -> f64 {
     ends.min(at(x.clamp(0.0, 1.0)))
 }
 
-/// Smallest |p − c| − r over the spheres interpolated between 1, 2 or 3 of them: of three by a search over the weight of
-/// the third, in which the least over the other two is convex.
+/// Smallest |p − c| − r over the spheres interpolated between 1, 2 or 3 of them: of three by a search over the weight
+/// of the third, in which the least over the other two is convex.
 pub fn signed_distance(spheres: &[MedialSphere], p: [f64; 3]) -> f64 {
     let ball = |s: &MedialSphere| (s.center.to_array().map(f64::from), f64::from(s.radius));
     let balls: Vec<Ball> = spheres.iter().map(ball).collect();

@@ -1,5 +1,5 @@
-//! Bodies of flat faces that are not convex: random sets of boxes on uneven grids, turned, scaled and moved, and prisms over
-//! polygons. Inside and outside are known in `f64` from the grid or the polygon, not from the triangles.
+//! Bodies of flat faces that are not convex: random sets of boxes on uneven grids, turned, scaled and moved, and prisms
+//! over polygons. Inside and outside are known in `f64` from the grid or the polygon, not from the triangles.
 
 use crate::meshes::*;
 use crate::oracle::Random;

@@ -300,8 +300,8 @@ pub fn self_crossing() -> Mesh {
     })
 }
 
-/// A ball of radius 1 whose top goes through itself to a bulb, which is inside out: it lies from z = 1.1 to 1.35, and has
-/// radius .2.
+/// A ball of radius 1 whose top goes through itself to a bulb, which is inside out: it lies from z = 1.1 to 1.35, and
+/// has radius .2.
 pub fn turned_bulb() -> Mesh {
     let around = 16u32;
     let ball = (1..10).map(|k| (18.0 * k as f32 - 90.0).to_radians().sin_cos());

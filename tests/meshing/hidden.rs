@@ -253,8 +253,8 @@ fn a_surface_of_noise_is_built() {
     assert!(!report.findings.boundary_coarse);
 }
 
-/// Each triangle of noise is about as long as the body, and a search for the nearest looks at many times as many boxes as
-/// on a surface that is not tangled. The fit ends once it has looked at too many, says so, and covers the surface
+/// Each triangle of noise is about as long as the body, and a search for the nearest looks at many times as many boxes
+/// as on a surface that is not tangled. The fit ends once it has looked at too many, says so, and covers the surface
 /// nonetheless.
 #[test]
 fn a_fit_to_noise_ends() {

@@ -1,5 +1,5 @@
-//! Blocks of flat faces as modellers leave them: with edges cut on one side only, with vertices a little off, and far from
-//! the origin. Inside and outside are known in `f64` from the grid that they were made from.
+//! Blocks of flat faces as modellers leave them: with edges cut on one side only, with vertices a little off, and far
+//! from the origin. Inside and outside are known in `f64` from the grid that they were made from.
 
 use crate::blocks::{Grid, Placed, built};
 use crate::meshes::Mesh;

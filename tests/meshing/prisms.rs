@@ -1,5 +1,5 @@
-//! Prisms over rings of random polygons and gears, turned, scaled and moved, against the polygons themselves in `f64`: no
-//! point farther outside than the error is in the solid, and none farther inside out of it.
+//! Prisms over rings of random polygons and gears, turned, scaled and moved, against the polygons themselves in `f64`:
+//! no point farther outside than the error is in the solid, and none farther inside out of it.
 
 use crate::meshes::*;
 use crate::oracle::{Random, inside};

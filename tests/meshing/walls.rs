@@ -10,8 +10,8 @@ use std::f64::consts::{PI, TAU};
 /// Straight sides of a cup.
 const AROUND: u32 = 48;
 
-/// Half of a cup's profile about the y axis, radius and height, from the axis at the bottom to that inside: 1 high, wider at
-/// the top.
+/// Half of a cup's profile about the y axis, radius and height, from the axis at the bottom to that inside: 1 high,
+/// wider at the top.
 fn profile(wall: f64) -> [[f64; 2]; 6] {
     [
         [0.0, 0.0],

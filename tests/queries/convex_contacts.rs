@@ -104,9 +104,10 @@ fn bodies(rng: &mut Rng) -> Vec<Body> {
     all.map(Body::new).into()
 }
 
-/// Symptoms: a tetrahedron and a pyramid that just touched, edge across edge, were told 57 mm deep, in a wrong direction;
-/// contacts of others were told up to 40 mm less deep than they were, or as 16 mm apart. Causes: the algorithm that proposes
-/// directions errs where hulls just touch; and the deepest corner need not be one of the face that lies flattest.
+/// Symptoms: a tetrahedron and a pyramid that just touched, edge across edge, were told 57 mm deep, in a wrong
+/// direction; contacts of others were told up to 40 mm less deep than they were, or as 16 mm apart. Causes: the
+/// algorithm that proposes directions errs where hulls just touch; and the deepest corner need not be one of the face
+/// that lies flattest.
 #[test]
 fn contacts_of_sharp_hulls_are_as_deep_as_separating_axes_say() {
     let mut rng = Rng::new(2211);

@@ -114,8 +114,8 @@ impl Box64 {
         (self.axes.transpose() * n).abs().dot(&self.half)
     }
 
-    /// The gap of two boxes along the fifteen directions that may separate them, the largest and its direction: minus the
-    /// depth where they overlap.
+    /// The gap of two boxes along the fifteen directions that may separate them, the largest and its direction: minus
+    /// the depth where they overlap.
     fn gap(&self, other: &Self) -> (f64, V) {
         let (a, b) = (&self.axes, &other.axes);
         let edges = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
@@ -251,8 +251,8 @@ fn along(first: &Box64, second: &Box64, n: &V) -> f64 {
     (second.middle - first.middle).dot(n) - first.reach(n) - second.reach(n)
 }
 
-/// Two boxes lie on each other and move: where the query says that they never get deeper by more than they may, they never
-/// do, at two thousand times of the step; nor before a contact that it finds.
+/// Two boxes lie on each other and move: where the query says that they never get deeper by more than they may, they
+/// never do, at two thousand times of the step; nor before a contact that it finds.
 #[test]
 fn boxes_that_touch_sink_in_no_deeper_than_they_may() {
     let halves = [[0.3, 0.2, 0.5], [0.25, 0.25, 0.25]];

@@ -1,4 +1,5 @@
-//! Contacts of a box with a capsule that is deep in it, against directions in double precision: all lead out of the box.
+//! Contacts of a box with a capsule that is deep in it, against directions in double precision: all lead out of the
+//! box.
 
 use crate::ccd::rng::Rng;
 use nalgebra::Vector3;
@@ -22,8 +23,8 @@ fn way_out(ends: [V; 2], n: V) -> f64 {
     of_box - near[0].min(near[1])
 }
 
-/// Symptom: a ring and a box that were put into each other stayed so, because contacts of the box's own slabs pointed both
-/// ways, and rapier's solver could follow neither.
+/// Symptom: a ring and a box that were put into each other stayed so, because contacts of the box's own slabs pointed
+/// both ways, and rapier's solver could follow neither.
 #[test]
 fn contacts_of_a_capsule_deep_in_a_box_lead_out_of_it() {
     let [x, y, z] = HALF;

@@ -84,8 +84,8 @@ fn work(form: Form, primitives: usize) -> Work {
     }
 }
 
-/// A quarter above what was counted: of each form in 50, 200 and 500 primitives the node pairs and elementary tests of a
-/// first contact, then of contacts.
+/// A quarter above what was counted: of each form in 50, 200 and 500 primitives the node pairs and elementary tests of
+/// a first contact, then of contacts.
 const MOST: [(Form, [[f64; 3]; 4]); 4] = [
     (
         Form::Ring,

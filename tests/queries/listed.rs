@@ -1,5 +1,5 @@
-//! Contacts from lists of primitive pairs: brute force over all pairs says which are near, lists with others beside them,
-//! in any order, have the contacts of the search, bit by bit; a list that lacks one has not.
+//! Contacts from lists of primitive pairs: brute force over all pairs says which are near, lists with others beside
+//! them, in any order, have the contacts of the search, bit by bit; a list that lacks one has not.
 
 use crate::ccd::rng::Rng;
 use crate::detailed::{Form, detailed};

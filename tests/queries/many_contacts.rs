@@ -1,5 +1,5 @@
-//! Bodies whose primitives are all within the prediction distance of each other: the nearest contacts are found, among them all
-//! that nearly touch. Brute force over all pairs of spheres, in `f64`, says which these are.
+//! Bodies whose primitives are all within the prediction distance of each other: the nearest contacts are found, among
+//! them all that nearly touch. Brute force over all pairs of spheres, in `f64`, says which these are.
 
 use crate::ccd::rng::Rng;
 use crate::meshes::vector;

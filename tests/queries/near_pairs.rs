@@ -1,5 +1,5 @@
-//! Searches that go through a list of near primitive pairs: the answer is that of the search without one, bit by bit, on
-//! all motions for which the list says that it holds; and they look at fewer nodes.
+//! Searches that go through a list of near primitive pairs: the answer is that of the search without one, bit by bit,
+//! on all motions for which the list says that it holds; and they look at fewer nodes.
 
 use crate::ccd::rng::Rng;
 use crate::creature::creature;
@@ -108,8 +108,8 @@ fn ask(rng: &mut Rng, meshes: [&MedialMesh; 2], case: u32) -> Option<Asked> {
     })
 }
 
-/// Of random meshes and of creatures, touching and apart; half of the impacts change the motions by less than the margin.
-/// Where a list does not hold, some answers are others, so the bound is needed.
+/// Of random meshes and of creatures, touching and apart; half of the impacts change the motions by less than the
+/// margin. Where a list does not hold, some answers are others, so the bound is needed.
 #[test]
 fn a_list_answers_as_the_whole_search_does() {
     let mut rng = Rng::new(24);

@@ -1,4 +1,5 @@
-//! Thin and round convex pieces that spin, slide or may overlap: when they meet, against their triangles and closed forms.
+//! Thin and round convex pieces that spin, slide or may overlap: when they meet, against their triangles and closed
+//! forms.
 
 use crate::ccd::rng::Rng;
 use crate::convex_pieces::{V, cuboid, meets_as_its_triangles, motion};
@@ -10,9 +11,10 @@ use rapier3d_medial::meshing::Variant;
 use rapier3d_medial::pair::first_contact;
 use rapier3d_medial::{InitialContact, MedialMesh, ToiOptions, ToiStatus};
 
-/// Symptom: one of some thousand rods and plates that spin by several radians went through another unseen, and others met it
-/// early. Causes: a direction from an earlier part of the turn, along which corners overlap and come apart again, was taken to
-/// keep them apart; and the directions of the hulls alone are poor where thin boxes are apart by a ten-thousandth of their size.
+/// Symptom: one of some thousand rods and plates that spin by several radians went through another unseen, and others
+/// met it early. Causes: a direction from an earlier part of the turn, along which corners overlap and come apart
+/// again, was taken to keep them apart; and the directions of the hulls alone are poor where thin boxes are apart by a
+/// ten-thousandth of their size.
 #[test]
 fn thin_boxes_that_spin_meet_when_their_triangles_do() {
     let halves = [
@@ -53,8 +55,8 @@ fn thin_boxes_that_spin_meet_when_their_triangles_do() {
     }
 }
 
-/// Symptom: balls' hulls that may overlap by .1 met when they were still apart. Two cubes whose edges cross met .25 deep
-/// where their cores reach the edges.
+/// Symptom: balls' hulls that may overlap by .1 met when they were still apart. Two cubes whose edges cross met .25
+/// deep where their cores reach the edges.
 #[test]
 fn pieces_that_may_overlap_meet_as_deep_as_they_may() {
     let still = NonlinearRigidMotion::constant_position(Pose::IDENTITY);
@@ -112,8 +114,8 @@ fn spike(up: bool) -> MedialMesh {
     mesh
 }
 
-/// Two spikes, tip to tip, whose tips touch, slide sideways: their axes cross, so their cores meet. How deep their hulls are in
-/// each other says nothing of that, because they are thin there.
+/// Two spikes, tip to tip, whose tips touch, slide sideways: their axes cross, so their cores meet. How deep their
+/// hulls are in each other says nothing of that, because they are thin there.
 #[test]
 fn spikes_that_touch_do_not_pass_each_other() {
     let (up, down) = (spike(true), spike(false));

@@ -1,5 +1,5 @@
-//! Hundreds of contacts of smooth bodies: those at one place are one, and of those at about one place under about one normal the
-//! nearest stays.
+//! Hundreds of contacts of smooth bodies: those at one place are one, and of those at about one place under about one
+//! normal the nearest stays.
 
 use crate::ccd::rng::Rng;
 use crate::meshes::vector;
@@ -14,8 +14,8 @@ fn ring(cones: usize) -> MedialMesh {
     MedialMesh::torus(0.5, MINOR, cones).expect("a ring")
 }
 
-/// The rule by which contacts at one place are one, applied one by one: the last of those within a ten-thousandth of both radii
-/// of each other, under normals within 10°, gives way to a nearer one.
+/// The rule by which contacts at one place are one, applied one by one: the last of those within a ten-thousandth of
+/// both radii of each other, under normals within 10°, gives way to a nearer one.
 fn one_of_each_place(all: impl Iterator<Item = SpherePair>) -> Vec<SpherePair> {
     let apart = 1.0e-4 * 2.0 * f64::from(MINOR);
     let wide = |v: Vector| v.to_array().map(f64::from);

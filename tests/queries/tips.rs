@@ -69,8 +69,8 @@ fn blunt_tips_pass_as_far_as_their_share_and_no_further() {
     );
 }
 
-/// The edge of a slab, of radius 0, is 0.01 below a floor; 0.6 above the edge its radius is 0.3. Of a body and a surface
-/// the body has all of the share: the floor meets the radius 0.06, which is 0.12 from the edge, 0.01 deep.
+/// The edge of a slab, of radius 0, is 0.01 below a floor; 0.6 above the edge its radius is 0.3. Of a body and a
+/// surface the body has all of the share: the floor meets the radius 0.06, which is 0.12 from the edge, 0.01 deep.
 #[test]
 fn body_behind_an_edge_that_has_passed_is_stopped() {
     let corner = |x, y, radius| MedialSphere::new(Vector::new(x, y, 0.0), radius);

@@ -13,11 +13,11 @@ fn fine(n: usize) -> Vec<Real> {
     vec![1.0 / 1980.0; 33 * n]
 }
 
-/// Symptom: a bar that struck a hinged one at 60 m/s late in a step, and should have flown on at 36 m/s, came back at 6; off
-/// rapier's capsules, joined as bodies, it flew on at 14. Cause: in the next step both still touch, and rapier keeps the
-/// normal of the step's start and a point on either body. The hinged bar's goes along an arc and falls behind the other,
-/// which is taken for a contact that gets deep. A hinged bar of a multibody was struck a second time, as its path was taken
-/// for a chord.
+/// Symptom: a bar that struck a hinged one at 60 m/s late in a step, and should have flown on at 36 m/s, came back at
+/// 6; off rapier's capsules, joined as bodies, it flew on at 14. Cause: in the next step both still touch, and rapier
+/// keeps the normal of the step's start and a point on either body. The hinged bar's goes along an arc and falls behind
+/// the other, which is taken for a contact that gets deep. A hinged bar of a multibody was struck a second time, as its
+/// path was taken for a chord.
 #[test]
 fn what_struck_a_hinged_bar_late_in_a_step_flies_on() {
     for by in [By::Multibody, By::ImpulseJoints] {
@@ -39,9 +39,9 @@ fn what_struck_a_hinged_bar_late_in_a_step_flies_on() {
     }
 }
 
-/// The step of an impact is as rapier's fine steps: what is off after whole steps is what rapier's steps make of it. With fine
-/// steps after the two in which bars are struck, turns are within a twentieth of how far the fastest bar turned, and so is
-/// the speed of what struck them, once it has left them.
+/// The step of an impact is as rapier's fine steps: what is off after whole steps is what rapier's steps make of it.
+/// With fine steps after the two in which bars are struck, turns are within a twentieth of how far the fastest bar
+/// turned, and so is the speed of what struck them, once it has left them.
 #[test]
 fn with_fine_steps_after_the_impact_all_is_as_in_fine_steps() {
     for struck in [Struck::Hinge, Struck::Chain, Struck::Ragdoll] {

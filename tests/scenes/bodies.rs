@@ -125,8 +125,8 @@ pub fn boxes(all: &[(Vector, Vector)]) -> (Vec<Vector>, Vec<[u32; 3]>) {
     (vertices, indices)
 }
 
-/// A plateau of triangles in cells of a metre at height 0, which ends with a cliff 3 m high at x = 0; its internal edges are
-/// fixed.
+/// A plateau of triangles in cells of a metre at height 0, which ends with a cliff 3 m high at x = 0; its internal
+/// edges are fixed.
 pub fn plateau() -> ColliderBuilder {
     let line = |k: i32| (-5..6).map(move |j| Vector::new((k - 10) as Real, 0.0, j as Real));
     let mut vertices: Vec<_> = (0..11).flat_map(line).collect();

@@ -1,5 +1,5 @@
-//! Blocks that lie on others over seams narrower than they are thick stand, and rows of dominoes fall, as those of rapier's own
-//! cuboids do.
+//! Blocks that lie on others over seams narrower than they are thick stand, and rows of dominoes fall, as those of
+//! rapier's own cuboids do.
 
 use crate::bodies::{attached, world_with_ground};
 use rapier3d::prelude::*;
@@ -44,9 +44,9 @@ fn pyramid(collider: &ColliderBuilder, spacing: Real, is_medial: bool) -> (Real,
     (aside.fold(0.0, Real::max), asleep)
 }
 
-/// Symptom: cubes in a pyramid, each across the seam of two others, crept by 9 mm and slept after 123 steps, where rapier's
-/// cuboids move by 0.5 mm and sleep after 30. Cause: of the corners of a narrow overlap only the deepest was kept, and which
-/// one that is changed from step to step.
+/// Symptom: cubes in a pyramid, each across the seam of two others, crept by 9 mm and slept after 123 steps, where
+/// rapier's cuboids move by 0.5 mm and sleep after 30. Cause: of the corners of a narrow overlap only the deepest was
+/// kept, and which one that is changed from step to step.
 #[test]
 fn pyramids_stand_as_those_of_cuboids_do() {
     let (vertices, indices) = Cuboid::new(Vector::splat(0.25)).to_trimesh();
@@ -68,8 +68,8 @@ fn pyramids_stand_as_those_of_cuboids_do() {
     }
 }
 
-/// The step in which the last of a row of dominoes lies flat or leans; node pairs and elementary tests of all that was asked;
-/// and the work of the searches for first contacts, in which a look at two pieces counts as 16 tests.
+/// The step in which the last of a row of dominoes lies flat or leans; node pairs and elementary tests of all that was
+/// asked; and the work of the searches for first contacts, in which a look at two pieces counts as 16 tests.
 fn dominoes(
     collider: &ColliderBuilder,
     spacing: Real,

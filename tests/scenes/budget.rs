@@ -75,8 +75,8 @@ fn the_default_budget_changes_nothing() {
     assert!(10 * free.most < options.budget, "{}", free.most);
 }
 
-/// Symptom: bodies hung in the air before their first contact. Cause: `MedialPipeline::default()` had a budget of 0. What
-/// must be so: it steps as with the default options.
+/// Symptom: bodies hung in the air before their first contact. Cause: `MedialPipeline::default()` had a budget of 0.
+/// What must be so: it steps as with the default options.
 #[test]
 fn a_default_pipeline_has_the_default_budget() {
     let fallen = |mut pipeline: MedialPipeline| {
@@ -183,7 +183,8 @@ fn chains_wait_as_a_whole() {
     assert!(opened[1] < opened[0] + 2.0e-3, "{opened:?}");
 }
 
-/// Time is lost, but the world goes on: with a tenth of what they need, rings thrown together fall and lie on the ground.
+/// Time is lost, but the world goes on: with a tenth of what they need, rings thrown together fall and lie on the
+/// ground.
 #[test]
 fn a_heap_that_waits_comes_down() {
     let (needed, _) = thrown(605, 60, u64::MAX);
@@ -199,7 +200,8 @@ fn a_heap_that_waits_comes_down() {
     assert!(highest < 3.0, "one hangs at {highest} m");
 }
 
-/// Most of any budget that a step takes of a card that lands on a tilted cone or cylinder, with which it slides to the ground.
+/// Most of any budget that a step takes of a card that lands on a tilted cone or cylinder, with which it slides to the
+/// ground.
 fn card_on(shape: SharedShape, tilt: Real) -> u64 {
     let mut world = world_with_ground();
     let leaning = RigidBodyBuilder::dynamic()
@@ -222,8 +224,8 @@ fn card_on(shape: SharedShape, tilt: Real) -> u64 {
     spent.fold(0, u64::max)
 }
 
-/// Symptom: single steps of seconds. Cause: where a card's edge moves along a rim or a flank, no direction that turns with
-/// either body keeps them apart for long.
+/// Symptom: single steps of seconds. Cause: where a card's edge moves along a rim or a flank, no direction that turns
+/// with either body keeps them apart for long.
 #[test]
 fn cards_on_cones_and_cylinders_take_few_looks() {
     for (name, shape) in [
@@ -295,8 +297,8 @@ fn dense_plate() -> MedialMesh {
     MedialMesh::new(spheres, vec![], slabs.collect()).expect("a plate")
 }
 
-/// Which contacts of very many are left out must not be those of one side: plates of 1,458 slabs on each other have some 5,900
-/// that touch.
+/// Which contacts of very many are left out must not be those of one side: plates of 1,458 slabs on each other have
+/// some 5,900 that touch.
 #[test]
 fn dense_plates_lie_still_on_each_other() {
     let plate = dense_plate();

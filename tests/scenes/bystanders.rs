@@ -1,5 +1,5 @@
-//! Worlds with many colliders that stand still, of which a step looks at those near what moves: they go on bit by bit as
-//! if it looked at all.
+//! Worlds with many colliders that stand still, of which a step looks at those near what moves: they go on bit by bit
+//! as if it looked at all.
 
 use crate::bodies::bits;
 use crate::rng::Rng;
@@ -43,7 +43,8 @@ fn collider(kind: usize) -> (ColliderBuilder, Real) {
     }
 }
 
-/// A field of bodies on the ground, some on top of others; still colliders are left out of a step from `least_still` on.
+/// A field of bodies on the ground, some on top of others; still colliders are left out of a step from `least_still`
+/// on.
 fn field(least_still: [usize; 2], seed: usize) -> Stepped {
     let mut world = PhysicsWorld::new();
     let ground = ColliderBuilder::cuboid(40.0, 0.1, 40.0).translation(Vector::Y * -0.1);

@@ -1,5 +1,5 @@
-//! Characters on lifts and among turning paddles: rapier's controller takes the velocities of kinematic bodies at the contacts
-//! that parry's own dispatcher finds.
+//! Characters on lifts and among turning paddles: rapier's controller takes the velocities of kinematic bodies at the
+//! contacts that parry's own dispatcher finds.
 
 use crate::bodies::boxes;
 use crate::random::Random;

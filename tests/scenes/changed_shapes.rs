@@ -14,8 +14,8 @@ pub struct Heap {
     pub frozen: usize,
 }
 
-/// Ten bodies in a narrow pen. For five and a half seconds one of them becomes a ring, or a capsule, twelve times a second; then they
-/// have three seconds to come apart.
+/// Ten bodies in a narrow pen. For five and a half seconds one of them becomes a ring, or a capsule, twelve times a
+/// second; then they have three seconds to come apart.
 pub fn heap(seed: u64) -> Heap {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);

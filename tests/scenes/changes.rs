@@ -1,5 +1,5 @@
-//! Bodies and colliders that the user changes between two steps, right before they would meet, while they rest, or while a
-//! sensor has them: beside rapier's own capsules, balls and rounded cuboids of the same sizes.
+//! Bodies and colliders that the user changes between two steps, right before they would meet, while they rest, or
+//! while a sensor has them: beside rapier's own capsules, balls and rounded cuboids of the same sizes.
 
 use crate::bodies::attached;
 use rapier3d::prelude::*;
@@ -171,8 +171,8 @@ const CHANGES: [(&str, Change); 21] = [
 ];
 
 /// Two bars cross at 2 × 8 m/s, and one is changed in the step before they meet: velocities and places are those of
-/// rapier in 256ths of a step, up to a tenth, as rapier's bars get into each other even then and are pressed out. The other
-/// is medial or rapier's.
+/// rapier in 256ths of a step, up to a tenth, as rapier's bars get into each other even then and are pressed out. The
+/// other is medial or rapier's.
 #[test]
 fn a_body_that_is_changed_before_it_meets_another_meets_it_as_it_is() {
     const SPEED: Real = 8.0;

@@ -326,9 +326,10 @@ fn a_sliding_ball_gets_no_deeper_into_a_medial_wall_than_into_rapiers() {
     }
 }
 
-/// Characters that are moved down by 3 cm with each step of 5 cm walk 5 m over a flat floor whose collider is turned by a
-/// quarter about any axis, by half a radian, or not, where the floor or the character is medial. On rapier's own floors they lose some of it (`tests/host.rs`), because rapier's controller takes a
-/// normal that is shorter than 1 by rounding for that of a slope.
+/// Characters that are moved down by 3 cm with each step of 5 cm walk 5 m over a flat floor whose collider is turned by
+/// a quarter about any axis, by half a radian, or not, where the floor or the character is medial. On rapier's own
+/// floors they lose some of it (`tests/host.rs`), because rapier's controller takes a normal that is shorter than 1 by
+/// rounding for that of a slope.
 #[test]
 fn flat_floors_turned_by_a_quarter_are_walked_on() {
     let quarter = std::f32::consts::FRAC_PI_2;
@@ -367,8 +368,8 @@ fn flat_floors_turned_by_a_quarter_are_walked_on() {
     }
 }
 
-/// How far a character gets of the 0.5 m that it means to go along `way`, and how far up: put `deep` into the front of a wall
-/// of 2 m that stands on a floor.
+/// How far a character gets of the 0.5 m that it means to go along `way`, and how far up: put `deep` into the front of
+/// a wall of 2 m that stands on a floor.
 fn leaves_wall(wall: &SharedShape, character: &SharedShape, deep: Real, way: Vector) -> [Real; 2] {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
@@ -393,8 +394,8 @@ fn leaves_wall(wall: &SharedShape, character: &SharedShape, deep: Real, way: Vec
     [(at - start).dot(way), at.y - start.y]
 }
 
-/// Symptom: cuboids that were deeper in a medial wall than they stood above its lower edge could move nowhere. Cause: each face
-/// of the cuboid was asked alone, and its lower one came nearer by any step upwards.
+/// Symptom: cuboids that were deeper in a medial wall than they stood above its lower edge could move nowhere. Cause:
+/// each face of the cuboid was asked alone, and its lower one came nearer by any step upwards.
 #[test]
 fn characters_leave_walls_that_were_put_into_them() {
     let half = Vector::new(0.5, 1.0, 2.0);

@@ -119,8 +119,8 @@ fn full_heaps() {
     }
 }
 
-/// Hooks that lie on each other sleep, most heaps within 500 steps. Of these eight six did not, where the fourth contact of a
-/// pair is chosen without a look at how high it is above the others. rapier's compounds do not in 1,500
+/// Hooks that lie on each other sleep, most heaps within 500 steps. Of these eight six did not, where the fourth
+/// contact of a pair is chosen without a look at how high it is above the others. rapier's compounds do not in 1,500
 /// (`full_heaps_sleep`).
 #[test]
 fn most_heaps_of_hooks_sleep() {

@@ -5,7 +5,8 @@ use crate::bodies::attached;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
-/// A part: its centre, from there to the centre of its upper or right end, its radius, what it hangs on and where, metres.
+/// A part: its centre, from there to the centre of its upper or right end, its radius, what it hangs on and where,
+/// metres.
 type Part = (Vector, Vector, Real, Option<(usize, Vector)>);
 
 /// Pelvis, chest and head, then two arms and two legs of three parts each.

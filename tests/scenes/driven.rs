@@ -101,8 +101,9 @@ fn a_frozen_body_rides_along() {
     }
 }
 
-/// rapier's `ccd_enabled` changes no bit of what medial bodies do, dynamic and kinematic ones that turn by 3 to 10 rad in
-/// a step, against medial bodies, rapier's, and fixed ones: their impacts are the event loop's, with the flag or without.
+/// rapier's `ccd_enabled` changes no bit of what medial bodies do, dynamic and kinematic ones that turn by 3 to 10 rad
+/// in a step, against medial bodies, rapier's, and fixed ones: their impacts are the event loop's, with the flag or
+/// without.
 #[test]
 fn the_ccd_flag_changes_nothing() {
     let mut impacts = 0;

@@ -24,8 +24,8 @@ fn walls(corners: &[Vector], faces: Vec<[u32; 3]>, radius: Real) -> ColliderBuil
     ColliderBuilder::medial_mesh(walls)
 }
 
-/// Sheets of rods, 3 cm from each other, at rest before a kinematic wall that comes at 12 m/s (0.2 m a step). Step after
-/// which the wall's middle plane is past a rod's end, and by how much (m).
+/// Sheets of rods, 3 cm from each other, at rest before a kinematic wall that comes at 12 m/s (0.2 m a step). Step
+/// after which the wall's middle plane is past a rod's end, and by how much (m).
 fn swept_over(medial: bool, rods: u32, seed: u64) -> Option<(u32, Real)> {
     let mut random = Rng::new(seed);
     let mut draw = |most: f64| random.range(-most, most) as Real;

@@ -305,8 +305,8 @@ fn crossed_rods_head_on() {
 }
 
 /// Symptom: a ball without friction that spins, met its neighbour and was struck again late in the step, pushed the
-/// neighbour aside at 1.6 m/s. Cause: the contact met before turned with the ball. Three balls in a row have no reason to
-/// move aside.
+/// neighbour aside at 1.6 m/s. Cause: the contact met before turned with the ball. Three balls in a row have no reason
+/// to move aside.
 #[test]
 fn a_spinning_ball_that_is_struck_again_pushes_nothing_aside() {
     for spin in [10.0, 60.0, 300.0] {

@@ -84,7 +84,8 @@ fn every_kind_of_joint_holds_and_every_motor_turns() {
     }
 }
 
-/// A rod flies through a sensor and lands on the ground: the sensor is told in rapier's steps, the landing in the step of the touch.
+/// A rod flies through a sensor and lands on the ground: the sensor is told in rapier's steps, the landing in the step
+/// of the touch.
 #[test]
 fn sensors_and_contacts_are_told_when_rapiers_are() {
     let told = |medial: bool, medial_sensor: bool| {

@@ -27,7 +27,8 @@ pub fn table() -> Vec<(Vector, Vector)> {
     (0..4).map(leg).chain([top]).collect()
 }
 
-/// Steps until a body sleeps that is let go on a corner of a foot, tilted about an axis and turned about the vertical one.
+/// Steps until a body sleeps that is let go on a corner of a foot, tilted about an axis and turned about the vertical
+/// one.
 fn steps_to_sleep(shape: &SharedShape, low: Real, tilt: Vector, medial: bool) -> usize {
     let mut world = PhysicsWorld::new();
     let ground = ColliderBuilder::cuboid(20.0, 0.5, 20.0).translation(Vector::Y * -0.5);
@@ -50,8 +51,8 @@ fn steps_to_sleep(shape: &SharedShape, low: Real, tilt: Vector, medial: bool) ->
     usize::MAX
 }
 
-/// Without the corners that make the area widest a comb stands on three of a line and rocks about it: it was not at rest
-/// after 600 steps.
+/// Without the corners that make the area widest a comb stands on three of a line and rocks about it: it was not at
+/// rest after 600 steps.
 #[test]
 fn combs_and_tables_come_to_rest_as_rapiers() {
     for (name, parts, low) in [("comb", comb(), 2.0 / 7.0), ("table", table(), 0.25)] {

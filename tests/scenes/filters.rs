@@ -222,8 +222,8 @@ fn left_within(medial: bool, half: Real) -> usize {
     seeds.count()
 }
 
-/// Symptom: all of the medial ones hung in the platform, 3 mm further in each step. Cause: rapier's sweeps, which are on
-/// where hooks modify contacts, were told of what the body was deep in already.
+/// Symptom: all of the medial ones hung in the platform, 3 mm further in each step. Cause: rapier's sweeps, which are
+/// on where hooks modify contacts, were told of what the body was deep in already.
 #[test]
 fn concave_bodies_pass_a_oneway_platform() {
     for half in [0.05, 0.5] {
@@ -233,8 +233,8 @@ fn concave_bodies_pass_a_oneway_platform() {
     }
 }
 
-/// Symptom: plates were carried up half through the platform, and trembled there for good. Cause: of a plate that stuck in it some
-/// slabs pushed up and others down. That more of ours end on it is in `tests/known_issues.rs`.
+/// Symptom: plates were carried up half through the platform, and trembled there for good. Cause: of a plate that stuck
+/// in it some slabs pushed up and others down. That more of ours end on it is in `tests/known_issues.rs`.
 #[test]
 fn plates_pass_a_oneway_platform_that_moves() {
     let [ours, own] = [true, false].map(plates);

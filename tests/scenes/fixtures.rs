@@ -1,5 +1,5 @@
-//! Fixtures on which the field tests contact: chain nets, spikes and wedges that meet tip to tip (Erleben), a wheel on its
-//! axle. Nothing passes, nothing gains energy, and all comes to rest that must.
+//! Fixtures on which the field tests contact: chain nets, spikes and wedges that meet tip to tip (Erleben), a wheel on
+//! its axle. Nothing passes, nothing gains energy, and all comes to rest that must.
 
 use crate::combs::Dropped;
 use crate::linking::{line, linking};

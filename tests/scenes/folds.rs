@@ -426,8 +426,8 @@ fn balls_that_roll_slowly_roll_as_rapiers_on_every_ground() {
     }
 }
 
-/// In the step of a landing one side of a plate sinks in before the other is down, and edges of triangles beside it are then
-/// in its way.
+/// In the step of a landing one side of a plate sinks in before the other is down, and edges of triangles beside it are
+/// then in its way.
 #[test]
 fn rounded_plates_and_rods_land_flat_on_triangles() {
     let corner = |x: Real, z: Real| MedialSphere::new(Vector::new(x, 0.0, z), 0.1);

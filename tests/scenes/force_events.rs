@@ -62,8 +62,8 @@ fn every_meeting_tells_its_impulse() {
     assert!((slow - 1.0).abs() < 0.01, "{slow}");
 }
 
-/// Steps in which a ring without friction that meets a rod has other velocities after than before: how far what was told is
-/// from the change of its momentum, over that.
+/// Steps in which a ring without friction that meets a rod has other velocities after than before: how far what was
+/// told is from the change of its momentum, over that.
 fn ring_meets_rod(speed: Real, random: &mut Random) -> Vec<Real> {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;

@@ -12,7 +12,8 @@ enum Thing {
     Rod,
 }
 
-/// What a thing is made of: of a medial mesh, of rapier's capsules and cuboids, or of convex hulls in place of the capsules.
+/// What a thing is made of: of a medial mesh, of rapier's capsules and cuboids, or of convex hulls in place of the
+/// capsules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum As {
     Medial,
@@ -153,9 +154,9 @@ impl Grasp {
 
 /// Symptom: fingers of 50 and 100 g that pressed with 10 N on a rod of 0.5 kg lost their speed within a step, and with
 /// it the rod. Cause: an impact a billionth of a second before the step's end; what joints were open by was closed in
-/// what was left of the step, and the speed that took, from poses in single precision, went to the bodies.
-/// Which step jumps most hangs on rounding, for either shape: over masses, the mean must be no more than rapier's, and the
-/// most no more than rapier's most.
+/// what was left of the step, and the speed that took, from poses in single precision, went to the bodies. Which step
+/// jumps most hangs on rounding, for either shape: over masses, the mean must be no more than rapier's, and the most no
+/// more than rapier's most.
 #[test]
 fn fingers_rise_as_their_base_does() {
     let masses = (0..41).map(|k| 0.05 + 0.00125 * k as Real);
@@ -215,8 +216,8 @@ fn medial_fingers_lift_what_rapiers_fingers_do() {
     println!("of 144 grasps {lifted:?} are lifted, medial ones and rapier's own");
 }
 
-/// Up to 2,500 m/s² of the fingers alone: rapier's solver presses them in by centimetres, and what then holds depends on
-/// how many contacts a pair has. parry names those of capsules and cuboids twice.
+/// Up to 2,500 m/s² of the fingers alone: rapier's solver presses them in by centimetres, and what then holds depends
+/// on how many contacts a pair has. parry names those of capsules and cuboids twice.
 #[test]
 #[ignore = "a minute: it counts beyond what grasps promise, and judges nothing"]
 fn overloaded_grasps() {

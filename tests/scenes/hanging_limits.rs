@@ -54,8 +54,8 @@ impl Hung {
         all
     }
 
-    /// The energy that came in after 12 steps at most, in units of the ball's at the start; infinite once anything is no
-    /// number.
+    /// The energy that came in after 12 steps at most, in units of the ball's at the start; infinite once anything is
+    /// no number.
     fn most_gained(self, medial: bool) -> f64 {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::NEG_Y * GRAVITY;
@@ -136,8 +136,8 @@ impl Hung {
     }
 }
 
-/// Balls of a tenth of a link's mass and of its mass: nothing gains energy or leaves all numbers. Of rapier's own chains
-/// some do.
+/// Balls of a tenth of a link's mass and of its mass: nothing gains energy or leaves all numbers. Of rapier's own
+/// chains some do.
 #[test]
 fn struck_chains_with_limits_gain_no_energy() {
     let all = Hung::all(&[0.2, 2.0]);

@@ -88,8 +88,8 @@ fn no_ring_is_driven_into_the_ground_by_a_heavy_one() {
                  compounds {:.1} ms, lowest {:.3}",
                 ours.0, ours.1, ours.2, own.1, own.2
             );
-            // The middle of a ring that stands or lies on the ground is a radius of its tube above it or higher. In one of
-            // these six throws one is pressed in by half of that, the most that the guard allows.
+            // The middle of a ring that stands or lies on the ground is a radius of its tube above it or higher. In one
+            // of these six throws one is pressed in by half of that, the most that the guard allows.
             let least = match (speed, seed) {
                 (60.0, 2) => 0.49,
                 _ => 0.75,

@@ -13,8 +13,8 @@ fn energy(world: &PhysicsWorld, bodies: &[RigidBodyHandle], load: Real) -> Real 
     bodies.iter().map(of).sum::<Real>() / load
 }
 
-/// The most energy that came in within 300 steps, in joules for each kilogram of a load that is so many times as heavy as each
-/// of the four capsules that it hangs on, and swings `aside` by so many metres a second at first.
+/// The most energy that came in within 300 steps, in joules for each kilogram of a load that is so many times as heavy
+/// as each of the four capsules that it hangs on, and swings `aside` by so many metres a second at first.
 fn most_gained(medial: bool, aside: Real, size: Real, ratio: Real) -> Real {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
@@ -70,8 +70,8 @@ fn most_gained(medial: bool, aside: Real, size: Real, ratio: Real) -> Real {
     gained
 }
 
-/// Symptom: loads of 400 times a link's mass gained 100 J/kg at rest, rapier's 4. Cause: once a link turned fast, a step of 32
-/// sub-steps closed at once what steps of 4 had left open.
+/// Symptom: loads of 400 times a link's mass gained 100 J/kg at rest, rapier's 4. Cause: once a link turned fast, a
+/// step of 32 sub-steps closed at once what steps of 4 had left open.
 #[test]
 fn loads_on_light_links_gain_no_more_than_rapiers() {
     for ratio in [200.0, 300.0, 400.0, 1000.0] {

@@ -52,9 +52,9 @@ fn rolls_over_rings(seed: u64, ratio: Real) -> [Real; 2] {
     [start, gained]
 }
 
-/// Symptom: a ball of 10,000 times a ring's mass that rolled over rings rose with a velocity that went on falling, in one of
-/// eight heaps by 0.07 of its energy. Cause: rings that were stopped turn its path upwards as a wall would, but take of its
-/// velocity only what so light a body can. What its weight would take on that way is taken back too.
+/// Symptom: a ball of 10,000 times a ring's mass that rolled over rings rose with a velocity that went on falling, in
+/// one of eight heaps by 0.07 of its energy. Cause: rings that were stopped turn its path upwards as a wall would, but
+/// take of its velocity only what so light a body can. What its weight would take on that way is taken back too.
 #[test]
 fn a_heavy_ball_that_rolls_over_light_rings_gains_no_energy() {
     for seed in 1..=8 {
@@ -64,8 +64,8 @@ fn a_heavy_ball_that_rolls_over_light_rings_gains_no_energy() {
     }
 }
 
-/// A brick on one of a hundredth of its density, on the ground: whether both sleep after ten seconds, and how high the upper
-/// one lies.
+/// A brick on one of a hundredth of its density, on the ground: whether both sleep after ten seconds, and how high the
+/// upper one lies.
 fn brick_on_light_brick(collider: &ColliderBuilder, skew: Real) -> (bool, Real) {
     let mut world = PhysicsWorld::new();
     let ground = ColliderBuilder::cuboid(5.0, 0.5, 5.0).translation(Vector::Y * -0.5);
@@ -83,8 +83,8 @@ fn brick_on_light_brick(collider: &ColliderBuilder, skew: Real) -> (bool, Real) 
     (sleep, world.bodies[bodies[1]].translation().y)
 }
 
-/// Symptom: impacts held them apart in each step for ever, because rapier took each body that an impact had moved for one that the
-/// user had moved, and kept it awake.
+/// Symptom: impacts held them apart in each step for ever, because rapier took each body that an impact had moved for
+/// one that the user had moved, and kept it awake.
 #[test]
 fn a_heavy_brick_and_a_light_one_under_it_fall_asleep() {
     let half = Vector::new(0.4, 0.1, 0.2);
@@ -100,8 +100,8 @@ fn a_heavy_brick_and_a_light_one_under_it_fall_asleep() {
     }
 }
 
-/// Symptom: as the above. Rapier's contacts give way by a centimetre under a stack of 12 plates; the edges of a plate 6 cm thick
-/// are thinner than that there, so impacts hold them in every step.
+/// Symptom: as the above. Rapier's contacts give way by a centimetre under a stack of 12 plates; the edges of a plate 6
+/// cm thick are thinner than that there, so impacts hold them in every step.
 #[test]
 fn stacks_of_thin_plates_fall_asleep() {
     let half = Vector::new(0.5, 0.03, 0.5);
@@ -169,8 +169,8 @@ fn dropped_plates_fall_asleep_as_rapiers() {
     );
 }
 
-/// Twenty cards 4 mm thick that are dropped on each other a little tilted: steps until all sleep, how high the pile is then, and
-/// how often a body was frozen.
+/// Twenty cards 4 mm thick that are dropped on each other a little tilted: steps until all sleep, how high the pile is
+/// then, and how often a body was frozen.
 fn dropped_cards(collider: &ColliderBuilder, seed: u64) -> (Option<usize>, Real, usize) {
     let mut random = Random(seed);
     let mut world = PhysicsWorld::new();
@@ -194,10 +194,10 @@ fn dropped_cards(collider: &ColliderBuilder, seed: u64) -> (Option<usize>, Real,
     (asleep, heights.fold(0.0, Real::max), frozen)
 }
 
-/// Symptom: thirty such cards were not at rest after 150 steps, 27 of them were frozen in each step, and steps took up to 4 s;
-/// of these, cards were frozen 739 times with the first seed. Cause: rapier's
-/// contacts give way by up to 3.5 mm under such a pile; what was deeper than three quarters of a card was resolved slab by
-/// slab, and slabs of one card pointed up while others pointed down.
+/// Symptom: thirty such cards were not at rest after 150 steps, 27 of them were frozen in each step, and steps took up
+/// to 4 s; of these, cards were frozen 739 times with the first seed. Cause: rapier's contacts give way by up to 3.5 mm
+/// under such a pile; what was deeper than three quarters of a card was resolved slab by slab, and slabs of one card
+/// pointed up while others pointed down.
 #[test]
 fn dropped_cards_fall_asleep_as_rapiers() {
     let half = Vector::new(0.4, 0.002, 0.3);
@@ -218,8 +218,8 @@ fn dropped_cards_fall_asleep_as_rapiers() {
     }
 }
 
-/// Impacts of a wall of 24 bricks in 400 steps, and how often one was frozen; of some the density is up to 10,000 times that
-/// of others.
+/// Impacts of a wall of 24 bricks in 400 steps, and how often one was frozen; of some the density is up to 10,000 times
+/// that of others.
 fn wall_of_unlike_bricks(brick: &ColliderBuilder, seed: u64) -> [usize; 2] {
     let mut random = Random(seed);
     let mut world = PhysicsWorld::new();
@@ -240,8 +240,8 @@ fn wall_of_unlike_bricks(brick: &ColliderBuilder, seed: u64) -> [usize; 2] {
     })
 }
 
-/// Symptom: impacts held such walls up: these four took 43,229 in 400 steps, and froze bricks 831 times. Cause:
-/// bricks that heavier ones press deeper than the floor were allowed a tenth of a millimetre more by each search, less than
+/// Symptom: impacts held such walls up: these four took 43,229 in 400 steps, and froze bricks 831 times. Cause: bricks
+/// that heavier ones press deeper than the floor were allowed a tenth of a millimetre more by each search, less than
 /// rapier's contacts give way.
 #[test]
 fn walls_of_very_unlike_bricks_need_few_impacts() {

@@ -1,6 +1,7 @@
-//! Impacts whose outcome is known, under three laws: this crate's own impulses (the effect `restitution`), the paper's stop
-//! at the first contact (section 4.5; rapier's solver does all contacts at once), and rapier's own shapes and step. Nothing
-//! has friction, and all but Euler's disc has no weight. Every test prints what `docs/measurements/hard-scenes.md` quotes.
+//! Impacts whose outcome is known, under three laws: this crate's own impulses (the effect `restitution`), the paper's
+//! stop at the first contact (section 4.5; rapier's solver does all contacts at once), and rapier's own shapes and
+//! step. Nothing has friction, and all but Euler's disc has no weight. Every test prints what
+//! `docs/measurements/hard-scenes.md` quotes.
 
 use crate::eulers_disc::euler;
 use rapier3d::parry::shape::Cuboid;
@@ -124,8 +125,8 @@ fn as_many_balls_leave_newtons_cradle_as_came_in() {
     }
 }
 
-/// A ball strikes two that touch, at 1 m/s, in the middle. By symmetry both leave at 30 degrees, and with the impact law
-/// at both contacts at (1 + e) √3/5 m/s; the first keeps 1 − 0.6 (1 + e).
+/// A ball strikes two that touch, at 1 m/s, in the middle. By symmetry both leave at 30 degrees, and with the impact
+/// law at both contacts at (1 + e) √3/5 m/s; the first keeps 1 − 0.6 (1 + e).
 #[test]
 fn balls_struck_at_two_contacts_at_once_leave_by_the_impact_law() {
     for restitution in [1.0, 0.5] {
@@ -187,8 +188,8 @@ fn flat(
 
 /// A plate falls flat on a plane. Known: it leaves at `e` times its speed and does not turn. So does ours.
 ///
-/// Symptom: it turned by 2.5 rad/s, or kept a quarter of its speed for half of it. Cause: its flat face met the ground at one of
-/// its corners, whichever came first; now at the middle of where the two faces lie on each other.
+/// Symptom: it turned by 2.5 rad/s, or kept a quarter of its speed for half of it. Cause: its flat face met the ground
+/// at one of its corners, whichever came first; now at the middle of where the two faces lie on each other.
 #[test]
 fn a_plate_that_falls_flat_bounces_flat() {
     let half = Vector::new(0.5, 0.05, 0.3);
@@ -236,7 +237,8 @@ fn table() -> MedialMesh {
 
 /// A plate and a table fall flat on each of rapier's own grounds: they leave at `e` times their speed and do not turn.
 ///
-/// Symptom: on rapier's cuboid a plate turned by 2.8 to 3.4 rad/s. Cause: it met each of the ground's triangles on its own.
+/// Symptom: on rapier's cuboid a plate turned by 2.8 to 3.4 rad/s. Cause: it met each of the ground's triangles on its
+/// own.
 #[test]
 fn what_falls_flat_on_rapiers_grounds_bounces_flat() {
     let half = Vector::new(2.0, 0.25, 2.0);

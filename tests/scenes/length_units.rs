@@ -1,5 +1,5 @@
-//! Worlds of another length unit: with all lengths and `length_unit` a power of two times as large, they are the same to
-//! the last bit, because each length that this crate compares with another scales along. What rapier and parry do in
+//! Worlds of another length unit: with all lengths and `length_unit` a power of two times as large, they are the same
+//! to the last bit, because each length that this crate compares with another scales along. What rapier and parry do in
 //! these scenes scales exactly too; in contacts with triangles, at limits of joints, and in the damping of multibodies'
 //! joints, it does not.
 

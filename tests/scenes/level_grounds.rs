@@ -1,5 +1,5 @@
-//! What slides or rolls over level ground without meeting anything keeps its speed: over medial plates, whose slabs hide each
-//! other's flanks, and medial bodies with sharp edges over rapier's solids, whose edges just touch these.
+//! What slides or rolls over level ground without meeting anything keeps its speed: over medial plates, whose slabs
+//! hide each other's flanks, and medial bodies with sharp edges over rapier's solids, whose edges just touch these.
 
 use crate::bodies::{attached, octagon};
 use crate::table_edges::{Slider, sliders};
@@ -75,8 +75,9 @@ fn plates() -> Vec<(&'static str, SharedShape, Real)> {
     ]
 }
 
-/// Symptom: balls, capsules and boxes that slid over a level medial cuboid were thrown up by as much as 2.4 m/s, rolling balls
-/// too. Cause: the next slab's rim, which is in the cuboid or in line with its top, had contacts ahead under a normal aslant.
+/// Symptom: balls, capsules and boxes that slid over a level medial cuboid were thrown up by as much as 2.4 m/s,
+/// rolling balls too. Cause: the next slab's rim, which is in the cuboid or in line with its top, had contacts ahead
+/// under a normal aslant.
 #[test]
 fn what_runs_over_medial_plates_keeps_its_speed() {
     let ends = [Vector::X * -0.2, Vector::X * 0.2];
@@ -134,13 +135,13 @@ fn what_runs_over_medial_plates_keeps_its_speed() {
     }
 }
 
-/// rapier's own cubes, bricks and cards sink into the octagon by 4 to 21 cm, or fall through it: parry looks at four corners of a
-/// side only.
+/// rapier's own cubes, bricks and cards sink into the octagon by 4 to 21 cm, or fall through it: parry looks at four
+/// corners of a side only.
 ///
-/// Symptom: cubes, bricks, cards and L's that slid over a level hull, cylinder or compound, far from any edge, or over the end
-/// of a cuboid, were thrown up by as much as 1.8 m/s. Cause: where a sharp edge just touches a face, the normals that parry's
-/// iterations find are noise. On a compound of tiles the next tile's side had contacts ahead, for capsules where a normal was
-/// off by a ten-thousandth. rapier's own capsule trips there.
+/// Symptom: cubes, bricks, cards and L's that slid over a level hull, cylinder or compound, far from any edge, or over
+/// the end of a cuboid, were thrown up by as much as 1.8 m/s. Cause: where a sharp edge just touches a face, the
+/// normals that parry's iterations find are noise. On a compound of tiles the next tile's side had contacts ahead, for
+/// capsules where a normal was off by a ten-thousandth. rapier's own capsule trips there.
 #[test]
 fn sharp_bodies_keep_their_speed_over_level_solids() {
     let below = |shape| (Vector::Y * -0.5, shape);
@@ -207,9 +208,9 @@ fn sharp_bodies_keep_their_speed_over_level_solids() {
     }
 }
 
-/// Symptom: a ball that came to roll over a compound of level tiles turned to the side, by 5 cm in three seconds (rapier's own
-/// by 0). Cause: where it had sunk in a little an impact on the next tile, or on the other half of a tile, acted along the
-/// ground's normal, but beside the ball's lowest point.
+/// Symptom: a ball that came to roll over a compound of level tiles turned to the side, by 5 cm in three seconds
+/// (rapier's own by 0). Cause: where it had sunk in a little an impact on the next tile, or on the other half of a
+/// tile, acted along the ground's normal, but beside the ball's lowest point.
 #[test]
 fn balls_roll_straight_over_tiles() {
     let tile = |k: usize| Pose::translation(0.25 * k as Real - 3.0, -0.1, 0.0);
@@ -237,8 +238,8 @@ fn balls_roll_straight_over_tiles() {
 
 /// A body that slides along a wall of tiles, on a floor of tiles, without friction, keeps its speed.
 ///
-/// Symptom: blocks and planks lost two thirds of it (rapier's own nearly all). Cause: they had so many contacts with the
-/// floor that those with the wall were not compared with each other.
+/// Symptom: blocks and planks lost two thirds of it (rapier's own nearly all). Cause: they had so many contacts with
+/// the floor that those with the wall were not compared with each other.
 #[test]
 fn bodies_slide_along_tiled_walls() {
     let half_tile = 0.1;
@@ -307,7 +308,8 @@ fn floor_with_step() -> MedialMesh {
     MedialMesh::new(spheres, Vec::new(), faces).expect("a floor with a step")
 }
 
-/// A step that is low for the size of the mesh is met: a box that comes slowly stays in front of it, as rapier's own does.
+/// A step that is low for the size of the mesh is met: a box that comes slowly stays in front of it, as rapier's own
+/// does.
 #[test]
 fn low_steps_on_large_meshes_stop_boxes() {
     let (mesh, half) = (floor_with_step(), Vector::splat(0.025));

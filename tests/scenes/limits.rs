@@ -1,5 +1,5 @@
-//! Joints with limits whose bodies are struck within a step: beside rapier's capsules of the same sizes, in its own steps
-//! and in sixteenths of them.
+//! Joints with limits whose bodies are struck within a step: beside rapier's capsules of the same sizes, in its own
+//! steps and in sixteenths of them.
 
 use crate::bodies::attached;
 use rapier3d::prelude::*;
@@ -168,8 +168,8 @@ fn struck_joints_with_limits_gain_no_energy() {
     }
 }
 
-/// What strikes them flies on as from rapier's capsules in sixteenths of a step: no farther off than from rapier's capsules
-/// in whole ones, give or take a fiftieth of its speed.
+/// What strikes them flies on as from rapier's capsules in sixteenths of a step: no farther off than from rapier's
+/// capsules in whole ones, give or take a fiftieth of its speed.
 #[test]
 fn impacts_on_limited_joints_bounce_as_in_fine_steps() {
     for kind in KINDS {
@@ -192,9 +192,9 @@ fn impacts_on_limited_joints_bounce_as_in_fine_steps() {
     }
 }
 
-/// Symptom: hung on a ball joint with limits about two axes and struck askew, a link was torn off by a metre at 100 m/s.
-/// Cause: the stops of both limits could not be closed along the joint's own axes, about which large turns do not go, and
-/// with them the joint was left open. Where stops cannot be closed, the joint is.
+/// Symptom: hung on a ball joint with limits about two axes and struck askew, a link was torn off by a metre at 100
+/// m/s. Cause: the stops of both limits could not be closed along the joint's own axes, about which large turns do not
+/// go, and with them the joint was left open. Where stops cannot be closed, the joint is.
 #[test]
 fn askew_blows_do_not_tear_limited_ball_joints() {
     for speed in [20.0, 60.0, 200.0] {
@@ -227,8 +227,8 @@ fn askew_blows_do_not_tear_limited_ball_joints() {
     }
 }
 
-/// A door of 1 kg that is shut against its stop is a wall to what comes from the other side: a ball comes back as fast as it
-/// came, times the restitution.
+/// A door of 1 kg that is shut against its stop is a wall to what comes from the other side: a ball comes back as fast
+/// as it came, times the restitution.
 #[test]
 fn a_shut_door_is_a_wall() {
     for (mass, speed, restitution) in [(1.0, 10.0, 1.0), (0.1, 60.0, 0.8)] {

@@ -323,8 +323,8 @@ fn sheets_do_not_sink_through_what_they_lie_on() {
     }
 }
 
-/// Symptom: a stack of cubes that tipped over hung in the air, its upper cubes frozen in every step, while gravity made them
-/// faster. Cause: sharp edges that touched by less than the tolerance met again at once, though they parted.
+/// Symptom: a stack of cubes that tipped over hung in the air, its upper cubes frozen in every step, while gravity made
+/// them faster. Cause: sharp edges that touched by less than the tolerance met again at once, though they parted.
 #[test]
 fn a_stack_of_cubes_that_tips_over_comes_to_rest() {
     let fastest = |collider: ColliderBuilder| {

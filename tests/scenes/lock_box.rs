@@ -1,5 +1,6 @@
-//! A lock box (a fixture of Rigid-IPC): a key with a wide head hangs in the slot of a plate. It can leave only through the
-//! opening at the slot's far end, after three turns; no blow brings it out elsewhere. Beside it stand rapier's own shapes.
+//! A lock box (a fixture of Rigid-IPC): a key with a wide head hangs in the slot of a plate. It can leave only through
+//! the opening at the slot's far end, after three turns; no blow brings it out elsewhere. Beside it stand rapier's own
+//! shapes.
 
 use crate::random::Random;
 use rapier3d::prelude::*;

@@ -1,5 +1,5 @@
-//! Bodies whose velocity drives them along an axis that is locked: no contact slows them down along it, since none moves
-//! them.
+//! Bodies whose velocity drives them along an axis that is locked: no contact slows them down along it, since none
+//! moves them.
 
 use crate::bodies::{attached, ring, world_with_ground};
 use rapier3d::prelude::*;
@@ -8,10 +8,10 @@ use rapier3d_medial::prelude::*;
 /// Speed along the locked axis, metres per second.
 const DOWN: Real = 5.0;
 
-/// Symptom: a box of which the vertical axis is locked, and which moves down, touched the ground below its centre and got
-/// 10⁶ rad/s and more; rods and rings lost their velocity instead. Cause: the impulse that stops the point of contact
-/// by turning the body alone has no bound where its lever is short, and forces that rapier never adds along a locked axis
-/// were taken back. rapier's own shapes pass through the ground, some of them at hundreds of rad/s.
+/// Symptom: a box of which the vertical axis is locked, and which moves down, touched the ground below its centre and
+/// got 10⁶ rad/s and more; rods and rings lost their velocity instead. Cause: the impulse that stops the point of
+/// contact by turning the body alone has no bound where its lever is short, and forces that rapier never adds along a
+/// locked axis were taken back. rapier's own shapes pass through the ground, some of them at hundreds of rad/s.
 #[test]
 fn bodies_driven_along_a_locked_axis_are_held_by_the_ground() {
     let meshes = [

@@ -144,8 +144,8 @@ fn bodies_obey_contacts_modified_by_hooks() {
     assert!(bounces < 0.002, "{bounces} m off");
 }
 
-/// How many of eight bricks that slide on a conveyor, at some speed, pass the wall at its end, 10 cm thick, which is a part of
-/// the same collider.
+/// How many of eight bricks that slide on a conveyor, at some speed, pass the wall at its end, 10 cm thick, which is a
+/// part of the same collider.
 fn pass_the_wall(medial: bool, speed: Real) -> usize {
     let passed = (0..8).filter(|seed| {
         let mut random = crate::random::Random(*seed);
@@ -182,8 +182,8 @@ fn pass_the_wall(medial: bool, speed: Real) -> usize {
     passed.count()
 }
 
-/// Symptom: four of five bricks passed the wall at 40 m/s. Cause: where rapier's sweeps were told that a sharp edge had sunk
-/// in, they were told so of the whole collider.
+/// Symptom: four of five bricks passed the wall at 40 m/s. Cause: where rapier's sweeps were told that a sharp edge had
+/// sunk in, they were told so of the whole collider.
 #[test]
 fn what_slides_on_a_conveyor_does_not_pass_its_wall() {
     for speed in [15.0, 40.0] {

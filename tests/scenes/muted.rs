@@ -9,9 +9,9 @@ fn rod(half: Real, radius: Real) -> MedialMesh {
     MedialMesh::capsule(Vector::X * -half, Vector::X * half, radius).expect("a rod")
 }
 
-/// Symptom: pairs that should be muted had contacts in rapier's solver, which stopped bodies that passed each other at the
-/// distance of their thickness. Cause: a pair is muted by the bits of its relative pose, and the pose at the start of
-/// the step was rounded where the centre of mass is not at the body's origin.
+/// Symptom: pairs that should be muted had contacts in rapier's solver, which stopped bodies that passed each other at
+/// the distance of their thickness. Cause: a pair is muted by the bits of its relative pose, and the pose at the start
+/// of the step was rounded where the centre of mass is not at the body's origin.
 #[test]
 fn pairs_of_bodies_with_their_centre_of_mass_aside_are_muted() {
     let mut random = Random(1);
@@ -42,8 +42,8 @@ fn pairs_of_bodies_with_their_centre_of_mass_aside_are_muted() {
     assert!(muted > 32, "only {muted} of 64 are near");
 }
 
-/// Symptom: in a world whose length unit is the millimetre, rods that turned past each other were stopped. Cause: a pair
-/// counted as touching, and was left to the solver, up to 0.1 mm beyond the gap, whatever the unit.
+/// Symptom: in a world whose length unit is the millimetre, rods that turned past each other were stopped. Cause: a
+/// pair counted as touching, and was left to the solver, up to 0.1 mm beyond the gap, whatever the unit.
 #[test]
 fn tips_pass_beside_each_other_in_any_length_unit() {
     for unit in [1.0, 1.0e-3, 1.0e3] {

@@ -1,5 +1,5 @@
-//! A joint of a multibody that is inserted between two bodies moves the second one to where it holds it, in one step: into the
-//! ground, or into the first.
+//! A joint of a multibody that is inserted between two bodies moves the second one to where it holds it, in one step:
+//! into the ground, or into the first.
 
 use crate::bodies::{attached, ring};
 use crate::random::Random;
@@ -19,8 +19,8 @@ struct Ends {
     frozen: usize,
 }
 
-/// Rings and crosses rest beside each other on a cuboid. A hinge whose axes do not fit takes the second into the ground, or
-/// aside; after a second it is removed, and the two have six seconds to come to rest.
+/// Rings and crosses rest beside each other on a cuboid. A hinge whose axes do not fit takes the second into the
+/// ground, or aside; after a second it is removed, and the two have six seconds to come to rest.
 fn ends(is_medial: bool, seed: u64) -> Ends {
     let mut random = Random(seed + 1);
     let mut world = PhysicsWorld::new();

@@ -1,5 +1,5 @@
-//! Worlds whose parameters change as they go, steps of no length and of unusual ones: boxes that lie on each other do so as
-//! rapier's rounded cuboids do, and no fast rod passes a floor.
+//! Worlds whose parameters change as they go, steps of no length and of unusual ones: boxes that lie on each other do
+//! so as rapier's rounded cuboids do, and no fast rod passes a floor.
 
 use crate::bodies::attached;
 use rapier3d::prelude::*;
@@ -87,8 +87,8 @@ fn boxes_lie_as_rapiers_whatever_changes() {
                 off < 3.0e-3 + step,
                 "{name}: {ours:?}, rapier's own {own:?}"
             );
-            // Twice as much, and a tenth of what gravity adds in a step: with one iteration the upper box trembles at 3.8 cm/s,
-            // rapier's own at 1.4.
+            // Twice as much, and a tenth of what gravity adds in a step: with one iteration the upper box trembles at
+            // 3.8 cm/s, rapier's own at 1.4.
             let trembling = 2.0 * own.1 + 0.98 * dt;
             assert!(ours.1 < trembling, "{name}: {ours:?}, rapier's own {own:?}");
         }
@@ -138,9 +138,9 @@ fn no_fast_rod_passes_a_floor_whatever_changes() {
     }
 }
 
-/// A ball meets one that is at rest at 8 m/s and does not give way to it. rapier 0.36 takes a dominant body as if it stood
-/// still: its own ball goes through the other, which stays where it is. Met within a step, what gives way is taken along;
-/// met slowly, it is rapier's solver's, of both kinds.
+/// A ball meets one that is at rest at 8 m/s and does not give way to it. rapier 0.36 takes a dominant body as if it
+/// stood still: its own ball goes through the other, which stays where it is. Met within a step, what gives way is
+/// taken along; met slowly, it is rapier's solver's, of both kinds.
 #[test]
 fn dominant_bodies_take_along_what_gives_way() {
     let meet = |medial: bool, speed: Real| {
@@ -182,7 +182,8 @@ fn dominant_bodies_take_along_what_gives_way() {
     );
 }
 
-/// A body that rests on a platform is given a higher dominance group than the platform has, which is none for a fixed one.
+/// A body that rests on a platform is given a higher dominance group than the platform has, which is none for a fixed
+/// one.
 #[test]
 fn dominant_bodies_fall_through_kinematic_platforms_as_rapiers_do() {
     let rest = |medial: bool, plate: bool, platform: RigidBodyType| {

@@ -19,8 +19,8 @@ impl PhysicsHooks for FromBelow {
     }
 }
 
-/// Where 96 plates are, medial or rapier's cuboids, five seconds after they were thrown up through a platform that rises for
-/// two seconds.
+/// Where 96 plates are, medial or rapier's cuboids, five seconds after they were thrown up through a platform that
+/// rises for two seconds.
 #[derive(Debug, Default)]
 pub struct Plates {
     /// Have been in the platform for the last second.

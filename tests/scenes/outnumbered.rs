@@ -71,8 +71,8 @@ fn a_crowd_far_from_medial_bodies_goes_as_by_rapier_alone_to_the_bit() {
     );
 }
 
-/// How far a contact of a collider is from where rapier has it: the most that its two points have moved against each other
-/// since it was computed.
+/// How far a contact of a collider is from where rapier has it: the most that its two points have moved against each
+/// other since it was computed.
 fn staleness(world: &PhysicsWorld, collider: ColliderHandle) -> Real {
     let drift = |pair: &ContactPair| {
         let [a, b] = [pair.collider1, pair.collider2].map(|h| *world.colliders[h].position());
@@ -113,8 +113,8 @@ fn stalest(
     (0..steps).map(step).fold(0.0, Real::max)
 }
 
-/// rapier notes with each pair how long it may keep its contacts, so what it noted while the medial bodies were few would
-/// hold on.
+/// rapier notes with each pair how long it may keep its contacts, so what it noted while the medial bodies were few
+/// would hold on.
 #[test]
 fn contacts_of_medial_bodies_are_new_beside_a_crowd_and_when_it_is_gone() {
     let sliders = [

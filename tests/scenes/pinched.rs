@@ -36,8 +36,8 @@ struct Pressed {
     queries: u64,
 }
 
-/// Three bodies lie on each other, as they fell, under a plate that comes down by 0.5 m/s to `gap` above the ground, stays for half
-/// a second, rises again and leaves them alone for two seconds.
+/// Three bodies lie on each other, as they fell, under a plate that comes down by 0.5 m/s to `gap` above the ground,
+/// stays for half a second, rises again and leaves them alone for two seconds.
 fn press(medial: bool, seed: u64, gap: Real) -> Pressed {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
@@ -97,14 +97,15 @@ fn press(medial: bool, seed: u64, gap: Real) -> Pressed {
     }
 }
 
-/// Symptom: the press took 17,000 to 75,000 queries, bodies flew three times as far as rapier's, and one was left 5 cm deep
-/// in another. Cause: the event loop held each body above the floor on either side in turn, though neither side gave way.
+/// Symptom: the press took 17,000 to 75,000 queries, bodies flew three times as far as rapier's, and one was left 5 cm
+/// deep in another. Cause: the event loop held each body above the floor on either side in turn, though neither side
+/// gave way.
 #[test]
 fn pressed_bodies_come_out_as_rapiers() {
     for gap in [0.15, 0.08, 0.02] {
         let seeds = 0..24;
-        // One that leaves the ground, as some of rapier's do, falls for as long as the scene lasts: it counts as thrown to the
-        // ground's corner.
+        // One that leaves the ground, as some of rapier's do, falls for as long as the scene lasts: it counts as thrown
+        // to the ground's corner.
         let corner = Real::hypot(5.0, 5.0);
         let mean = |all: &[Pressed]| {
             let thrown = all.iter().map(|p| p.thrown.min(corner));
@@ -188,8 +189,8 @@ fn chain(medial: bool, seed: u64) -> Hung {
     }
 }
 
-/// Symptom: one such chain in five stood still in the air, with up to 44 m/s and 174 ms a step. Cause: the event loop held
-/// what a joint pressed into its neighbour, and the joint pressed again in the next step.
+/// Symptom: one such chain in five stood still in the air, with up to 44 m/s and 174 ms a step. Cause: the event loop
+/// held what a joint pressed into its neighbour, and the joint pressed again in the next step.
 #[test]
 fn links_that_joints_press_into_each_other_hang_as_rapiers() {
     let seeds = 0..12;
@@ -306,7 +307,8 @@ struct Dragged {
     off: Real,
 }
 
-/// A kinematic hand holds a brick by a joint, presses it 10 cm into the ground, drags it along for 2 m, and lifts it again.
+/// A kinematic hand holds a brick by a joint, presses it 10 cm into the ground, drags it along for 2 m, and lifts it
+/// again.
 fn drag(medial: bool, joint: impl Into<GenericJoint>) -> Dragged {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
@@ -342,8 +344,8 @@ fn drag(medial: bool, joint: impl Into<GenericJoint>) -> Dragged {
     }
 }
 
-/// Symptom: the body stood still in the ground for good, 2 m from the hand. Cause: the event loop held it above the floor,
-/// though neither the joint nor the ground gave way.
+/// Symptom: the body stood still in the ground for good, 2 m from the hand. Cause: the event loop held it above the
+/// floor, though neither the joint nor the ground gave way.
 #[test]
 fn what_a_hand_presses_into_the_ground_comes_along_as_rapiers() {
     let off = Vector::new(0.1, 0.0, 0.05);

@@ -44,8 +44,9 @@ fn dropped_sleeps(is_medial: bool, radii: [Real; 2], pull: Real, seed: usize) ->
     until_sleep(&mut world, is_medial, 480).is_some()
 }
 
-/// Symptom: a ring of thin wire, or one that was pressed down by 70 times its weight, whirled on for ever. Cause: what the pull
-/// of a step moved away from its support counted as apart, was kept from the solver, and was resolved by impacts at single points.
+/// Symptom: a ring of thin wire, or one that was pressed down by 70 times its weight, whirled on for ever. Cause: what
+/// the pull of a step moved away from its support counted as apart, was kept from the solver, and was resolved by
+/// impacts at single points.
 #[test]
 fn rings_that_are_pressed_down_come_to_rest() {
     for (radii, pull) in [
@@ -78,8 +79,8 @@ fn eulers_disc_rests_at_thirty_steps_a_second() {
     }
 }
 
-/// Symptom: of 60 rings that lay aslant on another one 22 rocked on for ever, where rapier's own sleep. Cause: they had one contact
-/// at each of the two places where they touch, which moves by several centimetres while rapier keeps it.
+/// Symptom: of 60 rings that lay aslant on another one 22 rocked on for ever, where rapier's own sleep. Cause: they had
+/// one contact at each of the two places where they touch, which moves by several centimetres while rapier keeps it.
 #[test]
 fn rings_on_rings_come_to_rest() {
     for seed in 0..24 {

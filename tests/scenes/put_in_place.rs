@@ -1,5 +1,5 @@
-//! Bodies that are in each other because they were something else the step before: from then on they come apart as rapier's
-//! own do.
+//! Bodies that are in each other because they were something else the step before: from then on they come apart as
+//! rapier's own do.
 
 use crate::bodies::attached;
 use crate::changed_shapes::{Heap, heap};
@@ -13,9 +13,10 @@ const SEEDS: u64 = 24;
 /// The heap of these in which a pair hangs in each other in the end (`tests/known_issues.rs`).
 const HANGS: u64 = 20;
 
-/// Symptom: a pair that was deep because a body had got another shape was held by the event loop for ever, two or three bodies
-/// in each step. In the same heaps rapier's own are 1.0 to 6.9 mm in each other in the end, 1.87 in the mean of these seeds;
-/// they are not stepped here because rapier panics in debug builds when a compound in contact gets another shape (`tests/known_issues.rs`).
+/// Symptom: a pair that was deep because a body had got another shape was held by the event loop for ever, two or three
+/// bodies in each step. In the same heaps rapier's own are 1.0 to 6.9 mm in each other in the end, 1.87 in the mean of
+/// these seeds; they are not stepped here because rapier panics in debug builds when a compound in contact gets another
+/// shape (`tests/known_issues.rs`).
 #[test]
 fn bodies_that_get_another_shape_in_each_other_come_apart() {
     let mut sum = 0.0;
@@ -40,8 +41,8 @@ fn bodies_that_a_joint_lets_go_of_in_each_other_come_apart() {
     }
 }
 
-/// The most energy that a brick gains in a step, J/kg, after it was put across a floor 0.3 m thick on which it lay, and whether
-/// it is still in the floor six seconds later.
+/// The most energy that a brick gains in a step, J/kg, after it was put across a floor 0.3 m thick on which it lay, and
+/// whether it is still in the floor six seconds later.
 fn across_a_floor(medial: bool, seed: u64) -> (Real, bool) {
     let half = Vector::new(0.3, 0.2, 0.1);
     let shape = match medial {
@@ -81,8 +82,8 @@ fn across_a_floor(medial: bool, seed: u64) -> (Real, bool) {
     (most, aabb.mins.y < -0.02 && aabb.maxs.y > -0.28)
 }
 
-/// Symptom: slabs of the brick that are out sooner above the floor and others that are out sooner below pulled it to and fro, and
-/// threw it, by up to 57 J/kg. rapier's own cuboids gain nothing.
+/// Symptom: slabs of the brick that are out sooner above the floor and others that are out sooner below pulled it to
+/// and fro, and threw it, by up to 57 J/kg. rapier's own cuboids gain nothing.
 #[test]
 fn a_brick_put_across_a_thin_floor_is_not_thrown() {
     let mut stay = [0; 2];
@@ -99,8 +100,8 @@ fn a_brick_put_across_a_thin_floor_is_not_thrown() {
     assert!(stay[0] <= stay[1], "{stay:?} are still in the floor");
 }
 
-/// Two plates that cross come apart within two seconds after one that was disabled is enabled. Its collider was enabled the
-/// step before, so that rapier had contacts of the two already.
+/// Two plates that cross come apart within two seconds after one that was disabled is enabled. Its collider was enabled
+/// the step before, so that rapier had contacts of the two already.
 #[test]
 fn a_body_enabled_after_its_collider_in_another_comes_out() {
     let half = Vector::new(0.4, 0.05, 0.3);

@@ -211,8 +211,8 @@ fn a_ball_rolls_on() {
     }
 }
 
-/// Depth of a ring's lowest sphere in the ground at height 0 or of its farthest in the wall at 0, once it leans on both; the
-/// mean of a dozen rings.
+/// Depth of a ring's lowest sphere in the ground at height 0 or of its farthest in the wall at 0, once it leans on
+/// both; the mean of a dozen rings.
 fn depth_of_leaning(collider: &ColliderBuilder, mesh: &MedialMesh) -> Real {
     let depths = (0..12).map(|k| {
         let mut world = PhysicsWorld::new();
@@ -249,8 +249,8 @@ fn depth_of_leaning(collider: &ColliderBuilder, mesh: &MedialMesh) -> Real {
     depths.sum::<Real>() / 12.0
 }
 
-/// Symptom: rings that leaned on a wall came to rest four times as deep in the ground or the wall as rapier's own. Cause: the
-/// contacts that bear did not include the deepest.
+/// Symptom: rings that leaned on a wall came to rest four times as deep in the ground or the wall as rapier's own.
+/// Cause: the contacts that bear did not include the deepest.
 #[test]
 fn leaning_rings_rest_about_as_deep_as_rapiers_own() {
     let mesh = MedialMesh::torus(0.05, 0.005, 24).expect("a ring");

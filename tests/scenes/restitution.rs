@@ -1,6 +1,7 @@
 //! Elastic and half elastic bodies beside theory and rapier's own shapes. Energy is computed here, in double precision,
-//! from mass, inertia and velocities. Gyroscopic forces are off, since rapier's integration of them gains energy without any
-//! impact (`known_issues::rapier_gains_energy_from_a_fast_spin`), and fast rotation is allowed, since rapier caps it.
+//! from mass, inertia and velocities. Gyroscopic forces are off, since rapier's integration of them gains energy
+//! without any impact (`known_issues::rapier_gains_energy_from_a_fast_spin`), and fast rotation is allowed, since
+//! rapier caps it.
 
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
@@ -152,8 +153,8 @@ fn elastic(collider: &ColliderBuilder, hertz: Real, seed: u64, is_plain: bool) -
     [flight.energy() / start, most / start]
 }
 
-/// Symptom: eight elastic tori in a box had 19 times their energy after ten seconds. Cause: rapier's solver gave them their
-/// restitution, several contacts at once, where they were slow for their thickness.
+/// Symptom: eight elastic tori in a box had 19 times their energy after ten seconds. Cause: rapier's solver gave them
+/// their restitution, several contacts at once, where they were slow for their thickness.
 #[test]
 fn elastic_bodies_keep_their_energy() {
     for hertz in [30.0, 60.0, 120.0, 240.0] {
@@ -260,7 +261,8 @@ fn tops(collider: ColliderBuilder, restitution: Real, hertz: Real) -> Vec<Real> 
     tops
 }
 
-/// A ball of radius 0.3 of a medial mesh, that falls from 1 m, rises to `e²` of its height after each bounce, by theory.
+/// A ball of radius 0.3 of a medial mesh, that falls from 1 m, rises to `e²` of its height after each bounce, by
+/// theory.
 #[test]
 fn a_bouncing_ball_rises_as_theory_says() {
     let ball = || {
@@ -288,8 +290,8 @@ fn a_bouncing_ball_rises_as_theory_says() {
     }
 }
 
-/// Two motors close fingers on a block without weight, which then holds still and sleeps beside rapier's own cuboids, whatever
-/// its restitution.
+/// Two motors close fingers on a block without weight, which then holds still and sleeps beside rapier's own cuboids,
+/// whatever its restitution.
 #[test]
 fn weightless_bodies_held_by_motors_rest() {
     let block = |half: Vector, is_medial: bool| match is_medial {

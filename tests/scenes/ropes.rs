@@ -98,8 +98,8 @@ fn struck(links: usize, speed: Real, drift: Option<Vector>, medial: bool, steps:
 }
 
 /// Symptom: ropes of 8 and 30 links opened by 131 and 60 mm at 120 m/s, rapier's own by 59 and 36, and kept 0.30 and
-/// 0.41 of the energy, rapier's 0.47 and 0.43. Cause: an impact that came while bodies were on their way along the chord
-/// of an arc took the chord for their velocity, and rapier's next steps move straight in a sub-step.
+/// 0.41 of the energy, rapier's 0.47 and 0.43. Cause: an impact that came while bodies were on their way along the
+/// chord of an arc took the chord for their velocity, and rapier's next steps move straight in a sub-step.
 #[test]
 fn a_rope_struck_opens_no_wider_than_rapiers() {
     let coarse = |n: usize| vec![1.0 / 60.0; n];
@@ -165,9 +165,9 @@ fn thrown(speed: Real, seed: u64) -> PhysicsWorld {
     world
 }
 
-/// Symptom: ropes thrown at each other at 100 m/s lost a third to nine tenths of their momentum where bodies were stopped
-/// after too many impacts. Cause: joints gave velocities as if a stopped body were of infinite mass, and only to the other
-/// body; and of bodies that joints tie, only some were told the velocities that the step ends with.
+/// Symptom: ropes thrown at each other at 100 m/s lost a third to nine tenths of their momentum where bodies were
+/// stopped after too many impacts. Cause: joints gave velocities as if a stopped body were of infinite mass, and only
+/// to the other body; and of bodies that joints tie, only some were told the velocities that the step ends with.
 #[test]
 fn ropes_that_are_thrown_at_each_other_keep_their_momentum() {
     let mut stopped = 0;

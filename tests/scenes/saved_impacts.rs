@@ -1,5 +1,5 @@
-//! Worlds saved right after impacts, or while bodies that were put into each other come apart: what the next step has to
-//! know of these is no part of rapier's world.
+//! Worlds saved right after impacts, or while bodies that were put into each other come apart: what the next step has
+//! to know of these is no part of rapier's world.
 
 use crate::bodies::*;
 use rapier3d::prelude::*;

@@ -1,5 +1,5 @@
-//! Heaps of blocks with flat faces, whose slabs have radii of nearly 0 at sharp edges: they fall and come to rest as the
-//! same blocks do as convex decompositions, no body is frozen for long, and none sinks into the ground.
+//! Heaps of blocks with flat faces, whose slabs have radii of nearly 0 at sharp edges: they fall and come to rest as
+//! the same blocks do as convex decompositions, no body is frozen for long, and none sinks into the ground.
 
 use crate::blocks::{l_shape, t_shape};
 use crate::bodies::*;
@@ -109,10 +109,10 @@ fn heap(collider: &ColliderBuilder, corners: &[Vector], on_triangles: bool, seed
     heap
 }
 
-/// Symptom: in each step 4 to 7 of these blocks stayed where they were, after 17 impacts each, at 44 ms a step. Cause: of
-/// blocks pressed into each other the sharp edges were not let pass each other by a hair, though they count as as thick
-/// as what they end; the normal told was that of the thick parts, along which the pair parted already, so that impulses
-/// changed nothing; and what is behind an edge that had passed was not stopped.
+/// Symptom: in each step 4 to 7 of these blocks stayed where they were, after 17 impacts each, at 44 ms a step. Cause:
+/// of blocks pressed into each other the sharp edges were not let pass each other by a hair, though they count as as
+/// thick as what they end; the normal told was that of the thick parts, along which the pair parted already, so that
+/// impulses changed nothing; and what is behind an edge that had passed was not stopped.
 #[test]
 fn heaps_of_blocks_with_sharp_edges_are_not_frozen() {
     let (corners, triangles) = l_shape();
@@ -132,16 +132,17 @@ fn heaps_of_blocks_with_sharp_edges_are_not_frozen() {
             mean[1] += heap.lowest / 12.0;
         }
     }
-    // Single heaps are a matter of chance. All together are as high as rapier's own to a quarter of the thickness of an arm,
-    // and sink in by no more than a tenth of it beyond them.
+    // Single heaps are a matter of chance. All together are as high as rapier's own to a quarter of the thickness of an
+    // arm, and sink in by no more than a tenth of it beyond them.
     println!("mean heights and lowest corners {means:?}");
     let [ours, own] = means;
     assert!((ours[0] - own[0]).abs() < 0.0875, "{means:?}");
     assert!(ours[1] > own[1] - 0.035, "{means:?}");
 }
 
-/// Symptom: two of these blocks, which start across each other, hung in the air for ever, frozen in every step. Cause: they
-/// were left to rapier's solver only until their contacts were half as deep as they are thick, where edges still crossed.
+/// Symptom: two of these blocks, which start across each other, hung in the air for ever, frozen in every step. Cause:
+/// they were left to rapier's solver only until their contacts were half as deep as they are thick, where edges still
+/// crossed.
 #[test]
 fn blocks_put_across_each_other_come_apart() {
     let (corners, triangles) = t_shape();
@@ -156,9 +157,9 @@ fn blocks_put_across_each_other_come_apart() {
     assert!(heap.highest < own.highest + 0.5, "{heap:?}, own {own:?}");
 }
 
-/// Pairs of T-shaped blocks that are put into each other at random, without weight, of which about half overlap. Symptom: one
-/// such pair in 1,500 (552) was held for ever. Cause: it was put less deep into each other than half of the thickness, so the
-/// event loop held it from the start, and what parted it at one place took it deeper at another.
+/// Pairs of T-shaped blocks that are put into each other at random, without weight, of which about half overlap.
+/// Symptom: one such pair in 1,500 (552) was held for ever. Cause: it was put less deep into each other than half of
+/// the thickness, so the event loop held it from the start, and what parted it at one place took it deeper at another.
 #[test]
 fn blocks_put_into_each_other_by_a_little_come_apart() {
     let (corners, triangles) = t_shape();

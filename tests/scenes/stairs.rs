@@ -56,8 +56,8 @@ fn walk(stairs: bool, character: bool, seed: u64) -> Real {
     pose.translation.x
 }
 
-/// Symptom: of 60 medial boxes 31 stood before a step for ever, of rapier's none. Cause: a cast straight up, along the wall
-/// of the step at the offset from it, hit that wall, within the tolerance of a hit.
+/// Symptom: of 60 medial boxes 31 stood before a step for ever, of rapier's none. Cause: a cast straight up, along the
+/// wall of the step at the offset from it, hit that wall, within the tolerance of a hit.
 #[test]
 fn boxes_climb_stairs_as_rapiers_do() {
     let climbs = |stairs: bool, character: bool| {

@@ -185,8 +185,9 @@ fn the_first_medial_colliders_of_a_world_are_met() {
     }
 }
 
-/// A fixed wire along x, on a body, and one along z that sleeps 0.1 m above it: both of radius 4 mm, in a world that stood
-/// still for three steps. From then on things weigh so much that the upper one falls past the lower one in a step.
+/// A fixed wire along x, on a body, and one along z that sleeps 0.1 m above it: both of radius 4 mm, in a world that
+/// stood still for three steps. From then on things weigh so much that the upper one falls past the lower one in a
+/// step.
 struct Wires {
     world: PhysicsWorld,
     pipeline: MedialPipeline,

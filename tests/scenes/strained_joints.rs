@@ -1,5 +1,5 @@
-//! Joints that press bodies into each other, or into what another body lies against: speeds and joints beside those of rapier's own
-//! shapes.
+//! Joints that press bodies into each other, or into what another body lies against: speeds and joints beside those of
+//! rapier's own shapes.
 
 use crate::bodies::{attached, plateau};
 use crate::crowds::compound;
@@ -107,8 +107,9 @@ fn hanging(medial: bool, seed: u64) -> Strain {
     Strain::of(&mut world, medial, 300, |_| ())
 }
 
-/// Symptom: jointed links that touch each other came to 66 m/s, where rapier's own came to 26. Cause: what joints hold and turns
-/// fast had more sub-steps, in each of which the joint and the contact that press against each other gain energy.
+/// Symptom: jointed links that touch each other came to 66 m/s, where rapier's own came to 26. Cause: what joints hold
+/// and turns fast had more sub-steps, in each of which the joint and the contact that press against each other gain
+/// energy.
 #[test]
 fn jointed_rings_in_each_other_get_no_faster_than_rapiers() {
     let [ours, own] = means(12, hanging);
@@ -147,8 +148,8 @@ fn dragged(medial: bool, seed: u64) -> Strain {
     })
 }
 
-/// Symptom: the rings stood still while the hand moved on, by up to a metre, and then left at up to 145 m/s. Cause: the event
-/// loop held them apart, though the one could not give way to the joint, nor the other to the wall.
+/// Symptom: the rings stood still while the hand moved on, by up to a metre, and then left at up to 145 m/s. Cause: the
+/// event loop held them apart, though the one could not give way to the joint, nor the other to the wall.
 #[test]
 fn rings_between_a_hand_and_a_wall_come_along_as_rapiers() {
     let [ours, own] = means(60, dragged);
@@ -157,8 +158,8 @@ fn rings_between_a_hand_and_a_wall_come_along_as_rapiers() {
     assert!(ours.fastest < 2.5 * own.fastest, "{ours:?}, {own:?}");
 }
 
-/// Six linked rings hang on a hand that swings them over the ground, on which the lower ones lie at times: how many of the
-/// neighbours are not linked any more.
+/// Six linked rings hang on a hand that swings them over the ground, on which the lower ones lie at times: how many of
+/// the neighbours are not linked any more.
 fn swung(speed: Real) -> usize {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);

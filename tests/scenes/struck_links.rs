@@ -1,11 +1,12 @@
-//! Links of multibodies that are struck slowly, so that the solver resolves a part of it and impacts within the step the rest.
+//! Links of multibodies that are struck slowly, so that the solver resolves a part of it and impacts within the step
+//! the rest.
 
 use crate::bodies::attached;
 use crate::multibodies::{HALF, RADIUS, bar};
 use rapier3d::prelude::*;
 
-/// Angular momentum about the hinge, over that of the rod before, after a rod has struck the middle of a hinged bar: at a
-/// `phase` of its step, at which the solver, impacts or both resolve it.
+/// Angular momentum about the hinge, over that of the rod before, after a rod has struck the middle of a hinged bar: at
+/// a `phase` of its step, at which the solver, impacts or both resolve it.
 fn kept_by_hinge(medial: bool, speed: Real, phase: Real) -> Real {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;
@@ -33,8 +34,8 @@ fn kept_by_hinge(medial: bool, speed: Real, phase: Real) -> Real {
     (inertia * hinged.angvel().y + of_rod) / (-at.x * rod.mass() * speed)
 }
 
-/// rapier's last pass changes the velocities of joints and not those of bodies; impacts that came after it took its impulses
-/// back: up to a third of the momentum was lost at 1 to 2 m/s.
+/// rapier's last pass changes the velocities of joints and not those of bodies; impacts that came after it took its
+/// impulses back: up to a third of the momentum was lost at 1 to 2 m/s.
 #[test]
 fn a_link_struck_slowly_keeps_what_the_solver_gave_it() {
     for speed in [0.5, 1.0, 1.2, 1.5, 2.0, 5.0] {

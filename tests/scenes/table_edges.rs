@@ -1,5 +1,5 @@
-//! Bodies that slide off the edge of a table of rapier's shapes. Its sides are met from inside then, and are no obstacle:
-//! rapier's own shapes keep their speed there.
+//! Bodies that slide off the edge of a table of rapier's shapes. Its sides are met from inside then, and are no
+//! obstacle: rapier's own shapes keep their speed there.
 
 use crate::blocks::l_shape;
 use crate::bodies::{attached, octagon};
@@ -94,7 +94,8 @@ pub fn sliders() -> Vec<Slider> {
     ]
 }
 
-/// The least speed along the way and the largest upwards of a body that slides over the edge, until its middle is there.
+/// The least speed along the way and the largest upwards of a body that slides over the edge, until its middle is
+/// there.
 fn over_the_edge(table: &SharedShape, slider: &Slider, medial: bool, speed: Real) -> [Real; 2] {
     let mut world = PhysicsWorld::new();
     let mut pipeline = attached(&mut world);
@@ -116,8 +117,8 @@ fn over_the_edge(table: &SharedShape, slider: &Slider, medial: bool, speed: Real
     [least, up]
 }
 
-/// Symptom: cubes, bricks and cards were thrown up by metres a second or stopped dead where their front passed the edge.
-/// Cause: the table's sides were obstacles from inside, too.
+/// Symptom: cubes, bricks and cards were thrown up by metres a second or stopped dead where their front passed the
+/// edge. Cause: the table's sides were obstacles from inside, too.
 #[test]
 fn what_slides_off_a_table_keeps_its_speed() {
     for (table_name, table) in tables() {

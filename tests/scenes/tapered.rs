@@ -49,9 +49,9 @@ fn dropped(ground: &ColliderBuilder, body: &MedialMesh, seed: u64) -> (Real, boo
     (deepest, now.is_sleeping())
 }
 
-/// Symptom: cones fell through a flat ground, or came to rest up to 16 cm deep in it. Cause: a cone's tangent segment, which
-/// parry takes for what touches the ground, is far from its lowest point, and of flagged triangles parry leaves out the contact
-/// of the nearest points. A convex hull of the spheres comes to rest at most 6.4 mm deep.
+/// Symptom: cones fell through a flat ground, or came to rest up to 16 cm deep in it. Cause: a cone's tangent segment,
+/// which parry takes for what touches the ground, is far from its lowest point, and of flagged triangles parry leaves
+/// out the contact of the nearest points. A convex hull of the spheres comes to rest at most 6.4 mm deep.
 #[test]
 fn tapered_bodies_rest_on_flagged_triangles() {
     let flat = Array2::repeat(4, 4, 0.0);

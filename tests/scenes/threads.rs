@@ -44,8 +44,8 @@ fn outside(thread: &Thread, part: Part, [x, y, z]: [f64; 3]) -> f64 {
     beyond_crest.max(beyond_flank)
 }
 
-/// The planted mesh is nowhere outside of the true thread, and nowhere on its flanks inside of it, by more than a share of
-/// the play.
+/// The planted mesh is nowhere outside of the true thread, and nowhere on its flanks inside of it, by more than a share
+/// of the play.
 #[test]
 fn planted_threads_are_as_iso_says() {
     for thread in THREADS {

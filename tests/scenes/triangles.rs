@@ -110,8 +110,8 @@ impl Watched {
     }
 }
 
-/// A ring that rolls along edges of the triangles: where a primitive just touches the border of one, parry finds it up to
-/// 13 cm below, and the ring got 16 cm higher by it.
+/// A ring that rolls along edges of the triangles: where a primitive just touches the border of one, parry finds it up
+/// to 13 cm below, and the ring got 16 cm higher by it.
 #[test]
 fn rings_of_blocks_that_roll_over_triangles_feel_no_ghosts() {
     let ring = ring();
@@ -167,7 +167,8 @@ pub fn slide(
     (world.bodies[body].linvel().length(), watched)
 }
 
-/// A body slides over a ground as rapier's compound does, to within `most` of its speed after a second, in three directions.
+/// A body slides over a ground as rapier's compound does, to within `most` of its speed after a second, in three
+/// directions.
 pub fn slides_as_rapiers(
     name: &str,
     parts: &[Part],

@@ -1,5 +1,5 @@
-//! Bodies that hang on two kinematic hands by joints, which leave them one way to turn, and are dragged against a fixed post,
-//! beside rapier's own shapes.
+//! Bodies that hang on two kinematic hands by joints, which leave them one way to turn, and are dragged against a fixed
+//! post, beside rapier's own shapes.
 
 use crate::bodies::attached;
 use crate::random::Random;
@@ -63,8 +63,8 @@ fn drag(medial: bool, is_post: bool, seed: u64) -> Real {
     fastest
 }
 
-/// Symptom: bodies were thrown at up to 911 m/s, up to 528 impulses in one step. The post touches such a body on both sides of
-/// the line through its joints, so what frees one contact closes the other, and the hands pay for each.
+/// Symptom: bodies were thrown at up to 911 m/s, up to 528 impulses in one step. The post touches such a body on both
+/// sides of the line through its joints, so what frees one contact closes the other, and the hands pay for each.
 #[test]
 fn what_two_hands_drag_against_a_post_is_thrown_no_farther_than_rapiers() {
     let thrown = |medial: bool, is_post: bool| {

@@ -32,8 +32,9 @@ impl Ground {
     }
 }
 
-/// Speed after three seconds of a wheel that begins to roll at `speed` without slip, in metres per second, in the mean over
-/// four starts: a torus of cones, 25 cm high at its axle and as thick as a tube of this radius, or rapier's capsules in its place.
+/// Speed after three seconds of a wheel that begins to roll at `speed` without slip, in metres per second, in the mean
+/// over four starts: a torus of cones, 25 cm high at its axle and as thick as a tube of this radius, or rapier's
+/// capsules in its place.
 pub fn rolled(is_medial: bool, ground: Ground, (cones, tube): (usize, Real), speed: Real) -> Real {
     let mesh = MedialMesh::torus(0.25 - tube, tube, cones).expect("a wheel");
     let mass = mesh.mass_properties(1000.0);
@@ -64,8 +65,8 @@ pub fn rolled(is_medial: bool, ground: Ground, (cones, tube): (usize, Real), spe
     starts.map(rolled).iter().sum::<Real>() / starts.len() as Real
 }
 
-/// What comes down ahead of a wheel's axle would stop it. On a half-space the wheel's top, which moves at twice its speed,
-/// does not meet the ground.
+/// What comes down ahead of a wheel's axle would stop it. On a half-space the wheel's top, which moves at twice its
+/// speed, does not meet the ground.
 #[test]
 fn wheels_keep_as_much_speed_as_rapiers_own() {
     for ground in [Ground::Cuboid, Ground::HalfSpace, Ground::Tiles] {
@@ -93,8 +94,8 @@ fn wheels_keep_as_much_speed_as_rapiers_own() {
     }
 }
 
-/// Of twelve pillars that stand on a turntable, 3 m in radius, those that have tipped after five seconds, and how deep the
-/// deepest corner is in it, a length. It turns at 0.5 rad/s, in steps of a 30th of a second.
+/// Of twelve pillars that stand on a turntable, 3 m in radius, those that have tipped after five seconds, and how deep
+/// the deepest corner is in it, a length. It turns at 0.5 rad/s, in steps of a 30th of a second.
 fn on_a_turntable(is_medial: bool) -> (usize, Real) {
     let mut world = PhysicsWorld::new();
     world.integration_parameters.dt = 1.0 / 30.0;

@@ -37,8 +37,8 @@ struct Rope {
 }
 
 impl Rope {
-    /// The most energy after any step, less that at the start, over the ball's at the start; and the most that a step in
-    /// which links turn by more than a tenth of a radian adds to the motion, over the energy of the motion. Both are
+    /// The most energy after any step, less that at the start, over the ball's at the start; and the most that a step
+    /// in which links turn by more than a tenth of a radian adds to the motion, over the energy of the motion. Both are
     /// infinite where numbers are lost. Last the fastest turn.
     fn gain(self, medial: bool, steps: usize) -> (f64, f64, Real) {
         let (length, radius) = (0.2, 0.04);
@@ -93,8 +93,8 @@ impl Rope {
 /// Symptom: a multibody rope of 15 links or more, across which a heavy ball flies at 20 m/s, left all numbers within a
 /// few of rapier's steps; one of 40 links at 5 m/s gained five times the energy. Cause: rapier integrates with the mass
 /// matrix of each sub-step's start, and solves contacts with the Jacobian of the step's start, however far links turn.
-/// A step that adds more than a tenth to the energy of what whirls is taken back (`rapier/host/multibody_energy.rs`). What rapier's
-/// solver makes of a ball of 1 m/s, whose rope hardly turns, is compared with its own capsules.
+/// A step that adds more than a tenth to the energy of what whirls is taken back (`rapier/host/multibody_energy.rs`).
+/// What rapier's solver makes of a ball of 1 m/s, whose rope hardly turns, is compared with its own capsules.
 #[test]
 fn ropes_struck_by_balls_keep_their_numbers_and_gain_little_energy() {
     for links in [2, 10, 30] {

@@ -92,8 +92,8 @@ fn unlinked(wire: Real, speed: Real, friction: Real) -> usize {
     (0..20).filter(|_| torn()).count()
 }
 
-/// Symptom: linked rings came apart, of wire of 2 mm at 100 m/s in an eighth of all trials, of half a millimetre at 20 m/s
-/// in a quarter. Cause: rings that swing round each other curve into each other after each impact, and sank in by a
+/// Symptom: linked rings came apart, of wire of 2 mm at 100 m/s in an eighth of all trials, of half a millimetre at 20
+/// m/s in a quarter. Cause: rings that swing round each other curve into each other after each impact, and sank in by a
 /// little more in each, until single precision no longer told on which side the wires are.
 #[test]
 fn linked_rings_of_thin_wire_stay_linked() {

@@ -1,5 +1,5 @@
-//! A wrecking ball on a chain of rings strikes a wall of bricks (a fixture of Rigid-IPC): the chain holds, and nothing goes
-//! through anything. Beside it stand rapier's compounds of capsules, and rapier's joints.
+//! A wrecking ball on a chain of rings strikes a wall of bricks (a fixture of Rigid-IPC): the chain holds, and nothing
+//! goes through anything. Beside it stand rapier's compounds of capsules, and rapier's joints.
 
 use crate::linking::{line, linking};
 use rapier3d::prelude::*;
@@ -195,8 +195,8 @@ impl Site {
 /// Where the middle of the wall stands, m: how many bricks fall depends on a centimetre.
 const WALLS: [Real; 4] = [0.57, 0.6, 0.63, 0.66];
 
-/// The ball, 0.5 t and 2 t, strikes a wall as fast as one on joints does, and knocks it down; the chain of links of 21 kg
-/// holds.
+/// The ball, 0.5 t and 2 t, strikes a wall as fast as one on joints does, and knocks it down; the chain of links of 21
+/// kg holds.
 #[test]
 fn a_wrecking_ball_stays_on_its_chain() {
     // The chain of the heavier ball gives by more: at 100 times a link's mass the solver is soft.

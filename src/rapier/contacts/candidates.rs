@@ -61,8 +61,8 @@ pub fn find(
     }
 }
 
-/// The jobs that [`find`] will return at the next step of a world, with the user's parameters, if nothing is changed until
-/// then.
+/// The jobs that [`find`] will return at the next step of a world, with the user's parameters, if nothing is changed
+/// until then.
 pub fn expect(sets: Sets, recycled: &RecyclingRecord) -> Vec<PairJob> {
     let parameters = lowered(sets.parameters);
     let scene = ContactScene::new(Sets {

@@ -1,8 +1,8 @@
 //! Finds medial colliders whose contacts must be computed anew although their pair has hardly moved
 //! ([`crate::rapier::host::forced_updates`]).
 //!
-//! - Bodies that hang, that is whose contacts pull them away from their centre of mass, as those of convex bodies
-//!   never do. With contacts that are out of date they keep swinging ([`crate::rapier::contacts::predicted_contacts`]). So
+//! - Bodies that hang, that is whose contacts pull them away from their centre of mass, as those of convex bodies never
+//!   do. With contacts that are out of date they keep swinging ([`crate::rapier::contacts::predicted_contacts`]). So
 //!   all contacts of a collider are computed anew if one in which it hangs has moved.
 //! - Bodies that have come to rest. Contacts that could close while they moved no longer can, and the solver would
 //!   pay for them as long as the bodies lie there.
@@ -27,13 +27,13 @@ const TOUCHING: Real = 0.001;
 /// on each other's inner sides at all angles, and half of them would count at 90°.
 const PULLS: Real = 0.7;
 
-/// Gap of a contact, in units of what its pair can close now ([`crate::rapier::contacts::predicted_contacts`]), from which its pair has
-/// come to rest. At 1 those that move a little are computed at every step.
+/// Gap of a contact, in units of what its pair can close now ([`crate::rapier::contacts::predicted_contacts`]), from
+/// which its pair has come to rest. At 1 those that move a little are computed at every step.
 const RESTS: Real = 1.25;
 
-/// Finds the medial colliders whose contacts with each other are to be computed anew (one flag each), and the depth of the
-/// deepest contact of a medial collider that takes part, a length. Known from the world alone, so that a world that was saved and loaded
-/// goes on as it would have.
+/// Finds the medial colliders whose contacts with each other are to be computed anew (one flag each), and the depth of
+/// the deepest contact of a medial collider that takes part, a length. Known from the world alone, so that a world that
+/// was saved and loaded goes on as it would have.
 pub fn find(sets: &Sets, medial: &MedialColliders) -> (Vec<bool>, Real) {
     let mut anew = vec![false; medial.all.len()];
     let mut depth_of_all: Real = 0.0;

@@ -9,8 +9,8 @@
 //! and a point that goes along an arc falls behind what flies on before it; it is pressed back, the harder the more
 //! sub-steps there are.
 //!
-//! A quarter of the step's budget may go into this; without it a pair is left to both. With half of it too little may be left
-//! to reach the first impact of a heap, and the same step comes again and again.
+//! A quarter of the step's budget may go into this; without it a pair is left to both. With half of it too little may
+//! be left to reach the first impact of a heap, and the same step comes again and again.
 
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::PairKey;
@@ -29,9 +29,9 @@ pub struct Muted {
     pub keys: HashSet<PairKey>,
     /// Whether some may bounce ([`Effects::restitution`](crate::Effects::restitution)).
     pub bouncing: bool,
-    /// Medial colliders of which rapier knows the wrong contacts with a partner with which they have restitution, and would
-    /// keep them for as long as the two hardly move: none of a pair that was muted only for a bounce, or those of a pair
-    /// that rested and is muted now.
+    /// Medial colliders of which rapier knows the wrong contacts with a partner with which they have restitution, and
+    /// would keep them for as long as the two hardly move: none of a pair that was muted only for a bounce, or those of
+    /// a pair that rested and is muted now.
     pub stale: HashSet<ColliderHandle>,
 }
 

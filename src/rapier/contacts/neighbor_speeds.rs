@@ -11,8 +11,8 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::Collider;
 
-/// Pairs that a push goes through in a step, to the third neighbour. A chain of equal balls would hand it on for ever; a heap
-/// shares it out.
+/// Pairs that a push goes through in a step, to the third neighbour. A chain of equal balls would hand it on for ever;
+/// a heap shares it out.
 const MAX_HOPS: usize = 3;
 
 /// What a collider may do to its neighbours in a step.

@@ -1,8 +1,8 @@
-//! Whether few of the pairs that move have a medial collider. rapier may then keep contacts for as long as the user says, and
-//! all contacts of medial colliders are computed anew in each step ([`crate::rapier::host::forced_updates`]).
+//! Whether few of the pairs that move have a medial collider. rapier may then keep contacts for as long as the user
+//! says, and all contacts of medial colliders are computed anew in each step ([`crate::rapier::host::forced_updates`]).
 //!
-//! rapier has one recycle distance for the whole world. The smaller one that medial colliders need costs a crowd of rapier's
-//! own shapes two fifths of rapier's step: their contacts are computed anew more often.
+//! rapier has one recycle distance for the whole world. The smaller one that medial colliders need costs a crowd of
+//! rapier's own shapes two fifths of rapier's step: their contacts are computed anew more often.
 
 use crate::medial::MedialMesh;
 use crate::rapier::view::medial_colliders::Sets;
@@ -10,13 +10,13 @@ use crate::rapier::view::participants::{contact_pairs, enabled};
 use rapier3d::dynamics::IntegrationParameters;
 use rapier3d::geometry::Collider;
 
-/// How many pairs of rapier's own shapes there must be for each pair with a medial collider. Such a pair costs more by being
-/// computed in each step than one of rapier's own saves.
+/// How many pairs of rapier's own shapes there must be for each pair with a medial collider. Such a pair costs more by
+/// being computed in each step than one of rapier's own saves.
 const OUTNUMBERED: usize = 8;
 
-/// Whether few of the pairs that move have a medial collider, and the user's recycle distance is larger than that of the
-/// step. A moving medial collider counts as a pair of its own: it may be about to meet something. Known from the world
-/// alone, so that a world that was saved and loaded, or of which not all takes part, goes on alike.
+/// Whether few of the pairs that move have a medial collider, and the user's recycle distance is larger than that of
+/// the step. A moving medial collider counts as a pair of its own: it may be about to meet something. Known from the
+/// world alone, so that a world that was saved and loaded, or of which not all takes part, goes on alike.
 pub fn are_outnumbered(sets: &Sets, users: &IntegrationParameters) -> bool {
     let [own, users_own] = [sets.parameters, users].map(|p| p.contact_recycle_distance());
     if own >= users_own || keeps_nothing(users) {

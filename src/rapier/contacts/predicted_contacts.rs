@@ -46,22 +46,23 @@ const STANDING: Real = 0.0;
 /// in the other, or past it.
 const REACH: Real = 0.25;
 
-/// How far apart two contacts are that bear a load like one, in units of the thinner body's thickness: a quarter of the width
-/// of a patch, of which one contact is written (`parry/manifolds.rs`); where patches are narrow, all of it.
+/// How far apart two contacts are that bear a load like one, in units of the thinner body's thickness: a quarter of the
+/// width of a patch, of which one contact is written (`parry/manifolds.rs`); where patches are narrow, all of it.
 const APART: Real = 0.25;
 
-/// The least such distance, in units of rapier's prediction distance: half of that in which two contacts are one for rapier.
+/// The least such distance, in units of rapier's prediction distance: half of that in which two contacts are one for
+/// rapier.
 const LEAST_APART: Real = 0.125;
 
-/// Speeds of two bodies against each other, in units of rapier's length unit per second, between which rapier may keep their
-/// contacts for several steps in which they rock: it does until the pair has moved by 0.004 of its length unit. With an upper
-/// bound of 0.24 instead of 0.39, 20 of 120 pairs of rings that lie on each other rock on for ever, with 0.39 5; with 0.48 a
-/// ring that rolls at 0.2 m/s loses more speed than rapier's own. With a lower bound of 0 heaps at rest cost a fifth
-/// more, and rock no less.
+/// Speeds of two bodies against each other, in units of rapier's length unit per second, between which rapier may keep
+/// their contacts for several steps in which they rock: it does until the pair has moved by 0.004 of its length unit.
+/// With an upper bound of 0.24 instead of 0.39, 20 of 120 pairs of rings that lie on each other rock on for ever, with
+/// 0.39 5; with 0.48 a ring that rolls at 0.2 m/s loses more speed than rapier's own. With a lower bound of 0 heaps at
+/// rest cost a fifth more, and rock no less.
 const ROCKING: [Real; 2] = [0.03, 0.39];
 
-/// Travel in a step, in units of rapier's length unit, beyond which contacts are not kept: that of the upper speed at 60 steps
-/// a second.
+/// Travel in a step, in units of rapier's length unit, beyond which contacts are not kept: that of the upper speed at
+/// 60 steps a second.
 const KEPT: Real = 0.0065;
 
 /// Lever of a contact's normal about the joint of two neighbours in a multibody, in units of the smaller's size, below
@@ -69,9 +70,9 @@ const KEPT: Real = 0.0065;
 /// a rope of 22 links whose neighbours touch end to end left all numbers within three steps of being struck.
 const HELD_LEVER: Real = 0.03;
 
-/// The contacts of a pair that rapier asks for unexpectedly, as the batch would have computed them;
-/// `None` if it is not at its start, or rapier looks further than usual. Those that are not among `colliders` may be among
-/// `others`, which stand still.
+/// The contacts of a pair that rapier asks for unexpectedly, as the batch would have computed them; `None` if it is not
+/// at its start, or rapier looks further than usual. Those that are not among `colliders` may be among `others`, which
+/// stand still.
 pub fn predicted(
     colliders: &MedialColliders,
     others: Option<&MedialColliders>,
@@ -104,8 +105,8 @@ pub struct PredictedMotion {
     /// Anchor of the joint of a multibody that holds them to each other, in the first's frame at the start, and the
     /// lever below which it holds a contact too.
     joint: Option<(Vector, Real)>,
-    /// How far apart two contacts are that bear a load like one, a length; `None` where contacts are corners of faces, or the
-    /// user may take away some.
+    /// How far apart two contacts are that bear a load like one, a length; `None` where contacts are corners of faces,
+    /// or the user may take away some.
     apart: Option<Real>,
     /// Whether the pair moves little, but more than at rest ([`ROCKING`]).
     lasting: bool,

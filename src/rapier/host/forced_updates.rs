@@ -1,10 +1,10 @@
-//! Makes rapier compute contacts anew although their pair has hardly moved: it would keep them until the pair has moved by
-//! the recycle distance. Which contacts these are is decided in [`crate::rapier::contacts::hanging`] and
+//! Makes rapier compute contacts anew although their pair has hardly moved: it would keep them until the pair has moved
+//! by the recycle distance. Which contacts these are is decided in [`crate::rapier::contacts::hanging`] and
 //! [`crate::rapier::contacts::outnumbered`].
 //!
-//! rapier notes that distance with each pair when it computes it, and goes by it until it computes the pair again. So after
-//! steps with the user's distance, pairs of medial colliders would be kept for too long. A bit in the world, and not a record
-//! of the pipeline, says which colliders have such pairs: worlds that are saved or copied go on alike.
+//! rapier notes that distance with each pair when it computes it, and goes by it until it computes the pair again. So
+//! after steps with the user's distance, pairs of medial colliders would be kept for too long. A bit in the world, and
+//! not a record of the pipeline, says which colliders have such pairs: worlds that are saved or copied go on alike.
 
 use crate::medial::MedialMesh;
 use rapier3d::dynamics::RigidBodySet;
@@ -17,8 +17,8 @@ use std::collections::HashSet;
 /// a step counts as changed by the user.
 const FORCE_UPDATE_BIT: ActiveHooks = ActiveHooks::from_bits_retain(1 << 31);
 
-/// The mark: a second bit that does the same, of colliders of which rapier may have pairs noted with the user's distance. It
-/// stays until all of these have been computed with the smaller one.
+/// The mark: a second bit that does the same, of colliders of which rapier may have pairs noted with the user's
+/// distance. It stays until all of these have been computed with the smaller one.
 const KEPT_LONGER_BIT: ActiveHooks = ActiveHooks::from_bits_retain(1 << 30);
 
 /// Both bits.
@@ -35,8 +35,8 @@ pub struct Forced {
     pub notes_nothing: bool,
 }
 
-/// Makes rapier compute all contacts of these colliders anew in its next step, and those of colliders of which it may have
-/// kept some for longer.
+/// Makes rapier compute all contacts of these colliders anew in its next step, and those of colliders of which it may
+/// have kept some for longer.
 pub fn force_updates(
     forced: &Forced,
     (bodies, narrow_phase): (&RigidBodySet, &NarrowPhase),

@@ -1,8 +1,8 @@
 //! Workarounds of rapier 0.36, one file each. `docs/host.md` lists them, with the test that tells when one is no
 //! longer needed.
 //!
-//! - Contacts that rapier keeps: which ones (`recycling.rs`), how deep they are now (`contact_depth.rs`), and how it is made
-//!   to compute them anew (`forced_updates.rs`).
+//! - Contacts that rapier keeps: which ones (`recycling.rs`), how deep they are now (`contact_depth.rs`), and how it is
+//!   made to compute them anew (`forced_updates.rs`).
 //! - What bodies are given for the length of rapier's step: more sub-steps (`substeps.rs`), shorter times before
 //!   they sleep (`sleep_timers.rs`), speculative contacts (`speculative.rs`).
 //! - Multibodies: those that gain energy (`multibody_energy.rs`), how impacts are written back to them

@@ -109,8 +109,8 @@ fn set(
     }
 }
 
-/// How far a joint's free coordinates are to go from where they are, one after the other, and their velocities: linear ones
-/// first, as rapier orders them. A free root has its world velocities.
+/// How far a joint's free coordinates are to go from where they are, one after the other, and their velocities: linear
+/// ones first, as rapier orders them. A free root has its world velocities.
 fn coordinates(
     link: &MultibodyLink,
     parent: Option<State>,

@@ -3,8 +3,9 @@
 //! It integrates with the mass matrix of each sub-step's start, and solves contacts with the Jacobian of the step's
 //! start, however far links turn. So where a multibody of medial links, with what pushed it, has a tenth more energy
 //! after rapier's step than it had before and its forces gave it, its motion is taken back: joints take it through the
-//! step from its start, which gains none ([`crate::rapier::joints::jointed_bodies`]), less what damping takes. One that turns wildly rapier has at
-//! rest for its step, and what it touches is the event loop's ([`crate::rapier::contacts::muting`]).
+//! step from its start, which gains none ([`crate::rapier::joints::jointed_bodies`]), less what damping takes. One that
+//! turns wildly rapier has at rest for its step, and what it touches is the event loop's
+//! ([`crate::rapier::contacts::muting`]).
 //!
 //! Multibodies with motors or springs, those that other joints hold, and those that bear on what is held or pushed by
 //! others are left to rapier.
@@ -24,8 +25,8 @@ use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 /// then nothing is left to take back.
 const WILD: Real = 4.0;
 
-/// Share of its energy that a multibody may gain in rapier's step. Free ones gain and lose some hundredths by turns; taking
-/// back the gains alone would leave the losses.
+/// Share of its energy that a multibody may gain in rapier's step. Free ones gain and lose some hundredths by turns;
+/// taking back the gains alone would leave the losses.
 const GAIN: f64 = 0.1;
 
 /// Multibodies that whirl and that nothing drives, in a step.

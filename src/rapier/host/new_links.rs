@@ -1,5 +1,5 @@
-//! Puts bodies to where new joints of multibodies hold them. rapier does so within its step: a body that a new joint takes to
-//! another place would seem to fly there, through all that is in between.
+//! Puts bodies to where new joints of multibodies hold them. rapier does so within its step: a body that a new joint
+//! takes to another place would seem to fly there, through all that is in between.
 
 use crate::math::fast_hash::FastMap;
 use crate::math::motion::chord;
@@ -11,9 +11,9 @@ use rapier3d::dynamics::{
 };
 use rapier3d::geometry::ColliderSet;
 
-/// How far a link is from where its joint holds it, in units of rapier's length unit, and by which angle, in radians (its
-/// chord), before it counts as elsewhere: more than rounding. Larger, and a link that a joint puts this far into the ground
-/// counts as flown there, and is held in it.
+/// How far a link is from where its joint holds it, in units of rapier's length unit, and by which angle, in radians
+/// (its chord), before it counts as elsewhere: more than rounding. Larger, and a link that a joint puts this far into
+/// the ground counts as flown there, and is held in it.
 const ELSEWHERE: Real = 1.0e-3;
 
 /// Joints of multibodies with medial colliders as the last step left them, by their second bodies.
@@ -25,9 +25,9 @@ pub struct KnownLinks(FastMap<RigidBodyHandle, Hold>);
 struct Hold(RigidBodyHandle, JointAxesMask, Pose);
 
 impl KnownLinks {
-    /// Moves the links of multibodies with medial colliders to where their joints hold them, by the sum that rapier makes at
-    /// the start of its step, where a joint is new or was changed since the last step. Links whose root was moved are left
-    /// to rapier.
+    /// Moves the links of multibodies with medial colliders to where their joints hold them, by the sum that rapier
+    /// makes at the start of its step, where a joint is new or was changed since the last step. Links whose root was
+    /// moved are left to rapier.
     pub fn place_new(
         &self,
         bodies: &mut RigidBodySet,
@@ -83,8 +83,8 @@ fn holds(multibody: &Multibody) -> impl Iterator<Item = (RigidBodyHandle, Hold)>
     })
 }
 
-/// Moves the links of a multibody if one of them is not where its joint holds it. rapier leaves links behind a root that it
-/// moves, by no more than the root moves in a step.
+/// Moves the links of a multibody if one of them is not where its joint holds it. rapier leaves links behind a root
+/// that it moves, by no more than the root moves in a step.
 fn place(multibody: &mut Multibody, bodies: &mut RigidBodySet, parameters: &IntegrationParameters) {
     multibody.forward_kinematics(bodies, true);
     let Some(root) = bodies.get(multibody.root().rigid_body_handle()) else {

@@ -13,14 +13,15 @@ use rapier3d::dynamics::IntegrationParameters;
 
 /// The largest `normalized_contact_recycle_distance` with which worlds with medial colliders are stepped
 /// ([`MedialPipeline::step`](crate::rapier::MedialPipeline::step)): how far a pair may move before rapier computes its
-/// contacts anew, in units of rapier's length unit (rapier's own default is 0.05). Where at most one in nine of the moving
-/// pairs has a medial collider, rapier goes by your distance, and the contacts of these pairs are computed in each step.
+/// contacts anew, in units of rapier's length unit (rapier's own default is 0.05). Where at most one in nine of the
+/// moving pairs has a medial collider, rapier goes by your distance, and the contacts of these pairs are computed in
+/// each step.
 ///
 /// A pair's contacts are computed for all places that may touch until the pair has moved this far, and in the step
-/// after. So a smaller distance means that fewer contacts are computed, but more often. The contacts of hanging bodies are computed
-/// anew much sooner, whatever this value is; this is requested from rapier by bit 31 of the
-/// collider's hooks, which is set until the next step and calls no hook. Bit 30 does the same: on medial colliders while they
-/// are few, and after that on what sleeps until it wakes. So change hooks by adding to `active_hooks()` or taking from it.
+/// after. So a smaller distance means that fewer contacts are computed, but more often. The contacts of hanging bodies
+/// are computed anew much sooner, whatever this value is; this is requested from rapier by bit 31 of the collider's
+/// hooks, which is set until the next step and calls no hook. Bit 30 does the same: on medial colliders while they are
+/// few, and after that on what sleeps until it wakes. So change hooks by adding to `active_hooks()` or taking from it.
 pub const RECYCLE_DISTANCE: Real = 0.004;
 
 /// Parameters of a step with medial colliders: contacts are kept no longer than [`RECYCLE_DISTANCE`] says.

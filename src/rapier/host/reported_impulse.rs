@@ -31,8 +31,8 @@ pub struct ReportedImpulse {
 }
 
 impl ReportedImpulse {
-    /// The impulse of two colliders at these poses, with a contact at a point, of a unit normal from the first to the second
-    /// and a distance, all in the world.
+    /// The impulse of two colliders at these poses, with a contact at a point, of a unit normal from the first to the
+    /// second and a distance, all in the world.
     pub fn new(
         poses: [Pose; 2],
         (point, normal, distance): (Vector, Vector, Real),
@@ -56,7 +56,8 @@ impl ReportedImpulse {
         }
     }
 
-    /// Adds another: impulse and normal are those of the sum of both vectors, points and distance stay those of the first.
+    /// Adds another: impulse and normal are those of the sum of both vectors, points and distance stay those of the
+    /// first.
     fn add(&mut self, other: &Self) {
         let sum = |k: usize| self.normals[k] * self.impulse + other.normals[k] * other.impulse;
         let sums = [0, 1, 2].map(sum);

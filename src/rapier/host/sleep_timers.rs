@@ -1,10 +1,10 @@
 //! Lets bodies that impacts move fall asleep. rapier takes a body whose pose was set between two steps for one that the
-//! user moved, and in its next step restarts the time for which this body, and those in contact with it, have been slow:
-//! what is struck in each step, because it is pressed, would never sleep. For the length of rapier's step these bodies
-//! need to be slow only for the time that is left of theirs; after it they get back what they had.
+//! user moved, and in its next step restarts the time for which this body, and those in contact with it, have been
+//! slow: what is struck in each step, because it is pressed, would never sleep. For the length of rapier's step these
+//! bodies need to be slow only for the time that is left of theirs; after it they get back what they had.
 //!
-//! rapier judges how slow a body is by how far it has moved since the step before. What an impact holds where it is may have
-//! a speed all the same, with which it goes on in the next step: it has to have none.
+//! rapier judges how slow a body is by how far it has moved since the step before. What an impact holds where it is may
+//! have a speed all the same, with which it goes on in the next step: it has to have none.
 
 use crate::math::Real;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
@@ -22,9 +22,9 @@ struct Timer {
     needed: Real,
 }
 
-/// The bodies that impacts moved in the last step, in a world that this pipeline has not stepped before and that may have
-/// been loaded: those of the colliders that have moved. The fast ones are among them, for the sake of the slow ones that
-/// they touch. Known before the step brings colliders to where the user put their bodies.
+/// The bodies that impacts moved in the last step, in a world that this pipeline has not stepped before and that may
+/// have been loaded: those of the colliders that have moved. The fast ones are among them, for the sake of the slow
+/// ones that they touch. Known before the step brings colliders to where the user put their bodies.
 pub fn moved_before(
     bodies: &RigidBodySet,
     colliders: &ColliderSet,
@@ -41,7 +41,8 @@ pub fn moved_before(
 }
 
 impl SleepTimers {
-    /// Shortens the time that is needed of bodies that impacts `moved` in the last step, and of those in contact with them.
+    /// Shortens the time that is needed of bodies that impacts `moved` in the last step, and of those in contact with
+    /// them.
     pub fn shorten(
         moved: &[RigidBodyHandle],
         bodies: &mut RigidBodySet,

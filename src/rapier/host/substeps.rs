@@ -3,10 +3,10 @@
 //! of the sub-step and `r` the vector from each centre of mass to the joint. Joints of multibodies stay closed, but
 //! turn wrong instead.
 //!
-//! What hangs together with a strained joint gets none. Where a joint is wide open, as where much more mass hangs on light
-//! links than rapier's solver holds, many sub-steps would close it at once, and throw what it holds. Where a joint presses its
-//! two bodies into each other, the joint and the contact gain energy in each sub-step: with twelve more in a step chains
-//! of five links of rapier's own capsules get to 169 m/s instead of 16, in the mean of 20.
+//! What hangs together with a strained joint gets none. Where a joint is wide open, as where much more mass hangs on
+//! light links than rapier's solver holds, many sub-steps would close it at once, and throw what it holds. Where a
+//! joint presses its two bodies into each other, the joint and the contact gain energy in each sub-step: with twelve
+//! more in a step chains of five links of rapier's own capsules get to 169 m/s instead of 16, in the mean of 20.
 
 use crate::math::Real;
 use crate::math::fast_hash::FastSet;
@@ -26,8 +26,8 @@ use rapier3d::geometry::NarrowPhase;
 /// sub-steps a step, reach it at 12 rad/s.
 const MOST_OPENING: Real = 5.0e-4;
 
-/// Length from which a joint is wide open, in units of rapier's length unit. At 0.15 loads of 300 times the links' mass are
-/// thrown, at 0.1 none of up to 1,000 times is.
+/// Length from which a joint is wide open, in units of rapier's length unit. At 0.15 loads of 300 times the links' mass
+/// are thrown, at 0.1 none of up to 1,000 times is.
 const WIDE: Real = 0.1;
 
 /// Sub-steps that are added at most.
@@ -88,7 +88,8 @@ impl Substeps {
     }
 }
 
-/// Bodies that hang together by joints, and which of them have a joint that is wide open, or presses its bodies into each other.
+/// Bodies that hang together by joints, and which of them have a joint that is wide open, or presses its bodies into
+/// each other.
 struct Strained {
     groups: Groups,
     strained: FastSet<usize>,

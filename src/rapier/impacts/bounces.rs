@@ -12,8 +12,8 @@ use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 use parry3d::shape::Shape;
 
-/// Turn in a step, in radians, from which a body that a joint holds may swing. Motors turn wheels by less, and its square
-/// over 6 is 0.04 of the way.
+/// Turn in a step, in radians, from which a body that a joint holds may swing. Motors turn wheels by less, and its
+/// square over 6 is 0.04 of the way.
 const SWINGS: Real = 0.5;
 
 /// By how much of its thickness the arc of a body's contact point ends short of its tangent before the body swings.
@@ -72,10 +72,10 @@ impl CcdPolicy<'_> {
         )
     }
 
-    /// Whether the pair touches at the start of the step, so that the solver has it. What is pressed together and rolls or
-    /// rocks leaves its contact by about what the pull moves it in a step. It touches all the same while its nearest points
-    /// move no faster along the normal than the pull explains, and slide by no more than its thickness in a step: left to
-    /// impacts at single points a ring would whirl on for ever.
+    /// Whether the pair touches at the start of the step, so that the solver has it. What is pressed together and rolls
+    /// or rocks leaves its contact by about what the pull moves it in a step. It touches all the same while its nearest
+    /// points move no faster along the normal than the pull explains, and slide by no more than its thickness in a
+    /// step: left to impacts at single points a ring would whirl on for ever.
     pub fn touches(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> bool {
         let (mesh, other, pos12, _) = self.at_start(view, pair);
         let reach = self.touching_reach(view, pair);
@@ -106,8 +106,8 @@ impl CcdPolicy<'_> {
         Some((v1 - v2).dot(nearest.normal))
     }
 
-    /// Whether a body that a joint holds leaves the straight path of its contact point: it turns while it moves along the
-    /// normal of a pair that touches at the start of the step, and the other flies free. By a way `s` along the
+    /// Whether a body that a joint holds leaves the straight path of its contact point: it turns while it moves along
+    /// the normal of a pair that touches at the start of the step, and the other flies free. By a way `s` along the
     /// normal and a turn `θ` about the joint, an arc ends `s θ² / 6` short of its tangent, to first order.
     pub fn swings(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> bool {
         let bodies = pair.map(|k| &view.bodies[view.parts[k].body]);
@@ -152,8 +152,8 @@ impl CcdPolicy<'_> {
         })
     }
 
-    /// The medial mesh of a pair and the other shape, which the pose at the start of the step takes to the mesh's frame, and
-    /// whether the mesh is the second.
+    /// The medial mesh of a pair and the other shape, which the pose at the start of the step takes to the mesh's
+    /// frame, and whether the mesh is the second.
     fn at_start<'v>(
         &self,
         view: &'v StepView,

@@ -21,14 +21,14 @@ use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 
 /// Share of the speed that an impulse gives two bodies which joints and locked axes leave of it, below which these hold
-/// the contact itself, as between neighbours in a chain, or where a body is driven along an axis that is locked: there is
-/// nothing to push, and the impulse would have no bound.
+/// the contact itself, as between neighbours in a chain, or where a body is driven along an axis that is locked: there
+/// is nothing to push, and the impulse would have no bound.
 const HELD: Real = 0.02;
 
 impl Response {
     /// Gives both bodies the impulses of a contact, and what joints tie to them what they hand on; returns all of
-    /// these. `undisturbed`: as [`ImpactHistory::undisturbed`](crate::rapier::impacts::impact_history::ImpactHistory::undisturbed)
-    /// says.
+    /// these. `undisturbed`: as
+    /// [`ImpactHistory::undisturbed`](crate::rapier::impacts::impact_history::ImpactHistory::undisturbed) says.
     pub(super) fn push(
         &mut self,
         view: &mut StepView,

@@ -29,13 +29,13 @@ pub struct Deep {
 pub struct DeepPairs {
     /// Those that are watched.
     pub watched: FastMap<[usize; 2], Deep>,
-    /// Those with a contact deeper than [`SUNK`], watched or not; of pairs without a medial collider only where a watched
-    /// pair is below the floor.
+    /// Those with a contact deeper than [`SUNK`], watched or not; of pairs without a medial collider only where a
+    /// watched pair is below the floor.
     pub sunk: FastSet<[usize; 2]>,
 }
 
-/// Finds the deep pairs. Those without a medial collider are never watched; that they are `sunk` may decide what a medial one
-/// is pressed against.
+/// Finds the deep pairs. Those without a medial collider are never watched; that they are `sunk` may decide what a
+/// medial one is pressed against.
 pub fn deep(
     view: &StepView,
     (narrow_phase, participants): (&NarrowPhase, Option<&Participants>),

@@ -61,7 +61,8 @@ pub(crate) struct Loop<'a> {
     pub(crate) view: &'a mut StepView,
     pub(crate) policy: CcdPolicy<'a>,
     pub(crate) rules: Rules<'a>,
-    /// Pairs near enough to their medial axes to be watched, however slow they are: in rapier's contacts, or in an impact.
+    /// Pairs near enough to their medial axes to be watched, however slow they are: in rapier's contacts, or in an
+    /// impact.
     deep: FastMap<[usize; 2], Deep>,
     /// Whether the user's rules let a pair respond, as far as they were asked.
     allowed: FastMap<[usize; 2], bool>,

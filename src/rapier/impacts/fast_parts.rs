@@ -1,10 +1,11 @@
 //! Whether two colliders have parts that may meet in this step and move fast for how thin they are: only such pairs can
 //! pass through each other, and are searched for their first contact.
 //!
-//! While two primitives overlap, their depth grows no faster than the bodies move against each other in any point of the
-//! line between their nearest spheres, of which one lies in both primitives. So what counts is the relative velocity where
-//! they are, not that of the bodies' far ends: two bodies that tumble together hardly move against each other where they
-//! touch. It is `u(x) = v1 + ω1 × (x − c1) − v2 − ω2 × (x − c2)`, with the centres `c` about which the bodies turn.
+//! While two primitives overlap, their depth grows no faster than the bodies move against each other in any point of
+//! the line between their nearest spheres, of which one lies in both primitives. So what counts is the relative
+//! velocity where they are, not that of the bodies' far ends: two bodies that tumble together hardly move against each
+//! other where they touch. It is `u(x) = v1 + ω1 × (x − c1) − v2 − ω2 × (x − c2)`, with the centres `c` about which the
+//! bodies turn.
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -34,8 +35,8 @@ struct RelativeMotion {
     motions: [NonlinearRigidMotion; 2],
     /// From the centre about which the first turns to that of the second.
     between: Vector,
-    /// Bound, a length per second, on how much the relative velocity in a place that moves with the centre of either body
-    /// changes in the rest of the step.
+    /// Bound, a length per second, on how much the relative velocity in a place that moves with the centre of either
+    /// body changes in the rest of the step.
     drift: [Real; 2],
     /// The angles in radians by which both turn in the rest of the step.
     turns: [Real; 2],
@@ -61,8 +62,8 @@ impl RelativeMotion {
         }
     }
 
-    /// Bound on the relative speed, a length per second, in all places that are within `radius` of a point of one of the
-    /// bodies at any time in the rest of the step.
+    /// Bound on the relative speed, a length per second, in all places that are within `radius` of a point of one of
+    /// the bodies at any time in the rest of the step.
     fn speed_near(&self, side: usize, local: Vector, radius: Real) -> Real {
         let [first, second] = &self.motions;
         let m = &self.motions[side];

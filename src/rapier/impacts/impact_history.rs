@@ -11,8 +11,8 @@ use crate::rapier::view::step_view::StepView;
 
 type Pair = [usize; 2];
 
-/// Places of one pair that are remembered. Bodies that are wedged in each other touch in several; with one alone, 16 heaps
-/// of 12 creatures freeze 25 bodies each in 240 steps, with eight 1.6.
+/// Places of one pair that are remembered. Bodies that are wedged in each other touch in several; with one alone, 16
+/// heaps of 12 creatures freeze 25 bodies each in 240 steps, with eight 1.6.
 const PLACES: usize = 8;
 
 /// The meetings of a pair.
@@ -90,8 +90,8 @@ impl ImpactHistory {
         self.of_pair.get(&pair).map_or(0, |m| m.places.len())
     }
 
-    /// Pairs that any of some bodies met, each once. Those of fixed bodies are left out: they hand nothing on from one body
-    /// to another.
+    /// Pairs that any of some bodies met, each once. Those of fixed bodies are left out: they hand nothing on from one
+    /// body to another.
     pub fn of(&self, view: &StepView, bodies: &[usize]) -> Vec<Pair> {
         let mut pairs = Vec::new();
         let free = bodies
@@ -105,8 +105,8 @@ impl ImpactHistory {
         pairs
     }
 
-    /// The contact of a pair at one of its places, at `time` seconds into the step, and how far it has opened since they met
-    /// there, a length, < 0 where it closed; `None` where that is not known.
+    /// The contact of a pair at one of its places, at `time` seconds into the step, and how far it has opened since
+    /// they met there, a length, < 0 where it closed; `None` where that is not known.
     fn contact(
         &self,
         view: &StepView,
@@ -126,8 +126,8 @@ impl ImpactHistory {
         Some((hit, opened))
     }
 
-    /// The contact that a pair has left at one of its places, if it is still there and closes so fast that it would be met
-    /// again in this step. None of a driven body's.
+    /// The contact that a pair has left at one of its places, if it is still there and closes so fast that it would be
+    /// met again in this step. None of a driven body's.
     pub fn closing(
         &self,
         view: &StepView,

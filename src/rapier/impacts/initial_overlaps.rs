@@ -4,17 +4,18 @@
 //! The medial axes of such a pair are near each other or cross already, so there is nothing left to protect, and
 //! holding them apart would hold them as they are for ever: whatever parts them at one place takes them deeper at
 //! another. So the event loop leaves such a pair to rapier's solver until none of its contacts is deep any more
-//! ([`crate::rapier::impacts::deep_pairs`]), and keeps it above the floor ([`crate::rapier::tuning::Tuning::floor`]) from
-//! then on. A pair left to the solver until it is above the floor alone would be held there: next to the contact that is
-//! above it are edges that still cross.
+//! ([`crate::rapier::impacts::deep_pairs`]), and keeps it above the floor ([`crate::rapier::tuning::Tuning::floor`])
+//! from then on. A pair left to the solver until it is above the floor alone would be held there: next to the contact
+//! that is above it are edges that still cross.
 //!
-//! A pair counts as put into each other if one of the two is new to a pipeline, or its groups or type changed, or no joint
-//! turns their contacts off any more, and rapier's solver did not hold the pair apart before; or if it is below the floor and the two were moved against each other between two
-//! steps, or got other shapes, by so much that they may have been apart before. A pair that forces pressed together is
-//! held, even if both are moved together. A free body that gives way to another, by rapier's dominance groups, is
-//! left to the solver as soon as the two are below the floor. So is one of a higher group than the kinematic one that it meets,
-//! and one between two that do not give way ([`crate::rapier::impacts::pinched`]). A pair that a joint holds is left where it is watched and 2 mm deep, and stays left when
-//! the joint is gone.
+//! A pair counts as put into each other if one of the two is new to a pipeline, or its groups or type changed, or no
+//! joint turns their contacts off any more, and rapier's solver did not hold the pair apart before; or if it is below
+//! the floor and the two were moved against each other between two steps, or got other shapes, by so much that they may
+//! have been apart before. A pair that forces pressed together is held, even if both are moved together. A free body
+//! that gives way to another, by rapier's dominance groups, is left to the solver as soon as the two are below the
+//! floor. So is one of a higher group than the kinematic one that it meets, and one between two that do not give way
+//! ([`crate::rapier::impacts::pinched`]). A pair that a joint holds is left where it is watched and 2 mm deep, and
+//! stays left when the joint is gone.
 
 use crate::math::fast_hash::FastSet;
 use crate::math::motion::chord;
@@ -55,8 +56,8 @@ pub struct InitialOverlaps {
     left: FastSet<Pair>,
 }
 
-/// What a step leaves to the next about bodies that were put into each other, to be saved beside a world: where colliders
-/// were, and which pairs are left to rapier's solver.
+/// What a step leaves to the next about bodies that were put into each other, to be saved beside a world: where
+/// colliders were, and which pairs are left to rapier's solver.
 #[cfg(feature = "serde-serialize")]
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct OverlapsRecord {
@@ -97,8 +98,8 @@ impl KnownShape {
         }
     }
 
-    /// Bound on how far the surface of the collider was moved by the change from this shape to that of `part`, a length;
-    /// infinite if the two are not alike.
+    /// Bound on how far the surface of the collider was moved by the change from this shape to that of `part`, a
+    /// length; infinite if the two are not alike.
     fn moved_to(&self, part: &Part) -> Real {
         match (self, Self::of(&part.shape)) {
             (Self::Medial(old), Self::Medial(new)) => moved_spheres(old, &new),

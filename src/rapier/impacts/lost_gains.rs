@@ -1,14 +1,15 @@
-//! Takes back what forces give a body, or would take from it, on a way that it does not go, or goes only because bodies that
-//! were stopped turn it aside.
+//! Takes back what forces give a body, or would take from it, on a way that it does not go, or goes only because bodies
+//! that were stopped turn it aside.
 //!
-//! A stopped body is in the way of the other's path as if its mass were infinite, but takes of its velocity only what its
-//! own mass can. A heavy body on light ones that are stopped would so gain speed by its weight in each step without
+//! A stopped body is in the way of the other's path as if its mass were infinite, but takes of its velocity only what
+//! its own mass can. A heavy body on light ones that are stopped would so gain speed by its weight in each step without
 //! getting lower, or rise against it for nothing. So the stopped body also holds its velocity.
 //!
-//! Let the path be turned aside by the speed `u` along the normal, for the rest `τ` of the step, and let forces pull with
-//! the acceleration `g` against the normal: on that way they do the work `g u τ` per mass less. An impulse that takes `δ`
-//! of the approach `v` of the velocities takes the energy `δ v` per mass, to first order, so `δ = g τ u / v`, and no more
-//! than `v`. Where the path approached as fast as the velocities, `u = v`, this is the speed that forces add in that time.
+//! Let the path be turned aside by the speed `u` along the normal, for the rest `τ` of the step, and let forces pull
+//! with the acceleration `g` against the normal: on that way they do the work `g u τ` per mass less. An impulse that
+//! takes `δ` of the approach `v` of the velocities takes the energy `δ v` per mass, to first order, so `δ = g τ u / v`,
+//! and no more than `v`. Where the path approached as fast as the velocities, `u = v`, this is the speed that forces
+//! add in that time.
 
 use crate::math::{Real, Vector};
 use crate::rapier::impacts::contact_point::ContactPoint;
@@ -16,9 +17,9 @@ use crate::rapier::impacts::impulse::Impact;
 use crate::rapier::joints::tied_system::System;
 use crate::rapier::view::step_view::StepView;
 
-/// Takes back what forces give two bodies towards each other in the last `share` of the step, one of which `stands`, and
-/// what joints tie to them, where the paths were `deflected` by so much speed along the normal. `system`: what moves of
-/// these; `impact`: of the two in it.
+/// Takes back what forces give two bodies towards each other in the last `share` of the step, one of which `stands`,
+/// and what joints tie to them, where the paths were `deflected` by so much speed along the normal. `system`: what
+/// moves of these; `impact`: of the two in it.
 pub fn lose_gains(
     view: &mut StepView,
     bodies: [usize; 2],

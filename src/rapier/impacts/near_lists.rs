@@ -33,8 +33,8 @@ struct Asked {
 }
 
 impl NearLists {
-    /// A list that holds for a query of a pair from `from` to `end` (seconds into the step), if there is one or it is worth
-    /// making.
+    /// A list that holds for a query of a pair from `from` to `end` (seconds into the step), if there is one or it is
+    /// worth making.
     pub fn list(
         &mut self,
         view: &StepView,

@@ -1,5 +1,5 @@
-//! Boxes round the paths of colliders in the event loop, and whether one gets to a collider that does not take part in the
-//! step ([`crate::rapier::view::participants`]).
+//! Boxes round the paths of colliders in the event loop, and whether one gets to a collider that does not take part in
+//! the step ([`crate::rapier::view::participants`]).
 
 use crate::math::Real;
 use crate::rapier::impacts::event_loop::Loop;

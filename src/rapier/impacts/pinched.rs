@@ -1,10 +1,10 @@
-//! Bodies that are pressed between two others of which neither gives way: a door and a wall, two fingers, a press and the
-//! ground, or the ground and a hand that they hang on by joints.
+//! Bodies that are pressed between two others of which neither gives way: a door and a wall, two fingers, a press and
+//! the ground, or the ground and a hand that they hang on by joints.
 //!
-//! Where such a body is 2 mm or more in both of them, and below the floor ([`crate::rapier::tuning::Tuning::floor`]) in one,
-//! there is no way out, and each impact on one side only brings the next one on the other, until the body has had all that it may
-//! have in a step.
-//! So its deep pairs are left to rapier's solver, which divides the depth between the two sides.
+//! Where such a body is 2 mm or more in both of them, and below the floor ([`crate::rapier::tuning::Tuning::floor`]) in
+//! one, there is no way out, and each impact on one side only brings the next one on the other, until the body has had
+//! all that it may have in a step. So its deep pairs are left to rapier's solver, which divides the depth between the
+//! two sides.
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
@@ -16,8 +16,8 @@ use crate::rapier::view::joint_opening::opening;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 
-/// The one of two bodies that gives way to the other, and the other: a free one to one that is not, or to one of a higher
-/// dominance group of rapier; `None` if each gives way.
+/// The one of two bodies that gives way to the other, and the other: a free one to one that is not, or to one of a
+/// higher dominance group of rapier; `None` if each gives way.
 fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
     let [a, b] = bodies;
     let [free1, free2] = bodies.map(|k| view.bodies[k].kind == Kind::Free);
@@ -30,8 +30,8 @@ fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
     }
 }
 
-/// Whether dominance groups keep one of a pair from being pushed back: two free bodies of different groups, or a free body of a
-/// higher group than one that nothing stops.
+/// Whether dominance groups keep one of a pair from being pushed back: two free bodies of different groups, or a free
+/// body of a higher group than one that nothing stops.
 pub fn one_dominates(view: &StepView, pair: [usize; 2]) -> bool {
     let [first, second] = pair.map(|k| &view.bodies[view.parts[k].body]);
     match [first, second].map(|body| body.kind == Kind::Free) {
@@ -42,9 +42,9 @@ pub fn one_dominates(view: &StepView, pair: [usize; 2]) -> bool {
     }
 }
 
-/// Watched pairs of bodies that are pressed, by themselves or through each other, against two that do not give way to them.
-/// One of these two moves, and with one of them a medial collider is below the floor; in the other the bodies need not be as
-/// deep as to be watched.
+/// Watched pairs of bodies that are pressed, by themselves or through each other, against two that do not give way to
+/// them. One of these two moves, and with one of them a medial collider is below the floor; in the other the bodies
+/// need not be as deep as to be watched.
 pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
     let free = |b: &usize| view.bodies[*b].kind == Kind::Free;
     let is_below = |pair: &[usize; 2]| deep.watched.get(pair).is_some_and(|deep| deep.way > 0.0);
@@ -78,10 +78,11 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
     pairs.map(|(pair, ..)| *pair).collect()
 }
 
-/// Watched pairs below the floor that joints press together as jaws do, because one of the two bodies hangs by joints on a third
-/// that moves and does not give way, as on a hand: those of which the other body does not give way, and those of which it is
-/// in something that does not. These only where the hand's joint is open by as much as the pair would have to part: a
-/// hand that holds a chain of rings over the ground presses nothing. Ropes and springs, which lock no axis, do not count.
+/// Watched pairs below the floor that joints press together as jaws do, because one of the two bodies hangs by joints
+/// on a third that moves and does not give way, as on a hand: those of which the other body does not give way, and
+/// those of which it is in something that does not. These only where the hand's joint is open by as much as the pair
+/// would have to part: a hand that holds a chain of rings over the ground presses nothing. Ropes and springs, which
+/// lock no axis, do not count.
 pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
     let is_below = |(_, deep): &(&[usize; 2], &Deep)| deep.way > 0.0;
     let below: Vec<_> = deep.watched.iter().filter(is_below).collect();

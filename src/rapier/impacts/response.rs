@@ -1,12 +1,12 @@
 //! Response of bodies to an impact: when a body stops after too many impacts, and how an impact is passed on to bodies
 //! that touch already. The impulses of one contact are in [`crate::rapier::impacts::contact_impulses`].
 //!
-//! In a crowd an impact presses on contacts that earlier impacts of the step left. Found one by one, each a hair
-//! later than the last, these would be three impacts of four, and freeze the bodies in the middle. So all that
-//! touches is solved together at the time of the impact (paper, section 4.5), by sequential impulses, until nothing
-//! approaches fast enough to meet again in this step. Fixed bodies take part: the links of a taut chain between a heavy
-//! load and its hook would else hand the load's momentum to and fro, and be frozen. Driven bodies do not: the rounds
-//! between two of them would not end, and their friction would hold what they press out. No contact is taken for granted
+//! In a crowd an impact presses on contacts that earlier impacts of the step left. Found one by one, each a hair later
+//! than the last, these would be three impacts of four, and freeze the bodies in the middle. So all that touches is
+//! solved together at the time of the impact (paper, section 4.5), by sequential impulses, until nothing approaches
+//! fast enough to meet again in this step. Fixed bodies take part: the links of a taut chain between a heavy load and
+//! its hook would else hand the load's momentum to and fro, and be frozen. Driven bodies do not: the rounds between two
+//! of them would not end, and their friction would hold what they press out. No contact is taken for granted
 //! afterwards: all pairs of the bodies that changed are searched again.
 
 use crate::math::{Real, Vector};
@@ -24,9 +24,9 @@ use std::collections::BTreeMap;
 
 type Pair = [usize; 2];
 
-/// Most rounds in which an impact is passed on. They converge slowly where a heavy body hangs on light ones: a load of 2 t,
-/// or 3.2 t, draws a chain of ten rings of 21 kg out by 0.27 and 0.48 m with 8 rounds, by 0.18 and 0.27 m with 64. Heaps of
-/// creatures are the same with 16, 32 and 64.
+/// Most rounds in which an impact is passed on. They converge slowly where a heavy body hangs on light ones: a load of
+/// 2 t, or 3.2 t, draws a chain of ten rings of 21 kg out by 0.27 and 0.48 m with 8 rounds, by 0.18 and 0.27 m with 64.
+/// Heaps of creatures are the same with 16, 32 and 64.
 const ROUNDS: usize = 64;
 
 /// Record of what the impacts of a step did so far.
@@ -136,7 +136,8 @@ impl Response {
         self.close_joints(view, policy, 0.0, bodies, true);
     }
 
-    /// Seconds into the step at which the first piece of a motion ends that joints give ([`crate::rapier::joints::jointed_bodies`]).
+    /// Seconds into the step at which the first piece of a motion ends that joints give
+    /// ([`crate::rapier::joints::jointed_bodies`]).
     pub fn next_piece(&self) -> Option<Real> {
         self.pieces.first_end()
     }
@@ -166,8 +167,8 @@ impl Response {
     }
 
     /// Passes an impact of a pair at `time` on through the contacts of `changed`, to which it adds the bodies whose
-    /// motion it changes. `undisturbed`: of the pair that was struck, whose other contacts are thrown back as its impact
-    /// was, once; otherwise they would take back what it gave.
+    /// motion it changes. `undisturbed`: of the pair that was struck, whose other contacts are thrown back as its
+    /// impact was, once; otherwise they would take back what it gave.
     fn propagate_impulses(
         &mut self,
         view: &mut StepView,

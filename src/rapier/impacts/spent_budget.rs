@@ -62,8 +62,8 @@ impl Loop<'_> {
 }
 
 impl Response {
-    /// Stops a free body that moves at `time`, and all that joints tie to it, as if it had had too many impacts; returns
-    /// those that it stops.
+    /// Stops a free body that moves at `time`, and all that joints tie to it, as if it had had too many impacts;
+    /// returns those that it stops.
     pub fn wait(
         &mut self,
         view: &mut StepView,

@@ -25,9 +25,9 @@ use crate::rapier::tuning::Tuning;
 use crate::rapier::view::step_view::StepView;
 use parry3d::query::NonlinearRigidMotion;
 
-/// Distance by which a pair that touches at the start of the step may be farther apart than the gap at which it was left,
-/// in units of rapier's length unit. Smaller, and a pair that rests is muted for rounding; larger, and thin parts that pass
-/// beside each other are left to the solver, which stops them.
+/// Distance by which a pair that touches at the start of the step may be farther apart than the gap at which it was
+/// left, in units of rapier's length unit. Smaller, and a pair that rests is muted for rounding; larger, and thin parts
+/// that pass beside each other are left to the solver, which stops them.
 const TOUCHING_MORE: Real = 1.0e-4;
 
 counters! {

@@ -1,22 +1,22 @@
 //! How fast an impact pushes bodies out of each other. This moves them in the rest of the step and adds nothing to the
 //! velocities with which the next one begins.
 //!
-//! What is deep leaves a share of its depth in each step. That is too slow where the paths of the two curve into each other,
-//! as those of linked rings that swing round each other: an impact stops their approach, but they curve on, and each of
-//! the next impacts lets them sink in by a little more. A path that gained the approach speed `v` in the time `τ` has the
-//! acceleration `a = v/τ`. Thrown back at `√(2 a d)` it comes up by `d` and returns: so with the depth below the floor for
-//! `d`, they meet again no deeper than there. Where `v` was gained at once, by a blow from elsewhere, there is no such path:
-//! they are thrown back at no more than `2 v`. And at no more than their velocities could make of them, or else bodies
-//! between others would be thrown faster from impact to impact.
+//! What is deep leaves a share of its depth in each step. That is too slow where the paths of the two curve into each
+//! other, as those of linked rings that swing round each other: an impact stops their approach, but they curve on, and
+//! each of the next impacts lets them sink in by a little more. A path that gained the approach speed `v` in the time
+//! `τ` has the acceleration `a = v/τ`. Thrown back at `√(2 a d)` it comes up by `d` and returns: so with the depth
+//! below the floor for `d`, they meet again no deeper than there. Where `v` was gained at once, by a blow from
+//! elsewhere, there is no such path: they are thrown back at no more than `2 v`. And at no more than their velocities
+//! could make of them, or else bodies between others would be thrown faster from impact to impact.
 
 use crate::math::Real;
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::view::step_view::StepView;
 
-/// How fast the bodies of a hit are pushed apart, a length per second. Thin parts are kept as far from each other as the
-/// least gap. `approach`: the speed at which they meet; `fastest`: the most at which points of theirs move against each
-/// other; `undisturbed`: the seconds in which their own paths alone brought the approach about, if they did.
+/// How fast the bodies of a hit are pushed apart, a length per second. Thin parts are kept as far from each other as
+/// the least gap. `approach`: the speed at which they meet; `fastest`: the most at which points of theirs move against
+/// each other; `undisturbed`: the seconds in which their own paths alone brought the approach about, if they did.
 pub fn way_out(
     view: &StepView,
     policy: &CcdPolicy,

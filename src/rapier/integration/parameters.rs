@@ -6,13 +6,12 @@ use rapier3d::dynamics::IntegrationParameters;
 
 /// Adds [`MedialIntegrationParameters::for_detail`] to rapier's [`IntegrationParameters`].
 pub trait MedialIntegrationParameters: Sized {
-    /// rapier's default parameters for a world in which `detail`, in your unit of length, is the least size that matters:
-    /// the pitch of a thread, the thickness of a wall, or a few times the play between two parts
-    /// that fit into each other. `detail` becomes rapier's length unit, which scales the distance
-    /// from which contacts press (0.02 of it), the overlap that the solver tolerates (0.005), and
-    /// the gaps at which this crate counts bodies as in contact. rapier's limit on speed stays at
-    /// 400 of your units per second; if you set the length unit alone, it is 400 times `detail` per
-    /// second.
+    /// rapier's default parameters for a world in which `detail`, in your unit of length, is the least size that
+    /// matters: the pitch of a thread, the thickness of a wall, or a few times the play between two parts that fit into
+    /// each other. `detail` becomes rapier's length unit, which scales the distance from which contacts press (0.02 of
+    /// it), the overlap that the solver tolerates (0.005), and the gaps at which this crate counts bodies as in
+    /// contact. rapier's limit on speed stays at 400 of your units per second; if you set the length unit alone, it is
+    /// 400 times `detail` per second.
     ///
     /// # Errors
     /// [`MeshError::Parameter`] unless `detail` is positive and finite.

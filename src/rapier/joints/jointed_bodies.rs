@@ -1,10 +1,10 @@
 //! Joints in an impact within the step: bodies that they hold together take the impulse together, at once.
 //!
-//! An impulse on one body of a chain moves all of them ([`crate::rapier::joints::tied_system`]). After it, bodies do not move along their
-//! velocities, which would open the joints, but to where the joints let them. As a body that turns about a hinge
-//! moves along an arc, this is done in pieces of the step. Impulse joints and joints of multibodies are treated the
-//! same. Where a joint would pass a limit in a piece, it stops there ([`crate::rapier::joints::limits`]). Motors act in rapier's next step,
-//! and joints that the user made soft are left to it.
+//! An impulse on one body of a chain moves all of them ([`crate::rapier::joints::tied_system`]). After it, bodies do
+//! not move along their velocities, which would open the joints, but to where the joints let them. As a body that turns
+//! about a hinge moves along an arc, this is done in pieces of the step. Impulse joints and joints of multibodies are
+//! treated the same. Where a joint would pass a limit in a piece, it stops there ([`crate::rapier::joints::limits`]).
+//! Motors act in rapier's next step, and joints that the user made soft are left to it.
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
@@ -25,8 +25,9 @@ const PIECE_TURN: Real = 0.125;
 /// The most pieces of a step if nothing else is met.
 const MOST_PIECES: Real = 64.0;
 
-/// Opening that joints may gain, in units of rapier's length unit or in radians, from which they count as not closed: what
-/// is this far off says nothing of where bodies go, which then go straight, and rapier's next step closes the joints.
+/// Opening that joints may gain, in units of rapier's length unit or in radians, from which they count as not closed:
+/// what is this far off says nothing of where bodies go, which then go straight, and rapier's next step closes the
+/// joints.
 const UNCLOSED: f64 = 1.0e-2;
 
 /// Result of closing joints: the bodies moved, and until when.
@@ -142,9 +143,9 @@ impl Joints {
         tied.any(|b| view.bodies[b].kind == Kind::Driven)
     }
 
-    /// Gives a body and what joints tie to it the motions from `time` on that joints let them make, and lets
-    /// their velocities follow, which together gain no energy. At the end of the step, `dt`, joints are to be as open
-    /// as rapier's step left them. `frozen`: of a body, whether it stays on its path; it takes what joints give it for the
+    /// Gives a body and what joints tie to it the motions from `time` on that joints let them make, and lets their
+    /// velocities follow, which together gain no energy. At the end of the step, `dt`, joints are to be as open as
+    /// rapier's step left them. `frozen`: of a body, whether it stays on its path; it takes what joints give it for the
     /// next step. `goes_on`: nothing was struck; a piece of their motion has ended.
     pub fn close(
         &self,
@@ -234,8 +235,9 @@ impl Joints {
         Piece { moved, until }
     }
 
-    /// Velocities that the joints allow the bodies tied to `from`, when a frozen body blocks the path of `moved`. They are
-    /// taken where `moved` has the bodies and with the inertia of the next step, so that both bodies of a joint agree in it.
+    /// Velocities that the joints allow the bodies tied to `from`, when a frozen body blocks the path of `moved`. They
+    /// are taken where `moved` has the bodies and with the inertia of the next step, so that both bodies of a joint
+    /// agree in it.
     fn without_path(
         &self,
         view: &StepView,

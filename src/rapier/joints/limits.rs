@@ -1,10 +1,10 @@
 //! Limits of joints: how far a joint is along an axis that it limits, and where it has to stop.
 //!
-//! Angles are rapier's. Of a joint between two bodies, with `q` the turn from the middle of the range, that about axis `i`
-//! is `2 atan2(q_i, q_w)`. Those of a link of a multibody rapier sums from step to step; they go on by the components of
-//! the turn's scaled axis `θ`. With the other body's turning velocity `ω` in the frame of the first,
-//! `d/dt 2 atan2(q_i, q_w) = ω · (q_w² e_i + q_w q × e_i + q_i q) / (q_w² + q_i²)`, and
-//! `dθ_i/dt = ω · (e_i + θ × e_i / 2 + c θ × (θ × e_i))` with `c = (1 − (θ/2) cot(θ/2)) / θ²`.
+//! Angles are rapier's. Of a joint between two bodies, with `q` the turn from the middle of the range, that about axis
+//! `i` is `2 atan2(q_i, q_w)`. Those of a link of a multibody rapier sums from step to step; they go on by the
+//! components of the turn's scaled axis `θ`. With the other body's turning velocity `ω` in the frame of the first,
+//! `d/dt 2 atan2(q_i, q_w) = ω · (q_w² e_i + q_w q × e_i + q_i q) / (q_w² + q_i²)`, and `dθ_i/dt = ω · (e_i + θ × e_i /
+//! 2 + c θ × (θ × e_i))` with `c = (1 − (θ/2) cot(θ/2)) / θ²`.
 
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::rapier::view::link_angles::{LinkAngles, shortest};
@@ -136,7 +136,8 @@ impl Limit {
         at >= max - near || at <= min + near
     }
 
-    /// Whether a joint that is `at` stands at a limit, does not leave it at a rate (per second), and is pushed on there.
+    /// Whether a joint that is `at` stands at a limit, does not leave it at a rate (per second), and is pushed on
+    /// there.
     pub fn holds(&self, at: Real, rate: Real, push: Real, unit: Real) -> bool {
         let ([min, max], near) = (self.range, self.near(unit));
         let at_max = at >= max - near && rate >= -near && push > 0.0;

@@ -1,5 +1,5 @@
-//! Rows of the Jacobian `G` of joints ([`crate::rapier::joints::tied_system`]): one for each locked axis, and for each limit at which a joint
-//! stops.
+//! Rows of the Jacobian `G` of joints ([`crate::rapier::joints::tied_system`]): one for each locked axis, and for each
+//! limit at which a joint stops.
 
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::rapier::joints::limits::{Limit, Place};

@@ -9,8 +9,8 @@ use crate::rapier::joints::tied_system::System;
 const STOPPING_ROUNDS: usize = 4;
 
 impl System<'_> {
-    /// Makes joints that stand at a limit hold it where a push by some changes of velocity would take them past it; once
-    /// for a system.
+    /// Makes joints that stand at a limit hold it where a push by some changes of velocity would take them past it;
+    /// once for a system.
     pub fn stand_at_limits(&mut self, twists: &[Twist], push: impl Fn(&Self) -> Vec<Twist>) {
         let limits = self.limits(&self.poses);
         let unit = self.unit;

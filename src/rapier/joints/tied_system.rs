@@ -24,8 +24,9 @@ const REGULAR: f64 = 1.0e-4;
 /// Times that joints are closed in a piece of a motion: each leaves about a quarter of the opening.
 const CLOSING_STEPS: usize = 8;
 
-/// Share of the opening that a closing step may leave. If it leaves more, as of light links on long levers, the directions
-/// along which joints close are found anew at the present poses; until then they are those of the piece's start.
+/// Share of the opening that a closing step may leave. If it leaves more, as of light links on long levers, the
+/// directions along which joints close are found anew at the present poses; until then they are those of the piece's
+/// start.
 const SLOW: f64 = 0.5;
 
 /// Opening that is left, in units of rapier's length unit or in radians; of bodies far from each other more, by the
@@ -259,8 +260,8 @@ impl<'a> System<'a> {
         rows.iter().map(|r| f64::from(r.opening)).collect()
     }
 
-    /// Differences of all openings from their targets (lengths, or angles in radians), and the largest of them in units of
-    /// rapier's length unit or in radians.
+    /// Differences of all openings from their targets (lengths, or angles in radians), and the largest of them in units
+    /// of rapier's length unit or in radians.
     pub fn left_open(&self, targets: &[f64]) -> (Vec<f64>, f64) {
         let (mut left, mut most) = (Vec::new(), 0.0);
         for (row, target) in self.rows_now().iter().zip(targets) {

@@ -1,5 +1,5 @@
-//! Completes the view of a step that left out bystanders (`participants.rs`) after rapier's step, where rapier woke one, or
-//! something may get to one.
+//! Completes the view of a step that left out bystanders (`participants.rs`) after rapier's step, where rapier woke
+//! one, or something may get to one.
 
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Vector};

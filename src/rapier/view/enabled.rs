@@ -14,8 +14,8 @@ pub fn will_be_enabled(bodies: &RigidBodySet, collider: &Collider) -> bool {
     }
 }
 
-/// Whether the user disabled the collider itself, and not its body. rapier does not say which, but `set_enabled(true)` works
-/// on those only.
+/// Whether the user disabled the collider itself, and not its body. rapier does not say which, but `set_enabled(true)`
+/// works on those only.
 fn is_disabled_by_user(collider: &Collider) -> bool {
     let mut tried = collider.clone();
     tried.set_enabled(true);

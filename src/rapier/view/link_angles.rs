@@ -7,8 +7,8 @@ use std::f32::consts::TAU;
 /// Difference of angles, in radians, that is not made up for by whole turns: what rounding makes.
 const NO_TURN: Real = 1.0e-4;
 
-/// Turn in a step, in radians, from which a link's angles are lost: rapier's step left all bounds. It made up to 1e16, of
-/// which single precision tells no rotation.
+/// Turn in a step, in radians, from which a link's angles are lost: rapier's step left all bounds. It made up to 1e16,
+/// of which single precision tells no rotation.
 const LOST: Real = 1.0e4;
 
 /// How far a link of a multibody has turned: rapier sums the angles about the three axes of its joint, with all whole
@@ -32,8 +32,8 @@ impl LinkAngles {
     }
 
     /// Displacements that take a link from what rapier has, `of`, to a rotation, of which the last is the shortest turn
-    /// there, and the others whole turns: so its angles go on from these. Angles that are lost are set to zero first; then
-    /// those of a hinge, whose axis is `hinge`, are the sum they should be, others those of the shortest turn.
+    /// there, and the others whole turns: so its angles go on from these. Angles that are lost are set to zero first;
+    /// then those of a hinge, whose axis is `hinge`, are the sum they should be, others those of the shortest turn.
     pub fn goes_on(&self, of: &Self, rotation: Rotation, hinge: Option<usize>) -> [Vector; 3] {
         let turn = |from: Rotation| shortest(rotation * from.inverse()).to_scaled_axis();
         let made = (of.angles - self.angles).abs().max_element();

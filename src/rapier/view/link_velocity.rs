@@ -1,9 +1,9 @@
-//! Velocities of links of multibodies after rapier's step. The last pass of rapier's solver changes the velocities of the
-//! joints only: those of the links' bodies are from before it, until the next step begins.
+//! Velocities of links of multibodies after rapier's step. The last pass of rapier's solver changes the velocities of
+//! the joints only: those of the links' bodies are from before it, until the next step begins.
 //!
-//! Where the two differ by no more than gravity changes a velocity in a step, links keep those of their bodies: limbs that lie
-//! still come to rest sooner with these. Links that whirl keep them, too: with those of the joints, steps of a rope of 30
-//! links that touch, struck at 20 m/s, gained up to .11 of the energy.
+//! Where the two differ by no more than gravity changes a velocity in a step, links keep those of their bodies: limbs
+//! that lie still come to rest sooner with these. Links that whirl keep them, too: with those of the joints, steps of a
+//! rope of 30 links that touch, struck at 20 m/s, gained up to .11 of the energy.
 
 use crate::math::{Real, Vector};
 use crate::rapier::view::step_view::StepView;
@@ -41,8 +41,8 @@ impl StepView {
     }
 }
 
-/// Linear velocity of the centre of mass and angular velocity of the link with this index, by the joints of its multibody;
-/// `None` if the multibody has gained or lost joints since rapier last computed its Jacobian.
+/// Linear velocity of the centre of mass and angular velocity of the link with this index, by the joints of its
+/// multibody; `None` if the multibody has gained or lost joints since rapier last computed its Jacobian.
 fn by_joints(multibody: &Multibody, link: usize) -> Option<[Vector; 2]> {
     let jacobian = multibody.body_jacobian(link);
     let speeds = multibody.generalized_velocity();

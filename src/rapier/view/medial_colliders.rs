@@ -1,5 +1,5 @@
-//! The medial colliders of a world at the start of a step, with all that their contacts are predicted from: mesh, motion,
-//! forces, box, skin, mass.
+//! The medial colliders of a world at the start of a step, with all that their contacts are predicted from: mesh,
+//! motion, forces, box, skin, mass.
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -112,8 +112,8 @@ pub struct MedialCollider {
     pub extent: Real,
     /// Box in the world, grown by as far as contacts are looked for.
     pub aabb: Aabb,
-    /// Parent of the body in a multibody, and where the joint to it is in the collider's frame, if it lets the body turn
-    /// only.
+    /// Parent of the body in a multibody, and where the joint to it is in the collider's frame, if it lets the body
+    /// turn only.
     pub joint: Option<(RigidBodyHandle, Vector)>,
     /// Hooks of the user on the collider.
     pub hooks: ActiveHooks,

@@ -6,13 +6,14 @@ use crate::rapier::view::step_view::StepView;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 
 impl StepView {
-    /// Bound on how fast the surfaces of two colliders move against each other, a length per second, in all places where
-    /// they may come within `margin` from `time` to `end`; 0 if they do not.
+    /// Bound on how fast the surfaces of two colliders move against each other, a length per second, in all places
+    /// where they may come within `margin` from `time` to `end`; 0 if they do not.
     ///
     /// While two rigid bodies overlap, their penetration depth grows no faster than they move against each other in any
-    /// point of the line between their nearest spheres, of which one lies in both bodies, so in the boxes that both sweep.
-    /// The relative velocity `v1 + ω1 × (x − c1) − v2 − ω2 × (x − c2)` is affine in the place `x` and the time, as the
-    /// centres `c` move straight, so it is largest in a corner of the common box, at the first or the last moment.
+    /// point of the line between their nearest spheres, of which one lies in both bodies, so in the boxes that both
+    /// sweep. The relative velocity `v1 + ω1 × (x − c1) − v2 − ω2 × (x − c2)` is affine in the place `x` and the time,
+    /// as the centres `c` move straight, so it is largest in a corner of the common box, at the first or the last
+    /// moment.
     pub fn meeting_speed(&self, pair: [usize; 2], [time, end]: [Real; 2], margin: Real) -> Real {
         let swept = |k: usize| {
             let aabb = self.swept_aabb(k, time, end);
@@ -44,8 +45,9 @@ impl StepView {
         speeds.fold(0.0, Real::max) * (1.0 + 16.0 * Real::EPSILON)
     }
 
-    /// Box of the part of a box that is below a half-space's plane or within `margin` of it; all of the box if the collider is no
-    /// half-space, or moves. The box of a half-space is the whole world, in which a wheel's top would count as meeting it.
+    /// Box of the part of a box that is below a half-space's plane or within `margin` of it; all of the box if the
+    /// collider is no half-space, or moves. The box of a half-space is the whole world, in which a wheel's top would
+    /// count as meeting it.
     fn below_plane(&self, part: usize, aabb: Aabb, margin: Real) -> Option<Aabb> {
         let p = &self.parts[part];
         let motion = &self.bodies[p.body].motion;

@@ -11,8 +11,8 @@ use rapier3d::dynamics::{
     LockedAxes, MultibodyLink, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType,
 };
 
-/// Turn in a step, in radians, from which the path of a body about a pivot is taken as an arc: an eighth of its square is
-/// the share of the radius by which its chord misses it.
+/// Turn in a step, in radians, from which the path of a body about a pivot is taken as an arc: an eighth of its square
+/// is the share of the radius by which its chord misses it.
 const TURNS: Real = 0.1;
 
 /// Whether an impact may move a body.
@@ -231,8 +231,8 @@ impl Body {
         }
     }
 
-    /// Linear velocity that gravity and forces of the user give it in the last `share` of the step, but for what was taken
-    /// back of it.
+    /// Linear velocity that gravity and forces of the user give it in the last `share` of the step, but for what was
+    /// taken back of it.
     pub fn gains(&self, share: Real) -> Vector {
         self.pull * share - self.taken_back
     }
@@ -363,8 +363,8 @@ impl Body {
         if !self.motion.start.is_finite() {
             return;
         }
-        // One that is awake keeps the time for which it has been slow, as with rapier's own contacts: pressed bodies that
-        // are struck in each step fall asleep.
+        // One that is awake keeps the time for which it has been slow, as with rapier's own contacts: pressed bodies
+        // that are struck in each step fall asleep.
         let wakes = struck && body.is_sleeping();
         let end = *body.position();
         body.set_position(self.motion.start, wakes);

@@ -1,7 +1,7 @@
-//! Finds the still colliders that a step may get to: those that what moves may reach by its velocities, and, of a sleeping
-//! body that is reached, those that touch it and those of its island, which rapier wakes together, and what is beside
-//! these. What flies farther than its velocities told, because it was struck, may reach others, and rapier may wake bodies
-//! for reasons of its own: then the step looks at all ([`StepView::complete`]).
+//! Finds the still colliders that a step may get to: those that what moves may reach by its velocities, and, of a
+//! sleeping body that is reached, those that touch it and those of its island, which rapier wakes together, and what is
+//! beside these. What flies farther than its velocities told, because it was struck, may reach others, and rapier may
+//! wake bodies for reasons of its own: then the step looks at all ([`StepView::complete`]).
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
@@ -89,7 +89,8 @@ fn add_near(participants: &mut Participants, sets: Sets, islands: &IslandManager
     participants.sort();
 }
 
-/// Whether something may get to a bystander on the path that rapier's step of a length, in a world of a length unit, gave it.
+/// Whether something may get to a bystander on the path that rapier's step of a length, in a world of a length unit,
+/// gave it.
 pub fn leaves(view: &StepView, participants: &Participants, (dt, unit): (Real, Real)) -> bool {
     let moves = |k: &usize| {
         let body = &view.bodies[view.parts[*k].body];

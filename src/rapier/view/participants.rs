@@ -1,5 +1,5 @@
-//! The colliders that may take part in a step, where a world has many that may not: all that moves, and of the still ones
-//! (`still_colliders.rs`) those near it. The others are bystanders.
+//! The colliders that may take part in a step, where a world has many that may not: all that moves, and of the still
+//! ones (`still_colliders.rs`) those near it. The others are bystanders.
 
 use crate::math::Real;
 use crate::rapier::view::enabled::will_be_enabled;

@@ -15,8 +15,8 @@ use std::sync::Arc;
 /// Largest side of a box that the tree holds: round a larger one, as of a half-space, sums are no longer exact.
 const LARGEST: Real = 1.0e6;
 
-/// Steps in turn with the same still colliders after which the tree is built: where bodies wake and fall asleep all the time
-/// it would be built in vain.
+/// Steps in turn with the same still colliders after which the tree is built: where bodies wake and fall asleep all the
+/// time it would be built in vain.
 const STEPS: u32 = 3;
 
 /// Still colliders, with a tree of their boxes.
@@ -132,9 +132,9 @@ pub struct StillRecord {
 }
 
 impl StillRecord {
-    /// The colliders that move, in the order of the set, and the still ones. `None` if these changed in the last steps, or
-    /// are fewer than `least`, or than so many times those that move; and where a collider that moved is gone or collides
-    /// with others than before, for rapier may then wake what rested on it. Boxes are grown by `margin`.
+    /// The colliders that move, in the order of the set, and the still ones. `None` if these changed in the last steps,
+    /// or are fewer than `least`, or than so many times those that move; and where a collider that moved is gone or
+    /// collides with others than before, for rapier may then wake what rested on it. Boxes are grown by `margin`.
     pub fn look(
         &mut self,
         (bodies, colliders): (&RigidBodySet, &ColliderSet),
