@@ -67,16 +67,7 @@ pub fn near_spheres(
         return (None, counts);
     };
     let mut heap = BinaryHeap::new();
-    let entry = |i: u32, j: u32| {
-        let (a, b) = (body1.bound(i), body2.bound(j));
-        let y = place.point(b.0) - Vec3::from_vector(a.0);
-        Entry {
-            bound: y.length() * (1.0 - 1.0e-12) - f64::from(a.1) - f64::from(b.1),
-            nodes: [i, j],
-            first_is_larger: a.1 >= b.1,
-            of_hulls: false,
-        }
-    };
+    let entry = |i: u32, j: u32| Entry::of_balls((body1, body2), &place, [i, j]);
     for i in 0..body1.roots() {
         heap.extend((0..body2.roots()).map(|j| entry(i, j)));
     }
@@ -166,6 +157,24 @@ struct Entry {
     first_is_larger: bool,
     /// Whether the bound is that of the hulls, not only of the balls.
     of_hulls: bool,
+}
+
+impl Entry {
+    /// Two nodes with the bound that their balls give.
+    fn of_balls(
+        bodies: (&impl PrimitiveTree, &impl PrimitiveTree),
+        place: &Placement,
+        [i, j]: [u32; 2],
+    ) -> Self {
+        let (a, b) = (bodies.0.bound(i), bodies.1.bound(j));
+        let y = place.point(b.0) - Vec3::from_vector(a.0);
+        Self {
+            bound: y.length() * (1.0 - 1.0e-12) - f64::from(a.1) - f64::from(b.1),
+            nodes: [i, j],
+            first_is_larger: a.1 >= b.1,
+            of_hulls: false,
+        }
+    }
 }
 
 least_first!(Entry, bound, nodes);

@@ -207,15 +207,20 @@ impl Search<'_> {
         }
     }
 
+    /// The balls of a primitive, or of its core, where only cores meet, and the thickness that counts.
+    fn cores(&self, primitive: u32) -> (([Ball; 3], usize), Real) {
+        let (all, len) = self.balls(primitive);
+        let thickness = self.mesh.thicknesses().primitives[primitive as usize];
+        let Some(cores) = &self.options.cores else {
+            return ((all, len), thickness);
+        };
+        let [loss, _] = cores.losses([thickness, Real::INFINITY]);
+        let core = all.map(|s| Ball::new(s.center, s.radius - loss.of(s.radius)));
+        ((core, len), thickness.min(cores.at_most))
+    }
+
     fn leaf(&mut self, body: &Axisymmetric, primitives: [u32; 2], entry: &Entry) {
-        let (mut all, len) = self.balls(primitives[0]);
-        let thickness = self.mesh.thicknesses().primitives[primitives[0] as usize];
-        let mut thinner = thickness;
-        if let Some(cores) = &self.options.cores {
-            let [loss, _] = cores.losses([thickness, Real::INFINITY]);
-            all = all.map(|s| Ball::new(s.center, s.radius - loss.of(s.radius)));
-            thinner = thinner.min(cores.at_most);
-        }
+        let ((mut all, len), thinner) = self.cores(primitives[0]);
         let cap = CAP.saturating_mul(self.options.max_iterations);
         let radii = all[..len].iter().map(|b| b.radius);
         let thinnest = radii.fold(f64::INFINITY, f64::min);
@@ -227,13 +232,14 @@ impl Search<'_> {
             tolerance: self.tolerance,
             steps: SLICE.min(cap - entry.spent),
         };
-        let (by, at_once) = match self.options.initial_contact {
-            InitialContact::Stop => (None, false),
-            InitialContact::Deepen { by } => (Some(by), false),
-            InitialContact::Approach { by } => (Some(by), true),
-        };
+        let at_once = matches!(
+            self.options.initial_contact,
+            InitialContact::Approach { .. }
+        );
         let mut touching = None;
-        if let Some(by) = by {
+        if let InitialContact::Deepen { by } | InitialContact::Approach { by } =
+            self.options.initial_contact
+        {
             let at_start = Limits {
                 start: 0.0,
                 steps: 1,

@@ -2,7 +2,7 @@
 //! query: it chooses how each shape is searched, and turns the bracket of the first contact into parry's answer.
 
 use super::axisymmetric_toi;
-use super::cast_answer::hit;
+use super::cast_answer::{hit, moved_to};
 use super::distance;
 use super::folds;
 use super::initial_contacts::{AtStart, Touching, approach_of_rounding};
@@ -135,18 +135,7 @@ impl Cast<'_> {
                 }
                 touching.unless_nearer(seconds, &options)
             } else {
-                let Touching {
-                    normal,
-                    points,
-                    primitives,
-                    ..
-                } = touching;
-                toi = Toi {
-                    normal,
-                    points,
-                    primitives,
-                    ..toi
-                };
+                let toi = touching.in_place_of(toi);
                 return Ok((Some(hit(&toi, [&motion1, &motion2], [start, 0.0])), counts));
             };
             options = further;
@@ -168,14 +157,9 @@ impl Cast<'_> {
             counts += nearer.counts;
             // Two convex bodies on straight paths come nearer ever more slowly, so before the hit by this much at
             // least.
-            let back = nearer.toi.lower - by / way.dot(nearer.toi.normal).max(Real::MIN_POSITIVE);
-            let lower = back.max(toi.lower);
-            toi = nearer.toi;
-            let early = (toi.lower - lower) * seconds;
-            for (point, motion) in toi.points.iter_mut().zip([&motion1, &motion2]) {
-                *point -= motion.linvel * early;
-            }
-            toi.lower = lower;
+            let back = by / way.dot(nearer.toi.normal).max(Real::MIN_POSITIVE);
+            let lower = (nearer.toi.lower - back).max(toi.lower);
+            toi = moved_to(lower, nearer.toi, [&motion1, &motion2], seconds);
         }
         if toi.status == ToiStatus::Separated {
             return Ok((None, counts));

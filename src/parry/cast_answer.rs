@@ -37,3 +37,18 @@ fn status(toi: &Toi) -> ShapeCastStatus {
         ToiStatus::Contact | ToiStatus::Separated => ShapeCastStatus::Converged,
     }
 }
+
+/// A contact told for a time `lower`, a fraction of `seconds`, with its points where the two motions have them then.
+pub(super) fn moved_to(
+    lower: Real,
+    mut toi: Toi,
+    motions: [&NonlinearRigidMotion; 2],
+    seconds: Real,
+) -> Toi {
+    let early = (toi.lower - lower) * seconds;
+    for (point, motion) in toi.points.iter_mut().zip(motions) {
+        *point -= motion.linvel * early;
+    }
+    toi.lower = lower;
+    toi
+}

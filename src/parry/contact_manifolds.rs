@@ -12,7 +12,7 @@ use super::ghost_contacts::{PartContact, ghosts};
 use super::inward_contacts;
 use super::manifold_points;
 use super::manifolds::{self, ensure_workspace, write_one_point};
-use super::previous_contacts;
+use super::previous_contacts::{self, PreviousContact};
 use super::touching_normals;
 use super::voxel_normals;
 use crate::batch::PairJob;
@@ -79,28 +79,16 @@ impl MedialDispatcher {
         };
         let center = mesh.unit_mass_properties().local_com;
         let center = if side == 0 { center } else { pos12 * center };
+        let load = |turn| Load {
+            center,
+            prediction,
+            turn,
+        };
         let previous = previous_contacts::previous(manifolds, side);
         let (Some(mesh1), Some(mesh2)) = meshes else {
             let pair = ((mesh, side), pos12, [g1, g2]);
-            let goes_on = write_on_flat(pair, prediction, manifolds, workspace);
-            let written = match goes_on {
-                Some(_) => Ok(()),
-                None => write_by_parry(pair, prediction, manifolds, workspace),
-            };
-            correct(pair, (goes_on.is_none(), prediction), manifolds);
-            if goes_on != Some(true) {
-                previous_contacts::transfer_impulses(manifolds, &previous, prediction, side);
-            }
-            let load = Load {
-                center,
-                prediction,
-                turn: plan.turn(mesh),
-            };
-            contact_reduction::choose(manifolds, pos12, &load, &previous, side);
-            if goes_on.is_some() {
-                manifolds.retain(|m| !m.points.is_empty());
-            }
-            return written;
+            let load = load(plan.turn(mesh));
+            return write_with_other(pair, &load, &previous, manifolds, workspace);
         };
         ensure_workspace::<M, C>(mesh1, mesh2, workspace);
         let meshes = [mesh1, mesh2];
@@ -108,15 +96,41 @@ impl MedialDispatcher {
         self.exchange.contacts(job, |found| {
             manifolds::write_manifolds(meshes, found, pos12, prediction, manifolds);
         });
-        let load = Load {
-            center,
-            prediction,
-            turn: None,
-        };
+        let load = load(None);
         contact_reduction::choose(manifolds, pos12, &load, &previous, side);
         self.count_manifolds(manifolds.len());
         Ok(())
     }
+}
+
+/// The manifolds of a medial mesh and a shape that is not medial.
+fn write_with_other<M, C>(
+    pair: Pair,
+    load: &Load,
+    previous: &[PreviousContact<C>],
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> Result<(), Unsupported>
+where
+    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+    M: Default + Clone,
+    C: Default + Copy,
+{
+    let (((_, side), pos12, _), prediction) = (pair, load.prediction);
+    let goes_on = write_on_flat(pair, prediction, manifolds, workspace);
+    let written = match goes_on {
+        Some(_) => Ok(()),
+        None => write_by_parry(pair, prediction, manifolds, workspace),
+    };
+    correct(pair, (goes_on.is_none(), prediction), manifolds);
+    if goes_on != Some(true) {
+        previous_contacts::transfer_impulses(manifolds, previous, prediction, side);
+    }
+    contact_reduction::choose(manifolds, pos12, load, previous, side);
+    if goes_on.is_some() {
+        manifolds.retain(|m| !m.points.is_empty());
+    }
+    written
 }
 
 /// Turns or leaves out what is wrong in the contacts of a mesh with another shape, whether they are parry's or not.

@@ -11,7 +11,7 @@
 //!   stops nobody, and a wall stops everybody. And no place may get deeper than half way to the medial axes there,
 //!   so a thin part of a thick body may sink in only in proportion to how thin it is.
 
-use crate::elementary::{Cores, InitialContact, ToiOptions};
+use crate::elementary::{Cores, InitialContact, Toi, ToiOptions};
 use crate::math::{Real, Vector};
 
 /// How deep bodies that touch at the start may sink into each other at most, in units of the thickness of
@@ -85,6 +85,16 @@ impl Touching {
     /// Length by which sliding seems to come nearer in `seconds`.
     fn slide(&self, seconds: Real) -> Real {
         approach_of_rounding(self.size + self.slip.length() * seconds)
+    }
+
+    /// A contact at the same time with the place of this one.
+    pub fn in_place_of(&self, toi: Toi) -> Toi {
+        Toi {
+            normal: self.normal,
+            points: self.points,
+            primitives: self.primitives,
+            ..toi
+        }
     }
 
     /// Whether the deepest contact comes nearer.

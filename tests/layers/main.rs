@@ -83,6 +83,12 @@ const CONFINED: [(&str, &str); 4] = [
 /// The line count above which a file should have been split.
 const LONGEST: usize = 400;
 
+/// The line count above which a function should have been split.
+const LONGEST_FUNCTION: usize = 80;
+
+/// Columns of a comment's line.
+const WIDEST: usize = 120;
+
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).expect("a source folder") {
@@ -244,6 +250,61 @@ fn files_open_with_what_they_are_and_stay_short() {
         assert!(text.starts_with("//!"), "{} has no header", path.display());
         let lines = text.lines().count();
         assert!(lines <= LONGEST, "{} has {lines} lines", path.display());
+    }
+}
+
+/// The functions of a formatted source: each begins on a line with `fn`, and ends with a brace as far in. Their first
+/// lines, and how many they have.
+fn functions(text: &str) -> Vec<(&str, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let is_first = |line: &str| {
+        let before_name = line.trim_start().split("fn ").next().unwrap_or_default();
+        let words = before_name.split_whitespace();
+        line.contains("fn ")
+            && words
+                .into_iter()
+                .all(|w| w.starts_with("pub") || w == "const")
+    };
+    let first = lines.iter().enumerate().filter(|(_, line)| is_first(line));
+    let of = |(start, line): (usize, &&'_ str)| {
+        let rest = lines[start..].iter();
+        let is_end = |l: &&str| indent(l) == indent(line) && l.ends_with(['}', ';']);
+        let length = rest.map(|l| *l).position(|l| is_end(&l));
+        (lines[start].trim(), length.map_or(1, |n| n + 1))
+    };
+    first.map(of).collect()
+}
+
+#[test]
+fn functions_stay_short() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut found = 0;
+    for path in sources(&src) {
+        let text = fs::read_to_string(&path).expect("a readable source");
+        for (line, length) in functions(&text) {
+            found += 1;
+            // Arguments of rapier's own step are a line each.
+            let is_long = length > LONGEST_FUNCTION;
+            assert!(!is_long, "{}: {length} lines: {line}", path.display());
+        }
+    }
+    assert!(found > 1000, "only {found} functions were found");
+}
+
+#[test]
+fn comments_keep_to_their_columns() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for folder in ["src", "tests", "examples", "benches"] {
+        for path in sources(&root.join(folder)) {
+            let text = fs::read_to_string(&path).expect("a readable source");
+            for (number, line) in text.lines().enumerate() {
+                let is_comment = line.trim_start().starts_with("//");
+                let width = line.chars().count();
+                let place = format!("{}:{}", path.display(), number + 1);
+                assert!(!is_comment || width <= WIDEST, "{place}: {width} columns");
+            }
+        }
     }
 }
 

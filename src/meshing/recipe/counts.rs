@@ -53,6 +53,23 @@ impl Collapses {
     pub fn creases(&self) -> usize {
         self.creases.len()
     }
+
+    /// Notes for where `wins` primitives fit best, and `left` larger counts were not fitted.
+    fn notes(&self, wins: usize, left: usize) -> Vec<String> {
+        let (mut notes, most) = (Vec::new(), self.first.most);
+        if wins < most {
+            notes.push(match left {
+                0 => format!("{wins} primitives fit better than {most}"),
+                _ => format!(
+                    "a round body: {wins} primitives fit best, and larger numbers, up to {most}, gain nothing"
+                ),
+            });
+        }
+        if !self.kept_topology {
+            notes.push(GAVE_UP.into());
+        }
+        notes
+    }
 }
 
 impl Source {
@@ -96,7 +113,6 @@ impl Source {
             creases,
             ..
         } = collapses;
-        let most = first.most;
         let rough = self.rough_target();
         let gain = match () {
             _ if !self.fits() => 1.0,
@@ -154,17 +170,7 @@ impl Source {
             }
         }
         let mut candidate = self.reported(best, watch)?;
-        if wins < most {
-            candidate.notes.push(match left {
-                0 => format!("{wins} primitives fit better than {most}"),
-                _ => format!(
-                    "a round body: {wins} primitives fit best, and larger numbers, up to {most}, gain nothing"
-                ),
-            });
-        }
-        if !collapses.kept_topology {
-            candidate.notes.push(GAVE_UP.into());
-        }
+        candidate.notes.extend(collapses.notes(wins, left));
         Ok(candidate)
     }
 

@@ -242,6 +242,22 @@ impl<'a> Measure<'a> {
                 return worst;
             }
         }
+        worst = self.sticks_out(after, of, worst, enough);
+        if worst > enough {
+            return worst;
+        }
+        worst + RMS * (squares / count.max(1) as f64).sqrt()
+    }
+
+    /// How far the primitives after a collapse, whose balls are `of`, stick out of the surface, or `worst`, if that is
+    /// more. It ends early once that exceeds `enough`.
+    fn sticks_out(
+        &self,
+        after: &Merged,
+        of: impl Fn(u32) -> Ball + Copy,
+        mut worst: f64,
+        enough: f64,
+    ) -> f64 {
         for &corners in &after.primitives {
             let weights = if corners[1] == corners[2] {
                 [0.5, 0.5, 0.0]
@@ -277,7 +293,7 @@ impl<'a> Measure<'a> {
                 return worst;
             }
         }
-        worst + RMS * (squares / count.max(1) as f64).sqrt()
+        worst
     }
 
     /// How far a ball next to a crease sticks out of the surface; 0 where that is nothing that matters.

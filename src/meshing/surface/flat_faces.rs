@@ -47,6 +47,60 @@ struct Face {
     weight: f64,
 }
 
+impl Face {
+    /// The face of a triangle, to which none is added yet.
+    fn begun([a, b, c]: [Point; 3], normal: Point, area: f64) -> Self {
+        let middle = (a + b + c) * (1.0 / 3.0);
+        let sides = [b - a, c - b, a - c].into_iter();
+        let along = sides.fold(Point::zero(), |long, side| {
+            if side.length() > long.length() {
+                side
+            } else {
+                long
+            }
+        });
+        let (length, height) = (along.length(), 2.0 * area / along.length());
+        Self {
+            first: Plane {
+                normal,
+                offset: normal.dot(middle),
+            },
+            middle,
+            turns: [
+                along * (1.0 / (length * length)),
+                normal.cross(along) * (1.0 / (length * height)),
+            ],
+            area: Point::zero(),
+            moment: Point::zero(),
+            weight: 0.0,
+        }
+    }
+
+    /// Whether a triangle lies on it to within `flat`.
+    fn holds(&self, normal: Point, corners: &[Point; 3], flat: f64) -> bool {
+        self.first.normal.dot(normal) > 0.0
+            && corners.iter().all(|p| {
+                let to = *p - self.middle;
+                let turned = self.turns.map(|turn| to.dot(turn).abs());
+                self.first.depth(*p).abs() <= flat * (1.0 + turned[0] + turned[1])
+            })
+    }
+
+    fn add(&mut self, [a, b, c]: [Point; 3], normal: Point, area: f64) {
+        let middle = (a + b + c) * (1.0 / 3.0);
+        self.area = self.area + normal * area;
+        self.moment = self.moment + middle * area;
+        self.weight += area;
+    }
+
+    /// The mean plane of its triangles.
+    fn plane(&self) -> Plane {
+        let normal = direction(self.area);
+        let offset = normal.dot(self.moment) / self.weight;
+        Plane { normal, offset }
+    }
+}
+
 /// The faces that the triangles `body` of a surface make; `None` where there are more than `most`, where a triangle is
 /// off the plane of its face by more than `flat` (longest side 1), or where they bound no convex body.
 pub fn convex_faces(
@@ -91,58 +145,18 @@ pub fn flat_faces(
         watch.every(i)?;
         let corners = surface.corners(t);
         let normal = surface.normals[t];
-        let is_on = |face: &Face| {
-            face.first.normal.dot(normal) > 0.0
-                && corners.iter().all(|p| {
-                    let to = *p - face.middle;
-                    let turned = face.turns.map(|turn| to.dot(turn).abs());
-                    face.first.depth(*p).abs() <= flat * (1.0 + turned[0] + turned[1])
-                })
-        };
-        let middle = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
+        let is_on = |face: &Face| face.holds(normal, &corners, flat);
         let place = faces.iter().position(is_on).unwrap_or_else(|| {
-            let [a, b, c] = corners;
-            let along = [b - a, c - b, a - c]
-                .into_iter()
-                .fold(Point::zero(), |long, side| {
-                    if side.length() > long.length() {
-                        side
-                    } else {
-                        long
-                    }
-                });
-            let (length, height) = (along.length(), 2.0 * area(t) / along.length());
-            faces.push(Face {
-                first: Plane {
-                    normal,
-                    offset: normal.dot(middle),
-                },
-                middle,
-                turns: [
-                    along * (1.0 / (length * length)),
-                    normal.cross(along) * (1.0 / (length * height)),
-                ],
-                area: Point::zero(),
-                moment: Point::zero(),
-                weight: 0.0,
-            });
+            faces.push(Face::begun(corners, normal, area(t)));
             faces.len() - 1
         });
         if faces.len() > most {
             return Ok(None);
         }
-        let (face, weight) = (&mut faces[place], area(t));
-        face.area = face.area + normal * weight;
-        face.moment = face.moment + middle * weight;
-        face.weight += weight;
+        faces[place].add(corners, normal, area(t));
         face_of.push((t, place as u32));
     }
-    let plane = |face: &Face| {
-        let normal = direction(face.area);
-        let offset = normal.dot(face.moment) / face.weight;
-        Plane { normal, offset }
-    };
-    let mut planes: Vec<Plane> = faces.iter().map(plane).collect();
+    let mut planes: Vec<Plane> = faces.iter().map(Face::plane).collect();
     let mut corners = vec![Vec::new(); planes.len()];
     for (i, &(t, own)) in face_of.iter().enumerate() {
         watch.every(i)?;

@@ -153,30 +153,29 @@ pub fn resolve(
     for pair in pairs {
         impacts.ask(pair, 0.0, known.remove(&pair), work);
     }
-    while !impacts.leaves
-        && let Some(next) = impacts.earliest(work)
-    {
-        impacts.find_boxes();
-        let (pair, hit) = match next {
-            Next::Impact(pair, hit) => (pair, hit),
-            Next::Piece(time) => {
-                impacts.begin_piece(time, work);
-                continue;
-            }
-            Next::Spent => {
-                impacts.wait(work);
-                continue;
-            }
-        };
-        if impacts.stops_at(pair, hit.time) {
-            return Some(impacts.stop(hit.time, narrow_phase));
-        }
-        impacts.impact(pair, hit, work);
-    }
-    (!impacts.leaves).then(|| impacts.finish())
+    impacts.run(narrow_phase, work)
 }
 
 impl Loop<'_> {
+    /// Resolves what the queue holds, in the order of times. `None` if something may get to a collider that does not
+    /// take part.
+    fn run(mut self, narrow_phase: &NarrowPhase, work: &mut Work) -> Option<Outcome> {
+        while !self.leaves
+            && let Some(next) = self.earliest(work)
+        {
+            self.find_boxes();
+            match next {
+                Next::Impact(pair, hit) if self.stops_at(pair, hit.time) => {
+                    return Some(self.stop(hit.time, narrow_phase));
+                }
+                Next::Impact(pair, hit) => self.impact(pair, hit, work),
+                Next::Piece(time) => self.begin_piece(time, work),
+                Next::Spent => self.wait(work),
+            }
+        }
+        (!self.leaves).then(|| self.finish())
+    }
+
     /// Looks for the earliest impact, or end of a piece: always where the next may be, and no further than to where
     /// another may come first.
     fn earliest(&mut self, work: &mut Work) -> Option<Next> {

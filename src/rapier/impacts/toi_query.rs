@@ -243,13 +243,7 @@ impl CcdPolicy<'_> {
             true => hair,
             false => (tuning.sink * thickness).max(hair),
         };
-        let least = pair.map(|k| view.parts[k].least);
-        let least = least[0].min(least[1]);
-        let sinks = Sinks {
-            lies: least.min(tuning.lies * self.unit + self.sag),
-            to: tuning.floor * least,
-            by: by.min(tuning.sink * least),
-        };
+        let sinks = self.sinks(view, pair, by);
         Some(if fast {
             QueryOptions {
                 first: options(target, by, 0.0),
@@ -265,6 +259,17 @@ impl CcdPolicy<'_> {
                 sinks,
             }
         })
+    }
+
+    /// How deep a pair may lie on flat faces, where it may sink in `by` deeper elsewhere.
+    fn sinks(&self, view: &StepView, pair: [usize; 2], by: Real) -> Sinks {
+        let least = pair.map(|k| view.parts[k].least);
+        let least = least[0].min(least[1]);
+        Sinks {
+            lies: least.min(self.tuning.lies * self.unit + self.sag),
+            to: self.tuning.floor * least,
+            by: by.min(self.tuning.sink * least),
+        }
     }
 
     /// The first query of a pair of medial meshes at the start of the step, as a job of a batch; `None`

@@ -209,19 +209,10 @@ impl Joints {
             .iter()
             .map(|b| view.bodies[*b].velocity)
             .collect();
-        let mut end = own.clone();
-        if system.bodies.iter().any(|b| frozen(*b)) {
-            end = self.without_path(view, from, time, &system, &own);
-        } else {
-            for (k, end) in end.iter_mut().enumerate() {
-                *end = [0, 1].map(|i| own[k][i] + after[k][i] - before[k][i]);
-            }
-            if until.is_none() {
-                // A multibody has no others.
-                system.hold(&mut end);
-            }
-            system.take_no_energy(&own, &mut end);
-        }
+        let end = match system.bodies.iter().any(|b| frozen(*b)) {
+            true => self.without_path(view, from, time, &system, &own),
+            false => followed(&system, &own, [&before, &after], until.is_none()),
+        };
         let mut moved = Vec::new();
         for (k, &b) in system.bodies.iter().enumerate() {
             let gained = [0, 1].map(|i| end[k][i] - own[k][i]);
@@ -298,4 +289,22 @@ pub fn settle(
             false => body.go(tangents[k]),
         }
     }
+}
+
+/// Velocities that follow motions which joints changed from `before` to `after`, and gain no energy by that. `is_last`:
+/// these motions go to the end of the step.
+fn followed(
+    system: &System,
+    own: &[Twist],
+    [before, after]: [&[Twist]; 2],
+    is_last: bool,
+) -> Vec<Twist> {
+    let end = |k: usize| [0, 1].map(|i| own[k][i] + after[k][i] - before[k][i]);
+    let mut end: Vec<Twist> = (0..own.len()).map(end).collect();
+    if is_last {
+        // A multibody has no others.
+        system.hold(&mut end);
+    }
+    system.take_no_energy(own, &mut end);
+    end
 }
