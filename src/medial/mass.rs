@@ -43,19 +43,27 @@ pub fn solid_mass_properties(primitives: &[[Ball; 3]]) -> MassProperties {
 /// Mass properties of a solid of these moments at density 1.
 pub(super) fn mass_properties(moments: &Moments) -> MassProperties {
     let volume = moments.volume;
-    let mass = volume as Real;
-    if !(mass.is_normal() && (1.0 / mass).is_normal()) {
-        return MassProperties::default();
-    }
     let mean = moments.first * (1.0 / volume);
     let m = [mean.x, mean.y, mean.z];
     let covariance = Matrix3::from_fn(|i, j| moments.second[i][j] - volume * m[i] * m[j]);
     let axes =
         Matrix3::from_fn(|i, j| [moments.axes[j].x, moments.axes[j].y, moments.axes[j].z][i]);
-    let in_body = axes * covariance * axes.transpose();
-    let inertia = Matrix3::identity() * in_body.trace() - in_body;
     let center =
         moments.center + moments.axes[0] * m[0] + moments.axes[1] * m[1] + moments.axes[2] * m[2];
+    of_covariance(center, volume, axes * covariance * axes.transpose())
+}
+
+/// Mass properties of a body with this centre and volume at density 1. `covariance`: integrals of the products of two
+/// coordinates about the centre, over the volume. A volume that does not fit an `f32` gives parry's zero properties.
+///
+/// In double precision, since parry's own way to principal axes, in single precision, takes those of thin bodies for
+/// the axes of their frame.
+pub fn of_covariance(center: Vec3<f64>, volume: f64, covariance: Matrix3<f64>) -> MassProperties {
+    let mass = volume as Real;
+    if !(mass.is_normal() && (1.0 / mass).is_normal()) {
+        return MassProperties::default();
+    }
+    let inertia = Matrix3::identity() * covariance.trace() - covariance;
     let eigen = SymmetricEigen::new(inertia);
     let mut frame = eigen.eigenvectors;
     if frame.determinant() < 0.0 {

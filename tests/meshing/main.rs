@@ -27,6 +27,7 @@ mod prisms;
 mod scale;
 mod shapes;
 mod smallest;
+mod thin;
 mod threads;
 mod topology;
 mod touching;

@@ -8,13 +8,14 @@
 //! hit it.
 
 use crate::error::BuildError;
-use crate::math::{Real, Vector};
+use crate::math::Real;
+use crate::medial::mass::of_covariance;
 use crate::meshing::findings::MassSource;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::surface::checked_surface::{Frame, Surface};
 use crate::meshing::watch::Watch;
+use nalgebra::Matrix3;
 use parry3d::mass_properties::MassProperties;
-use parry3d::math::Matrix;
 
 /// Lines through the solid, about (a count). The error falls with its power −¾: below a thousandth
 /// of the volume at this count, for milliseconds.
@@ -220,25 +221,10 @@ impl Sums {
         let mean = self.first.map(|m| m / self.volume);
         // About the centre, in the lines' frame, then turned into the builder's.
         let covariance = |i: usize, j: usize| self.second[i][j] - self.volume * mean[i] * mean[j];
-        let axes = axes.map(|a| [a.x, a.y, a.z]);
-        let turned = |r: usize, s: usize| -> f64 {
-            let pairs = (0..9).map(|k| (k / 3, k % 3));
-            pairs
-                .map(|(i, j)| axes[i][r] * covariance(i, j) * axes[j][s])
-                .sum()
-        };
-        let trace: f64 = (0..3).map(|k| turned(k, k)).sum();
-        let entry = |r: usize, s: usize| {
-            let diagonal = if r == s { trace } else { 0.0 };
-            (diagonal - turned(r, s)) as Real
-        };
-        let column = |s: usize| Vector::new(entry(0, s), entry(1, s), entry(2, s));
-        let center = |r: usize| (0..3).map(|i| axes[i][r] * mean[i]).sum::<f64>() as Real;
-        Some(MassProperties::with_inertia_matrix(
-            Vector::new(center(0), center(1), center(2)),
-            self.volume as Real,
-            Matrix::from_cols(column(0), column(1), column(2)),
-        ))
+        let center = axes[0] * mean[0] + axes[1] * mean[1] + axes[2] * mean[2];
+        let axes = Matrix3::from_fn(|r, i| [axes[i].x, axes[i].y, axes[i].z][r]);
+        let covariance = axes * Matrix3::from_fn(covariance) * axes.transpose();
+        Some(of_covariance(center, self.volume, covariance))
     }
 }
 

@@ -125,6 +125,10 @@ impl Source {
         let Some(angle) = self.limits.creases.angle_of_flat() else {
             return Ok(None);
         };
+        // Matter that is thinner than corners may be off a plane is in no piece.
+        if parts.is_empty() {
+            return Ok(None);
+        }
         let mut draft = Draft::default();
         let (mut growth, mut bulge): (f64, f64) = (0.0, 0.0);
         for (surface, faces) in parts {

@@ -33,6 +33,10 @@ const CRUMB: f64 = 1e-3;
 /// any two layers that welding leaves apart.
 const BEHIND: f64 = 1e-7;
 
+/// Share of that distance at which it is asked for again where it tells of parts that overlap: behind a point near a
+/// sharp edge there may be less matter. Smaller, and rounding would decide.
+const RIM: f64 = 1e-3;
+
 /// A patch with less than this behind it, on average, is inside out.
 const INSIDE_OUT: f64 = 0.3;
 
@@ -197,7 +201,10 @@ impl PatchClassifier<'_> {
             }
             let outward = w.normal * f64::from(self.counts[patch]);
             let winding = tree.winding(w.point - outward * BEHIND);
-            behind.overlapping |= !(INSIDE_OUT..1.5).contains(&winding);
+            let overlaps = |winding: f64| !(INSIDE_OUT..1.5).contains(&winding);
+            // Next to a sharp edge the body may end before.
+            behind.overlapping |=
+                overlaps(winding) && overlaps(tree.winding(w.point - outward * (RIM * BEHIND)));
             let Some(group) = self.group[patch] else {
                 continue;
             };
