@@ -3,8 +3,8 @@
 //! # Files
 //! - Points and boxes: `bounds.rs`, four boxes side by side `four_boxes.rs`.
 //! - Triangles: `triangle.rs` (nearest point, solid angle), `nearest_triangle.rs` (distances to many),
-//!   `triangle_tree.rs` (distance and winding number), `subdivide.rs` (into smaller ones), `polygon_triangles.rs` (a
-//!   polygon with holes cut into triangles).
+//!   `triangle_tree.rs` (the tree over them), `winding.rs` (how often they wind round a point), `subdivide.rs` (into
+//!   smaller ones), `polygon_triangles.rs` (a polygon with holes cut into triangles).
 //! - Planes: `convex.rs` (convex polyhedra cut by them), `quadric.rs` (squared distances of a sphere to them).
 //! - Helpers: `chunks.rs` (work on all cores), `random.rs` (seeded), `union_find.rs` (groups of indices).
 
@@ -20,3 +20,4 @@ pub(crate) mod subdivide;
 pub(crate) mod triangle;
 pub(crate) mod triangle_tree;
 pub(crate) mod union_find;
+pub(crate) mod winding;

@@ -1,51 +1,49 @@
 //! A tree of boxes over the source triangles, in double precision: distance and winding number.
 //!
-//! Distances: `nearest_triangle.rs`. Winding number: Jacobson et al., "Robust Inside-Outside Segmentation using
-//! Generalized Winding Numbers" (2013), with the far field of Barill et al., "Fast Winding Numbers for Soups and
-//! Clouds" (2018): seen from afar, a group of triangles is one dipole at its centroid, whose moment is the sum of its
-//! area vectors.
+//! Distances: `nearest_triangle.rs`. Winding numbers: `winding.rs`; the dipoles that they need are formed here.
 
 use crate::error::BuildError;
 use crate::meshing::geometry::bounds::{Bounds, Point, coordinate, direction};
 use crate::meshing::geometry::nearest_triangle::NearestTriangle;
-use crate::meshing::geometry::triangle::{closest_on_triangle, solid_angle_of};
+use crate::meshing::geometry::triangle::closest_on_triangle;
+use crate::meshing::geometry::winding::closes;
 use crate::meshing::watch::{Watch, bytes_of};
 
 /// Triangles in a leaf. 2 to 8 differ by less than a tenth in time.
 const LEAF: usize = 4;
 
-/// A group is seen as a dipole from beyond this many of its radii. The error of the winding number
-/// is then below 0.05 on the models measured, and a ball is labelled by whether it exceeds ½.
-const FAR: f64 = 2.3;
-
-struct Node {
-    bounds: Bounds,
+pub(super) struct Node {
+    pub(super) bounds: Bounds,
     /// Leaf: first triangle. Inner: first of two neighbouring children.
-    first: u32,
+    pub(super) first: u32,
     /// Leaf: number of triangles. Inner: 0.
-    count: u32,
-    dipole: Dipole,
+    pub(super) count: u32,
+    pub(super) dipole: Dipole,
 }
 
+/// What a group of triangles looks like from afar: a dipole at its centroid.
 #[derive(Clone, Copy)]
-struct Dipole {
-    center: Point,
-    moment: Point,
+pub(super) struct Dipole {
+    pub(super) center: Point,
+    /// Sum of the area vectors.
+    pub(super) moment: Point,
     area: f64,
     /// Upper bound on the distance from `center` to the farthest corner of the group.
-    radius: f64,
+    pub(super) radius: f64,
 }
 
 /// Boxes over triangles; node 0 is the root.
 pub struct TriangleTree {
     /// Nodes of the tree for winding numbers.
-    nodes: Vec<Node>,
-    nearest: NearestTriangle,
+    pub(super) nodes: Vec<Node>,
+    pub(super) nearest: NearestTriangle,
     /// Place of each triangle among those given.
     given: Vec<u32>,
     /// How much each triangle counts in the winding number: 1, or −1 where it is seen from behind,
     /// or 0 where it bounds nothing.
-    counts: Vec<i8>,
+    pub(super) counts: Vec<i8>,
+    /// Whether the triangles that count close a surface.
+    pub(super) is_closed: bool,
 }
 
 /// Middle of a triangle, and its place among those given.
@@ -78,6 +76,7 @@ impl TriangleTree {
             nearest: NearestTriangle::new(sorted, watch)?,
             given: items.into_iter().map(|i| i.1).collect(),
             counts: vec![1; count],
+            is_closed: false,
         };
         tree.sum_up(watch)?;
         Ok(tree)
@@ -117,7 +116,7 @@ impl TriangleTree {
         }
     }
 
-    /// Forms the dipoles, children before parents.
+    /// Forms the dipoles, children before parents, and sees whether what counts is closed.
     fn sum_up(&mut self, watch: &mut Watch) -> Result<(), BuildError> {
         for index in (0..self.nodes.len()).rev() {
             watch.every(index)?;
@@ -131,6 +130,7 @@ impl TriangleTree {
                 Dipole::of_both(&left.dipole, &right.dipole, &node.bounds)
             };
         }
+        self.is_closed = closes(self.nearest.corners(), &self.counts, watch)?;
         Ok(())
     }
 
@@ -231,48 +231,6 @@ impl TriangleTree {
                 }
             });
         Some(if height <= 0.0 { -distance } else { distance })
-    }
-
-    /// How often the surface winds round `p`: 1 inside a closed outward surface, 0 outside, about
-    /// the share of directions that hit it where it is open.
-    pub fn winding(&self, p: Point) -> f64 {
-        self.winding_counted(p, &mut 0)
-    }
-
-    /// Does the same as [`Self::winding`]; adds 1 to `work`, and the number of triangles that were near enough to be
-    /// looked at.
-    pub fn winding_counted(&self, p: Point, work: &mut usize) -> f64 {
-        *work += 1;
-        let mut solid_angle = 0.0;
-        // Halving keeps the depth below 32, and each level leaves one node waiting.
-        let mut stack = [0u32; 64];
-        let mut len = 1;
-        while len > 0 {
-            len -= 1;
-            let node = &self.nodes[stack[len] as usize];
-            let to = node.dipole.center - p;
-            let distance_sq = to.length_sq();
-            let far = FAR * node.dipole.radius;
-            if distance_sq > far * far {
-                solid_angle += to.dot(node.dipole.moment) / (distance_sq * distance_sq.sqrt());
-                continue;
-            }
-            let first = node.first as usize;
-            if node.count > 0 {
-                *work += node.count as usize;
-                for i in first..first + node.count as usize {
-                    if self.counts[i] != 0 {
-                        let angle = solid_angle_of(p, &self.nearest.corners()[i]);
-                        solid_angle += f64::from(self.counts[i]) * angle;
-                    }
-                }
-            } else {
-                stack[len] = first as u32;
-                stack[len + 1] = first as u32 + 1;
-                len += 2;
-            }
-        }
-        solid_angle / (4.0 * std::f64::consts::PI)
     }
 }
 
