@@ -19,8 +19,8 @@ fn floating() -> PhysicsWorld {
     world
 }
 
-/// A light rod lies on the ground, and one 10,000 times as heavy is laid across it: how deep they get into each other, of
-/// the radii of both.
+/// A light rod lies on the ground, and one 10,000 times as heavy is laid across it: how deep they get into each other,
+/// of the radii of both.
 fn loaded(random: &mut Random, stepper: Stepper) -> Real {
     let mut world = PhysicsWorld::new();
     let ground = ColliderBuilder::cuboid(2.0, 0.5, 2.0).translation(Vector::Y * -0.5);
@@ -95,8 +95,9 @@ fn row(seed: u64, stepper: Stepper) -> String {
         100.0 * sum / CASES as Real
     };
     let deep = mean(&mut random, loaded);
-    let missed = (0..CASES).filter(|_| overlooked(&mut random, stepper));
-    let missed = missed.count();
+    let missed = (0..CASES)
+        .filter(|_| overlooked(&mut random, stepper))
+        .count();
     let landing = mean(&mut random, sunk);
     format!("{deep:.0} | {missed} | {landing:.1}")
 }

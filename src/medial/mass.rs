@@ -43,6 +43,7 @@ pub fn solid_mass_properties(primitives: &[[Ball; 3]]) -> MassProperties {
 /// Mass properties of a solid of these moments at density 1.
 pub(super) fn mass_properties(moments: &Moments) -> MassProperties {
     let volume = moments.volume;
+    // No numbers where the volume is 0; nothing is made of them then.
     let mean = moments.first * (1.0 / volume);
     let m = [mean.x, mean.y, mean.z];
     let covariance = Matrix3::from_fn(|i, j| moments.second[i][j] - volume * m[i] * m[j]);

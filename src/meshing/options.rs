@@ -142,9 +142,9 @@ pub struct Hausdorff {
     /// Largest distance from a point on the surface of the medial mesh to the triangle mesh. Only the larger of the two
     /// distances is searched for to the end: if this one is the smaller, it is a lower bound, and may be 0.
     pub envelope_to_surface: Real,
-    /// How far the triangle mesh sticks out of the medial mesh, at the points that were measured; between them by up to
-    /// [`Self::sampling`] more. After enclosure it does not stick out by more than [`BuildOptions::allow_uncovered`]
-    /// anywhere.
+    /// How far the triangle mesh sticks out of the medial mesh, at the points that were measured; nowhere farther than
+    /// [`Self::bound`]. With [`BuildOptions::enclose`] it sticks out nowhere by more than
+    /// [`BuildOptions::allow_uncovered`] permits.
     pub uncovered: Real,
     /// How far the medial mesh sticks out of the triangle mesh, at the points that were measured.
     pub bloat: Real,

@@ -207,8 +207,8 @@ impl Search<'_> {
         }
     }
 
-    /// The balls of a primitive, or of its core, where only cores meet, and the thickness that counts.
-    fn cores(&self, primitive: u32) -> (([Ball; 3], usize), Real) {
+    /// The balls of a primitive that count, those of its core where only cores meet, and the thickness that counts.
+    fn counted(&self, primitive: u32) -> (([Ball; 3], usize), Real) {
         let (all, len) = self.balls(primitive);
         let thickness = self.mesh.thicknesses().primitives[primitive as usize];
         let Some(cores) = &self.options.cores else {
@@ -220,7 +220,7 @@ impl Search<'_> {
     }
 
     fn leaf(&mut self, body: &Axisymmetric, primitives: [u32; 2], entry: &Entry) {
-        let ((mut all, len), thinner) = self.cores(primitives[0]);
+        let ((mut all, len), thinner) = self.counted(primitives[0]);
         let cap = CAP.saturating_mul(self.options.max_iterations);
         let radii = all[..len].iter().map(|b| b.radius);
         let thinnest = radii.fold(f64::INFINITY, f64::min);

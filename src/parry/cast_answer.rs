@@ -38,7 +38,8 @@ fn status(toi: &Toi) -> ShapeCastStatus {
     }
 }
 
-/// A contact told for a time `lower`, a fraction of `seconds`, with its points where the two motions have them then.
+/// A contact told for a time `lower`, a fraction of `seconds`, with its points where two straight motions have them
+/// then.
 pub(super) fn moved_to(
     lower: Real,
     mut toi: Toi,

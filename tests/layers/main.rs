@@ -253,25 +253,21 @@ fn files_open_with_what_they_are_and_stay_short() {
     }
 }
 
-/// The functions of a formatted source: each begins on a line with `fn`, and ends with a brace as far in. Their first
-/// lines, and how many they have.
+/// The functions of a formatted source, each by its first line and how many it has: it ends with a brace as far in.
 fn functions(text: &str) -> Vec<(&str, usize)> {
     let lines: Vec<&str> = text.lines().collect();
     let indent = |line: &str| line.len() - line.trim_start().len();
     let is_first = |line: &str| {
-        let before_name = line.trim_start().split("fn ").next().unwrap_or_default();
-        let words = before_name.split_whitespace();
-        line.contains("fn ")
-            && words
-                .into_iter()
-                .all(|w| w.starts_with("pub") || w == "const")
+        let qualifiers = ["const", "async", "unsafe"];
+        let (before_name, _) = line.trim_start().split_once("fn ").unwrap_or(("//", ""));
+        let mut words = before_name.split_whitespace();
+        words.all(|w| w.starts_with("pub") || qualifiers.contains(&w))
     };
-    let first = lines.iter().enumerate().filter(|(_, line)| is_first(line));
-    let of = |(start, line): (usize, &&'_ str)| {
-        let rest = lines[start..].iter();
-        let is_end = |l: &&str| indent(l) == indent(line) && l.ends_with(['}', ';']);
-        let length = rest.map(|l| *l).position(|l| is_end(&l));
-        (lines[start].trim(), length.map_or(1, |n| n + 1))
+    let first = (0..lines.len()).filter(|&i| is_first(lines[i]));
+    let of = |i: usize| {
+        let is_end = |l: &&str| indent(l) == indent(lines[i]) && l.ends_with(['}', ';']);
+        let end = lines[i..].iter().position(is_end);
+        (lines[i].trim(), end.map_or(1, |n| n + 1))
     };
     first.map(of).collect()
 }
@@ -284,7 +280,6 @@ fn functions_stay_short() {
         let text = fs::read_to_string(&path).expect("a readable source");
         for (line, length) in functions(&text) {
             found += 1;
-            // Arguments of rapier's own step are a line each.
             let is_long = length > LONGEST_FUNCTION;
             assert!(!is_long, "{}: {length} lines: {line}", path.display());
         }

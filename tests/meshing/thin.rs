@@ -4,12 +4,14 @@
 use crate::build;
 use crate::meshes::{Mesh, cuboid, prism, torus};
 use crate::oracle::Random;
+use nalgebra::{Matrix3, SymmetricEigen};
 use parry3d::math::{Rotation, Vector};
 use rapier3d_medial::meshing::MassSource;
 use std::f32::consts::TAU;
 
-/// The inertia of the solid inside a closed mesh at density 1 about its centre: tetrahedra with a common corner.
-fn inertia(mesh: &Mesh) -> [[f64; 3]; 3] {
+/// Volume of the solid inside a closed mesh, and its inertia at density 1 about its centre: tetrahedra with a common
+/// corner.
+fn moments(mesh: &Mesh) -> (f64, Matrix3<f64>) {
     let (mut volume, mut first, mut second) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
     let vertex = |v: u32| mesh.vertices[v as usize].to_array().map(f64::from);
     let origin = vertex(0);
@@ -33,10 +35,10 @@ fn inertia(mesh: &Mesh) -> [[f64; 3]; 3] {
     let about = |i: usize, j: usize| second[i][j] - first[i] * first[j] / volume;
     let trace: f64 = (0..3).map(|i| about(i, i)).sum();
     let entry = |i: usize, j: usize| if i == j { trace } else { 0.0 } - about(i, j);
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
+    (volume, Matrix3::from_fn(entry))
 }
 
-/// A regular prism of `sides` sides, 1 m across, about the z axis.
+/// A regular prism of `sides` sides about the z axis.
 fn disc(sides: u32, height: f32, radius: f32) -> Mesh {
     let corner = |k: u32| {
         let (sin, cos) = (TAU * k as f32 / sides as f32).sin_cos();
@@ -124,7 +126,6 @@ fn inertia_of_thin_bodies_is_that_of_their_meshes_however_they_are_turned() {
         ("block", plate(0.3)),
     ];
     let mut random = Random(3);
-    let mut worst = 0.0f64;
     for (name, mesh) in bodies {
         for (n, scale) in [1.0, 1.0, 1e-3, 1e3].into_iter().enumerate() {
             let axis = [0, 1, 2].map(|_| random.within(-1.0, 1.0) as f32);
@@ -134,19 +135,24 @@ fn inertia_of_thin_bodies_is_that_of_their_meshes_however_they_are_turned() {
             };
             let turned = mesh.clone().map(|p| turn * p * scale);
             let (medial, _) = build(&turned, 40, false);
-            let own = medial.mass_properties(1.0).reconstruct_inertia_matrix();
-            let known = inertia(&turned);
-            let trace: f64 = (0..3).map(|i| known[i][i]).sum();
-            for i in 0..3 {
-                for j in 0..3 {
-                    let off = (f64::from(own.col(j)[i]) - known[i][j]).abs() / trace;
-                    worst = worst.max(off);
-                    assert!(off < 1e-5, "{name} at {scale}: [{i}][{j}] is off by {off}");
-                }
+            let properties = medial.mass_properties(1.0);
+            let own = properties.reconstruct_inertia_matrix();
+            let (_, known) = moments(&turned);
+            for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
+                let off = (f64::from(own.col(j)[i]) - known[(i, j)]).abs() / known.trace();
+                assert!(off < 1e-5, "{name} at {scale}: [{i}][{j}] is off by {off}");
+            }
+            // The least of a rod is some millionths of the others.
+            let mut principal = properties.principal_inertia().to_array().map(f64::from);
+            let mut eigenvalues: [f64; 3] = SymmetricEigen::new(known).eigenvalues.into();
+            principal.sort_by(f64::total_cmp);
+            eigenvalues.sort_by(f64::total_cmp);
+            for (own, known) in principal.into_iter().zip(eigenvalues) {
+                let off = (own / known - 1.0).abs();
+                assert!(off < 1e-4, "{name} at {scale}: {own}, and not {known}");
             }
         }
     }
-    println!("off by {worst:.2e} of the trace at most");
 }
 
 /// Behind a point beside its sharp rim there is less matter than the distance at which winding numbers are asked for.
@@ -159,14 +165,21 @@ fn flat_tetrahedra_are_not_said_to_overlap() {
     }
 }
 
-/// Such lenses are thinner than corners may be off the planes of faces, so that no convex piece is left of them.
+/// Those below 7e-5 are thinner than corners may be off the planes of faces, so that no convex piece is left of them.
 #[test]
 fn lenses_without_thickness_are_built() {
     for thickness in [1e-4, 7e-5, 5e-5, 1e-5, 1e-6] {
-        let (medial, report) = build(&lens(thickness), 60, true);
+        let mesh = lens(thickness);
+        let (medial, report) = build(&mesh, 60, true);
         assert!((1..=60).contains(&report.primitives), "{thickness}");
+        // The rings of triangles are 0.05 wide: none is lost.
         let error = report.hausdorff.bound();
-        assert!(error < 0.02, "{thickness}: off by {error}");
-        assert!(medial.mass_properties(1.0).mass() > 0.0, "{thickness}");
+        assert!(error < 0.025, "{thickness}: off by {error}");
+        // Thinner, both sides are welded to one sheet.
+        if thickness >= 1e-5 {
+            let (mass, known) = (medial.mass_properties(1.0).mass(), moments(&mesh).0);
+            let off = f64::from(mass) / known - 1.0;
+            assert!(off.abs() < 1e-3, "{thickness}: {mass}, and not {known}");
+        }
     }
 }

@@ -4,9 +4,9 @@
 
 use crate::error::BuildError;
 use crate::meshing::geometry::bounds::{Bounds, Point, coordinate, direction};
+use crate::meshing::geometry::closed::closes;
 use crate::meshing::geometry::nearest_triangle::NearestTriangle;
 use crate::meshing::geometry::triangle::closest_on_triangle;
-use crate::meshing::geometry::winding::closes;
 use crate::meshing::watch::{Watch, bytes_of};
 
 /// Triangles in a leaf. 2 to 8 differ by less than a tenth in time.

@@ -5,11 +5,9 @@
 //! Winding Numbers" (2013), with the far field of Barill et al., "Fast Winding Numbers for Soups and Clouds" (2018):
 //! seen from afar, a group of triangles is one dipole at its centroid, whose moment is the sum of its area vectors.
 
-use crate::error::BuildError;
 use crate::meshing::geometry::bounds::{Bounds, Point};
 use crate::meshing::geometry::triangle::solid_angle_of;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::watch::Watch;
 
 /// A group is seen as a dipole from beyond this many of its radii. The error of the winding number
 /// is then below 0.05 on the models measured, and a ball is labelled by whether it exceeds ½.
@@ -22,15 +20,16 @@ const RAY: Point = Point {
     z: 0.551_670_129,
 };
 
-/// Rounding of a product of three coordinates of a point against another (longest side 1).
+/// Rounding of the volume that three ways of up to twice the longest side span (longest side 1); of shorter ones in
+/// units of the product of their lengths.
 const ROUNDING: f64 = 1e-14;
 
-/// Distance by which a ray that misses a box may seem to meet it, or the other way round (longest side 1).
+/// Distance beside a box at which a ray still counts as meeting it, because of rounding (longest side 1).
 const SLACK: f64 = 1e-12;
 
 impl TriangleTree {
-    /// How often the surface winds round `p`: 1 inside a closed outward surface, 0 outside, about the share of directions
-    /// that hit it where it is open.
+    /// How often the surface winds round `p`: 1 inside a closed outward surface, 0 outside, about the share of
+    /// directions that hit it where it is open.
     pub fn winding(&self, p: Point) -> f64 {
         self.winding_counted(p, &mut 0)
     }
@@ -77,8 +76,8 @@ impl TriangleTree {
         solid_angle / (4.0 * std::f64::consts::PI)
     }
 
-    /// How often a closed surface winds round `p`, from what a ray crosses; `None` where it passes an edge, or `p` is on
-    /// a triangle, to within rounding.
+    /// How often a closed surface winds round `p`, from what a ray crosses; `None` where the ray passes through an
+    /// edge, or `p` is on a triangle, to within rounding.
     fn crossings(&self, p: Point, work: &mut usize) -> Option<i32> {
         let mut times = 0;
         let mut stack = [0u32; 64];
@@ -120,11 +119,11 @@ fn meets(p: Point, bounds: &Bounds) -> bool {
     enters[0].max(0.0) <= leaves[1] + SLACK
 }
 
-/// 1 where the ray from `p` leaves through a triangle, that is from behind it, −1 where it enters, 0 where it passes it;
-/// `None` where rounding would decide.
+/// 1 where the ray from `p` passes through a triangle from behind, −1 where it does from the front, 0 where it misses
+/// it; `None` where rounding would decide.
 fn crossing(p: Point, corners: &[Point; 3]) -> Option<i32> {
     let [a, b, c] = corners.map(|corner| corner - p);
-    // Volumes of the ray and each side.
+    // Volumes that the ray spans with the ways to both ends of each side: of one sign where it passes between them.
     let sides = [b.cross(c), c.cross(a), a.cross(b)].map(|area| RAY.dot(area));
     let [least, most] = [
         sides.into_iter().fold(f64::MAX, f64::min),
@@ -149,47 +148,14 @@ fn crossing(p: Point, corners: &[Point; 3]) -> Option<i32> {
     })
 }
 
-/// Whether triangles close a surface, each as often as it counts: whether each edge is passed as often one way as the
-/// other. Told by the sum of numbers that the edges have by their places, positive one way and negative the other: of a
-/// surface with a border it is 0 in one of 2⁶⁴ cases.
-pub(super) fn closes(
-    triangles: &[[Point; 3]],
-    counts: &[i8],
-    watch: &mut Watch,
-) -> Result<bool, BuildError> {
-    let mut sum = 0u64;
-    for (i, (corners, &count)) in triangles.iter().zip(counts).enumerate() {
-        watch.every(i)?;
-        let [a, b, c] = corners.map(number);
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            let edge = mixed(from.min(to) ^ mixed(from.max(to)));
-            let times = if from < to { count } else { -count };
-            sum = sum.wrapping_add(edge.wrapping_mul(i64::from(times) as u64));
-        }
-    }
-    Ok(sum == 0)
-}
-
-/// A number for a place.
-fn number(p: Point) -> u64 {
-    // Of 0 and −0 the same.
-    let bits = |x: f64| (x + 0.0).to_bits();
-    mixed(bits(p.x) ^ mixed(bits(p.y) ^ mixed(bits(p.z))))
-}
-
-/// Spreads the bits of a number (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
-fn mixed(bits: u64) -> u64 {
-    let bits = bits.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ (bits >> 31)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::BuildError;
+    use crate::meshing::geometry::closed::closes;
     use crate::meshing::geometry::random::Random;
     use crate::meshing::options::Progress;
+    use crate::meshing::watch::Watch;
     use std::ops::ControlFlow;
 
     /// A box, turned about the z axis.
@@ -259,14 +225,18 @@ mod tests {
         let mut random = Random::new(7);
         let mut by_ray = 0;
         for _ in 0..40 {
-            let boxes = [(); 4].map(|()| Turned::random(&mut random));
-            // The last is a void.
-            let mut triangles: Vec<_> = boxes.iter().flat_map(|b| b.triangles()).collect();
-            let void = triangles.len() - 12;
-            triangles[void..].iter_mut().for_each(|t| t.swap(1, 2));
-            let tree = tree(&triangles);
+            let boxes = [(); 5].map(|()| Turned::random(&mut random));
+            let triangles: Vec<_> = boxes.iter().flat_map(|b| b.triangles()).collect();
+            let mut tree = tree(&triangles);
+            assert!(tree.is_closed);
+            // The fourth is a void, and the last does not count.
+            let counts = [1, 1, 1, -1, 0];
+            with_watch(|watch| tree.recount(|t| counts[t as usize / 12], watch));
             assert!(tree.is_closed);
             for k in 0..500 {
+                if k == 250 {
+                    tree.turn();
+                }
                 let mut unit = || random.unit() - 0.5;
                 let free = Point::new(unit(), unit(), unit());
                 // In the plane of a face, or on the height of a corner.
@@ -280,7 +250,8 @@ mod tests {
                     continue;
                 }
                 let inside = depths.map(|d| i32::from(d > 0.0));
-                let known = inside[0] + inside[1] + inside[2] - inside[3];
+                let all = inside.iter().zip(counts);
+                let known: i32 = all.map(|(inside, count)| inside * i32::from(count)).sum();
                 by_ray += usize::from(tree.crossings(p, &mut 0).is_some());
                 assert_eq!(tree.winding(p).round() as i32, known, "{p:?}");
             }

@@ -19,7 +19,7 @@ use crate::meshing::surface::orient::{Patch, Patches};
 use crate::meshing::surface::samples::even_samples;
 use crate::meshing::watch::Watch;
 
-/// Points looked at, by area. A winding number costs about 10 µs.
+/// Points looked at, by area. A winding number costs about 10 µs where the surface is open.
 const POINTS: usize = 4_096;
 
 /// Least number of points of each patch.
@@ -33,8 +33,8 @@ const CRUMB: f64 = 1e-3;
 /// any two layers that welding leaves apart.
 const BEHIND: f64 = 1e-7;
 
-/// Share of that distance at which it is asked for again where it tells of parts that overlap: behind a point near a
-/// sharp edge there may be less matter. Smaller, and rounding would decide.
+/// Share of [`BEHIND`] at which the winding number is asked for again where it tells of parts that overlap: behind a
+/// point near a sharp edge there may be less matter. Smaller, and rounding would decide.
 const RIM: f64 = 1e-3;
 
 /// A patch with less than this behind it, on average, is inside out.
@@ -202,7 +202,7 @@ impl PatchClassifier<'_> {
             let outward = w.normal * f64::from(self.counts[patch]);
             let winding = tree.winding(w.point - outward * BEHIND);
             let overlaps = |winding: f64| !(INSIDE_OUT..1.5).contains(&winding);
-            // Next to a sharp edge the body may end before.
+            // Next to a sharp edge the body may end before that point.
             behind.overlapping |=
                 overlaps(winding) && overlaps(tree.winding(w.point - outward * (RIM * BEHIND)));
             let Some(group) = self.group[patch] else {

@@ -302,7 +302,7 @@ fn followed(
     let end = |k: usize| [0, 1].map(|i| own[k][i] + after[k][i] - before[k][i]);
     let mut end: Vec<Twist> = (0..own.len()).map(end).collect();
     if is_last {
-        // A multibody has no others.
+        // A multibody has no velocities but those of its coordinates.
         system.hold(&mut end);
     }
     system.take_no_energy(own, &mut end);
