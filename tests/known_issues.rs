@@ -30,10 +30,7 @@ use scenes::wheels::{Ground, rolled};
 /// angles, most are missed.
 #[test]
 fn fast_bodies_whose_contacts_are_modified_pass_through_each_other() {
-    let rod = || {
-        let ends = [-0.5, 0.5].map(|z| MedialSphere::new(Vector::new(0.0, 0.0, z), 0.05));
-        MedialMesh::new(ends.to_vec(), vec![[0, 1]], vec![]).expect("a rod")
-    };
+    let rod = MedialMesh::capsule(Vector::Z * -0.5, Vector::Z * 0.5, 0.05).expect("a rod");
     let mut missed = 0;
     for phase in 0..16 {
         let mut world = PhysicsWorld::new();
@@ -42,12 +39,9 @@ fn fast_bodies_whose_contacts_are_modified_pass_through_each_other() {
         pipeline.attach(&mut world);
         let mut throw = |x: Real, turn: Real| {
             let body = RigidBodyBuilder::dynamic()
-                .pose(Pose::new(
-                    Vector::new(x, 0.0, 0.0),
-                    Vector::new(turn, 0.0, 0.0),
-                ))
-                .linvel(Vector::new(-60.0 * x.signum(), 0.0, 0.0));
-            let collider = ColliderBuilder::medial_mesh(rod())
+                .pose(Pose::new(Vector::X * x, Vector::X * turn))
+                .linvel(Vector::X * (-60.0 * x.signum()));
+            let collider = ColliderBuilder::medial_mesh(rod.clone())
                 .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
             world.insert(body, collider).0
         };
@@ -102,10 +96,8 @@ fn ball_struck_by_a_new_neighbour_sinks_into_the_plate_it_was_near() {
 #[cfg(debug_assertions)]
 fn rapier_panics_when_a_compound_in_contact_gets_another_shape() {
     let swapped = std::panic::catch_unwind(|| {
-        let ball = |x: Real| {
-            let at = Pose::from_translation(Vector::new(x, 0.0, 0.0));
-            (at, SharedShape::ball(0.2))
-        };
+        let at = |x: Real| Pose::from_translation(Vector::X * x);
+        let ball = |x: Real| (at(x), SharedShape::ball(0.2));
         let mut world = PhysicsWorld::new();
         world.insert_collider(ColliderBuilder::cuboid(5.0, 0.5, 5.0), None);
         let compound = SharedShape::compound(vec![ball(-0.3), ball(0.3)]);

@@ -115,6 +115,8 @@ fn inertia_of_thin_bodies_is_that_of_their_meshes_however_they_are_turned() {
     let plate = |height: f32| cuboid(Vector::new(1.0, 0.6, height));
     let bodies = [
         ("disc", disc(64, 0.004, 0.5)),
+        ("rod of 8 mm", disc(8, 1.0, 0.008)),
+        ("rod of 5 mm", disc(8, 1.0, 0.005)),
         ("rod of 3 mm", disc(8, 1.0, 0.003)),
         ("rod of 1 mm", disc(8, 1.0, 0.001)),
         ("ring of 5 cm", torus(0.5, 0.05, 32, 8)),

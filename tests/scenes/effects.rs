@@ -59,9 +59,9 @@ fn without_continuous_bodies_pass() {
     }
 }
 
-/// A kinematic bar presses a free one against a wall, so slowly that no step is fast. As long as there is room (after 31
-/// steps 25 mm are left between its axis and the wall) rapier's contacts alone keep the bars apart, and so they are with
-/// the impacts that the guard, and no other effect, gives them.
+/// A kinematic bar presses a free one against a wall, so slowly that no step is fast. As long as there is room (after
+/// 31 steps 25 mm are left between its axis and the wall) rapier's contacts alone keep the bars apart, and so they are
+/// with the impacts that the guard, and no other effect, gives them.
 #[test]
 fn a_slow_press_crosses_nothing_while_there_is_room() {
     for (effects, is_guarded) in [

@@ -22,8 +22,11 @@ use parry3d::math::Matrix;
 /// of the volume at this count, for milliseconds.
 const LINES: f64 = 65_536.0;
 
-/// Share of its trace by which the inertia that parry's axes give may differ from what was integrated.
+/// Share of its trace by which the inertia tensor about parry's axes may differ from what was integrated.
 const AXES: f64 = 5e-6;
+
+/// Share of each principal moment by which parry's may differ: that of a rod about itself is far below its trace.
+const MOMENTS: f64 = 2e-5;
 
 /// Thinner matter than this (longest side 1, volume over area) is rounding.
 const FLAT: f64 = 1e-9;
@@ -228,20 +231,30 @@ impl Sums {
         let center = axes[0] * mean[0] + axes[1] * mean[1] + axes[2] * mean[2];
         let axes = Matrix3::from_fn(|r, i| [axes[i].x, axes[i].y, axes[i].z][r]);
         let covariance = axes * Matrix3::from_fn(covariance) * axes.transpose();
-        let tensor = Matrix3::identity() * covariance.trace() - covariance;
-        let column = |s: usize| [0, 1, 2].map(|r| tensor[(r, s)] as Real).into();
-        let columns = Matrix::from_cols(column(0), column(1), column(2));
-        let found =
-            MassProperties::with_inertia_matrix(center.to_vector(), self.volume as Real, columns);
-        // parry finds the axes in single precision, and of thin bodies takes those of the frame.
-        let again = found.reconstruct_inertia_matrix();
-        let off = |k: usize| (f64::from(again.col(k % 3)[k / 3]) - tensor[(k / 3, k % 3)]).abs();
-        let is_right = (0..9).all(|k| off(k) <= AXES * tensor.trace());
-        Some(match is_right {
-            true => found,
-            false => of_covariance(center, self.volume, covariance),
-        })
+        let exact = of_covariance(center, self.volume, covariance);
+        Some(in_parrys_axes(&exact, covariance).unwrap_or(exact))
     }
+}
+
+/// The same mass properties about the axes that parry finds, if these are right: a body that has them moves as one
+/// whose inertia parry computed, bit by bit. It finds them in single precision, and of thin bodies takes those of the
+/// frame.
+fn in_parrys_axes(exact: &MassProperties, covariance: Matrix3<f64>) -> Option<MassProperties> {
+    let tensor = Matrix3::identity() * covariance.trace() - covariance;
+    let column = |s: usize| [0, 1, 2].map(|r| tensor[(r, s)] as Real).into();
+    let columns = Matrix::from_cols(column(0), column(1), column(2));
+    let found = MassProperties::with_inertia_matrix(exact.local_com, exact.mass(), columns);
+    let again = found.reconstruct_inertia_matrix();
+    let off = |k: usize| (f64::from(again.col(k % 3)[k / 3]) - tensor[(k / 3, k % 3)]).abs();
+    let principal = |of: &MassProperties| {
+        let mut moments = of.principal_inertia().to_array().map(f64::from);
+        moments.sort_by(f64::total_cmp);
+        moments
+    };
+    let mut moments = principal(&found).into_iter().zip(principal(exact));
+    let is_right = (0..9).all(|k| off(k) <= AXES * tensor.trace())
+        && moments.all(|(found, exact)| (found - exact).abs() <= MOMENTS * exact);
+    is_right.then_some(found)
 }
 
 /// An orthonormal frame whose axes have incommensurable components; the lines run along the third.
