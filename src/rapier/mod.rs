@@ -6,8 +6,9 @@
 //! `impacts/` and `joints/`). What rapier 0.36 has to be told in roundabout ways is in `host/`.
 //!
 //! # Files
-//! - What users call: `pipeline.rs`, and between two steps `prepare.rs`; `integration/` adds to rapier's builders.
-//!   Settings: `effects.rs`, the constants of the event loop `tuning.rs`. What a step tells: `report.rs`.
+//! - What users call: `pipeline.rs`, with sets of their own `pipeline_for_sets.rs`, and between two steps `prepare.rs`;
+//!   `integration/` adds to rapier's builders. Settings: `effects.rs`, the constants of the event loop `tuning.rs`.
+//!   What a step tells: `report.rs`.
 //! - What a step is taken with: `step_args.rs`, rapier's sets `world.rs`. Its plan: `step_plan.rs`; what
 //!   bodies are given for the length of rapier's step: `loans.rs`. What is kept from step to step: `state.rs`.
 
@@ -19,6 +20,7 @@ mod integration;
 mod joints;
 mod loans;
 mod pipeline;
+mod pipeline_for_sets;
 mod planning;
 #[cfg(feature = "gpu")]
 mod prepare;

@@ -1,21 +1,13 @@
-//! [`MedialPipeline`]: what a user calls in place of rapier's step. `step.rs` has the step itself.
+//! [`MedialPipeline`]: what a user calls in place of rapier's step. `pipeline_for_sets.rs` takes rapier's sets one by
+//! one, `step.rs` has the step itself.
 
 use crate::batch::Batch;
-use crate::math::Vector;
-use crate::parry::MedialDispatcher;
 use crate::rapier::effects::{Effects, MedialOptions};
 use crate::rapier::report::StepReport;
 use crate::rapier::state::State;
 use crate::rapier::tuning::Tuning;
-use crate::rapier::world::World;
-use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
-use rapier3d::dynamics::{
-    CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
-    RigidBodySet, SoftBodySet,
-};
-use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
-use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, PhysicsWorld};
-use std::sync::Arc;
+use rapier3d::geometry::ColliderHandle;
+use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsWorld};
 
 /// Steps a world with medial colliders: call [`Self::step`] in place of `world.step()`. Use one pipeline for
 /// each world.
@@ -45,7 +37,7 @@ use std::sync::Arc;
 /// ```
 pub struct MedialPipeline {
     pub(crate) state: State,
-    is_attached: bool,
+    pub(super) is_attached: bool,
 }
 
 impl Default for MedialPipeline {
@@ -108,15 +100,6 @@ impl MedialPipeline {
         self.attach_sets(&mut world.narrow_phase);
     }
 
-    /// Prepares like [`Self::attach`], for games that keep rapier's sets themselves.
-    pub fn attach_sets(&mut self, narrow_phase: &mut NarrowPhase) {
-        self.is_attached = true;
-        // Those that impacts moved in another world, or a later state of it.
-        self.state.moved = None;
-        let dispatcher = MedialDispatcher::new(Arc::clone(&self.state.exchange));
-        narrow_phase.set_query_dispatcher(dispatcher.chain(DefaultQueryDispatcher));
-    }
-
     /// Steps the world by `world.integration_parameters.dt`: call it in place of `world.step()`. The report
     /// counts what was done; [`StepReport::events`], [`StepReport::continuous_queries`] and [`StepReport::frozen`] tell
     /// most.
@@ -155,47 +138,5 @@ impl MedialPipeline {
             hooks,
             events,
         )
-    }
-
-    /// Steps like [`Self::step_with_events`], for games that keep rapier's sets themselves. It takes the arguments of
-    /// [`PhysicsPipeline::step`], and before them rapier's pipeline itself.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the arguments of rapier's own step"
-    )]
-    pub fn step_sets(
-        &mut self,
-        pipeline: &mut PhysicsPipeline,
-        gravity: Vector,
-        parameters: &IntegrationParameters,
-        islands: &mut IslandManager,
-        broad_phase: &mut BroadPhaseBvh,
-        narrow_phase: &mut NarrowPhase,
-        bodies: &mut RigidBodySet,
-        colliders: &mut ColliderSet,
-        impulse_joints: &mut ImpulseJointSet,
-        multibody_joints: &mut MultibodyJointSet,
-        soft_bodies: &mut SoftBodySet,
-        ccd_solver: &mut CCDSolver,
-        hooks: &dyn PhysicsHooks,
-        events: &dyn EventHandler,
-    ) -> StepReport {
-        if !self.is_attached {
-            self.attach_sets(narrow_phase);
-        }
-        let mut world = World {
-            pipeline,
-            gravity,
-            islands,
-            broad_phase,
-            narrow_phase,
-            bodies,
-            colliders,
-            impulse_joints,
-            multibody_joints,
-            soft_bodies,
-            ccd_solver,
-        };
-        self.state.step(&mut world, parameters, hooks, events)
     }
 }
