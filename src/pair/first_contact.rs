@@ -13,7 +13,7 @@ use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
 use crate::elementary::{Paths, Toi, ToiOptions};
 use crate::math::counters::counters;
 use crate::math::motion::RigidMotion;
-use crate::math::{Real, Vector};
+use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
@@ -122,7 +122,7 @@ pub struct Query<'a, A, B> {
     seconds: Real,
     options: ToiOptions,
     /// `None` for bad input.
-    search: Option<Search<'a, A, B>>,
+    pub(super) search: Option<Search<'a, A, B>>,
     settled: bool,
 }
 
@@ -221,6 +221,12 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
 
     /// The answer, once the query is settled.
     pub fn toi(&self) -> Toi {
+        let toi = self.of_found();
+        self.shielded(&toi).unwrap_or(toi)
+    }
+
+    /// The answer with the primitives that were found.
+    fn of_found(&self) -> Toi {
         let Some(Search {
             sides,
             earliest,
@@ -241,11 +247,15 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
             };
             let i = usize::from(i);
             let s = found.map_or(spheres[i], |of| of.parts[side].sphere(&spheres, i));
-            let at = self.motions[side].position_at_time(t * self.seconds);
-            MedialSphere::new(at * s.center, s.radius)
+            MedialSphere::new(self.pose_at(side, t) * s.center, s.radius)
         };
         let toi = to_toi(earliest, &self.options, pose);
         met.as_ref().map_or(toi, |met| self.of_pieces(toi, met))
+    }
+
+    /// Pose of a body at a time, a fraction of the step.
+    pub(super) fn pose_at(&self, side: usize, time: Real) -> Pose {
+        self.motions[side].position_at_time(time * self.seconds)
     }
 
     /// The answer with what is known of two convex pieces that met.
@@ -277,7 +287,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         Some(self.origin(toi) + joined.middle().to_vector())
     }
 
-    /// The primitives or faces that met, once the query is settled and has found a contact.
+    /// The primitives or faces that met, once the query is settled and has found a contact, or those that shield them.
     pub fn met(&self) -> Option<Met> {
         let search = self.search.as_ref()?;
         let (_, found, primitives) = search.earliest.found?;
@@ -295,6 +305,11 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
             return Some(Met::faces(points, normal, met.of));
         }
         let (a, b) = (search.sides.0.body, search.sides.1.body);
+        if let Some(shielded) = self.shielded(&self.of_found()) {
+            let [p, q] = shielded.primitives;
+            let [(a, of_a), (b, of_b)] = [a.primitive(p), b.primitive(q)];
+            return Some(Met::primitives([a, b], [of_a.spheres, of_b.spheres]));
+        }
         let whole = [a.primitive(primitives[0]), b.primitive(primitives[1])];
         let counted = |side: usize| {
             let (all, share) = whole[side];

@@ -9,6 +9,7 @@
 //!   `swept.rs` (one body in motion), `queue.rs` (what may meet, the soonest first), `waiting.rs` (what is apart for a
 //!   while), `leaves.rs` (two primitives), `convex_pieces.rs` (two convex pieces), `deepening.rs` (contacts at the
 //!   start that may sink in a little), `tips.rs` (primitives without their thin ends), `ending.rs` (the answer).
+//! - Contacts of parts that their neighbours shield: `ghost_contacts.rs`; of first contacts `shielded.rs`.
 //! - Where bodies met: `met.rs` (the primitives or faces), `piece_contact.rs` (the place on two convex pieces),
 //!   `patch.rs` (flat faces on each other).
 //! - Proofs that two are apart: in motion `apart.rs` (along chords) and `path_ends.rs` (in exact rigid motion); at
@@ -34,6 +35,7 @@ pub(crate) mod distance;
 mod ending;
 mod face_contacts;
 pub mod first_contact;
+pub(crate) mod ghost_contacts;
 pub(crate) mod held_back;
 mod hull_gap;
 mod hulls;
@@ -51,6 +53,7 @@ mod primitive_pair;
 pub(crate) mod primitive_tree;
 mod queue;
 mod search;
+mod shielded;
 mod sphere_pair;
 mod swept;
 pub mod thinned;

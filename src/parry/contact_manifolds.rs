@@ -3,12 +3,11 @@
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
 use super::contact_reduction::{self, Load};
-use super::convex_parts::{Part, child_reach, part_number, slack, slack_of};
+use super::convex_parts::{Part, child_reach, part_number, slack, slack_of, slack_of_part};
 use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
 use super::flat_face;
-use super::ghost_contacts::{PartContact, ghosts};
 use super::inward_contacts;
 use super::manifold_points;
 use super::manifolds::{self, ensure_workspace, write_one_point};
@@ -18,6 +17,7 @@ use super::voxel_normals;
 use crate::batch::PairJob;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
+use crate::pair::ghost_contacts::{PartContact, ghosts};
 use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     Unsupported,
@@ -156,7 +156,9 @@ fn correct<M, C>(
         }
         _ if by_parry => {
             // First, so that none is turned to the normal of one that it is a ghost of.
-            leave_out_ghosts(manifolds, (mesh, side), &pose);
+            let reach = |part, n| Part::of(mesh, part).reach(n);
+            let slack = |part| slack(mesh, &pose) + slack_of_part(mesh, part, other);
+            leave_out_ghosts_of(manifolds, (side, reach), |child| child, slack);
             touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
             if let TypedShape::Compound(compound) = other.as_typed_shape() {
                 leave_out_childrens_ghosts(manifolds, (mesh, side), (compound, &pose));

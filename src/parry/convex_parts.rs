@@ -9,9 +9,12 @@ use parry3d::shape::{Compound, Shape, TypedShape};
 /// Slack of heights that are compared, in units of the sizes in play: about eight ulps of `f32`.
 const SLACK: Real = 1.0e-6;
 
-/// Tilt of parry's (GJK) normals that is allowed for, a slope. Of rings on tiles one in a hundred is off by more than
-/// 6e-5, one in seven thousand by more than 2e-4; what is off by more keeps its ghost.
+/// Tilt of parry's (GJK) normals that is allowed for between a compound's children, a slope. Of rings on tiles one in a
+/// hundred is off by more than 6e-5, one in seven thousand by more than 2e-4; what is off by more keeps its ghost.
 const TILT: Real = 1.0e-4;
+
+/// The same between a mesh's own parts: of boxes on slabs it is up to 4e-4.
+const TILT_OF_PARTS: Real = 5.0e-4;
 
 /// A step lower than this share of a body's size may count as level on account of that.
 const LOW: Real = 1.0e-3;
@@ -83,6 +86,16 @@ pub fn child_reach(compound: &Compound, child: u32, n: Vector) -> Real {
     let support = compound.shapes().get(child as usize);
     let support = support.and_then(|(pose, shape)| Some((pose, shape.as_support_map()?)));
     support.map_or(Real::MAX, |(pose, map)| n.dot(map.support_point(pose, n)))
+}
+
+/// Slack of heights of a mesh's part beside another shape, a length, besides that of all parts.
+pub fn slack_of_part(mesh: &MedialMesh, primitive: u32, other: &dyn Shape) -> Real {
+    let part = Part::of(mesh, primitive);
+    let size = |n: Vector| part.reach(n) + part.reach(-n);
+    let size = [Vector::X, Vector::Y, Vector::Z].map(size);
+    let size = size.into_iter().fold(0.0, Real::max);
+    let low = LOW * other.compute_local_aabb().extents().max_element();
+    low.min(TILT_OF_PARTS * size)
 }
 
 /// Slack of heights of a compound's child beside a mesh, a length.

@@ -6,13 +6,13 @@
 //! colliders a chain of rings falls apart.)
 
 use super::convex_parts::{Part, part_number, slack};
-use super::ghost_contacts::{PartContact, ghosts};
 use crate::batch::PairResult;
 use crate::math::tolerance::ONE_DIRECTION;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
 use crate::pair::contacts::along_old_normal;
+use crate::pair::ghost_contacts::{PartContact, ghosts};
 use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     TrackedContact,

@@ -38,7 +38,6 @@ pub(crate) mod distance;
 mod false_contacts;
 pub(crate) mod flat_face;
 mod folds;
-mod ghost_contacts;
 pub mod initial_contacts;
 pub(crate) mod inside;
 mod inward_contacts;

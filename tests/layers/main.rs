@@ -66,6 +66,7 @@ const ROOMS: [(&str, &[&str]); 2] = [
             "resolving",
             "step",
             "pipeline",
+            "pipeline_for_sets",
             "prepare",
             "integration",
         ],

@@ -60,6 +60,7 @@ mod linking;
 mod local_thickness;
 mod lock_box;
 mod locked_axes;
+mod medial_floors;
 mod modified;
 mod multibodies;
 mod muted;
