@@ -48,8 +48,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
         })
     }
 
-    /// A contact, its normal in the first body's frame, that shields the one found, with the same convex part of one of the two
-    /// bodies.
+    /// A contact that shields the one found, with the same convex part of one of the two bodies; its normal is in the
+    /// first body's frame.
     fn shield(&self, toi: &Toi, poses: &[Pose; 2]) -> Option<SpherePair> {
         let search = self.search.as_ref()?;
         let bodies = (search.sides.0.body, search.sides.1.body);
