@@ -31,6 +31,10 @@ const MOST_SLANT: Real = 0.5;
 /// than it asks for, is stopped by what it only passes; smaller, and rounding of the poses decides.
 const PRECISION: Real = 2.0;
 
+/// Tolerance of a cast of a small mesh, in units of the longest side of its box. Larger, and small bodies would be hit
+/// while they are apart by much of their size.
+const PRECISE: Real = 1.0e-4;
+
 /// Height above a plane, in tolerances beyond the target distance, up to which a mesh counts as lying on it: an impact
 /// leaves it within one of them.
 const LIES_ABOVE: Real = 2.0;
@@ -106,9 +110,12 @@ impl Cast<'_> {
         let motion2 = started(self.motion2, start);
         let way = (motion1.linvel - motion2.linvel) * seconds;
         let grazing = self.grazing([&motion1, &motion2], way);
+        let usual = ToiOptions::default();
+        let fine = PRECISE * self.mesh.aabb().extents().max_element();
         let mut options = ToiOptions {
             target_distance: self.target_distance,
-            ..ToiOptions::default()
+            tolerance: usual.tolerance.min(fine.max(grazing)),
+            ..usual
         };
         if self.stop_approach {
             options.tolerance = options.tolerance.min(PRECISION * grazing);

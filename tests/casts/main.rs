@@ -15,6 +15,7 @@ mod rolling;
 mod rotating;
 mod shallow;
 mod shapes;
+mod small;
 mod solid;
 mod table;
 mod terrain;
