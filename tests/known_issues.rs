@@ -416,11 +416,10 @@ fn slow_wheels_of_few_cones_roll_slower_than_rapiers_own() {
     assert!(ours < own - 0.02, "{ours} m/s, rapier's own {own}: mended?");
 }
 
-/// In one or two of 120 heaps whose bodies get other shapes a pair hangs in each other in the end, here by 56 mm:
-/// whether and where is chance. In the others none is deeper than 6.9 mm, as with rapier's own shapes
-/// (`scenes put_in_place`).
+/// In one or two of 120 heaps whose bodies get other shapes a pair hangs in each other in the end: whether and where is
+/// chance. In the others none is deeper than 6.9 mm, as with rapier's own shapes (`scenes put_in_place`).
 #[test]
 fn a_pair_hangs_in_each_other_in_a_heap_of_changed_shapes() {
-    let depth = heap(60).depth;
-    assert!(depth > 0.0069, "{depth} m deep: mended?");
+    let hangs = (0..120).any(|seed| heap(seed).depth > 0.0069);
+    assert!(hangs, "in none of 120 heaps: mended?");
 }

@@ -221,12 +221,11 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
 
     /// The answer, once the query is settled.
     pub fn toi(&self) -> Toi {
-        let toi = self.of_found();
-        self.shielded(&toi).unwrap_or(toi)
+        self.shielded(self.toi_of_found())
     }
 
     /// The answer with the primitives that were found.
-    fn of_found(&self) -> Toi {
+    fn toi_of_found(&self) -> Toi {
         let Some(Search {
             sides,
             earliest,
@@ -287,7 +286,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         Some(self.origin(toi) + joined.middle().to_vector())
     }
 
-    /// The primitives or faces that met, once the query is settled and has found a contact, or those that shield them.
+    /// The primitives or faces that met, or the primitives that shield those, once the query is settled and has found a
+    /// contact.
     pub fn met(&self) -> Option<Met> {
         let search = self.search.as_ref()?;
         let (_, found, primitives) = search.earliest.found?;
@@ -305,8 +305,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
             return Some(Met::faces(points, normal, met.of));
         }
         let (a, b) = (search.sides.0.body, search.sides.1.body);
-        if let Some(shielded) = self.shielded(&self.of_found()) {
-            let [p, q] = shielded.primitives;
+        if let Some(shield) = self.shielding_contact(&self.toi_of_found()) {
+            let [p, q] = shield.primitives;
             let [(a, of_a), (b, of_b)] = [a.primitive(p), b.primitive(q)];
             return Some(Met::primitives([a, b], [of_a.spheres, of_b.spheres]));
         }

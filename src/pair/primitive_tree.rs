@@ -53,6 +53,10 @@ pub trait PrimitiveTree {
     fn piece_of(&self, _primitive: u32) -> Option<u32> {
         None
     }
+    /// Whether it is a medial mesh, whose primitives make one solid, so that some are inside others.
+    fn is_medial(&self) -> bool {
+        false
+    }
     /// Whether what is below a node is known to be convex.
     fn is_convex(&self, node: u32) -> bool {
         matches!(self.kind(node), NodeKind::Primitive(_)) || self.convex_piece(node).is_some()
@@ -77,6 +81,9 @@ pub(super) fn thickness(body: &impl PrimitiveTree, node: u32) -> Real {
 }
 
 impl PrimitiveTree for MedialMesh {
+    fn is_medial(&self) -> bool {
+        true
+    }
     fn roots(&self) -> u32 {
         1
     }

@@ -1,9 +1,12 @@
-//! First contacts with a part of a body that its neighbours shield ([`super::ghost_contacts`]).
+//! First contacts with a primitive of a medial mesh that another one shields ([`super::ghost_contacts`]).
 //!
 //! A solver lets bodies sink in a little. What rolls on a level plate of several slabs, just below its top, comes to
 //! the rim of the next slab under a normal that is aslant, and would be thrown up there. The rim is inside the plate:
-//! the slab on which the body lies keeps it from the next one. So such a contact gets the normal of the one that
-//! shields it, along which the body does not approach.
+//! the slab on which the body lies keeps it from the next one. So such a contact gets the normal and the place of the
+//! one that shields it. If the body does not approach along that normal, it goes on, and the two primitives touch.
+//!
+//! This is for first contacts only. At the floor ([`crate::elementary::Cores`]), where a body has to stop, no contact
+//! is shielded: one may be deep for a thin primitive and not for the thick one that shields it.
 
 use super::contact_list::ContactList;
 use super::first_contact::{Counts, Query};
@@ -11,93 +14,136 @@ use super::ghost_contacts::{PartContact, ghosts};
 use super::placement::Placement;
 use super::primitive_pair::PrimitivePair;
 use super::primitive_tree::PrimitiveTree;
+use super::search::Search;
 use super::sphere_pair::SpherePair;
 use crate::elementary::{Toi, ToiStatus};
 use crate::math::{Pose, Real, Vector};
+use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 
 /// Rounding of heights, in units of the coordinates.
 const SLACK: Real = 1.0e-6;
 
-/// How far a primitive of a body reaches along a unit direction, in the frame in which the body is at `pose`.
-fn reach(body: &impl PrimitiveTree, pose: &Pose, primitive: u32, n: Vector) -> Real {
+/// How much deeper than a contact the other body may be along its normal, if it is to shield a primitive, in units of the
+/// primitive's least radius: what slides is tilted a little. Larger, and it may be deep in the primitive.
+const SUNK: Real = 0.1;
+
+/// The spheres of a primitive.
+fn spheres(body: &impl PrimitiveTree, primitive: u32) -> impl Iterator<Item = MedialSphere> {
     let (spheres, share) = body.primitive(primitive);
-    let heights = spheres[..share.spheres].iter();
+    spheres.into_iter().take(share.spheres)
+}
+
+/// How far primitives of a body that is at `pose` reach along a unit direction, a length.
+fn reach(
+    body: &impl PrimitiveTree,
+    pose: &Pose,
+    primitives: impl Iterator<Item = u32>,
+    n: Vector,
+) -> Real {
+    let heights = primitives.flat_map(|p| spheres(body, p));
     let heights = heights.map(|s| n.dot(pose * s.center) + s.radius);
     heights.fold(Real::MIN, Real::max)
 }
 
+/// The largest coordinate of a primitive of a body that is at `pose`, and in the body's own frame, a length.
+fn size(body: &impl PrimitiveTree, pose: &Pose, primitive: u32) -> Real {
+    let sizes = spheres(body, primitive).map(|s| {
+        let placed = (pose * s.center).abs().max_element();
+        placed.max(s.center.abs().max_element()) + s.radius
+    });
+    sizes.fold(0.0, Real::max)
+}
+
 impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
-    /// The answer of a contact that another one shields: with the primitives, the normal and the place of that one.
-    /// `None` where none does. Only primitives that touched at the start may shield others.
-    pub(super) fn shielded(&self, toi: &Toi) -> Option<Toi> {
-        let met = self.search.as_ref().and_then(|search| search.met.as_ref());
-        if toi.status != ToiStatus::Contact || met.is_some() {
+    /// The contact that shields the one of an answer, if there is any: its normal is in the first body's frame, each
+    /// point in its own body's. Only primitives that touched at the start may shield others.
+    pub(super) fn shielding_contact(&self, toi: &Toi) -> Option<SpherePair> {
+        let search = self.search.as_ref()?;
+        let is_floor = search.cores.is_some_and(|cores| cores.share > 0.0);
+        if toi.status != ToiStatus::Contact || search.met.is_some() || is_floor {
             return None;
         }
         let poses = [0, 1].map(|side| self.pose_at(side, toi.lower));
-        let shield = self.shield(toi, &poses)?;
-        let normal = poses[0].rotation * shield.normal;
-        let middle = (poses[0] * shield.points[0] + poses[1] * shield.points[1]) * 0.5;
-        let half = normal * (0.5 * (toi.points[1] - toi.points[0]).dot(toi.normal));
-        Some(Toi {
-            normal,
-            points: [middle - half, middle + half],
-            primitives: shield.primitives,
-            ..*toi
-        })
+        let place = Placement::new(&poses[0].inv_mul(&poses[1]));
+        let gap = (toi.points[1] - toi.points[0]).dot(toi.normal);
+        let touching = search.touching.iter();
+        let contacts = touching.filter_map(|(nodes, _)| {
+            let contact = deepest_contact(search, *nodes, &place, gap)?;
+            is_shielded(search, toi, &contact, &poses).then_some(contact)
+        });
+        // The others may be ghosts of it.
+        contacts.min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
-    /// A contact that shields the one found, with the same convex part of one of the two bodies; its normal is in the
-    /// first body's frame.
-    fn shield(&self, toi: &Toi, poses: &[Pose; 2]) -> Option<SpherePair> {
-        let search = self.search.as_ref()?;
-        let bodies = (search.sides.0.body, search.sides.1.body);
-        let found = toi.primitives;
-        let parts = [
-            bodies.0.convex_part(found[0]),
-            bodies.1.convex_part(found[1]),
-        ];
-        let pos12 = poses[0].inv_mul(&poses[1]);
-        let place = Placement::new(&pos12);
-        let gap = (toi.points[1] - toi.points[0]).dot(toi.normal);
-        let shield = |(nodes, _): &([u32; 2], f64)| {
-            let kinds = (bodies.0.kind(nodes[0]), bodies.1.kind(nodes[1]));
-            let (NodeKind::Primitive(p), NodeKind::Primitive(q)) = kinds else {
-                return None;
-            };
-            let same = [parts[0].contains(&p), parts[1].contains(&q)];
-            let body = match same {
-                [false, true] => 0,
-                [true, false] => 1,
-                _ => return None,
-            };
-            let mut list = ContactList::new(gap.into());
-            let pair = PrimitivePair::new(bodies.0, bodies.1, [p, q], &place);
-            pair.contacts(&mut list, &mut Counts::default());
-            let contacts = list.into_contacts().into_iter();
-            let deepest = contacts.min_by(|a, b| a.distance.total_cmp(&b.distance))?;
-            let shields = match body {
-                0 => shields(bodies.0, 0, &deepest, toi, poses),
-                _ => shields(bodies.1, 1, &deepest, toi, poses),
-            };
-            shields.then_some(deepest)
+    /// An answer with the normal and the place of the contact that shields its own.
+    pub(super) fn shielded(&self, toi: Toi) -> Toi {
+        let Some(contact) = self.shielding_contact(&toi) else {
+            return toi;
         };
-        // Others may be in its shade themselves.
-        let shields = search.touching.iter().filter_map(shield);
-        shields.min_by(|a, b| a.distance.total_cmp(&b.distance))
+        let poses = [0, 1].map(|side| self.pose_at(side, toi.lower));
+        let normal = poses[0].rotation * contact.normal;
+        let middle = (poses[0] * contact.points[0] + poses[1] * contact.points[1]) * 0.5;
+        let half = normal * (0.5 * (toi.points[1] - toi.points[0]).dot(toi.normal));
+        Toi {
+            normal,
+            points: [middle - half, middle + half],
+            ..toi
+        }
     }
 }
 
-/// Whether a contact with a primitive of `body`, which is the first or the second (`side`), shields the one found with
-/// another primitive of it.
+/// The deepest contact of two primitives, given by their nodes, that are no farther apart than `gap` (a length) or
+/// overlap.
+fn deepest_contact<A: PrimitiveTree, B: PrimitiveTree>(
+    search: &Search<A, B>,
+    [i, j]: [u32; 2],
+    place: &Placement,
+    gap: Real,
+) -> Option<SpherePair> {
+    let (first, second) = (search.sides.0.body, search.sides.1.body);
+    let (NodeKind::Primitive(p), NodeKind::Primitive(q)) = (first.kind(i), second.kind(j)) else {
+        return None;
+    };
+    let mut found = ContactList::new(gap.max(0.0).into());
+    let pair = PrimitivePair::new(first, second, [p, q], place);
+    pair.contacts(&mut found, &mut Counts::default());
+    let contacts = found.into_contacts().into_iter();
+    contacts.min_by(|a, b| a.distance.total_cmp(&b.distance))
+}
+
+/// Whether a contact shields that of an answer: one with another primitive of one body and the same convex part of the
+/// other.
+fn is_shielded<A: PrimitiveTree, B: PrimitiveTree>(
+    search: &Search<A, B>,
+    toi: &Toi,
+    contact: &SpherePair,
+    poses: &[Pose; 2],
+) -> bool {
+    let (first, second) = (search.sides.0.body, search.sides.1.body);
+    let [p, q] = toi.primitives;
+    let is_same = [
+        first.convex_part(p).contains(&contact.primitives[0]),
+        second.convex_part(q).contains(&contact.primitives[1]),
+    ];
+    match is_same {
+        [false, true] => shields((first, second), 0, contact, toi, poses),
+        [true, false] => shields((second, first), 1, contact, toi, poses),
+        _ => false,
+    }
+}
+
+/// The same for a contact with another primitive of `body`, which is the first or the second of the query (`side`).
 fn shields(
-    body: &impl PrimitiveTree,
+    (body, other): (&impl PrimitiveTree, &impl PrimitiveTree),
     side: usize,
     contact: &SpherePair,
     found: &Toi,
     poses: &[Pose; 2],
 ) -> bool {
+    if !body.is_medial() {
+        return false;
+    }
     let outward: Real = if side == 0 { 1.0 } else { -1.0 };
     let primitives = [contact.primitives[side], found.primitives[side]];
     let contacts = [
@@ -116,11 +162,19 @@ fn shields(
             gap: (found.points[1] - found.points[0]).dot(found.normal),
         },
     ];
-    let size = primitives.map(|p| {
-        let (spheres, _) = body.primitive(p);
-        let place = poses[side] * spheres[0].center;
-        place.abs().max_element() + spheres[0].center.abs().max_element()
-    });
-    let reach = |part: u32, n: Vector| reach(body, &poses[side], primitives[part as usize], n);
-    ghosts(&contacts, reach, |_| SLACK * size[0].max(size[1]))[1]
+    let sizes = primitives.map(|p| size(body, &poses[side], p));
+    let slack = SLACK * sizes[0].max(sizes[1]);
+    // Of a solid only the face that touches need be beyond the contact's plane.
+    let (n, others) = (contacts[0].normal, found.primitives[1 - side]);
+    let lowest = -reach(other, &poses[1 - side], other.convex_part(others), -n);
+    let thinnest = spheres(body, primitives[1]).map(|s| s.radius);
+    let sunk = SUNK * thinnest.fold(Real::MAX, Real::min);
+    if lowest - n.dot(contacts[0].place) < contacts[0].gap.min(0.0) - sunk - slack {
+        return false;
+    }
+    let reach = |part: u32, n: Vector| {
+        let primitive = primitives[part as usize];
+        reach(body, &poses[side], std::iter::once(primitive), n)
+    };
+    ghosts(&contacts, reach, |_| slack)[1]
 }

@@ -31,9 +31,9 @@ const MOST_SLANT: Real = 0.5;
 /// than it asks for, is stopped by what it only passes; smaller, and rounding of the poses decides.
 const PRECISION: Real = 2.0;
 
-/// Tolerance of a cast of a small mesh, in units of the longest side of its box. Larger, and small bodies would be hit
+/// Tolerance of a cast of a small shape, in units of the longest side of its box. Larger, and small bodies would be hit
 /// while they are apart by much of their size.
-const PRECISE: Real = 1.0e-4;
+const TOLERANCE_OF_SIZE: Real = 1.0e-4;
 
 /// Height above a plane, in tolerances beyond the target distance, up to which a mesh counts as lying on it: an impact
 /// leaves it within one of them.
@@ -111,7 +111,9 @@ impl Cast<'_> {
         let way = (motion1.linvel - motion2.linvel) * seconds;
         let grazing = self.grazing([&motion1, &motion2], way);
         let usual = ToiOptions::default();
-        let fine = PRECISE * self.mesh.aabb().extents().max_element();
+        let boxes = [self.mesh.aabb(), self.other.compute_local_aabb()];
+        let [own, others] = boxes.map(|b| b.extents().max_element());
+        let fine = TOLERANCE_OF_SIZE * own.min(others);
         let mut options = ToiOptions {
             target_distance: self.target_distance,
             tolerance: usual.tolerance.min(fine.max(grazing)),

@@ -3,7 +3,7 @@
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
 use super::contact_reduction::{self, Load};
-use super::convex_parts::{Part, child_reach, part_number, slack, slack_of, slack_of_part};
+use super::convex_parts::{Part, child_reach, part_number, slack, slack_of, slack_of_parts};
 use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
@@ -157,7 +157,7 @@ fn correct<M, C>(
         _ if by_parry => {
             // First, so that none is turned to the normal of one that it is a ghost of.
             let reach = |part, n| Part::of(mesh, part).reach(n);
-            let slack = |part| slack(mesh, &pose) + slack_of_part(mesh, part, other);
+            let slack = slack_of_parts(mesh, (other, &pose));
             leave_out_ghosts_of(manifolds, (side, reach), |child| child, slack);
             touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
             if let TypedShape::Compound(compound) = other.as_typed_shape() {

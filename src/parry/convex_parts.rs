@@ -13,7 +13,8 @@ const SLACK: Real = 1.0e-6;
 /// hundred is off by more than 6e-5, one in seven thousand by more than 2e-4; what is off by more keeps its ghost.
 const TILT: Real = 1.0e-4;
 
-/// The same between a mesh's own parts: of boxes on slabs it is up to 4e-4.
+/// Tilt that is allowed for between a mesh's own parts, a slope. Of boxes on slabs parry's normals are off by up to
+/// 4e-4 (scenes `medial_floors`).
 const TILT_OF_PARTS: Real = 5.0e-4;
 
 /// A step lower than this share of a body's size may count as level on account of that.
@@ -88,14 +89,21 @@ pub fn child_reach(compound: &Compound, child: u32, n: Vector) -> Real {
     support.map_or(Real::MAX, |(pose, map)| n.dot(map.support_point(pose, n)))
 }
 
-/// Slack of heights of a mesh's part beside another shape, a length, besides that of all parts.
-pub fn slack_of_part(mesh: &MedialMesh, primitive: u32, other: &dyn Shape) -> Real {
-    let part = Part::of(mesh, primitive);
-    let size = |n: Vector| part.reach(n) + part.reach(-n);
-    let size = [Vector::X, Vector::Y, Vector::Z].map(size);
-    let size = size.into_iter().fold(0.0, Real::max);
+/// Slack of heights of a mesh's parts beside another shape, a length, where the other is at `pose` in the mesh's frame
+/// and normals are parry's.
+pub fn slack_of_parts(
+    mesh: &MedialMesh,
+    (other, pose): (&dyn Shape, &Pose),
+) -> impl Fn(u32) -> Real {
     let low = LOW * other.compute_local_aabb().extents().max_element();
-    low.min(TILT_OF_PARTS * size)
+    let of_all = slack(mesh, pose);
+    move |primitive| {
+        let part = Part::of(mesh, primitive);
+        let size = |n: Vector| part.reach(n) + part.reach(-n);
+        let size = [Vector::X, Vector::Y, Vector::Z].map(size);
+        let size = size.into_iter().fold(0.0, Real::max);
+        of_all + low.min(TILT_OF_PARTS * size)
+    }
 }
 
 /// Slack of heights of a compound's child beside a mesh, a length.

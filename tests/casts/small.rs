@@ -54,3 +54,36 @@ fn small_bodies_are_hit_where_they_touch() {
         assert_eq!(hits, 50, "of size {size} m");
     }
 }
+
+#[test]
+fn small_balls_are_hit_where_they_touch_a_large_mesh_in_both_orders() {
+    let dispatcher = MedialDispatcher::default();
+    let mesh = MedialMesh::capsule(Vector::X * -5.0, Vector::X * 5.0, 0.5).expect("a capsule");
+    let size = 1.0e-4;
+    let ball = Ball::new(size);
+    let motion = |at: Vector, velocity: Vector| {
+        NonlinearRigidMotion::new(
+            Pose::from_translation(at),
+            Vector::ZERO,
+            velocity,
+            Vector::ZERO,
+        )
+    };
+    // It starts at twenty times its radius above the mesh, and falls by as much in a second.
+    let gap = 20.0 * size;
+    let still = motion(Vector::ZERO, Vector::ZERO);
+    let falls = motion(Vector::Y * (0.5 + size + gap), Vector::Y * -gap);
+    let cast = |first: bool| match first {
+        true => dispatcher.cast_shapes_nonlinear(&still, &mesh, &falls, &ball, 0.0, 2.0, true),
+        false => dispatcher.cast_shapes_nonlinear(&falls, &ball, &still, &mesh, 0.0, 2.0, true),
+    };
+    for first in [true, false] {
+        let hit = cast(first).expect("a ball is swept").expect("a hit");
+        let apart = (1.0 - hit.time_of_impact) * gap / size;
+        // Half a micrometre of the mesh is a rounding of its coordinates.
+        assert!(
+            apart.abs() < 5.0e-3,
+            "mesh first: {first}, {apart} radii apart"
+        );
+    }
+}

@@ -6,10 +6,11 @@ use rapier3d_medial::MedialDispatcher;
 use rapier3d_medial::prelude::*;
 
 /// Whether the axis of a rod, of a radius of a twentieth of `unit` (in metres), gets through a wall of a closed box in
-/// five seconds, in a world whose length unit is a metre.
-fn crosses(unit: Real, seed: u8) -> bool {
+/// five seconds, in a world whose length unit is `length_unit` (in metres).
+fn crosses(unit: Real, length_unit: Real, seed: u8) -> bool {
     let mut world = PhysicsWorld::new();
     world.gravity *= unit;
+    world.integration_parameters.length_unit = length_unit;
     let mut pipeline = MedialPipeline::new(MedialOptions::default());
     for axis in [Vector::X, Vector::Y, Vector::Z] {
         for side in [1.0, -1.0] {
@@ -36,12 +37,16 @@ fn crosses(unit: Real, seed: u8) -> bool {
 }
 
 /// rapier's solver lets bodies overlap by a thousandth of its length unit: rods of 0.05 mm get through walls in a world
-/// whose length unit is a metre. Ten times as large ones do not.
+/// whose length unit is a metre. Ten times as large ones do not, nor do small ones where the length unit is as small.
 #[test]
 fn rods_far_smaller_than_the_length_unit_cross_walls() {
-    let crossed = |unit: Real| (0..20).filter(|seed| crosses(unit, *seed)).count();
-    assert_eq!(crossed(0.01), 0);
-    let small = crossed(0.001);
+    let crossed = |unit: Real, length_unit: Real| {
+        let seeds = (0..20).filter(|seed| crosses(unit, length_unit, *seed));
+        seeds.count()
+    };
+    assert_eq!(crossed(0.01, 1.0), 0);
+    assert_eq!(crossed(0.001, 0.001), 0);
+    let small = crossed(0.001, 1.0);
     assert!(small > 0, "{small} of 20: mended?");
 }
 
