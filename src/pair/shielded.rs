@@ -24,8 +24,8 @@ use crate::medial::tree::NodeKind;
 /// Rounding of heights, in units of the coordinates.
 const SLACK: Real = 1.0e-6;
 
-/// How much deeper than a contact the other body may be along its normal, if it is to shield a primitive, in units of the
-/// primitive's least radius: what slides is tilted a little. Larger, and it may be deep in the primitive.
+/// How much deeper than a contact the other body may be along its normal, if it is to shield a primitive, in units of
+/// the primitive's least radius: what slides is tilted a little. Larger, and it may be deep in the primitive.
 const SUNK: Real = 0.1;
 
 /// The spheres of a primitive.
