@@ -97,3 +97,41 @@ fn blunt_roofs_of_hulls_are_not_where_they_are() {
     }
     assert!(off > 100, "{off} of 400 are off");
 }
+
+/// Bits of the heights, in units, of twelve rings that fall on each other, after each of 150 steps.
+fn heights_of_rings(unit: Real, aside: Real) -> Vec<u32> {
+    let mut world = PhysicsWorld::new();
+    world.integration_parameters.length_unit = unit;
+    world.gravity *= unit;
+    let ground = ColliderBuilder::cuboid(9.0 * unit, 0.125 * unit, 9.0 * unit);
+    world.insert_collider(ground, None);
+    let ring = MedialMesh::torus(0.5 * unit, 0.125 * unit, 24).expect("a ring");
+    let fall = |k: u8| {
+        let [x, z] = [aside * Real::from(k % 3), 0.03 * Real::from(k % 4)];
+        let at = Vector::new(x, 0.5 + 0.4 * Real::from(k), z);
+        let body = RigidBodyBuilder::dynamic()
+            .translation(at * unit)
+            .rotation(Vector::new(0.3 * Real::from(k), 0.1, 0.2));
+        let collider = ColliderBuilder::medial_mesh(ring.clone()).mass(1.0);
+        world.insert(body, collider).0
+    };
+    let rings: Vec<RigidBodyHandle> = (0..12).map(fall).collect();
+    let mut pipeline = MedialPipeline::new(MedialOptions::default());
+    let mut heights = Vec::new();
+    for _ in 0..150 {
+        pipeline.step(&mut world);
+        let of = |ring: &RigidBodyHandle| world.bodies[*ring].translation().y / unit;
+        heights.extend(rings.iter().map(|ring| of(ring).to_bits()));
+    }
+    heights
+}
+
+/// Worlds of another length unit are the same to the bit (scenes `length_units`), but some heaps of rings are not in
+/// small units: one of them goes otherwise, by an ulp at first. The first difference seen was in a contact of a ring with
+/// the cuboid below it; what makes it is not known.
+#[test]
+fn a_heap_of_rings_goes_otherwise_in_a_small_length_unit() {
+    let differs = |aside: Real| heights_of_rings(1.0, aside) != heights_of_rings(1.0 / 64.0, aside);
+    assert!(!differs(0.051));
+    assert!(differs(0.05), "mended?");
+}
