@@ -270,9 +270,8 @@ pub struct Toi {
     /// Number of iterations, summed over all elementary tests.
     pub iterations: u32,
     /// Unit normal from the first body to the second, in the world frame, at `lower`: along it those parts meet that
-    /// count as in contact then ([`InitialContact::Deepen`] lets others be deeper in each other). Where a
-    /// deeper primitive shields the one that meets, the normal is that of the deeper contact, and the points lie along it
-    /// at its place.
+    /// count as in contact then ([`InitialContact::Deepen`] lets others be deeper in each other). Where a deeper
+    /// primitive shields the one that meets, it is that of the deeper contact, and the points lie along it there.
     pub normal: Vector,
     /// Nearest spheres of both bodies, in the world frame, at `lower`.
     pub spheres: [MedialSphere; 2],
