@@ -266,6 +266,11 @@ impl ConvexPieces {
         self.nodes.get(primitive as usize).copied().flatten()
     }
 
+    /// All pieces of several primitives.
+    pub fn iter(&self) -> impl Iterator<Item = &ConvexPiece> {
+        self.pieces.iter()
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.pieces.is_empty()

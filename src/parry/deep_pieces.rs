@@ -6,12 +6,12 @@
 //! throw it. parry's EPA algorithm, asked for the piece as a whole, finds the way out of all of it.
 
 use super::convex_parts::child_of;
+use super::scaled_contact;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::{DEEP, Support};
 use parry3d::query::ContactManifold;
-use parry3d::query::details::contact_support_map_support_map;
 use parry3d::shape::Shape;
 
 /// Cosine of the angle between a contact's normal and the way out from which on the contact helps. No other value was
@@ -63,6 +63,6 @@ pub fn leave_out<M, C>(
 /// The direction into a convex part of the other shape along which a piece is least deep in it.
 fn way_out(piece: &Support, (other, pose): (&dyn Shape, &Pose), part: u32) -> Option<Vector> {
     let (other, pose) = child_of((other, pose), part)?;
-    let contact = contact_support_map_support_map(&pose, piece, other.as_support_map()?, 0.0)?;
+    let contact = scaled_contact::contact(&pose, [piece, other.as_support_map()?], 0.0)?;
     Some(contact.normal1)
 }

@@ -2,6 +2,7 @@
 //! answer falls through to parry's default dispatcher, which treats a medial mesh as a compound of convex parts.
 
 use super::cast::Cast;
+use super::deep_contact;
 use super::distance;
 use super::initial_contacts::AtStart;
 use super::narrow_phase_plan::{PlanExchange, Sweeps};
@@ -209,7 +210,16 @@ impl QueryDispatcher for MedialDispatcher {
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
         let nearest = self.nearest(pos12, g1, g2, prediction)?;
-        Ok(nearest.map(|c| Contact {
+        let deepest = |nearest: SpherePair| match (medial(g1), medial(g2)) {
+            (Some(mesh), _) => deep_contact::deepest(mesh, g2, pos12, nearest),
+            (None, Some(mesh)) => {
+                let pos21 = pos12.inverse();
+                let nearest = flipped(nearest, &pos21);
+                flipped(deep_contact::deepest(mesh, g1, &pos21, nearest), pos12)
+            }
+            (None, None) => nearest,
+        };
+        Ok(nearest.map(deepest).map(|c| Contact {
             point1: c.points[0],
             point2: c.points[1],
             normal1: c.normal,

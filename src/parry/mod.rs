@@ -3,7 +3,8 @@
 //!
 //! # Files
 //! - The entry: `dispatcher.rs`. The shape: `shape.rs`, of convex parts (`medial_part.rs`). Rays: `rays.rs`. Distance:
-//!   `distance.rs`.
+//!   `distance.rs`; the contact of bodies that are deep in each other, `deep_contact.rs`; parry's own for
+//!   bodies of any size, `scaled_contact.rs`.
 //! - Contact manifolds: `contact_manifolds.rs` is what parry calls. It takes those of two meshes from `manifolds.rs`,
 //!   those on a flat face from `flat_face.rs`, and others from parry, between the convex parts that `convex_parts.rs`
 //!   lists. Points and normals of a manifold: `manifold_points.rs`.
@@ -32,6 +33,7 @@ pub(crate) mod conservative_advancement;
 mod contact_manifolds;
 pub mod contact_reduction;
 mod convex_parts;
+mod deep_contact;
 mod deep_pieces;
 pub(crate) mod dispatcher;
 pub(crate) mod distance;
@@ -48,6 +50,7 @@ pub(crate) mod narrow_phase_plan;
 mod outward_normals;
 pub mod previous_contacts;
 pub(crate) mod rays;
+mod scaled_contact;
 pub(crate) mod shape;
 mod shape_faces;
 pub(crate) mod sliding;

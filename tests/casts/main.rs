@@ -3,6 +3,7 @@
 
 mod compounds;
 mod contact_reduction;
+mod deep_contacts;
 mod faces;
 mod flat;
 mod inside;
