@@ -13,8 +13,8 @@ mod scenes {
     pub mod wheels;
 }
 
-#[path = "faults/queries_and_scale.rs"]
-mod queries_and_scale;
+#[path = "faults/queries.rs"]
+mod queries;
 
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;

@@ -2,6 +2,7 @@
 //! meshes from the batch's answers (`manifolds.rs`), those of a mesh and a flat face from our own code
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
+use super::by_parry;
 use super::contact_reduction::{self, Load};
 use super::convex_parts::{Part, child_reach, part_number, slack, slack_of, slack_of_parts};
 use super::deep_pieces;
@@ -18,6 +19,7 @@ use crate::batch::PairJob;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::ghost_contacts::{PartContact, ghosts};
+use parry3d::query::details::NormalConstraints;
 use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     Unsupported,
@@ -42,8 +44,8 @@ impl MedialDispatcher {
     ) -> Result<(), Unsupported>
     where
         DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
-        M: Default + Clone,
-        C: Default + Copy,
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
     {
         let plan = self.exchange.plan();
         if plan.is_muted(g1, g2, pos12) {
@@ -88,7 +90,8 @@ impl MedialDispatcher {
         let (Some(mesh1), Some(mesh2)) = meshes else {
             let pair = ((mesh, side), pos12, [g1, g2]);
             let load = load(plan.turn(mesh));
-            return write_with_other(pair, &load, &previous, manifolds, workspace);
+            write_with_other(self, pair, &load, &previous, manifolds, workspace);
+            return Ok(());
         };
         ensure_workspace::<M, C>(mesh1, mesh2, workspace);
         let meshes = [mesh1, mesh2];
@@ -105,23 +108,22 @@ impl MedialDispatcher {
 
 /// The manifolds of a medial mesh and a shape that is not medial.
 fn write_with_other<M, C>(
+    dispatcher: &MedialDispatcher,
     pair: Pair,
     load: &Load,
     previous: &[PreviousContact<C>],
     manifolds: &mut Vec<ContactManifold<M, C>>,
     workspace: &mut Option<ContactManifoldsWorkspace>,
-) -> Result<(), Unsupported>
-where
+) where
     DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
-    M: Default + Clone,
-    C: Default + Copy,
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
 {
     let (((_, side), pos12, _), prediction) = (pair, load.prediction);
     let goes_on = write_on_flat(pair, prediction, manifolds, workspace);
-    let written = match goes_on {
-        Some(_) => Ok(()),
-        None => write_by_parry(pair, prediction, manifolds, workspace),
-    };
+    if goes_on.is_none() {
+        write_by_parry(dispatcher, pair, prediction, manifolds, workspace);
+    }
     correct(pair, (goes_on.is_none(), prediction), manifolds);
     if goes_on != Some(true) {
         previous_contacts::transfer_impulses(manifolds, previous, prediction, side);
@@ -130,7 +132,6 @@ where
     if goes_on.is_some() {
         manifolds.retain(|m| !m.points.is_empty());
     }
-    written
 }
 
 /// Turns or leaves out what is wrong in the contacts of a mesh with another shape, whether they are parry's or not.
@@ -139,8 +140,8 @@ fn correct<M, C>(
     (by_parry, prediction): (bool, Real),
     manifolds: &mut [ContactManifold<M, C>],
 ) where
-    M: Default + Clone,
-    C: Default + Copy,
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
 {
     let other = [g2, g1][side];
     let pose = [*pos12, pos12.inverse()][side];
@@ -234,8 +235,8 @@ fn write_on_flat<M, C>(
 ) -> Option<bool>
 where
     DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
-    M: Default + Clone,
-    C: Default + Copy,
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
 {
     let (other, pose) = if side == 0 {
         (g2, *pos12)
@@ -256,15 +257,15 @@ where
 /// parry's manifolds of a mesh and another shape. It knows its own again; those of a flat face it would begin anew,
 /// without what the user's hooks keep in them.
 fn write_by_parry<M, C>(
+    dispatcher: &MedialDispatcher,
     ((mesh, side), pos12, [g1, g2]): Pair,
     prediction: Real,
     manifolds: &mut Vec<ContactManifold<M, C>>,
     workspace: &mut Option<ContactManifoldsWorkspace>,
-) -> Result<(), Unsupported>
-where
+) where
     DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
-    M: Default + Clone,
-    C: Default + Copy,
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
 {
     previous_contacts::force_full_update(manifolds);
     let flat = if !manifolds.is_empty() && flat_face::wrote(manifolds) {
@@ -273,26 +274,28 @@ where
         Vec::new()
     };
     let mesh = mesh.with_any_normals();
-    let [g1, g2] = match side {
-        0 => [&mesh, g2],
-        _ => [g1, &mesh as &dyn Shape],
-    };
-    let parry = DefaultQueryDispatcher;
-    let found = parry.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+    let other = ([g2, g1][side], pos12);
+    by_parry::write_manifolds(
+        dispatcher,
+        (&mesh, side),
+        other,
+        prediction,
+        manifolds,
+        workspace,
+    );
     for manifold in manifolds.iter_mut() {
         let ids = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2];
         if let Some(before) = flat.iter().find(|m| ids(m) == ids(manifold)) {
             manifold.data = before.data.clone();
         }
     }
-    found
 }
 
 impl<M, C> PersistentQueryDispatcher<M, C> for MedialDispatcher
 where
     DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
-    M: Default + Clone,
-    C: Default + Copy,
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
 {
     fn contact_manifolds(
         &self,
@@ -318,14 +321,15 @@ where
 
     fn contact_manifold_convex_convex(
         &self,
-        _pos12: &Pose,
-        _g1: &dyn Shape,
-        _g2: &dyn Shape,
-        _constraints1: Option<&dyn parry3d::query::details::NormalConstraints>,
-        _constraints2: Option<&dyn parry3d::query::details::NormalConstraints>,
-        _prediction: Real,
-        _manifold: &mut ContactManifold<M, C>,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        constraints1: Option<&dyn NormalConstraints>,
+        constraints2: Option<&dyn NormalConstraints>,
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
-        Err(Unsupported)
+        let constraints = [constraints1, constraints2];
+        by_parry::write_manifold(pos12, [g1, g2], constraints, prediction, manifold)
     }
 }

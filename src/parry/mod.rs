@@ -6,8 +6,8 @@
 //!   `distance.rs`; the contact of bodies that are deep in each other, `deep_contact.rs`; parry's own for
 //!   bodies of any size, `scaled_contact.rs`.
 //! - Contact manifolds: `contact_manifolds.rs` is what parry calls. It takes those of two meshes from `manifolds.rs`,
-//!   those on a flat face from `flat_face.rs`, and others from parry, between the convex parts that `convex_parts.rs`
-//!   lists. Points and normals of a manifold: `manifold_points.rs`.
+//!   those on a flat face from `flat_face.rs`, and others from parry (`by_parry.rs`), between the convex parts that
+//!   `convex_parts.rs` lists. Points and normals of a manifold: `manifold_points.rs`.
 //! - Contacts of parry that are wrong: with triangles, those without a normal or too deep (`false_contacts.rs`) and
 //!   those that point into a convex piece (`inward_contacts.rs`); normals of edges that just touch a face
 //!   (`touching_normals.rs`) or voxels (`voxel_normals.rs`); contacts of convex pieces deep in other shapes that push
@@ -26,6 +26,7 @@
 
 pub(crate) mod axisymmetric;
 pub(crate) mod axisymmetric_toi;
+mod by_parry;
 pub mod cast;
 mod cast_answer;
 mod compound_children;

@@ -1,19 +1,22 @@
-//! parry's contact of two support maps (its GJK and EPA algorithms) for bodies of any size. Their tolerances are
-//! lengths, about 1e-6: bodies of centimetres get a wrong way out, those of millimetres none. So they are asked about
-//! the bodies as large as 1.
+//! parry's contacts of two convex shapes (its GJK and EPA algorithms) for bodies of any size. Their tolerances are
+//! lengths and areas of about 1e-6: triangles with edges of 3 cm are taken for lines, so that bodies of centimetres
+//! get contacts that are aslant or too deep, and those of millimetres none. So parry is asked about the smaller body
+//! as large as 1.
 
 use crate::math::{Pose, Real, Vector};
-use parry3d::query::Contact;
-use parry3d::query::details::contact_support_map_support_map;
-use parry3d::shape::SupportMap;
+use parry3d::query::details::{
+    NormalConstraints, contact_manifold_pfm_pfm, contact_support_map_support_map,
+};
+use parry3d::query::{Contact, ContactManifold};
+use parry3d::shape::{PolygonalFeature, PolygonalFeatureMap, SupportMap};
 
 /// A support map times a factor.
-struct Scaled<'a> {
-    map: &'a dyn SupportMap,
+struct Scaled<'a, T: ?Sized> {
+    map: &'a T,
     factor: Real,
 }
 
-impl SupportMap for Scaled<'_> {
+impl<T: SupportMap + ?Sized> SupportMap for Scaled<'_, T> {
     fn local_support_point(&self, direction: Vector) -> Vector {
         self.map.local_support_point(direction) * self.factor
     }
@@ -23,13 +26,30 @@ impl SupportMap for Scaled<'_> {
     }
 }
 
+impl<T: PolygonalFeatureMap + ?Sized> PolygonalFeatureMap for Scaled<'_, T> {
+    fn local_support_feature(&self, dir: Vector, out: &mut PolygonalFeature) {
+        self.map.local_support_feature(dir, out);
+        out.vertices = out.vertices.map(|v| v * self.factor);
+    }
+
+    fn local_support_feature_toward(&self, dir: Vector, hint: Vector, out: &mut PolygonalFeature) {
+        let hint = hint * (1.0 / self.factor);
+        self.map.local_support_feature_toward(dir, hint, out);
+        out.vertices = out.vertices.map(|v| v * self.factor);
+    }
+
+    fn is_convex_polyhedron(&self) -> bool {
+        self.map.is_convex_polyhedron()
+    }
+}
+
 /// The contact of two support maps that are at most `prediction` (a length) apart; the second is at `pos12` in the
 /// frame of the first.
 pub fn contact(pos12: &Pose, [a, b]: [&dyn SupportMap; 2], prediction: Real) -> Option<Contact> {
     let unit = power_of_2(extent(a).min(extent(b)));
     let factor = 1.0 / unit;
     let [a, b] = [a, b].map(|map| Scaled { map, factor });
-    let pose = Pose::from_parts(pos12.translation * factor, pos12.rotation);
+    let pose = scaled(pos12, factor);
     let found = contact_support_map_support_map(&pose, &a, &b, prediction * factor)?;
     Some(Contact {
         point1: found.point1 * unit,
@@ -37,6 +57,40 @@ pub fn contact(pos12: &Pose, [a, b]: [&dyn SupportMap; 2], prediction: Real) -> 
         dist: found.dist * unit,
         ..found
     })
+}
+
+/// The manifold of two convex shapes, each its polygonal feature map and the radius it is grown by, whose boxes have so
+/// long sides; `pos12` is the pose of the second in the frame of the first.
+pub fn write_manifold<M: Default, C: Default + Copy>(
+    pos12: &Pose,
+    [(a, border1), (b, border2)]: [(&dyn PolygonalFeatureMap, Real); 2],
+    sizes: [Real; 2],
+    [of_a, of_b]: [Option<&dyn NormalConstraints>; 2],
+    prediction: Real,
+    manifold: &mut ContactManifold<M, C>,
+) {
+    let unit = power_of_2(sizes[0].min(sizes[1]));
+    let factor = 1.0 / unit;
+    let [a, b] = [a, b].map(|map| Scaled { map, factor });
+    let (pose, prediction) = (scaled(pos12, factor), prediction * factor);
+    let [border1, border2] = [border1, border2].map(|border| border * factor);
+    scale_points(manifold, factor);
+    contact_manifold_pfm_pfm(
+        &pose, &a, border1, of_a, &b, border2, of_b, prediction, manifold,
+    );
+    scale_points(manifold, unit);
+}
+
+fn scaled(pose: &Pose, factor: Real) -> Pose {
+    Pose::from_parts(pose.translation * factor, pose.rotation)
+}
+
+fn scale_points<M, C>(manifold: &mut ContactManifold<M, C>, factor: Real) {
+    for point in &mut manifold.points {
+        point.local_p1 *= factor;
+        point.local_p2 *= factor;
+        point.dist *= factor;
+    }
 }
 
 /// The largest side of the box around a support map, a length.

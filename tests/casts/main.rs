@@ -17,6 +17,7 @@ mod rotating;
 mod shallow;
 mod shapes;
 mod small;
+mod small_manifolds;
 mod solid;
 mod table;
 mod terrain;

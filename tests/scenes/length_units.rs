@@ -47,8 +47,7 @@ impl Scene {
     /// Twelve bodies above each other, each turned otherwise, `apart` from each other.
     fn pile(mut self, apart: Real, collider: impl Fn(Real) -> ColliderBuilder) -> Self {
         for k in 0..12 {
-            // With 0.05 a heap of rings differs: `known_issues::queries_and_scale`.
-            let aside = [0.051 * (k % 3) as Real, 0.03 * (k % 4) as Real];
+            let aside = [0.05 * (k % 3) as Real, 0.03 * (k % 4) as Real];
             let at = Vector::new(aside[0], 0.5 + apart * k as Real, aside[1]);
             let body = RigidBodyBuilder::dynamic()
                 .translation(at * self.unit)

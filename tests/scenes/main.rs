@@ -88,6 +88,7 @@ mod saved_impacts;
 mod saving;
 mod sharp_blocks;
 mod sliding;
+mod small_bodies;
 #[allow(dead_code)]
 #[path = "../../examples/factory/solid.rs"]
 mod solid;

@@ -6,7 +6,7 @@ use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
 /// A floor of square cells, each of two slabs, with its top at height 0.
-fn floor(cells: u32, cell: Real, radius: Real) -> MedialMesh {
+pub fn floor(cells: u32, cell: Real, radius: Real) -> MedialMesh {
     let n = cells + 1;
     let half = 0.5 * cells as Real * cell;
     let id = |i: u32, j: u32| i * n + j;
