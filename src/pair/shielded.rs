@@ -18,8 +18,9 @@ use super::search::Search;
 use super::sphere_pair::SpherePair;
 use crate::elementary::{Toi, ToiStatus};
 use crate::math::{Pose, Real, Vector};
-use crate::medial::MedialSphere;
+use crate::medial::exact::{balls, tangent_normals};
 use crate::medial::tree::NodeKind;
+use crate::medial::{MedialPrimitive, MedialSphere};
 
 /// Rounding of heights, in units of the coordinates.
 const SLACK: Real = 1.0e-6;
@@ -70,7 +71,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
         let touching = search.touching.iter();
         let contacts = touching.filter_map(|(nodes, _)| {
             let contact = deepest_contact(search, *nodes, &place, gap)?;
-            is_shielded(search, toi, &contact, &poses).then_some(contact)
+            shield(search, toi, &contact, &poses)
         });
         // The others may be ghosts of it.
         contacts.min_by(|a, b| a.distance.total_cmp(&b.distance))
@@ -112,37 +113,39 @@ fn deepest_contact<A: PrimitiveTree, B: PrimitiveTree>(
     contacts.min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-/// Whether a contact shields that of an answer: one with another primitive of one body and the same convex part of the
-/// other.
-fn is_shielded<A: PrimitiveTree, B: PrimitiveTree>(
+/// A contact as it shields that of an answer, if it does: one with another primitive of one body and the same convex
+/// part of the other.
+fn shield<A: PrimitiveTree, B: PrimitiveTree>(
     search: &Search<A, B>,
     toi: &Toi,
     contact: &SpherePair,
     poses: &[Pose; 2],
-) -> bool {
+) -> Option<SpherePair> {
     let (first, second) = (search.sides.0.body, search.sides.1.body);
     let [p, q] = toi.primitives;
     let is_same = [
         first.convex_part(p).contains(&contact.primitives[0]),
         second.convex_part(q).contains(&contact.primitives[1]),
     ];
-    match is_same {
+    let normal = match is_same {
         [false, true] => shields((first, second), 0, contact, toi, poses),
         [true, false] => shields((second, first), 1, contact, toi, poses),
-        _ => false,
-    }
+        _ => None,
+    }?;
+    Some(SpherePair { normal, ..*contact })
 }
 
-/// The same for a contact with another primitive of `body`, which is the first or the second of the query (`side`).
+/// The same for a contact with another primitive of `body`, which is the first or the second of the query (`side`): the
+/// normal of the contact that the answer gets, in the first body's frame.
 fn shields(
     (body, other): (&impl PrimitiveTree, &impl PrimitiveTree),
     side: usize,
     contact: &SpherePair,
     found: &Toi,
     poses: &[Pose; 2],
-) -> bool {
+) -> Option<Vector> {
     if !body.is_medial() {
-        return false;
+        return None;
     }
     let outward: Real = if side == 0 { 1.0 } else { -1.0 };
     let primitives = [contact.primitives[side], found.primitives[side]];
@@ -170,11 +173,43 @@ fn shields(
     let thinnest = spheres(body, primitives[1]).map(|s| s.radius);
     let sunk = SUNK * thinnest.fold(Real::MAX, Real::min);
     if lowest - n.dot(contacts[0].place) < contacts[0].gap.min(0.0) - sunk - slack {
-        return false;
+        return None;
     }
     let reach = |part: u32, n: Vector| {
         let primitive = primitives[part as usize];
         reach(body, &poses[side], std::iter::once(primitive), n)
     };
-    ghosts(&contacts, reach, |_| slack)[1]
+    if ghosts(&contacts, reach, |_| slack)[1] {
+        return Some(contact.normal);
+    }
+    // The slab ahead rises above the one that the body lies on, and the body is to meet its face.
+    let [shield, hidden] = &contacts;
+    let to_body = |p: Vector| poses[side].inverse_transform_point(p);
+    let depth = -primitive(body, primitives[0])
+        .signed_distance(to_body(hidden.place))
+        .distance;
+    if shield.gap > hidden.gap || depth <= slack {
+        return None;
+    }
+    let face = poses[side].rotation
+        * face_normal(body, primitives[1], poses[side].rotation.inverse() * n)?;
+    (face.dot(n) > hidden.normal.dot(n)).then(|| poses[0].rotation.inverse() * (face * outward))
+}
+
+/// A primitive of a body, in the body's frame.
+fn primitive(body: &impl PrimitiveTree, index: u32) -> MedialPrimitive {
+    let (spheres, share) = body.primitive(index);
+    let [a, b, _] = spheres;
+    match share.spheres {
+        0 | 1 => MedialPrimitive::Sphere(a),
+        2 => MedialPrimitive::Cone([a, b]),
+        _ => MedialPrimitive::Slab(spheres),
+    }
+}
+
+/// The unit normal of a slab's flat face that faces along `n` more than the other, in the body's frame.
+fn face_normal(body: &impl PrimitiveTree, index: u32, n: Vector) -> Option<Vector> {
+    let faces = tangent_normals(&balls(primitive(body, index).as_slab()))?;
+    let [a, b] = faces.map(|face| face.to_vector());
+    Some(if a.dot(n) < b.dot(n) { b } else { a })
 }
