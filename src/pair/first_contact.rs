@@ -291,6 +291,12 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
     pub fn met(&self) -> Option<Met> {
         let search = self.search.as_ref()?;
         let (_, found, primitives) = search.earliest.found?;
+        let (a, b) = (search.sides.0.body, search.sides.1.body);
+        if let Some(shield) = self.shielding_contact(&self.toi_of_found()) {
+            let [p, q] = shield.primitives;
+            let [(a, of_a), (b, of_b)] = [a.primitive(p), b.primitive(q)];
+            return Some(Met::primitives([a, b], [of_a.spheres, of_b.spheres]));
+        }
         if let Some(met) = &search.met
             && let Some(patch) = search.joined.or(met.patch)
             && self.options.paths == Paths::Exact
@@ -303,12 +309,6 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
             ];
             let normal = frames[met.of].local_direction(met.normal);
             return Some(Met::faces(points, normal, met.of));
-        }
-        let (a, b) = (search.sides.0.body, search.sides.1.body);
-        if let Some(shield) = self.shielding_contact(&self.toi_of_found()) {
-            let [p, q] = shield.primitives;
-            let [(a, of_a), (b, of_b)] = [a.primitive(p), b.primitive(q)];
-            return Some(Met::primitives([a, b], [of_a.spheres, of_b.spheres]));
         }
         let whole = [a.primitive(primitives[0]), b.primitive(primitives[1])];
         let counted = |side: usize| {

@@ -5,18 +5,23 @@
 //! the slab on which the body lies keeps it from the next one. So such a contact gets the normal and the place of the
 //! one that shields it. If the body does not approach along that normal, it goes on, and the two primitives touch.
 //!
+//! Slabs need not be level. Where the next one rises at a slight fold, its rim is inside the one that the body lies on
+//! all the same, and the body is to meet its face: the contact gets the face's normal.
+//!
 //! This is for first contacts only. At the floor ([`crate::elementary::Cores`]), where a body has to stop, no contact
 //! is shielded: one may be deep for a thin primitive and not for the thick one that shields it.
 
 use super::contact_list::ContactList;
 use super::first_contact::{Counts, Query};
 use super::ghost_contacts::{PartContact, ghosts};
+use super::hull_gap::{PlacedHull, hull_gap, nearest_points};
+use super::piece_contact::{nearest_primitive, patch};
 use super::placement::Placement;
 use super::primitive_pair::PrimitivePair;
 use super::primitive_tree::PrimitiveTree;
-use super::search::Search;
 use super::sphere_pair::SpherePair;
 use crate::elementary::{Toi, ToiStatus};
+use crate::math::lane::Vec3;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::exact::{balls, tangent_normals};
 use crate::medial::tree::NodeKind;
@@ -25,31 +30,118 @@ use crate::medial::{MedialPrimitive, MedialSphere};
 /// Rounding of heights, in units of the coordinates.
 const SLACK: Real = 1.0e-6;
 
-/// How much deeper than a contact the other body may be along its normal, if it is to shield a primitive, in units of
-/// the primitive's least radius: what slides is tilted a little. Larger, and it may be deep in the primitive.
+/// How much deeper than a contact the other body may be along its normal, if it is to shield a part, in units of the
+/// part's thickness: what slides is tilted a little. Larger, and it may be deep in the part.
 const SUNK: Real = 0.1;
 
-/// The spheres of a primitive.
-fn spheres(body: &impl PrimitiveTree, primitive: u32) -> impl Iterator<Item = MedialSphere> {
-    let (spheres, share) = body.primitive(primitive);
-    spheres.into_iter().take(share.spheres)
+/// A convex part of a body: a primitive, or the piece that a node holds.
+#[derive(Clone, Copy)]
+enum Part {
+    Primitive(u32),
+    Piece(u32),
 }
 
-/// How far primitives of a body that is at `pose` reach along a unit direction, a length.
-fn reach(
-    body: &impl PrimitiveTree,
-    pose: &Pose,
-    primitives: impl Iterator<Item = u32>,
-    n: Vector,
-) -> Real {
-    let heights = primitives.flat_map(|p| spheres(body, p));
-    let heights = heights.map(|s| n.dot(pose * s.center) + s.radius);
+impl Part {
+    fn of_node(body: &impl PrimitiveTree, node: u32) -> Option<Self> {
+        match (body.convex_piece(node), body.kind(node)) {
+            (Some(_), _) => Some(Self::Piece(node)),
+            (None, NodeKind::Primitive(p)) => Some(Self::Primitive(p)),
+            (None, NodeKind::Nodes(..)) => None,
+        }
+    }
+
+    /// Whether another one is it, or bounds the same convex body.
+    fn is(self, body: &impl PrimitiveTree, other: Self) -> bool {
+        match (self, other) {
+            (Self::Piece(a), Self::Piece(b)) => a == b,
+            (Self::Primitive(p), Self::Primitive(q)) => body.convex_part(p).contains(&q),
+            (Self::Piece(node), Self::Primitive(p)) | (Self::Primitive(p), Self::Piece(node)) => {
+                body.piece_of(p) == Some(node)
+            }
+        }
+    }
+
+    fn spheres(self, body: &impl PrimitiveTree) -> Vec<MedialSphere> {
+        match self {
+            Self::Primitive(p) => {
+                let (spheres, share) = body.primitive(p);
+                spheres[..share.spheres].to_vec()
+            }
+            Self::Piece(node) => {
+                let piece = body.convex_piece(node);
+                piece.map_or_else(Vec::new, |piece| piece.spheres.clone())
+            }
+        }
+    }
+
+    /// Those of the convex body that it bounds.
+    fn solid(self, body: &impl PrimitiveTree) -> Vec<MedialSphere> {
+        match self {
+            Self::Primitive(p) => {
+                let all = body.convex_part(p);
+                all.flat_map(|p| Self::Primitive(p).spheres(body)).collect()
+            }
+            Self::Piece(_) => self.spheres(body),
+        }
+    }
+
+    /// Its thickness, a length: of a primitive its least radius.
+    fn thickness(self, body: &impl PrimitiveTree) -> Real {
+        match self {
+            Self::Primitive(_) => {
+                let radii = self.spheres(body).into_iter().map(|s| s.radius);
+                radii.fold(Real::MAX, Real::min)
+            }
+            Self::Piece(node) => body.convex_piece(node).map_or(0.0, |piece| piece.thickness),
+        }
+    }
+
+    /// How deep a point of the body's frame is in it, a length.
+    fn depth(self, body: &impl PrimitiveTree, point: Vector) -> Real {
+        let nearest = match self {
+            Self::Primitive(p) => p,
+            Self::Piece(node) => nearest_primitive(body, node, Vec3::from_vector(point)),
+        };
+        -primitive(body, nearest).signed_distance(point).distance
+    }
+
+    /// The outward unit normal of its flat face that faces along `n` most, in the body's frame; `None` where it has
+    /// none.
+    fn face_normal(self, body: &impl PrimitiveTree, n: Vector) -> Option<Vector> {
+        let most = |a: &Vector, b: &Vector| a.dot(n).total_cmp(&b.dot(n));
+        match self {
+            Self::Primitive(p) => {
+                let faces = tangent_normals(&balls(primitive(body, p).as_slab()))?;
+                faces.into_iter().map(|face| face.to_vector()).max_by(most)
+            }
+            Self::Piece(node) => {
+                let faces = body.convex_piece(node)?.faces.iter();
+                faces.map(|face| face.normal).max_by(most)
+            }
+        }
+    }
+}
+
+/// A primitive of a body, in the body's frame.
+fn primitive(body: &impl PrimitiveTree, index: u32) -> MedialPrimitive {
+    let (spheres, share) = body.primitive(index);
+    let [a, b, _] = spheres;
+    match share.spheres {
+        0 | 1 => MedialPrimitive::Sphere(a),
+        2 => MedialPrimitive::Cone([a, b]),
+        _ => MedialPrimitive::Slab(spheres),
+    }
+}
+
+/// How far spheres of a body that is at `pose` reach along a unit direction, a length.
+fn reach(spheres: &[MedialSphere], pose: &Pose, n: Vector) -> Real {
+    let heights = spheres.iter().map(|s| n.dot(pose * s.center) + s.radius);
     heights.fold(Real::MIN, Real::max)
 }
 
-/// The largest coordinate of a primitive of a body that is at `pose`, and in the body's own frame, a length.
-fn size(body: &impl PrimitiveTree, pose: &Pose, primitive: u32) -> Real {
-    let sizes = spheres(body, primitive).map(|s| {
+/// The largest coordinate of spheres of a body that is at `pose`, and in the body's own frame, a length.
+fn size(spheres: &[MedialSphere], pose: &Pose) -> Real {
+    let sizes = spheres.iter().map(|s| {
         let placed = (pose * s.center).abs().max_element();
         placed.max(s.center.abs().max_element()) + s.radius
     });
@@ -58,20 +150,48 @@ fn size(body: &impl PrimitiveTree, pose: &Pose, primitive: u32) -> Real {
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
     /// The contact that shields the one of an answer, if there is any: its normal is in the first body's frame, each
-    /// point in its own body's. Only primitives that touched at the start may shield others.
+    /// point in its own body's. Only parts that touched at the start may shield others.
     pub(super) fn shielding_contact(&self, toi: &Toi) -> Option<SpherePair> {
         let search = self.search.as_ref()?;
         let is_floor = search.cores.is_some_and(|cores| cores.share > 0.0);
-        if toi.status != ToiStatus::Contact || search.met.is_some() || is_floor {
+        if toi.status != ToiStatus::Contact || is_floor {
             return None;
         }
+        let bodies = (search.sides.0.body, search.sides.1.body);
+        let parts_of = |[i, j]: [u32; 2]| {
+            let first = Part::of_node(bodies.0, i)?;
+            Some([first, Part::of_node(bodies.1, j)?])
+        };
+        let hidden = match &search.met {
+            Some(met) => parts_of(met.nodes)?,
+            None => toi.primitives.map(Part::Primitive),
+        };
         let poses = [0, 1].map(|side| self.pose_at(side, toi.lower));
-        let place = Placement::new(&poses[0].inv_mul(&poses[1]));
+        let pos12 = poses[0].inv_mul(&poses[1]);
         let gap = (toi.points[1] - toi.points[0]).dot(toi.normal);
         let touching = search.touching.iter();
         let contacts = touching.filter_map(|(nodes, _)| {
-            let contact = deepest_contact(search, *nodes, &place, gap)?;
-            shield(search, toi, &contact, &poses)
+            let parts = parts_of(*nodes)?;
+            let side = match [
+                parts[0].is(bodies.0, hidden[0]),
+                parts[1].is(bodies.1, hidden[1]),
+            ] {
+                [false, true] => 0,
+                [true, false] => 1,
+                _ => return None,
+            };
+            let contact = match parts {
+                [Part::Primitive(p), Part::Primitive(q)] => {
+                    of_primitives(bodies, [p, q], &pos12, gap)
+                }
+                _ => of_pieces(bodies, *nodes, &pos12, gap),
+            }?;
+            let shield = (parts[side], &contact);
+            let normal = match side {
+                0 => shields(bodies, 0, shield, (hidden, toi), &poses),
+                _ => shields((bodies.1, bodies.0), 1, shield, (hidden, toi), &poses),
+            }?;
+            Some(SpherePair { normal, ..contact })
         });
         // The others may be ghosts of it.
         contacts.min_by(|a, b| a.distance.total_cmp(&b.distance))
@@ -94,61 +214,78 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
     }
 }
 
-/// The deepest contact of two primitives, given by their nodes, that are no farther apart than `gap` (a length) or
-/// overlap.
-fn deepest_contact<A: PrimitiveTree, B: PrimitiveTree>(
-    search: &Search<A, B>,
-    [i, j]: [u32; 2],
-    place: &Placement,
+/// The deepest contact of two primitives that are no farther apart than `gap` (a length) or overlap; the second body is
+/// at `pos12` in the frame of the first.
+fn of_primitives(
+    bodies: (&impl PrimitiveTree, &impl PrimitiveTree),
+    primitives: [u32; 2],
+    pos12: &Pose,
     gap: Real,
 ) -> Option<SpherePair> {
-    let (first, second) = (search.sides.0.body, search.sides.1.body);
-    let (NodeKind::Primitive(p), NodeKind::Primitive(q)) = (first.kind(i), second.kind(j)) else {
-        return None;
-    };
     let mut found = ContactList::new(gap.max(0.0).into());
-    let pair = PrimitivePair::new(first, second, [p, q], place);
+    let place = Placement::new(pos12);
+    let pair = PrimitivePair::new(bodies.0, bodies.1, primitives, &place);
     pair.contacts(&mut found, &mut Counts::default());
     let contacts = found.into_contacts().into_iter();
     contacts.min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-/// A contact as it shields that of an answer, if it does: one with another primitive of one body and the same convex
-/// part of the other.
-fn shield<A: PrimitiveTree, B: PrimitiveTree>(
-    search: &Search<A, B>,
-    toi: &Toi,
-    contact: &SpherePair,
-    poses: &[Pose; 2],
+/// The same of what two nodes hold, of which one at least is a piece of several primitives: in the middle of faces that
+/// lie on each other, or else where they are nearest.
+fn of_pieces(
+    (first, second): (&impl PrimitiveTree, &impl PrimitiveTree),
+    nodes: [u32; 2],
+    pos12: &Pose,
+    gap: Real,
 ) -> Option<SpherePair> {
-    let (first, second) = (search.sides.0.body, search.sides.1.body);
-    let [p, q] = toi.primitives;
-    let is_same = [
-        first.convex_part(p).contains(&contact.primitives[0]),
-        second.convex_part(q).contains(&contact.primitives[1]),
+    let gap = f64::from(gap.max(0.0));
+    let turned = |n: Vector| Vec3::from_vector(pos12.rotation * n);
+    let hulls = [
+        PlacedHull::of_node(first, nodes[0], Vec3::from_vector, Vec3::from_vector),
+        PlacedHull::of_node(second, nodes[1], |p| Vec3::from_vector(pos12 * p), turned),
     ];
-    let normal = match is_same {
-        [false, true] => shields((first, second), 0, contact, toi, poses),
-        [true, false] => shields((second, first), 1, contact, toi, poses),
-        _ => None,
-    }?;
-    Some(SpherePair { normal, ..*contact })
+    let hulls = hulls.each_ref();
+    let found = hull_gap(hulls, gap);
+    if found.gap > gap {
+        return None;
+    }
+    let n = found.direction;
+    let points = match patch(hulls, n, found.gap, gap) {
+        (Some(patch), _) => {
+            let half = n * (0.5 * found.gap);
+            [patch.middle() - half, patch.middle() + half]
+        }
+        (None, _) => nearest_points(hulls, found).nearest?,
+    };
+    let local = [
+        points[0],
+        Vec3::from_vector(pos12.inverse_transform_point(points[1].to_vector())),
+    ];
+    Some(SpherePair {
+        primitives: [
+            nearest_primitive(first, nodes[0], local[0]),
+            nearest_primitive(second, nodes[1], local[1]),
+        ],
+        feature: 0,
+        distance: found.gap as Real,
+        normal: n.to_vector(),
+        points: local.map(|p| p.to_vector()),
+    })
 }
 
-/// The same for a contact with another primitive of `body`, which is the first or the second of the query (`side`): the
-/// normal of the contact that the answer gets, in the first body's frame.
+/// The normal, in the first body's frame, that the contact found gets from one with the `shield`, another part of
+/// `body`, if that shields it. `body` is the first or the second of the query (`side`).
 fn shields(
     (body, other): (&impl PrimitiveTree, &impl PrimitiveTree),
     side: usize,
-    contact: &SpherePair,
-    found: &Toi,
+    (shield, contact): (Part, &SpherePair),
+    (hidden, found): ([Part; 2], &Toi),
     poses: &[Pose; 2],
 ) -> Option<Vector> {
     if !body.is_medial() {
         return None;
     }
     let outward: Real = if side == 0 { 1.0 } else { -1.0 };
-    let primitives = [contact.primitives[side], found.primitives[side]];
     let contacts = [
         PartContact {
             part: 0,
@@ -165,51 +302,28 @@ fn shields(
             gap: (found.points[1] - found.points[0]).dot(found.normal),
         },
     ];
-    let sizes = primitives.map(|p| size(body, &poses[side], p));
-    let slack = SLACK * sizes[0].max(sizes[1]);
+    let [first, second] = &contacts;
+    let (pose, parts) = (&poses[side], [shield, hidden[side]]);
+    let spheres = parts.map(|part| part.spheres(body));
+    let slack = SLACK * size(&spheres[0], pose).max(size(&spheres[1], pose));
     // Of a solid only the face that touches need be beyond the contact's plane.
-    let (n, others) = (contacts[0].normal, found.primitives[1 - side]);
-    let lowest = -reach(other, &poses[1 - side], other.convex_part(others), -n);
-    let thinnest = spheres(body, primitives[1]).map(|s| s.radius);
-    let sunk = SUNK * thinnest.fold(Real::MAX, Real::min);
-    if lowest - n.dot(contacts[0].place) < contacts[0].gap.min(0.0) - sunk - slack {
+    let n = first.normal;
+    let lowest = -reach(&hidden[1 - side].solid(other), &poses[1 - side], -n);
+    let sunk = SUNK * parts[1].thickness(body);
+    if lowest - n.dot(first.place) < first.gap.min(0.0) - sunk - slack {
         return None;
     }
-    let reach = |part: u32, n: Vector| {
-        let primitive = primitives[part as usize];
-        reach(body, &poses[side], std::iter::once(primitive), n)
-    };
+    let reach = |part: u32, n: Vector| reach(&spheres[part as usize], pose, n);
     if ghosts(&contacts, reach, |_| slack)[1] {
         return Some(contact.normal);
     }
-    // The slab ahead rises above the one that the body lies on, and the body is to meet its face.
-    let [shield, hidden] = &contacts;
-    let to_body = |p: Vector| poses[side].inverse_transform_point(p);
-    let depth = -primitive(body, primitives[0])
-        .signed_distance(to_body(hidden.place))
-        .distance;
-    if shield.gap > hidden.gap || depth <= slack {
+    // The part ahead rises above the one that the body lies on, and the body is to meet its face.
+    let place = pose.inverse_transform_point(second.place);
+    if first.gap > second.gap || shield.depth(body, place) <= slack {
         return None;
     }
-    let face = poses[side].rotation
-        * face_normal(body, primitives[1], poses[side].rotation.inverse() * n)?;
-    (face.dot(n) > hidden.normal.dot(n)).then(|| poses[0].rotation.inverse() * (face * outward))
-}
-
-/// A primitive of a body, in the body's frame.
-fn primitive(body: &impl PrimitiveTree, index: u32) -> MedialPrimitive {
-    let (spheres, share) = body.primitive(index);
-    let [a, b, _] = spheres;
-    match share.spheres {
-        0 | 1 => MedialPrimitive::Sphere(a),
-        2 => MedialPrimitive::Cone([a, b]),
-        _ => MedialPrimitive::Slab(spheres),
-    }
-}
-
-/// The unit normal of a slab's flat face that faces along `n` more than the other, in the body's frame.
-fn face_normal(body: &impl PrimitiveTree, index: u32, n: Vector) -> Option<Vector> {
-    let faces = tangent_normals(&balls(primitive(body, index).as_slab()))?;
-    let [a, b] = faces.map(|face| face.to_vector());
-    Some(if a.dot(n) < b.dot(n) { b } else { a })
+    let face = parts[1].face_normal(body, pose.rotation.inverse() * n)?;
+    let face = pose.rotation * face;
+    let is_nearer = face.dot(n) > second.normal.dot(n);
+    is_nearer.then(|| poses[0].rotation.inverse() * (face * outward))
 }

@@ -4,7 +4,8 @@
 //!
 //! The gap of two convex bodies is their largest gap along any direction, so a normal is right if the gap along it is
 //! that of the contact. Where it is not, but that along the normal of a flat face of either body nearly is ([`ROOM`]),
-//! it is turned to that.
+//! it is turned to that. The points turn along: what rolls touches the face below its axis, and not ahead of it, where
+//! it comes down.
 
 use super::convex_parts::{Part, child_of, part_number, slack};
 use super::manifold_points::places;
@@ -66,13 +67,25 @@ pub fn correct<M, C>(
         }
         let room = ROOM * prediction;
         let room = if told < least - room { room } else { 0.0 };
-        let Some(normal) = flat_normal(&two, least - room) else {
+        let Some((normal, is_of_mesh)) = flat_normal(&two, least - room) else {
             continue;
         };
+        let border = child.as_polygonal_feature_map().map_or(0.0, |map| map.1);
         let m = &mut manifolds[k];
+        let turned = ([m.local_n1, m.local_n2][side] - normal) * border;
         for i in 0..m.points.len() {
             let at = places(m, i);
-            m.points[i].dist = (pose * at[1 - side] - at[side]).dot(normal);
+            let (own, others) = (at[side], pose * at[1 - side] + turned);
+            let point = &mut m.points[i];
+            point.dist = (others - own).dot(normal);
+            let [mut to_own, to_other] = [Vector::ZERO, placed.rotation.inverse() * turned];
+            if is_of_mesh {
+                point.dist = others.dot(normal) - two.0.reach(normal);
+                to_own = others - normal * point.dist - own;
+            }
+            let [to_first, to_second] = [[to_own, to_other], [to_other, to_own]][side];
+            point.local_p1 += to_first;
+            point.local_p2 += to_second;
         }
         m.points.retain(|point| point.dist < prediction);
         let from_other = placed.rotation.inverse() * -normal;
@@ -93,13 +106,14 @@ fn gap_along((part, (shape, pose)): &Two, n: Vector) -> Option<Real> {
     Some(n.dot(nearest) - part.reach(n))
 }
 
-/// The normal with the largest gap among those of the flat faces of both shapes, if that gap is `least` or more.
-fn flat_normal(two: &Two, least: Real) -> Option<Vector> {
+/// The normal with the largest gap among those of the flat faces of both shapes, if that gap is `least` or more, and
+/// whether it is that of a face of the mesh.
+fn flat_normal(two: &Two, least: Real) -> Option<(Vector, bool)> {
     let (part, (shape, pose)) = two;
     let of_shape = flat_sides(*shape).into_iter();
-    let of_shape = of_shape.map(|(n, _)| pose.rotation * -n);
-    let all = part.flat_normals().chain(of_shape);
-    let gaps = all.filter_map(|n| Some((gap_along(two, n)?, n)));
-    let (gap, n) = gaps.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (gap >= least).then_some(n)
+    let of_shape = of_shape.map(|(n, _)| (pose.rotation * -n, false));
+    let all = part.flat_normals().map(|n| (n, true)).chain(of_shape);
+    let gaps = all.filter_map(|(n, own)| Some((gap_along(two, n)?, (n, own))));
+    let (gap, found) = gaps.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (gap >= least).then_some(found)
 }

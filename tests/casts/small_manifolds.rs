@@ -5,7 +5,7 @@ use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher,
 };
-use parry3d::shape::{Shape, SharedShape};
+use parry3d::shape::SharedShape;
 use rapier3d_medial::{MedialDispatcher, MedialMesh, MedialSphere};
 
 /// Six squares, each of two slabs .1 thick, with their top at height 0, times `unit`.

@@ -7,6 +7,11 @@ use rapier3d_medial::prelude::*;
 
 /// A floor of square cells, each of two slabs, with its top at height 0.
 pub fn floor(cells: u32, cell: Real, radius: Real) -> MedialMesh {
+    uneven_floor(cells, cell, radius, |_| 0.0)
+}
+
+/// The same with corners at other heights, given by their numbers.
+fn uneven_floor(cells: u32, cell: Real, radius: Real, height: impl Fn(u32) -> Real) -> MedialMesh {
     let n = cells + 1;
     let half = 0.5 * cells as Real * cell;
     let id = |i: u32, j: u32| i * n + j;
@@ -15,7 +20,7 @@ pub fn floor(cells: u32, cell: Real, radius: Real) -> MedialMesh {
         for j in 0..n {
             let at = [i, j].map(|k| k as Real * cell - half);
             spheres.push(MedialSphere::new(
-                Vector::new(at[0], -radius, at[1]),
+                Vector::new(at[0], height(id(i, j)) - radius, at[1]),
                 radius,
             ));
             let (right, up) = (i < cells, j < cells);
@@ -73,6 +78,23 @@ fn run(floor: &ColliderBuilder, body: Body, speed: Real, angle: Real) -> [Real; 
     [world.bodies[body].linvel().dot(along) / speed, hop]
 }
 
+/// Asserts that rapier's bodies keep as much of their speed on a floor as on a cuboid, and hop nowhere.
+fn assert_level(floor: &MedialMesh, thickness: Real, name: &str, bodies: &[Body]) {
+    let medial = ColliderBuilder::medial_mesh(floor.clone());
+    let cuboid = ColliderBuilder::cuboid(5.5, thickness, 5.5).translation(-Vector::Y * thickness);
+    for body in bodies {
+        for k in 0..8u8 {
+            let (speed, angle) = (0.7 * 1.4_f32.powi(k.into()), 2.399 * Real::from(k));
+            let [kept, hop] = run(&medial, *body, speed, angle);
+            let [level, _] = run(&cuboid, *body, speed, angle);
+            assert!(
+                kept > level - 0.01 && hop < 0.002,
+                "{body:?} at {speed} m/s on {name}: keeps {kept} of its speed, on a cuboid {level}, and hops {hop} m"
+            );
+        }
+    }
+}
+
 #[test]
 fn rapiers_bodies_run_over_medial_floors_as_over_cuboids() {
     let floors = [
@@ -82,20 +104,50 @@ fn rapiers_bodies_run_over_medial_floors_as_over_cuboids() {
         (11, 1.0, 0.02),
     ];
     for (cells, cell, thickness) in floors {
-        let medial = ColliderBuilder::medial_mesh(floor(cells, cell, thickness));
-        let cuboid =
-            ColliderBuilder::cuboid(5.5, thickness, 5.5).translation(-Vector::Y * thickness);
-        for body in [Body::Ball, Body::Box, Body::Rod] {
-            for k in 0..8u8 {
-                let (speed, angle) = (0.7 * 1.4_f32.powi(k.into()), 2.399 * Real::from(k));
-                let [kept, hop] = run(&medial, body, speed, angle);
-                let [level, _] = run(&cuboid, body, speed, angle);
-                assert!(
-                    kept > level - 0.01 && hop < 0.002,
-                    "{body:?} at {speed} m/s on {cells} cells of {cell} m, {thickness} m thick: keeps {kept} of \
-                     its speed, on a cuboid {level}, and hops {hop} m"
-                );
-            }
-        }
+        let name = format!("{cells} cells of {cell} m, {thickness} m thick");
+        let floor = floor(cells, cell, thickness);
+        assert_level(
+            &floor,
+            thickness,
+            &name,
+            &[Body::Ball, Body::Box, Body::Rod],
+        );
     }
+}
+
+/// Symptom: with corners up to 1 to 100 µm off, most balls of 2 to 15 m/s were thrown up at .3 to 5 m/s. Where slabs
+/// rise at a slight fold, their rims were met as though nothing hid them.
+#[test]
+fn bodies_run_over_floors_that_are_level_to_a_tenth_of_a_millimetre() {
+    for off in [1.0e-6, 1.0e-5, 1.0e-4] {
+        let noise = |k: u32| off * ((k.wrapping_mul(2_654_435_761) >> 16) as Real / 32768.0 - 1.0);
+        let floor = uneven_floor(11, 1.0, 0.1, noise);
+        assert_level(
+            &floor,
+            0.1,
+            &format!("corners {off} m off"),
+            &[Body::Ball, Body::Box],
+        );
+    }
+}
+
+/// Symptom: of a plate with a notch, which is built as two boxes, a ball was thrown up at .4 m/s where it rolled at 2
+/// from one to the other, and a box lost half of its speed there. A capsule was pushed up at a point ahead of its axis.
+#[test]
+fn bodies_run_over_a_plate_of_two_boxes() {
+    let [a, b] = [5.5, 3.0];
+    let outline = [[-a, -a], [a, -a], [a, b], [b, b], [b, a], [-a, a]];
+    let corners = [0.0, -0.2].map(|y| outline.map(|[x, z]| Vector::new(x, y, z)));
+    let mut triangles = Vec::new();
+    for [a, b, c] in [[0, 1, 3], [1, 2, 3], [0, 3, 5], [3, 4, 5]] {
+        triangles.extend([[a, c, b], [a + 6, b + 6, c + 6]]);
+    }
+    for i in 0..6 {
+        let j = (i + 1) % 6;
+        triangles.extend([[i, j, j + 6], [i, j + 6, i + 6]]);
+    }
+    let options = BuildOptions::default();
+    let (plate, _) =
+        MedialMesh::from_trimesh(&corners.concat(), &triangles, &options).expect("a plate");
+    assert_level(&plate, 0.1, "a plate", &[Body::Ball, Body::Box, Body::Rod]);
 }
