@@ -319,7 +319,7 @@ fn shields(
     }
     // The part ahead rises above the one that the body lies on, and the body is to meet its face.
     let place = pose.inverse_transform_point(second.place);
-    if first.gap > second.gap || shield.depth(body, place) <= slack {
+    if first.gap > second.gap || shield.depth(body, place) < -slack {
         return None;
     }
     let face = parts[1].face_normal(body, pose.rotation.inverse() * n)?;
