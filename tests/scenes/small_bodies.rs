@@ -59,6 +59,24 @@ fn small_bodies_stay_on_floors_of_small_slabs() {
     }
 }
 
+/// rapier's compound of the slabs of a mesh of one radius.
+fn compound(mesh: &MedialMesh) -> ColliderBuilder {
+    let slabs = (0..mesh.primitive_count()).map(|k| {
+        let [a, b, c] = mesh.primitive(k).as_slab();
+        let slab = SharedShape::round_triangle(a.center, b.center, c.center, a.radius);
+        (Pose::IDENTITY, slab)
+    });
+    ColliderBuilder::compound(slabs.collect())
+}
+
+#[test]
+fn small_bodies_fall_through_rapiers_compounds_of_small_slabs() {
+    let cell = 0.015;
+    let ground = compound(&floor(8, cell, 0.1 * cell));
+    let cylinder = ColliderBuilder::cylinder(0.15 * cell, 0.2 * cell);
+    assert!(fallen(&ground, &cylinder, cell, cell) > 6);
+}
+
 /// Whether the axis of a rod, of a radius of a twentieth of `size` (in metres), gets through a wall of a closed box in
 /// five seconds, in a world whose length unit is `length_unit` (in metres).
 fn crosses(size: Real, length_unit: Real, seed: u8) -> bool {
@@ -93,10 +111,10 @@ fn crosses(size: Real, length_unit: Real, seed: u8) -> bool {
 /// Symptom: of 20 rods of .05 mm 5 to 10 got through walls in a world whose length unit is a metre.
 #[test]
 fn rods_of_any_size_stay_within_walls() {
-    let sizes = [0.01, 0.005, 0.003, 0.002, 0.001, 0.0005];
+    let sizes = [0.01, 0.003, 0.001, 0.0005];
     let in_metres = sizes.map(|size| (size, 1.0));
     for (size, length_unit) in in_metres.into_iter().chain([(0.001, 0.001)]) {
-        let crossed = (0..20).filter(|seed| crosses(size, length_unit, *seed));
+        let crossed = (0..12).filter(|seed| crosses(size, length_unit, *seed));
         assert_eq!(crossed.count(), 0, "{size} m in units of {length_unit} m");
     }
 }
