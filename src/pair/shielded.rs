@@ -34,6 +34,10 @@ const SLACK: Real = 1.0e-6;
 /// part's thickness: what slides is tilted a little. Larger, and it may be deep in the part.
 const SUNK: Real = 0.1;
 
+/// Cosine of the steepest fold at which a part's face rises above the one that shields it (3.6°): beyond it the body is
+/// struck at the rim of the next part, under the normal found.
+const FOLD: Real = 0.998;
+
 /// A convex part of a body: a primitive, or the piece that a node holds.
 #[derive(Clone, Copy)]
 enum Part {
@@ -42,6 +46,7 @@ enum Part {
 }
 
 impl Part {
+    /// The part that a node of a body holds, if it is one.
     fn of_node(body: &impl PrimitiveTree, node: u32) -> Option<Self> {
         match (body.convex_piece(node), body.kind(node)) {
             (Some(_), _) => Some(Self::Piece(node)),
@@ -50,7 +55,7 @@ impl Part {
         }
     }
 
-    /// Whether another one is it, or bounds the same convex body.
+    /// Whether it is the same as another one, or the two bound one convex body.
     fn is(self, body: &impl PrimitiveTree, other: Self) -> bool {
         match (self, other) {
             (Self::Piece(a), Self::Piece(b)) => a == b,
@@ -61,6 +66,7 @@ impl Part {
         }
     }
 
+    /// The spheres whose hull it is, in the body's frame.
     fn spheres(self, body: &impl PrimitiveTree) -> Vec<MedialSphere> {
         match self {
             Self::Primitive(p) => {
@@ -74,7 +80,7 @@ impl Part {
         }
     }
 
-    /// Those of the convex body that it bounds.
+    /// The spheres of the whole convex body that it is of: of a cuboid's face, those of all faces.
     fn solid(self, body: &impl PrimitiveTree) -> Vec<MedialSphere> {
         match self {
             Self::Primitive(p) => {
@@ -230,8 +236,8 @@ fn of_primitives(
     contacts.min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-/// The same of what two nodes hold, of which one at least is a piece of several primitives: in the middle of faces that
-/// lie on each other, or else where they are nearest.
+/// The contact of the parts that two nodes hold, of which one at least is a piece of several primitives: in the middle
+/// of faces that lie on each other, or else where they are nearest.
 fn of_pieces(
     (first, second): (&impl PrimitiveTree, &impl PrimitiveTree),
     nodes: [u32; 2],
@@ -325,5 +331,5 @@ fn shields(
     let face = parts[1].face_normal(body, pose.rotation.inverse() * n)?;
     let face = pose.rotation * face;
     let is_nearer = face.dot(n) > second.normal.dot(n);
-    is_nearer.then(|| poses[0].rotation.inverse() * (face * outward))
+    (is_nearer && face.dot(n) > FOLD).then(|| poses[0].rotation.inverse() * (face * outward))
 }

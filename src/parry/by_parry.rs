@@ -32,7 +32,8 @@ pub fn write_manifolds<M, C>(
     C: Default + Copy + Send + Sync,
 {
     let is_second = side == 1;
-    let [to_other, to_mesh] = match side {
+    // The pose of each in the frame of the other.
+    let [other_in_mesh, mesh_in_other] = match side {
         0 => [*pos12, pos12.inverse()],
         _ => [pos12.inverse(), *pos12],
     };
@@ -49,7 +50,14 @@ pub fn write_manifolds<M, C>(
     }
     match other.as_typed_shape() {
         TypedShape::HeightField(field) => contact_manifolds_heightfield_composite_shape(
-            dispatcher, &to_mesh, &to_other, field, mesh, prediction, manifolds, workspace,
+            dispatcher,
+            &mesh_in_other,
+            &other_in_mesh,
+            field,
+            mesh,
+            prediction,
+            manifolds,
+            workspace,
             !is_second,
         ),
         TypedShape::Voxels(_) => {
@@ -63,7 +71,14 @@ pub fn write_manifolds<M, C>(
             );
         }
         _ => contact_manifolds_composite_shape_shape(
-            dispatcher, &to_other, mesh, other, prediction, manifolds, workspace, is_second,
+            dispatcher,
+            &other_in_mesh,
+            mesh,
+            other,
+            prediction,
+            manifolds,
+            workspace,
+            is_second,
         ),
     }
 }
@@ -97,9 +112,9 @@ where
     let maps = [g1, g2].map(|g| g.as_polygonal_feature_map());
     match maps {
         [Some(map1), Some(map2)] if !is_closed_form([g1, g2].map(|g| g.shape_type())) => {
-            let sizes = [g1, g2].map(|g| g.compute_local_aabb().extents().max_element());
-            let maps = [map1, map2];
-            scaled_contact::write_manifold(pos12, maps, sizes, constraints, prediction, manifold);
+            let bounds = [g1, g2].map(|g| g.compute_local_aabb());
+            let (maps, bounds) = ([map1, map2], bounds.each_ref());
+            scaled_contact::write_manifold(pos12, maps, bounds, constraints, prediction, manifold);
             Ok(())
         }
         _ => {

@@ -137,7 +137,7 @@ fn write_with_other<M, C>(
 /// Turns or leaves out what is wrong in the contacts of a mesh with another shape, whether they are parry's or not.
 fn correct<M, C>(
     ((mesh, side), pos12, [g1, g2]): Pair,
-    (by_parry, prediction): (bool, Real),
+    (is_parrys, prediction): (bool, Real),
     manifolds: &mut [ContactManifold<M, C>],
 ) where
     M: Default + Clone + Send + Sync,
@@ -155,7 +155,7 @@ fn correct<M, C>(
             voxel_normals::correct(manifolds, (mesh, side), (voxels, &pose), prediction);
             leave_out_ghosts(manifolds, (mesh, side), &pose);
         }
-        _ if by_parry => {
+        _ if is_parrys => {
             // First, so that none is turned to the normal of one that it is a ghost of.
             let reach = |part, n| Part::of(mesh, part).reach(n);
             let slack = slack_of_parts(mesh, (other, &pose));
@@ -319,6 +319,7 @@ where
         written
     }
 
+    /// parry's manifold of any two convex shapes, at a scale at which its tolerances are small.
     fn contact_manifold_convex_convex(
         &self,
         pos12: &Pose,

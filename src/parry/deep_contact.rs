@@ -18,8 +18,8 @@ use crate::pair::{SpherePair, Support};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::{Shape, SupportMap, TypedShape};
 
-/// Difference of two depths that parry's algorithm may make: in units of the depth (the round parts of 4,000 random
-/// pairs were off by less), and of the sizes in play (about eight ulps of `f32`).
+/// Difference of two depths that parry's algorithm may make: in units of the depth, and of the sizes in play (about
+/// eight ulps of `f32`).
 const SAME_DEPTH: [Real; 2] = [1.0e-3, 1.0e-6];
 
 /// A convex part of one of the bodies.
@@ -30,7 +30,8 @@ struct Part<'a> {
     /// Its pose in the frame of its body, and of the mesh.
     poses: [Pose; 2],
     subshape: u32,
-    /// Box around it in the frame of the mesh.
+    /// Boxes around it in its own frame, and in that of the mesh.
+    own_bounds: Aabb,
     bounds: Aabb,
 }
 
@@ -46,11 +47,11 @@ impl<'a> Part<'a> {
             border,
             poses,
             subshape,
+            own_bounds: Aabb::new_invalid(),
             bounds: Aabb::new_invalid(),
         };
-        let most = Vector::AXES.map(|n| part.reach(n));
-        let least = Vector::AXES.map(|n| -part.reach(-n));
-        part.bounds = Aabb::new(least.into(), most.into());
+        part.own_bounds = part.bounds_at(&Pose::IDENTITY);
+        part.bounds = part.bounds_at(&poses[1]);
         part
     }
 
@@ -63,7 +64,17 @@ impl<'a> Part<'a> {
 
     /// How far it reaches along a unit direction of the mesh's frame, a length.
     fn reach(&self, n: Vector) -> Real {
-        n.dot(self.map().support_point(&self.poses[1], n)) + self.border
+        self.reach_at(&self.poses[1], n)
+    }
+
+    fn reach_at(&self, pose: &Pose, n: Vector) -> Real {
+        n.dot(self.map().support_point(pose, n)) + self.border
+    }
+
+    fn bounds_at(&self, pose: &Pose) -> Aabb {
+        let most = Vector::AXES.map(|n| self.reach_at(pose, n));
+        let least = Vector::AXES.map(|n| -self.reach_at(pose, -n));
+        Aabb::new(least.into(), most.into())
     }
 
     /// The part of spheres, in the frame of their body, which is at `pose` in that of the mesh.
@@ -78,15 +89,20 @@ impl<'a> Part<'a> {
 /// Parts of a mesh at `pose` that may meet a box: its convex pieces and lone primitives.
 fn parts_of_mesh<'a>(mesh: &MedialMesh, pose: &Pose, region: &Aabb) -> Vec<Part<'a>> {
     let pieces = mesh.convex_pieces();
+    let own_region = region.transform_by(&pose.inverse());
+    let is_near = |k: &u32| mesh.primitive(*k as usize).aabb().intersects(&own_region);
     let is_lone = |primitive: &u32| pieces.node_of(*primitive).is_none();
-    let lone = (0..mesh.primitive_count() as u32).filter(is_lone);
+    let lone = (0..mesh.primitive_count() as u32)
+        .filter(is_lone)
+        .filter(is_near);
     let lone = lone.map(|k| Part::of_spheres(mesh.primitive(k as usize).spheres(), pose, k));
     let of_piece = |piece: &ConvexPiece| Part::of_spheres(&piece.spheres, pose, piece.primitive);
     let all = pieces.iter().map(of_piece).chain(lone);
     all.filter(|part| part.bounds.intersects(region)).collect()
 }
 
-/// Convex parts of any shape at `pose` that may meet a box. Surfaces have none.
+/// Convex parts of any shape at `pose` that may meet a box. Meshes of triangles, height fields, voxels and half-spaces
+/// have none.
 fn parts_of<'a>(shape: &'a dyn Shape, pose: &Pose, region: &Aabb) -> Vec<Part<'a>> {
     if let Some(mesh) = shape.as_shape::<MedialMesh>() {
         return parts_of_mesh(mesh, pose, region);
@@ -124,8 +140,19 @@ fn is_told_by_spheres(mesh: &MedialMesh, other: &dyn Shape) -> bool {
     of_other && mesh.convex_pieces().is_empty()
 }
 
+/// Whether a subshape of a body has a support map, so that it is a convex part.
+fn is_convex(shape: &dyn Shape, subshape: u32) -> bool {
+    match shape.as_typed_shape() {
+        TypedShape::Compound(compound) => {
+            let child = compound.shapes().get(subshape as usize);
+            child.is_some_and(|(_, child)| child.as_support_map().is_some())
+        }
+        _ => true,
+    }
+}
+
 /// The contact of a mesh and another shape at `pos12` in its frame, of which the nearest spheres are known.
-pub fn deepest(
+pub fn shortest_way_out(
     mesh: &MedialMesh,
     other: &dyn Shape,
     pos12: &Pose,
@@ -143,14 +170,13 @@ pub fn deepest(
     let Some((pair, way)) = deepest_parts(&parts) else {
         return nearest;
     };
-    let is_solid = |k: u32| parts[1].iter().any(|part| part.subshape == k);
     let depth = -way.distance;
     let of_nearest = separation(&parts, pair, nearest.normal);
     let size = region.half_extents().max_element() + region.center().abs().max_element();
     let slack = SAME_DEPTH[0] * depth + SAME_DEPTH[1] * size;
     let is_told = of_nearest <= depth + slack && (of_nearest + nearest.distance).abs() <= slack;
-    let is_of_a_surface = !is_solid(nearest.primitives[1]) && nearest.distance < way.distance;
-    if is_told || is_of_a_surface {
+    let is_of_another = !is_convex(other, nearest.primitives[1]) && nearest.distance < way.distance;
+    if is_told || is_of_another {
         nearest
     } else {
         way
@@ -204,7 +230,12 @@ fn deepest_parts(parts: &[Vec<Part>; 2]) -> Option<([usize; 2], SpherePair)> {
 fn way_out(a: &Part, b: &Part) -> Option<SpherePair> {
     let borders = a.border + b.border;
     let pose = a.poses[1].inv_mul(&b.poses[1]);
-    let found = scaled_contact::contact(&pose, [a.map(), b.map()], borders)?;
+    let found = scaled_contact::contact(
+        &pose,
+        [a.map(), b.map()],
+        [&a.own_bounds, &b.own_bounds],
+        borders,
+    )?;
     let normal = a.poses[1].rotation * found.normal1;
     let depth = a.reach(normal) + b.reach(-normal);
     let points = [

@@ -11,8 +11,9 @@ use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::{DEEP, Support};
+use parry3d::bounding_volume::Aabb;
 use parry3d::query::ContactManifold;
-use parry3d::shape::Shape;
+use parry3d::shape::{Shape, SupportMap};
 
 /// Cosine of the angle between a contact's normal and the way out from which on the contact helps. No other value was
 /// tried.
@@ -63,6 +64,11 @@ pub fn leave_out<M, C>(
 /// The direction into a convex part of the other shape along which a piece is least deep in it.
 fn way_out(piece: &Support, (other, pose): (&dyn Shape, &Pose), part: u32) -> Option<Vector> {
     let (other, pose) = child_of((other, pose), part)?;
-    let contact = scaled_contact::contact(&pose, [piece, other.as_support_map()?], 0.0)?;
+    let bounds = [
+        Aabb::from_points(piece.0.iter().flat_map(|(c, r)| [*c - *r, *c + *r])),
+        other.compute_local_aabb(),
+    ];
+    let maps: [&dyn SupportMap; 2] = [piece, other.as_support_map()?];
+    let contact = scaled_contact::contact(&pose, maps, bounds.each_ref(), 0.0)?;
     Some(contact.normal1)
 }

@@ -211,11 +211,14 @@ impl QueryDispatcher for MedialDispatcher {
     ) -> Result<Option<Contact>, Unsupported> {
         let nearest = self.nearest(pos12, g1, g2, prediction)?;
         let deepest = |nearest: SpherePair| match (medial(g1), medial(g2)) {
-            (Some(mesh), _) => deep_contact::deepest(mesh, g2, pos12, nearest),
+            (Some(mesh), _) => deep_contact::shortest_way_out(mesh, g2, pos12, nearest),
             (None, Some(mesh)) => {
                 let pos21 = pos12.inverse();
                 let nearest = flipped(nearest, &pos21);
-                flipped(deep_contact::deepest(mesh, g1, &pos21, nearest), pos12)
+                flipped(
+                    deep_contact::shortest_way_out(mesh, g1, &pos21, nearest),
+                    pos12,
+                )
             }
             (None, None) => nearest,
         };

@@ -126,7 +126,7 @@ fn overlap_with_center_inside(
     let primitive = mesh.simplices().iter().position(of_sphere).unwrap_or(0);
     let MedialSphere { center, radius } = placed[way.sphere];
     Some(SpherePair {
-        primitives: [primitive as u32, 0],
+        primitives: [primitive as u32, way.child],
         feature: 0,
         distance: -way.depth,
         normal: pos12.rotation * -way.direction,

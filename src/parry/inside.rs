@@ -6,11 +6,11 @@
 //! face is what a solver can push against.)
 
 use super::compound_children::{children_in, least_over_children};
-use crate::math::{Pose, Real, Vector};
+use crate::math::{Real, Vector};
 use crate::medial::MedialSphere;
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::PointQuery;
-use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, SharedShape, Triangle, TypedShape};
+use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, Triangle, TypedShape};
 
 /// Factor by which a distance may exceed the one that parry's projections give: they are off by less.
 pub const PROJECTION_SLACK: Real = 1.01;
@@ -129,6 +129,8 @@ fn is_beyond_hull(hull: &ConvexPolyhedron, point: Vector, distance: Real) -> boo
 /// Shortest translation out of a closed body.
 #[derive(Clone, Copy, Debug)]
 pub struct MinTranslation {
+    /// Child of a compound that it leads out of; 0 of other shapes.
+    pub child: u32,
     /// Index of the sphere that has the longest way.
     pub sphere: usize,
     /// Unit direction, in the closed body's frame.
@@ -144,13 +146,15 @@ pub struct MinTranslation {
 /// of the centre furthest from the surface.
 pub fn min_translation(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<MinTranslation> {
     if let TypedShape::Compound(c) = shape.as_typed_shape() {
-        let of_child = |(pose, child): &(Pose, SharedShape)| {
+        let of_child = |k: u32| {
+            let (pose, child) = &c.shapes()[k as usize];
             let local = |s: &MedialSphere| {
                 MedialSphere::new(pose.inverse_transform_point(s.center), s.radius)
             };
             let local: Vec<_> = spheres.iter().map(local).collect();
             let way = min_translation(child.as_ref(), &local)?;
             Some(MinTranslation {
+                child: k,
                 direction: pose.rotation * way.direction,
                 ..way
             })
@@ -158,7 +162,7 @@ pub fn min_translation(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<Mi
         let mut centers = Aabb::new_invalid();
         spheres.iter().for_each(|s| centers.take_point(s.center));
         let children = children_in(c, &centers).into_iter();
-        let ways = children.filter_map(|child| of_child(&c.shapes()[child as usize]));
+        let ways = children.filter_map(of_child);
         return ways.max_by(|a, b| a.depth.total_cmp(&b.depth));
     }
     if !spheres.iter().any(|s| holds_point(shape, s.center)) {
@@ -176,6 +180,7 @@ pub fn min_translation(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<Mi
             && best.is_none_or(|old| depth(s) < old.depth)
         {
             best = Some(MinTranslation {
+                child: 0,
                 sphere,
                 direction: n,
                 to_surface: to_surface(s),
@@ -229,6 +234,7 @@ fn by_projection(shape: &dyn Shape, spheres: &[MedialSphere]) -> Option<MinTrans
         let is_free = |way: &Vector| !holds_point(shape, s.center + *way * aside);
         let free = || Vector::AXES.into_iter().flat_map(|a| [a, -a]).find(is_free);
         Some(MinTranslation {
+            child: 0,
             sphere,
             direction: out.try_normalize().or_else(free)?,
             to_surface: out.length(),

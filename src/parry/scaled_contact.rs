@@ -1,16 +1,21 @@
 //! parry's contacts of two convex shapes (its GJK and EPA algorithms) for bodies of any size. Their tolerances are
-//! lengths and areas of about 1e-6: triangles with edges of 3 cm are taken for lines, so that bodies of centimetres
-//! get contacts that are aslant or too deep, and those of millimetres none. So parry is asked about the smaller body
-//! as large as 1.
+//! lengths of 1e-6, and squares of areas: triangles with edges of 3 cm are taken for lines, so that bodies of
+//! centimetres get contacts that are aslant or too deep, and those of millimetres none. So parry is asked about the
+//! smaller body with a size between 1 and 2.
 
 use crate::math::{Pose, Real, Vector};
+use parry3d::bounding_volume::Aabb;
 use parry3d::query::details::{
     NormalConstraints, contact_manifold_pfm_pfm, contact_support_map_support_map,
 };
 use parry3d::query::{Contact, ContactManifold};
 use parry3d::shape::{PolygonalFeature, PolygonalFeatureMap, SupportMap};
 
-/// A support map times a factor.
+/// How much larger than 1 the other body may get, as a power of 2: beyond it single precision is coarser than parry's
+/// tolerances, and the smaller body is asked about smaller.
+const LARGEST: Real = 1024.0;
+
+/// A support map times a factor, a power of 2.
 struct Scaled<'a, T: ?Sized> {
     map: &'a T,
     factor: Real,
@@ -44,9 +49,14 @@ impl<T: PolygonalFeatureMap + ?Sized> PolygonalFeatureMap for Scaled<'_, T> {
 }
 
 /// The contact of two support maps that are at most `prediction` (a length) apart; the second is at `pos12` in the
-/// frame of the first.
-pub fn contact(pos12: &Pose, [a, b]: [&dyn SupportMap; 2], prediction: Real) -> Option<Contact> {
-    let unit = power_of_2(extent(a).min(extent(b)));
+/// frame of the first. `bounds` are boxes around them with what they are to be grown by, each in its own frame.
+pub fn contact(
+    pos12: &Pose,
+    [a, b]: [&dyn SupportMap; 2],
+    bounds: [&Aabb; 2],
+    prediction: Real,
+) -> Option<Contact> {
+    let unit = unit(bounds, pos12);
     let factor = 1.0 / unit;
     let [a, b] = [a, b].map(|map| Scaled { map, factor });
     let pose = scaled(pos12, factor);
@@ -59,17 +69,17 @@ pub fn contact(pos12: &Pose, [a, b]: [&dyn SupportMap; 2], prediction: Real) -> 
     })
 }
 
-/// The manifold of two convex shapes, each its polygonal feature map and the radius it is grown by, whose boxes have so
-/// long sides; `pos12` is the pose of the second in the frame of the first.
+/// The manifold of two convex shapes, each its polygonal feature map and the radius it is grown by, within `bounds`;
+/// `pos12` is the pose of the second in the frame of the first.
 pub fn write_manifold<M: Default, C: Default + Copy>(
     pos12: &Pose,
     [(a, border1), (b, border2)]: [(&dyn PolygonalFeatureMap, Real); 2],
-    sizes: [Real; 2],
+    bounds: [&Aabb; 2],
     [of_a, of_b]: [Option<&dyn NormalConstraints>; 2],
     prediction: Real,
     manifold: &mut ContactManifold<M, C>,
 ) {
-    let unit = power_of_2(sizes[0].min(sizes[1]));
+    let unit = unit(bounds, pos12);
     let factor = 1.0 / unit;
     let [a, b] = [a, b].map(|map| Scaled { map, factor });
     let (pose, prediction) = (scaled(pos12, factor), prediction * factor);
@@ -81,10 +91,12 @@ pub fn write_manifold<M: Default, C: Default + Copy>(
     scale_points(manifold, unit);
 }
 
+/// A pose in a frame whose lengths are `factor` times as large.
 fn scaled(pose: &Pose, factor: Real) -> Pose {
     Pose::from_parts(pose.translation * factor, pose.rotation)
 }
 
+/// Multiplies the lengths of a manifold's points.
 fn scale_points<M, C>(manifold: &mut ContactManifold<M, C>, factor: Real) {
     for point in &mut manifold.points {
         point.local_p1 *= factor;
@@ -93,10 +105,14 @@ fn scale_points<M, C>(manifold: &mut ContactManifold<M, C>, factor: Real) {
     }
 }
 
-/// The largest side of the box around a support map, a length.
-fn extent(map: &dyn SupportMap) -> Real {
-    let side = |n: Vector| n.dot(map.local_support_point(n) - map.local_support_point(-n));
-    Vector::AXES.map(side).into_iter().fold(0.0, Real::max)
+/// The length that becomes 1, a power of 2: that of the smaller body, unless coordinates would be larger than
+/// [`LARGEST`].
+fn unit(bounds: [&Aabb; 2], pos12: &Pose) -> Real {
+    let sizes = bounds.map(|b| b.extents().max_element());
+    let coordinates = bounds.map(|b| b.mins.abs().max(b.maxs.abs()).max_element());
+    let largest = coordinates[0].max(coordinates[1]);
+    let largest = largest.max(pos12.translation.abs().max_element());
+    power_of_2(sizes[0].min(sizes[1]).max(largest / LARGEST))
 }
 
 /// The power of 2 at or below a size, 1 where it has none. Lengths that are divided by it lose no digit.
@@ -106,5 +122,25 @@ fn power_of_2(size: Real) -> Real {
         Real::from_bits(size.to_bits() & EXPONENT)
     } else {
         1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smaller_body_is_as_large_as_1_and_none_as_large_as_can_be() {
+        let bounds = |half: Real| Aabb::from_half_extents(Vector::ZERO, Vector::splat(half));
+        let of = |a: Real, b: Real, x: Real| {
+            unit([&bounds(a), &bounds(b)], &Pose::translation(x, 0.0, 0.0))
+        };
+        assert_eq!(of(0.01, 3.0, 0.0), 0.015625);
+        assert_eq!(of(3.0, 0.01, 0.0), 0.015625);
+        // A body of a kilometre, or a kilometre away, is 1,024 units large.
+        assert_eq!(of(1.0e-3, 1000.0, 0.0), 0.5);
+        assert_eq!(of(1.0e-3, 1.0e-3, 1000.0), 0.5);
+        assert_eq!(of(0.0, 0.0, 0.0), 1.0);
+        assert_eq!(of(Real::NAN, Real::INFINITY, 0.0), 1.0);
     }
 }

@@ -14,7 +14,7 @@ use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use parry3d::query::ContactManifold;
-use parry3d::shape::Shape;
+use parry3d::shape::{Shape, TypedShape};
 
 /// How much smaller than the contact's gap that along a face's normal may be, in units of the prediction distance, if
 /// that along the contact's own normal is smaller still. With none, bodies that lie aslant over the end of a table
@@ -70,19 +70,23 @@ pub fn correct<M, C>(
         let Some((normal, is_of_mesh)) = flat_normal(&two, least - room) else {
             continue;
         };
-        let border = child.as_polygonal_feature_map().map_or(0.0, |map| map.1);
         let m = &mut manifolds[k];
-        let turned = ([m.local_n1, m.local_n2][side] - normal) * border;
+        let turned = [m.local_n1, m.local_n2][side] - normal;
+        let radii = mesh.primitive(own as usize);
+        let radii = radii.spheres().iter().map(|s| s.radius);
+        let of_own = turned * -radii.fold(Real::MAX, Real::min);
+        let of_other = turned * border(child);
         for i in 0..m.points.len() {
             let at = places(m, i);
-            let (own, others) = (at[side], pose * at[1 - side] + turned);
+            let others = pose * at[1 - side] + of_other;
             let point = &mut m.points[i];
-            point.dist = (others - own).dot(normal);
-            let [mut to_own, to_other] = [Vector::ZERO, placed.rotation.inverse() * turned];
+            let mut to_own = of_own;
+            point.dist = (others - at[side] - of_own).dot(normal);
             if is_of_mesh {
                 point.dist = others.dot(normal) - two.0.reach(normal);
-                to_own = others - normal * point.dist - own;
+                to_own = others - normal * point.dist - at[side];
             }
+            let to_other = placed.rotation.inverse() * of_other;
             let [to_first, to_second] = [[to_own, to_other], [to_other, to_own]][side];
             point.local_p1 += to_first;
             point.local_p2 += to_second;
@@ -93,6 +97,14 @@ pub fn correct<M, C>(
             0 => [normal, from_other],
             _ => [from_other, normal],
         };
+    }
+}
+
+/// The radius that a convex shape's core is grown by, a length.
+fn border(shape: &dyn Shape) -> Real {
+    match shape.as_typed_shape() {
+        TypedShape::Ball(ball) => ball.radius,
+        _ => shape.as_polygonal_feature_map().map_or(0.0, |map| map.1),
     }
 }
 

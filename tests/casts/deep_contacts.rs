@@ -103,6 +103,11 @@ fn medial_bodies(unit: Real) -> Vec<Body> {
         medial("slab", slab(unit), true),
         medial("medial cone", cone, true),
         medial("medial box", cuboid, true),
+        medial(
+            "medial ball",
+            MedialMesh::ball(r(0.2)).expect("a ball"),
+            true,
+        ),
         medial("ring", ring, false),
     ]
 }
@@ -125,7 +130,9 @@ fn other_bodies(unit: Real) -> Vec<Body> {
     let ends = [V::y(), -V::y()].map(|end| (end * x(0.4), x(0.2)));
     let aside = |along: Real| Isometry3::translation(x(along), x(0.1), 0.0);
     let pose = |along: Real| Pose::translation(r(along), r(0.1), 0.0);
+    // The first child is out of reach.
     let pair = SharedShape::compound(vec![
+        (pose(-10.0), SharedShape::cuboid(r(0.25), r(0.3), r(0.4))),
         (pose(-0.3), SharedShape::cuboid(r(0.25), r(0.3), r(0.4))),
         (pose(0.3), SharedShape::cylinder(r(0.5), r(0.3))),
     ]);
@@ -175,6 +182,10 @@ fn other_bodies(unit: Real) -> Vec<Body> {
             name: "compound",
             shape: pair,
             parts: vec![
+                Part::Placed(
+                    aside(-10.0),
+                    Box::new(Part::Cuboid(V::new(x(0.25), x(0.3), x(0.4)))),
+                ),
                 Part::Placed(
                     aside(-0.3),
                     Box::new(Part::Cuboid(V::new(x(0.25), x(0.3), x(0.4)))),
@@ -249,7 +260,7 @@ fn is_shortest(
     );
     let of_b = |part: &Part| Part::Placed(exact_pose, Box::new(part.clone()));
     let placed: Vec<Part> = b.parts.iter().map(of_b).collect();
-    let (depth, _) = deepest(a, &placed, directions);
+    let (depth, [part_a, part_b]) = deepest(a, &placed, directions);
     if depth < 0.05 * unit {
         return false;
     }
@@ -269,14 +280,10 @@ fn is_shortest(
         let told = -f64::from(contact.dist);
         let at = format!("{names:?} {flipped} {pose:?}: {contact:?}, {depth}");
         assert!((told - depth).abs() < 0.01 * depth, "{at}");
-        // Some two parts are separated by it, and its points are as far apart.
+        // It separates the two parts, and its points are as far apart.
         let n = exact(normal);
-        let pairs = a
-            .parts
-            .iter()
-            .flat_map(|a| placed.iter().map(move |b| [a, b]));
-        let off = pairs.map(|[a, b]| (a.reach(n) + b.reach(-n) - told).abs());
-        assert!(off.fold(f64::MAX, f64::min) < 0.002 * depth, "{at}");
+        let along = part_a.reach(n) + part_b.reach(-n);
+        assert!((along - told).abs() < 0.01 * depth, "{at}: {along}");
         let [p, q] = [
             Point3::from(exact(points[0])),
             Point3::from(exact(points[1])),

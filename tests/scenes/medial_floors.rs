@@ -44,8 +44,8 @@ enum Body {
 }
 
 /// Share of its speed that a body keeps which rolls, or slides without friction, over the middle of a floor, and how
-/// high it hops, a length.
-fn run(floor: &ColliderBuilder, body: Body, speed: Real, angle: Real) -> [Real; 2] {
+/// high it hops and how deep it sinks, lengths.
+fn run(floor: &ColliderBuilder, body: Body, speed: Real, angle: Real) -> [Real; 3] {
     let radius = 0.15;
     let (sin, cos) = angle.sin_cos();
     let (along, side) = (Vector::new(cos, 0.0, sin), Vector::new(-sin, 0.0, cos));
@@ -70,26 +70,29 @@ fn run(floor: &ColliderBuilder, body: Body, speed: Real, angle: Real) -> [Real; 
         .allow_fast_rotation(true)
         .can_sleep(false);
     let (body, _) = world.insert(start, collider.density(500.0));
-    let mut hop: Real = 0.0;
+    let (mut hop, mut sunk): (Real, Real) = (0.0, 0.0);
     for _ in 0..((8.5 / speed * 60.0) as usize).min(300) {
         pipeline.step(&mut world);
-        hop = hop.max(world.bodies[body].translation().y - radius);
+        let above = world.bodies[body].translation().y - radius;
+        (hop, sunk) = (hop.max(above), sunk.max(-above));
     }
-    [world.bodies[body].linvel().dot(along) / speed, hop]
+    [world.bodies[body].linvel().dot(along) / speed, hop, sunk]
 }
 
-/// Asserts that rapier's bodies keep as much of their speed on a floor as on a cuboid, and hop nowhere.
+/// Asserts that rapier's bodies keep as much of their speed on a floor as on a cuboid, hop nowhere, and sink in no
+/// deeper.
 fn assert_level(floor: &MedialMesh, thickness: Real, name: &str, bodies: &[Body]) {
     let medial = ColliderBuilder::medial_mesh(floor.clone());
     let cuboid = ColliderBuilder::cuboid(5.5, thickness, 5.5).translation(-Vector::Y * thickness);
     for body in bodies {
         for k in 0..8u8 {
             let (speed, angle) = (0.7 * 1.4_f32.powi(k.into()), 2.399 * Real::from(k));
-            let [kept, hop] = run(&medial, *body, speed, angle);
-            let [level, _] = run(&cuboid, *body, speed, angle);
+            let [kept, hop, sunk] = run(&medial, *body, speed, angle);
+            let [level, _, as_deep] = run(&cuboid, *body, speed, angle);
             assert!(
-                kept > level - 0.01 && hop < 0.002,
-                "{body:?} at {speed} m/s on {name}: keeps {kept} of its speed, on a cuboid {level}, and hops {hop} m"
+                kept > level - 0.01 && hop < 0.002 && sunk < as_deep + 0.002,
+                "{body:?} at {speed} m/s on {name}: keeps {kept} of its speed, on a cuboid {level}, hops {hop} m and \
+                 sinks {sunk} m, there {as_deep}"
             );
         }
     }

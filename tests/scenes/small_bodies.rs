@@ -6,7 +6,8 @@ use crate::medial_floors::floor;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
-/// How many of 12 bodies, about .4 `cell` large, get through a floor of cells when they are dropped from one `cell`.
+/// How many of 12 bodies, some .4 to .9 `cell` large, get through a floor of 8 by 8 cells, or are thrown up, when they
+/// are dropped from a height of one `cell`.
 fn fallen(ground: &ColliderBuilder, body: &ColliderBuilder, cell: Real, unit: Real) -> usize {
     let falls = |seed: &u8| {
         let k = Real::from(*seed);
@@ -23,14 +24,15 @@ fn fallen(ground: &ColliderBuilder, body: &ColliderBuilder, cell: Real, unit: Re
         (0..200).any(|_| {
             pipeline.step(&mut world);
             let at = world.bodies[body].translation() / cell;
-            at.y < -0.1 && at.x.abs().max(at.z.abs()) < 4.0
+            // What rolls to the edge may fall off it.
+            at.y > 1.1 || at.y < -0.1 && at.x.abs().max(at.z.abs()) < 4.0
         })
     };
     (0..12).filter(falls).count()
 }
 
 /// Symptom: 11 of 20 cylinders and cones of 6 mm fell through a floor 3 mm thick, in which slabs have edges of 16 mm;
-/// on one of edges of 3 cm none did. Cause: parry takes triangles of less area for lines.
+/// on one of edges of 3 cm none did. Cause: parry takes small triangles for lines.
 #[test]
 fn small_bodies_stay_on_floors_of_small_slabs() {
     for cell in [0.02, 0.015, 0.002] {
@@ -108,9 +110,10 @@ fn crosses(size: Real, length_unit: Real, seed: u8) -> bool {
     })
 }
 
-/// Symptom: of 20 rods of .05 mm 5 to 10 got through walls in a world whose length unit is a metre.
+/// Symptom: of 20 rods of .05 mm radius 5 to 10 got through walls in a world whose length unit is a metre. Causes: as
+/// above, and rapier kept contacts until the rods had moved by 4 mm.
 #[test]
-fn rods_of_any_size_stay_within_walls() {
+fn thin_rods_stay_within_walls() {
     let sizes = [0.01, 0.003, 0.001, 0.0005];
     let in_metres = sizes.map(|size| (size, 1.0));
     for (size, length_unit) in in_metres.into_iter().chain([(0.001, 0.001)]) {
