@@ -20,8 +20,8 @@ use std::sync::Arc;
 
 /// A query dispatcher of parry that answers all queries between two medial meshes, and between one and any of
 /// parry's own shapes: distance, intersection, closest points, contact, and both kinds of shape casts. Contact
-/// manifolds with parry's shapes are the exception: it computes only those with flat faces, and leaves the others
-/// to parry.
+/// manifolds with parry's shapes are the exception: it computes only those with flat faces, and has parry compute the
+/// others, at a scale at which parry's tolerances are small.
 ///
 /// [`MedialPipeline::attach`](crate::MedialPipeline::attach) sets it in a world. To use it with parry alone, chain
 /// it before parry's default dispatcher:
