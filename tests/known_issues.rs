@@ -13,6 +13,8 @@ mod scenes {
     pub mod wheels;
 }
 
+#[path = "faults/grounds.rs"]
+mod grounds;
 #[path = "faults/queries.rs"]
 mod queries;
 

@@ -19,10 +19,10 @@ use rapier3d::dynamics::IntegrationParameters;
 ///
 /// A pair's contacts are computed for all places that may touch until the pair has moved this far, and in the step
 /// after. So a smaller distance means that fewer contacts are computed, but more often. The contacts of hanging bodies
-/// are computed anew much sooner, and those of dynamic medial bodies whose thickness is smaller in each step. rapier is
-/// asked for them by bit 31 of the collider's hooks, which is set until the next step and calls no hook. Bit 30 does the same: on
-/// medial colliders while they are few, and after that on what sleeps until it wakes. So change hooks by adding to
-/// `active_hooks()` or taking from it.
+/// are computed anew much sooner, and those of dynamic medial bodies whose thickness is less than a quarter of it in
+/// each step. rapier is asked for them by bit 31 of the collider's hooks, which is set until the next step and calls no
+/// hook. Bit 30 does the same: on medial colliders while they are few, and after that on what sleeps until it wakes. So
+/// change hooks by adding to `active_hooks()` or taking from it.
 pub const RECYCLE_DISTANCE: Real = 0.004;
 
 /// Parameters of a step with medial colliders: contacts are kept no longer than [`RECYCLE_DISTANCE`] says.
