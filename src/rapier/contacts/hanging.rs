@@ -33,8 +33,9 @@ const PULLS: Real = 0.7;
 /// which its pair has come to rest. At 1 those that move a little are computed at every step.
 const RESTS: Real = 1.25;
 
-/// Thickness (a radius) below which contacts of a body are computed anew in each step, in units of the distance by which
-/// a pair may move before. At 1 twice as many boxes of a centimetre tremble on a hull in a world of metres (21 of 24).
+/// Thickness (a radius) below which contacts of a body are computed anew in each step, in units of the distance by
+/// which a pair may move before. At 1 twice as many boxes of a centimetre tremble on a hull in a world of metres (21 of
+/// 24).
 const THIN: Real = 0.25;
 
 /// Finds the medial colliders whose contacts are to be computed anew (one flag each), and the depth of
