@@ -271,7 +271,8 @@ pub struct Toi {
     pub iterations: u32,
     /// Unit normal from the first body to the second, in the world frame, at `lower`: along it those parts meet that
     /// count as in contact then ([`InitialContact::Deepen`] lets others be deeper in each other). Where a deeper
-    /// primitive shields the one that meets, it is that of the deeper contact, and the points lie along it there.
+    /// part of a mesh shields the one that meets, it is that of the deeper contact, or that of the flat face of the one
+    /// that meets, and the points lie along it at the place of the deeper contact.
     pub normal: Vector,
     /// Nearest spheres of both bodies, in the world frame, at `lower`.
     pub spheres: [MedialSphere; 2],

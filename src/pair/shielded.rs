@@ -1,4 +1,5 @@
-//! First contacts with a primitive of a medial mesh that another one shields ([`super::ghost_contacts`]).
+//! First contacts with a part of a medial mesh, a primitive or a convex piece, that another one shields
+//! ([`super::ghost_contacts`]).
 //!
 //! A solver lets bodies sink in a little. What rolls on a level plate of several slabs, just below its top, comes to
 //! the rim of the next slab under a normal that is aslant, and would be thrown up there. The rim is inside the plate:

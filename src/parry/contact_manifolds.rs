@@ -140,8 +140,8 @@ fn correct<M, C>(
     (is_parrys, prediction): (bool, Real),
     manifolds: &mut [ContactManifold<M, C>],
 ) where
-    M: Default + Clone + Send + Sync,
-    C: Default + Copy + Send + Sync,
+    M: Default + Clone,
+    C: Default + Copy,
 {
     let other = [g2, g1][side];
     let pose = [*pos12, pos12.inverse()][side];
@@ -235,8 +235,8 @@ fn write_on_flat<M, C>(
 ) -> Option<bool>
 where
     DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
-    M: Default + Clone + Send + Sync,
-    C: Default + Copy + Send + Sync,
+    M: Default + Clone,
+    C: Default + Copy,
 {
     let (other, pose) = if side == 0 {
         (g2, *pos12)

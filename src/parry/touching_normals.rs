@@ -72,8 +72,8 @@ pub fn correct<M, C>(
         };
         let m = &mut manifolds[k];
         let turned = [m.local_n1, m.local_n2][side] - normal;
-        let radii = mesh.primitive(own as usize);
-        let radii = radii.spheres().iter().map(|s| s.radius);
+        let primitive = mesh.primitive(own as usize);
+        let radii = primitive.spheres().iter().map(|s| s.radius);
         let of_own = turned * -radii.fold(Real::MAX, Real::min);
         let of_other = turned * border(child);
         for i in 0..m.points.len() {
