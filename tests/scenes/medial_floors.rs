@@ -134,6 +134,20 @@ fn bodies_run_over_floors_that_are_level_to_a_tenth_of_a_millimetre() {
     }
 }
 
+/// The number of parts of a mesh that share no sphere.
+fn parts(mesh: &MedialMesh) -> usize {
+    let mut part: Vec<u32> = (0..mesh.spheres().len() as u32).collect();
+    for [a, b] in mesh.edges() {
+        let [a, b] = [a, b].map(|k| part[*k as usize]);
+        for p in part.iter_mut().filter(|p| **p == b) {
+            *p = a;
+        }
+    }
+    part.sort_unstable();
+    part.dedup();
+    part.len()
+}
+
 /// Symptom: of a plate with a notch, which is built as two boxes, a ball was thrown up at .4 m/s where it rolled at 2
 /// from one to the other, and a box lost half of its speed there. A capsule was pushed up at a point ahead of its axis.
 #[test]
@@ -152,5 +166,6 @@ fn bodies_run_over_a_plate_of_two_boxes() {
     let options = BuildOptions::default();
     let (plate, _) =
         MedialMesh::from_trimesh(&corners.concat(), &triangles, &options).expect("a plate");
+    assert_eq!(parts(&plate), 2);
     assert_level(&plate, 0.1, "a plate", &[Body::Ball, Body::Box, Body::Rod]);
 }
