@@ -10,7 +10,8 @@ pub const STEPS: usize = 1000;
 /// which pairs count as fast (by their speed where they may meet), of which contacts an impact passes through (up to
 /// eight of a pair, computed at its time, those with fixed bodies too), of which of several contacts at one place is
 /// told (the deepest), of which four of a pair bear the load and under which normal, of which faces of a solid are no
-/// obstacle to what slides over another of its faces, of the scale at which parry is asked, and with rapier.
+/// obstacle to what slides over another of its faces, of where contacts act whose normal is turned
+/// to a face, and with rapier.
 pub const GOLDEN: u64 = 0xd104_3e2b_de91_1349;
 
 /// Rings and boxes that fall on a ground and on each other.
