@@ -1,14 +1,18 @@
 //! What is known to be wrong today. Each test asserts the wrong result, so it fails when the fault is
 //! mended; then it becomes a test of the right result elsewhere.
 
-#[allow(dead_code)] // Shared with `tests/scenes`.
+#[allow(dead_code)] // Shared with the other tests.
 mod scenes {
+    #[path = "../common/bodies.rs"]
     pub mod bodies;
     pub mod changed_shapes;
+    #[path = "../common/combs.rs"]
     pub mod combs;
     pub mod let_go;
+    #[path = "../common/linking.rs"]
     pub mod linking;
     pub mod oneway;
+    #[path = "../common/random.rs"]
     pub mod random;
     pub mod wheels;
 }

@@ -14,7 +14,7 @@
 //! turns, each three times, and a step counts with the least of its three times.
 
 #[allow(dead_code, reason = "shared with the tests")]
-#[path = "../../tests/scenes/bodies.rs"]
+#[path = "../../tests/common/bodies.rs"]
 mod bodies;
 #[allow(dead_code, reason = "shared with the benches")]
 #[path = "../common/mod.rs"]
@@ -25,12 +25,12 @@ mod fast_pairs;
 #[allow(dead_code, reason = "shared with the tests")]
 #[path = "../../tests/scenes/heaps.rs"]
 mod heaps;
-#[path = "../../tests/scenes/linking.rs"]
+#[path = "../../tests/common/linking.rs"]
 mod linking;
 #[path = "../../tests/scenes/oracle.rs"]
 mod oracle;
 mod planted;
-#[path = "../../tests/scenes/random.rs"]
+#[path = "../../tests/common/random.rs"]
 mod random;
 mod scenes;
 mod sweep;

@@ -1,8 +1,10 @@
-//! Whole rapier scenes: what rests, what hangs, what must never pass; saving, drawing, repeating.
+//! The tests of `docs/rapier.md`, feature by feature: medial colliders beside rapier's own in whole scenes.
 
 mod after_blows;
+#[allow(dead_code)]
 #[path = "../common/blocks.rs"]
 mod blocks;
+#[path = "../common/bodies.rs"]
 mod bodies;
 mod bounces;
 mod brickwork;
@@ -12,7 +14,6 @@ mod carried_characters;
 mod changed_shapes;
 mod changes;
 mod characters;
-mod combs;
 mod controls;
 mod creature_walks;
 mod crowds;
@@ -21,17 +22,14 @@ mod dolls;
 #[cfg(feature = "debug-render")]
 mod drawing;
 mod driven;
-mod driven_crowds;
 mod effects;
 mod endurance;
 mod energy;
-mod eulers_disc;
 mod fast_pairs;
 mod features;
 mod feet;
 mod filters;
 mod fixed_partners;
-mod fixtures;
 mod folds;
 mod force_events;
 mod found;
@@ -45,20 +43,16 @@ mod grasps;
 mod hanging;
 mod hanging_limits;
 mod heaps;
-mod heavy_blows;
-mod heavy_loads;
-mod heavy_on_light;
 mod held;
-mod impact_laws;
 mod impacts;
 mod knots;
 mod length_units;
 mod let_go;
 mod level_grounds;
 mod limits;
+#[path = "../common/linking.rs"]
 mod linking;
 mod local_thickness;
-mod lock_box;
 mod locked_axes;
 mod medial_floors;
 mod modified;
@@ -72,8 +66,8 @@ mod oracle;
 mod outnumbered;
 mod partners;
 mod pinched;
-mod pressed_rings;
 mod put_in_place;
+#[path = "../common/random.rs"]
 mod random;
 mod resting;
 mod restitution;
@@ -86,12 +80,8 @@ mod ropes;
 mod saved_impacts;
 #[cfg(feature = "serde-serialize")]
 mod saving;
-mod sharp_blocks;
 mod sliding;
 mod small_bodies;
-#[allow(dead_code)]
-#[path = "../../examples/factory/solid.rs"]
-mod solid;
 mod spawned;
 mod stairs;
 mod still;
@@ -99,16 +89,9 @@ mod strained_joints;
 mod struck_links;
 mod table_edges;
 mod tapered;
-#[allow(dead_code)]
-#[path = "../../examples/factory/thread.rs"]
-mod thread;
-mod threads;
 mod told;
 mod triangles;
 mod two_hands;
 mod walls;
 mod wheels;
 mod whirls;
-mod wire_heaps;
-mod wires;
-mod wrecking_ball;
