@@ -36,7 +36,7 @@ pub fn holds_point(shape: &dyn Shape, point: Vector) -> bool {
             .into_iter()
             .map(|child| &c.shapes()[child as usize])
             .any(|(pose, s)| holds_point(s.as_ref(), pose.inverse_transform_point(point))),
-        // parry iterates for these, with tolerances in which bodies of centimetres vanish.
+        // parry iterates for these, with tolerances that are as large as bodies of a centimetre.
         TypedShape::RoundCuboid(c) => beyond_cuboid(&c.inner_shape, point) <= c.border_radius,
         TypedShape::ConvexPolyhedron(hull) => {
             shape.contains_local_point(point) && !is_beyond_hull(hull, point, 0.0)

@@ -2,6 +2,7 @@
 //! each foreign library stays in its layer. The links between pages lead somewhere, and each folder lists its files.
 
 mod circles;
+mod host;
 mod links;
 mod maps;
 

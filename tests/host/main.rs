@@ -1,6 +1,12 @@
 //! What rapier 0.36 does that this crate works round (docs/host.md). Each test is of rapier alone, or of rapier
 //! with a shape that it does not know: one that fails after an upgrade says that a workaround can go.
 
+mod parry;
+#[allow(dead_code)]
+#[path = "../common/random.rs"]
+mod random;
+mod rapier;
+
 use rapier3d::control::KinematicCharacterController;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
