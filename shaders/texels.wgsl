@@ -1,4 +1,5 @@
-// Records in textures of four words a texel, row after row. Neighbouring threads read different ones.
+// Records in textures of four words a texel, row after row, as src/batch/gpu/texels.rs writes them. Neighbouring
+// threads read different ones.
 // Whole texels with no test of a bound come at a few times the speed of a storage buffer's words on
 // lavapipe, which fetches those thread by thread. On no real GPU has it been measured.
 

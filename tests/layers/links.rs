@@ -1,5 +1,5 @@
 //! The links between pages lead somewhere: each names a page that is there, and a heading of it if it names one. The
-//! paths of source files that the maps of the code name are there.
+//! paths of source files that the maps of the code name are there. Shaders and their Rust twins name each other.
 
 use std::collections::HashSet;
 use std::fs;
@@ -94,4 +94,28 @@ fn files_named_by_the_maps_of_the_code_exist() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(checked > 60, "only {checked} paths were found");
+}
+
+#[test]
+fn shaders_and_their_twins_in_rust_name_each_other() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut checked = 0;
+    for entry in fs::read_dir(root.join("shaders")).expect("a folder of shaders") {
+        let path = entry.expect("an entry").path();
+        let shader = path.file_name().expect("a name").to_string_lossy();
+        let text = fs::read_to_string(&path).expect("a shader");
+        let head = text.lines().take_while(|line| line.starts_with("//"));
+        let words = head.flat_map(|line| line.split([' ', ',', ';', '(', ')', '`']));
+        let twins = words.filter(|word| word.starts_with("src/"));
+        let before = checked;
+        for twin in twins.map(|word| word.trim_end_matches(['.', ':'])) {
+            let twin_text = fs::read_to_string(root.join(twin)).unwrap_or_default();
+            assert!(
+                twin_text.contains(&*shader),
+                "{twin} does not name {shader}"
+            );
+            checked += 1;
+        }
+        assert!(checked > before, "{shader} names no twin");
+    }
 }
