@@ -88,7 +88,7 @@ impl ConvexPiece {
         let spheres: Vec<_> = vertices.iter().map(|v| spheres[*v as usize]).collect();
         let mut faces: Vec<Face> = Vec::new();
         for found in normals.iter().filter_map(|n| face(&spheres, *n)) {
-            // Of a face that many slabs touch, rounding makes several normals.
+            // A face that many slabs touch has several normals, by rounding.
             let holds = |a: &Face, b: &Face| {
                 let all = b.corners.iter().all(|k| a.corners.contains(k));
                 all && a.normal.dot(b.normal) > 0.0
@@ -112,7 +112,7 @@ impl ConvexPiece {
 /// The edges of the hull of spheres that has these faces, if they close and their corners have one radius.
 fn edges(spheres: &[MedialSphere], faces: &[Face]) -> Option<Edges> {
     let radius = spheres[*faces.first()?.corners.first()? as usize].radius;
-    // Of a closed surface each edge is passed once in each direction.
+    // Each edge of a closed surface is passed once in each direction.
     let mut passed = FastSet::default();
     let mut all = Vec::new();
     for face in faces {

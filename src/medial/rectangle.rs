@@ -153,7 +153,7 @@ fn around(
         }
         along[side] = range(lo, hi);
     }
-    // What decides: how far the balls reach from this rectangle.
+    // The measure that decides: how far the balls reach from this rectangle.
     let reach = balls.iter().map(local).map(|(at, r)| {
         let [x, y] = [0, 1].map(|k| beyond(at[k], along[k]));
         let z = at[2] - height;

@@ -125,7 +125,7 @@ impl SphereTree {
                 return Err(i);
             }
         }
-        // As many nodes as a binary tree of so many leaves has: none can be left out.
+        // A binary tree of so many leaves has this many nodes: none can be left out.
         if nodes.len() + 1 != 2 * primitives {
             return Err(nodes.len());
         }

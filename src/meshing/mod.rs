@@ -82,8 +82,8 @@ impl MedialMesh {
     /// Does the same as [`MedialMesh::from_trimesh`], and calls `progress` several times a second to tell how far
     /// the build is. If `progress` returns `Break`, the build stops.
     ///
-    /// # Errors
-    /// Those of [`MedialMesh::from_trimesh`], and [`BuildError::Cancelled`] if `progress` returned `Break`.
+    /// # Errors The same as of [`MedialMesh::from_trimesh`], and [`BuildError::Cancelled`] if `progress` returned
+    /// `Break`.
     ///
     /// ```
     /// use rapier3d::prelude::*;

@@ -172,8 +172,8 @@ const ENOUGH: f64 = 0.02;
 /// ([`crate::elementary::certificate`]): its first root follows from those of all sphere pairs.
 /// The middles now and later give directions first, then edges and normals. Nodes have one direction.
 ///
-/// What comes within `tolerance` of the target and no nearer may be called free, but not for a while:
-/// where primitives come within the tolerance, their tests begin, and say that they touch.
+/// Nodes that come within `tolerance` of the target and no nearer may be called free, but not for a while: where
+/// primitives come within the tolerance, their tests begin, and say that they touch.
 pub(super) fn free_until(
     balls: [&Balls; 2],
     span: [f64; 2],

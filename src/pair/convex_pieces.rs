@@ -40,8 +40,8 @@ const DEEPEST: f64 = 1.95;
 /// The same depth for a piece in a surface, in units of the thickness of the piece.
 const DEEPEST_IN_SURFACE: f64 = 0.75;
 
-/// How much less than the gap at which pieces meet a step of the search aims at, in units of the tolerance. At 1 it
-/// would be the target distance itself, and what comes to it no nearer would not be found free.
+/// Distance below the gap at which pieces meet, in units of the tolerance, that a step of the search aims at. At 1 it
+/// would be the target distance itself, and pieces that come no nearer than that would not be found free.
 const PAST: f64 = 0.99;
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
@@ -170,7 +170,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             let mut near = match known {
                 Some((_, near)) => near,
                 None => {
-                    // What was not enough is the largest that can be found.
+                    // A gap that was not enough is the largest that can be found.
                     let hull = match found {
                         Some(hull) => hull,
                         None => hull_gap(placed.each_ref(), enough),

@@ -17,7 +17,7 @@ pub(super) enum Step {
 
 impl Step {
     pub(super) fn of((a, b): (&impl PrimitiveTree, &impl PrimitiveTree), [i, j]: [u32; 2]) -> Self {
-        // What is convex waits until the other is too: then both are looked at whole.
+        // A convex node waits until the other is convex too: then both are looked at whole.
         let first = || match (a.is_convex(i), b.is_convex(j)) {
             (true, false) => false,
             (false, true) => true,

@@ -82,7 +82,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let (a, mut share_a) = self.sides.0.body.primitive(i);
         let (b, mut share_b) = self.sides.1.body.primitive(j);
         if self.cores.is_some_and(|c| c.share > 0.0) {
-            // What a core loses depends on its partner, so none leaves a test to a neighbour.
+            // The radius that a core loses depends on its partner, so none leaves a test to a neighbour.
             [share_a, share_b] = [share_a, share_b].map(|s| OwnedFeatures::whole(s.spheres));
         }
         let local = |s: MedialSphere, loss: Loss| {

@@ -131,7 +131,7 @@ fn edges_of_simplex(spheres: &[MedialSphere]) -> Option<(&'static [[u32; 2]], Re
 pub(super) struct HullGap {
     /// The largest gap along the directions tried, less its rounding: a lower bound of the distance.
     pub(super) gap: f64,
-    /// Its direction, of length 1, from the first to the second.
+    /// Unit direction of the gap, from the first to the second.
     pub(super) direction: Vec3<f64>,
     /// The nearest points of the two, or those where they are deepest in each other, as parry found them, if it was
     /// asked.
@@ -174,10 +174,11 @@ pub(super) fn nearest_points(hulls: [&PlacedHull; 2], found: HullGap) -> HullGap
     best.found(nearest)
 }
 
-/// How far hulls are moved apart along the best direction known, to ask for the direction in which they are nearest
-/// then, in units of the larger one's extent. No gap is less along that: of all directions it has the largest gap of
-/// the moved hulls, and moving them added to the gap along the best one as much as to any. EPA errs where hulls just
-/// touch, and GJK has no more than single precision; hulls that are apart by this much are not hard for it.
+/// Shift, in units of the larger hull's extent, by which hulls are moved apart along the best direction known before
+/// GJK is asked for a better one. EPA errs where hulls just touch, and GJK has no more than single precision; hulls
+/// that are apart by this much are not hard for it. The gap along the direction that it gives is no smaller than the
+/// best known: of all directions it has the largest gap of the moved hulls, and no direction gained more by the move
+/// than the best known.
 const APART: f64 = 0.02;
 
 /// Gain of a direction over the one before, in units of the gap, from which hulls are moved apart once more along it.

@@ -228,7 +228,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             } else {
                 signed_distance_along(pa, pb)
             };
-            // What is behind a tip may be farther off, and counts as touching as the tip does.
+            // The primitive behind a tip may be farther off, and counts as touching as the tip does.
             let distance = distance.min(self.target + tolerance);
             let axes = || {
                 let axis = |s: [Ball<f64>; 3]| s.map(|(center, _)| (center, 0.0));
@@ -242,8 +242,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 parts: [*a, *b],
                 threshold: Threshold::deepened(distance, thinnest, by, tolerance, axes),
             };
-            // What their contact needs, not the search's: what touches already has a target of its own, and mostly
-            // directions put it off for good.
+            // The tests are those that the contact needs, of whole parts, not those of the search: primitives that
+            // touch already have a target of their own, and mostly directions put them off for good.
             let balls = self.swept_parts(&tested);
             let shares = tested.parts.map(|part| OwnedFeatures::whole(part.spheres));
             if a.spheres.min(b.spheres) < 3 {

@@ -43,9 +43,9 @@ pub(super) struct Open {
 
 /// An entry of the queue: a candidate with the time until which it is proven free, by which entries are ordered.
 ///
-/// Of several at the same time, first come the tests, then primitives, then the node pair that overlaps deepest for
-/// its size. Of several of these it is the one whose nodes come first in their trees, so that the order does not
-/// depend on what else is looked at.
+/// At the same time, first come the tests, then primitives, then the node pair that overlaps deepest for its size;
+/// among several of these, the one whose nodes come first in their trees, so that the order does not depend on what
+/// else is looked at.
 pub(super) struct Entry {
     pub(super) time: f64,
     /// Signed distance of two node balls at the start of the piece, in units of their radii, so at

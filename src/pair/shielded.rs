@@ -92,7 +92,7 @@ impl Part {
         }
     }
 
-    /// Its thickness, a length: of a primitive its least radius.
+    /// The thickness, a length: of a primitive its least radius.
     fn thickness(self, body: &impl PrimitiveTree) -> Real {
         match self {
             Self::Primitive(_) => {
@@ -313,7 +313,7 @@ fn shields(
     let (pose, parts) = (&poses[side], [shield, hidden[side]]);
     let spheres = parts.map(|part| part.spheres(body));
     let slack = SLACK * size(&spheres[0], pose).max(size(&spheres[1], pose));
-    // Of a solid only the face that touches need be beyond the contact's plane.
+    // Only the face of a solid that touches need be beyond the contact's plane.
     let n = first.normal;
     let lowest = -reach(&hidden[1 - side].solid(other), &poses[1 - side], -n);
     let sunk = SUNK * parts[1].thickness(body);

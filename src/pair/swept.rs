@@ -85,8 +85,9 @@ impl Swept {
     }
 }
 
-/// Angle of the step in radians up to which rounding of the time is covered by the margins of 64 ulps of
-/// the coordinates, of which an arm is one: half of them. Larger, and a ball may be a few ulps too small.
+/// Rotation in the step, in radians, up to which the margins of 64 ulps of the coordinates, of which an arm is one,
+/// cover the rounding of the time as well: it is given half of them. Only rotation beyond it widens a node's ball.
+/// Larger, and a ball may be a few ulps too small.
 const COVERED: f64 = 32.0;
 
 /// One side of a search. A node is swept once, however many nodes of the other side it meets.
@@ -135,7 +136,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
     pub(super) fn gathered(&self, mut bits: Vec<Bits>) -> Vec<Bits> {
         bits.resize(self.nodes.len(), 0);
         let mut gathered = Vec::new();
-        // What is below a node is swept after it.
+        // Nodes below a node are swept after it.
         for (at, swept) in self.nodes.iter().enumerate().rev() {
             if swept.next != NOT_YET {
                 let next = swept.next as usize;
@@ -304,7 +305,8 @@ pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
     // be split. Below that, the larger one.
     let (small, large) = (a.radius * SIMILAR < b.radius, b.radius * SIMILAR < a.radius);
     let inner = [a.below, b.below].map(|below| matches!(below, NodeKind::Nodes(..)));
-    // What is convex is split against what is not only once that is convex too: then the two are looked at whole.
+    // A convex node is not split against one that is not convex until that is convex too: then the two are looked at
+    // whole.
     let convex = [
         sides.0.body.is_convex(a.node),
         sides.1.body.is_convex(b.node),

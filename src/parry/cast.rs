@@ -152,9 +152,9 @@ impl Cast<'_> {
             toi = further.toi;
             counts += further.counts;
         }
-        // What slides along at the target distance is within the tolerance of a hit wherever it is, with a normal that
-        // may be off by as much as the tolerance lets the nearest points be. A hit it is where it comes nearer by more:
-        // otherwise a character could not step up along a wall.
+        // A mesh that slides along at the target distance is within the tolerance of a hit wherever it is, with a
+        // normal that may be off by as much as the tolerance lets the nearest points be. A hit it is where it comes
+        // nearer by more: otherwise a character could not step up along a wall.
         let slant = 2.0 * options.tolerance / self.target_distance.max(Real::MIN_POSITIVE);
         let slant = slant.sqrt().min(MOST_SLANT);
         let slides =
@@ -208,7 +208,7 @@ impl Cast<'_> {
         tolerance: Real,
     ) -> Result<Touching, Unsweepable> {
         let [start1, start2] = motions.map(|m| m.start);
-        // What the query took for a contact may be farther off by its tolerance, with a normal that says less.
+        // Shapes that the query took for touching may be farther apart by its tolerance, with a normal that says less.
         let reach = self.target_distance + tolerance;
         let pos12 = start1.inverse() * start2;
         let (nearest, _) = distance::nearest(self.mesh, self.other, &pos12, reach)?;
@@ -283,7 +283,7 @@ impl Cast<'_> {
             other.toi.primitives[1] = parts.axisymmetric_subshape(other.toi.primitives[1]);
             found.counts += other.counts;
             found.toi = axisymmetric_toi::earlier(found.toi, other.toi);
-            // Of what met a cylinder or a cone the spheres alone do not tell the contact.
+            // The spheres that met a cylinder or a cone do not tell the contact.
             if found.toi.lower == other.toi.lower {
                 (found.met, found.middle) = (None, None);
             }

@@ -40,7 +40,7 @@ pub fn least_over_children(
     let rounding = ROUNDING_ULPS as Real * Real::EPSILON * point.abs().max_element();
     let at_least = |node: &BvhNode, _| {
         let distance = holding(node).distance_to_local_point(point, true);
-        // What is below a box that is not a number is looked at.
+        // Children below a box of NaN are looked at.
         (distance / slack - rounding).max(0.0)
     };
     let least = compound

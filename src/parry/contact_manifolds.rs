@@ -58,7 +58,7 @@ impl MedialDispatcher {
         let meshes = (medial(g1), medial(g2));
         if plan.has_single_point(g1, g2) {
             let deepest = self.deepest(pos12, g1, g2, prediction)?;
-            // As above.
+            // It, too, holds indices into the list that is emptied here.
             *workspace = None;
             ensure_workspace::<M, C>(g1, g2, workspace);
             write_one_point(deepest, pos12, manifolds);
@@ -70,8 +70,8 @@ impl MedialDispatcher {
         if soft(g1) || soft(g2) {
             return Err(Unsupported);
         }
-        // What a load on one body is above: of two medial meshes the lighter lies on the other.
-        // (Their masses are known, where the volume of a solid would have to be measured first.)
+        // The body that bears the load of the other: of two medial meshes the lighter lies on the heavier. (Masses are
+        // known; the volume of a solid would have to be measured first.)
         let weight = |mesh: &MedialMesh| mesh.unit_mass_properties().mass();
         let (side, mesh) = match meshes {
             (Some(mesh1), Some(mesh2)) if weight(mesh1) > weight(mesh2) => (1, mesh2),
@@ -312,7 +312,7 @@ where
         let written = self.write_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
         let points = manifolds.iter().flat_map(|m| &m.points);
         let depth = points.map(|p| -p.dist).fold(0.0, Real::max);
-        // What somebody else will write is unknown.
+        // The depth of contacts that another dispatcher will write is unknown.
         let depth = written.map_or(Real::MAX, |()| depth);
         self.exchange
             .note(|tally| tally.depth = tally.depth.max(depth));

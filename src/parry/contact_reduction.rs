@@ -64,7 +64,7 @@ struct Seen {
     bore: bool,
 }
 
-/// What a body's contacts have to bear.
+/// The load that a body's contacts have to bear.
 pub struct Load {
     /// Centre of mass of the body, in the first body's frame.
     pub center: Vector,
@@ -270,7 +270,7 @@ fn gained(of: &[[f64; 2]], p: [f64; 2]) -> f64 {
         [a, b, c] => {
             let parts = [twice(a, b), twice(b, c), twice(c, a)];
             let whole: f64 = parts.iter().sum();
-            // What is on the other side of an edge.
+            // The parts on the other side of an edge.
             parts
                 .iter()
                 .map(|part| (-part * whole.signum()).max(0.0))

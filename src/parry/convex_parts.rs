@@ -17,7 +17,8 @@ const TILT: Real = 1.0e-4;
 /// 4e-4 (scenes `medial_floors`).
 const TILT_OF_PARTS: Real = 5.0e-4;
 
-/// A step lower than this share of a body's size may count as level on account of that.
+/// Bound of the slack that these tilts give, in units of the other body's size: steps that are higher than this are
+/// never taken for level.
 const LOW: Real = 1.0e-3;
 
 /// A convex part of a mesh.

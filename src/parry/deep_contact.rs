@@ -25,9 +25,9 @@ const SAME_DEPTH: [Real; 2] = [1.0e-3, 1.0e-6];
 /// A convex part of one of the bodies.
 struct Part<'a> {
     map: Map<'a>,
-    /// What its support map is grown by, a length.
+    /// Radius by which its support map is grown, a length.
     border: Real,
-    /// Its pose in the frame of its body, and of the mesh.
+    /// Poses in the frame of its body, and of the mesh.
     poses: [Pose; 2],
     subshape: u32,
     /// Boxes around it in its own frame, and in that of the mesh.

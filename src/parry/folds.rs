@@ -109,7 +109,8 @@ pub fn correct_normal(
     };
     let known = parts.normals.iter().find(|(p, _)| *p == toi.primitives[1]);
     let primitive = mesh.primitive(toi.primitives[0] as usize);
-    // What is thick has its centres above the surface, so that its normals are right but for what it has sunk in.
+    // A thick primitive has its centres above the surface, so that its normals are right but for the depth to which it
+    // has sunk in.
     let at_fold = || match sliding.keeps_above(primitive.spheres()) {
         true => normal(face, others(), &met).filter(|n| met.is_within(face, *n, others())),
         false => normal(face, others(), &met),

@@ -124,7 +124,7 @@ impl Touching {
         options: &ToiOptions,
     ) -> ToiOptions {
         let depth = (options.target_distance - self.gap).max(0.0) + self.closing(seconds);
-        // What is found within the tolerance of the target is as deep as it is allowed to get.
+        // A pair that is found within the tolerance of the target is as deep as it is allowed to get.
         let sinks = depth + self.slide(seconds) + options.tolerance;
         ToiOptions {
             initial_contact: InitialContact::Deepen {

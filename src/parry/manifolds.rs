@@ -82,7 +82,7 @@ pub fn write_manifolds<M, C>(
         {
             Some(m) => m,
             None => {
-                // What the user's hooks keep stays where the normal turns over.
+                // Data that the user's hooks keep in a manifold stay where its normal turns over.
                 let of_pair =
                     |m: &&ContactManifold<M, C>| [m.subshape1, m.subshape2] == c.primitives;
                 let mut same = old.iter().filter(of_pair);

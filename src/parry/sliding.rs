@@ -24,12 +24,12 @@ use parry3d::shape::Shape;
 /// How deep a mesh may be in the plane that it slides along, lengths.
 #[derive(Clone, Copy, Debug)]
 pub struct Sinks {
-    /// Deepest at the start, if it is to count as lying on the plane.
+    /// Depth at the start up to which the mesh counts as lying on the plane.
     pub lies: Real,
-    /// Deepest in the step, if the face is to be no obstacle.
+    /// A face is no obstacle only if the mesh gets no deeper in its plane than this within the step.
     pub to: Real,
-    /// Largest change of the depth within the step, if the face is to be no obstacle; faces of solids are not asked for
-    /// it.
+    /// A face is no obstacle only if the mesh sinks in its plane by no more than this within the step. Not asked of
+    /// faces of solids.
     pub by: Real,
 }
 

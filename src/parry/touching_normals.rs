@@ -16,9 +16,9 @@ use crate::medial::MedialMesh;
 use parry3d::query::ContactManifold;
 use parry3d::shape::{Shape, TypedShape};
 
-/// How much smaller than the contact's gap that along a face's normal may be, in units of the prediction distance, if
-/// that along the contact's own normal is smaller still. With none, bodies that lie aslant over the end of a table
-/// stumble there.
+/// Tolerance, in units of the prediction distance: a contact's normal is turned to a face's if the gap along that falls
+/// short of the contact's gap by no more than this, while the gap along its own normal falls short by more. At 0 bodies
+/// that lie aslant over the end of a table stumble there.
 const ROOM: Real = 0.02;
 
 /// Turns wrong normals to those of faces. The mesh is body `side` (0 or 1) of the manifolds; `other` is the other

@@ -17,8 +17,9 @@ pub struct Loans {
 }
 
 impl Loans {
-    /// Gives them what the view of a step and its multibodies that gain energy ask for; `moved` are the bodies that
-    /// impacts moved in the step before.
+    /// Sets the properties that bodies need in rapier's step: speculative contacts and sub-steps by the view and by the
+    /// multibodies that may gain energy, and the time to sleep of `moved`, the bodies that impacts moved in the step
+    /// before.
     pub fn give(
         (view, wild): (&StepView, &WildMultibodies),
         (effects, moved): (&EffectSettings, &[RigidBodyHandle]),

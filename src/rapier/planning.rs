@@ -119,8 +119,8 @@ impl State {
         }
     }
 
-    /// What rapier's own sweeps find. Fixed partners are the event loop's as all others are, and rapier would stop
-    /// bodies before.
+    /// Which bodies rapier's own sweeps may stop. Fixed partners are the event loop's as all others are, and rapier
+    /// would stop bodies before.
     fn sweeps(&self, world: &World, census: &Census) -> Sweeps {
         let off = |e: &Effects| e.continuous == Effect::Off;
         let takes_all = !self.settings.effects.any(off) && !census.any_modified;

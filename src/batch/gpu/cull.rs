@@ -89,7 +89,7 @@ impl Cull {
         pairs: &[Pair],
         meshes: &mut Meshes,
     ) -> Result<(), GpuError> {
-        // Of what may be replaced some may be, before there is no room for the rest.
+        // The flag stays false if this fails: some buffers may be replaced before there is no room for the rest.
         let bound = std::mem::replace(&mut self.bound, false);
         let (nodes, primitives) = (&meshes.nodes[..], &meshes.primitives[..]);
         let moved = self.nodes.reserve(context, size_of_val(nodes))?
@@ -105,7 +105,7 @@ impl Cull {
             | self.near.reserve(context, near as u64)?
             | self.answers.reserve(context, answers as u64)?;
         if moved || fresh || !bound {
-            // As they are bound.
+            // In the order of the shader's bindings.
             let resources = [
                 self.params.bound(),
                 self.pairs.bound(),
@@ -166,7 +166,7 @@ impl Cull {
         for (bytes, to) in items {
             up.send(&mut encoder, bytes, to)?;
         }
-        // What was not looked at is not free, whatever the batch before said.
+        // A pair that was not looked at is not free, whatever the batch before said.
         encoder.clear_buffer(&self.answers.buffer, 0, Some(answers as u64));
         // No more threads than it has, as far as they may take all: the next mesh pair goes to whichever
         // is done with one.

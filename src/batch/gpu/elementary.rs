@@ -79,7 +79,7 @@ impl Elementary {
         let params = bytemuck::bytes_of(&params);
         let queries = paths.len() * QUERY;
         let answers = paths.len() * size_of::<u32>();
-        // As for mesh pairs.
+        // Stays false if this fails, as for mesh pairs.
         let bound = std::mem::replace(&mut self.bound, false);
         let fresh = self.queries.reserve(context, queries)?
             | self.answers.reserve(context, answers as u64)?;

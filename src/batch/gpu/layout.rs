@@ -111,8 +111,8 @@ twins! {
     }
 }
 
-/// A test or a mesh pair that is proven free in the whole step; not 0, which is what no shader has written.
-/// Of a mesh pair `FREE + n`: `n` primitive pairs are not proven free.
+/// A test or a mesh pair that is proven free in the whole step; not 0, which is what no shader has written. For a mesh
+/// pair, `FREE + n` says that `n` primitive pairs are not proven free.
 pub const FREE: u32 = 1;
 /// A test or a mesh pair without a list that is not proven free; or less, by the proofs of other primitive pairs.
 pub const OPEN: u32 = 1 << 30;

@@ -1,6 +1,6 @@
 //! The medial axis of a convex body of flat faces, read off the roof over it (`roof.rs`), and how far it may be off.
 //!
-//! Of a corner at which more than four sides meet the roof has several, near each other; those joined by short
+//! The roof has several corners, near each other, for each at which more than four sides meet; those joined by short
 //! edges become one ball again, and corners on the ground become the vertices of the source.
 //!
 //! # Proof
@@ -25,11 +25,11 @@ use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::flat_faces::FlatFaces;
 use std::f64::consts::TAU;
 
-/// Triangles of a sheet lower than this share of what makes corners one are left out.
+/// Height, in units of the distance within which corners become one, below which triangles of a sheet are left out.
 const NO_HEIGHT: f64 = 0.03;
 
-/// Sheets are left out where what they cover sticks out of the others by less than this share of it: those between
-/// faces that are nearly one.
+/// Length, in units of the distance within which corners become one, up to which the surface may stick out of the other
+/// sheets' balls for a sheet to be left out: those between faces that are nearly coplanar.
 const BLUNT: f64 = 0.03;
 
 /// A face's polygon turns by this more or less than once around (rad), by rounding.

@@ -69,8 +69,8 @@ pub fn inner_balls(
         if t % 1024 == 0 {
             watch.at(t as f64 / delaunay.tetrahedra.len() as f64)?;
         }
-        // Of the points that the tetrahedra are of: on a flat triangle the samples themselves lie in
-        // a plane, and their sphere would be any.
+        // The circumsphere is that of the points of the tetrahedra: samples on a flat triangle lie in a plane
+        // themselves, and their sphere would be any.
         let Some(ball) = circumsphere(corners.map(|v| points[v as usize])) else {
             continue;
         };

@@ -104,7 +104,7 @@ fn cut(
     if kept.is_empty() {
         return None;
     }
-    // Of each two sides that the cut crosses, the first end of the new edge on them.
+    // First end of the new edge on each two sides that the cut crosses.
     let mut open: FastMap<[u32; 2], (u32, usize)> = FastMap::default();
     for i in 0..corners.len() {
         let own = index[i];

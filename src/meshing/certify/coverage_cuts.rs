@@ -91,7 +91,7 @@ fn interval(at_0: f64, at_1: f64, f: impl Fn(f64) -> f64) -> Option<(f64, f64)> 
         (false, true) => (1.0, at_1),
         (false, false) => below_zero(&f)?,
     };
-    // What comes from deep inside ends where the primitive does, and not by the tolerance farther on.
+    // A cut that comes from deep inside ends where the primitive does, and not by the tolerance farther on.
     let spare = if inside.1 < -2.0 * TOLERANCE {
         TOLERANCE
     } else {

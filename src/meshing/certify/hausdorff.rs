@@ -142,7 +142,7 @@ pub(crate) fn measure(
     let needles = surface.needle_corners().map(|corners| (corners, NEEDLE));
     search.in_depth(triangles.chain(needles), |part| watch.at(0.5 * part))?;
     let (outward, slack) = (search.best, search.slack());
-    // What one direction does not need is the other's.
+    // The other direction gets what this one did not need.
     let left = 2.0 * budget - search.examined() as f64 / effort.share;
     let mut boundary = FromBoundary {
         tree,
@@ -154,7 +154,7 @@ pub(crate) fn measure(
     if outward > effort.enough {
         effort.enough = 0.0;
     }
-    // What stays below the other direction's distance does not raise the error.
+    // A distance below that of the other direction does not raise the error.
     let mut search = Search::new(&mut boundary, 0.0, outward, effort, left.max(budget));
     let mut tick = |part| watch.at(0.5 + 0.5 * part);
     let cells = search.in_breadth(vec![solid.whole()], &mut tick)?;

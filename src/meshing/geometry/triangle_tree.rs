@@ -21,7 +21,7 @@ pub(super) struct Node {
     pub(super) dipole: Dipole,
 }
 
-/// What a group of triangles looks like from afar: a dipole at its centroid.
+/// A group of triangles as seen from afar: a dipole at its centroid.
 #[derive(Clone, Copy)]
 pub(super) struct Dipole {
     pub(super) center: Point,

@@ -179,7 +179,7 @@ mod tests {
             }
         }
 
-        /// Its triangles, outward.
+        /// The solid's triangles, outward.
         fn triangles(self) -> Vec<[Point; 3]> {
             let (sin, cos) = self.angle.sin_cos();
             let corner = |k: usize| {

@@ -36,14 +36,15 @@ const COARSER: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 /// Largest number of edges of a profile that is tried with ribs: the time for a roof grows with the third power of it.
 const MOST_RIBBED: usize = 256;
 
-/// Ridges shorter than this share of the thickness are points. With 1 the count is hardly less.
+/// Length of the roof's ridges, in units of the thickness, below which their two ends become one. At 1 the count of
+/// slabs is hardly less.
 const SAME: f64 = 0.25;
 
 /// Radii are larger by this (longest side 1): what is covered needs no proof by the smallest pieces then.
 const MARGIN: f64 = 1e-5;
 
-/// Distance, in units of the thickness, by which a draft may be off at a few samples. One that is off by more does not
-/// fit the body, which then is a prism by its outline alone.
+/// Largest error at a few samples, in units of the thickness, of a draft that is not discarded: where it is more, the
+/// body is a prism by its outline alone.
 const FAR: f64 = 4.0;
 
 /// Largest error (longest side 1) of a prism that is returned without a fit besides: fits of prisms by 200 primitives

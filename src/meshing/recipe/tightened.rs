@@ -5,9 +5,9 @@
 //! made is fitted again, to lie between the surface and an offset of it that is nearer than its error, and enclosed
 //! again, until a round gains little.
 //!
-//! What sticks out lies between the samples: ridges and corners most of all. Points at which the draft was found not to
-//! cover the surface, or to reach far beyond it, become samples, as violated constraints do in a cutting-plane method
-//! (Kelley, "The cutting-plane method for solving convex programs", 1960).
+//! The parts that stick out lie between the samples: ridges and corners most of all. Points at which the draft was
+//! found not to cover the surface, or to reach far beyond it, become samples, as violated constraints do in a
+//! cutting-plane method (Kelley, "The cutting-plane method for solving convex programs", 1960).
 
 use crate::error::BuildError;
 use crate::meshing::certify::inside::Solid;

@@ -21,9 +21,9 @@ const FEW: usize = 512;
 pub struct Candidate {
     /// Cost of the merge.
     pub cost: f64,
-    /// Ends of the edge.
+    /// First end of the edge.
     pub a: u32,
-    /// See `a`.
+    /// Second end of the edge.
     pub b: u32,
     /// Versions of both when the cost was computed; an older one is stale.
     pub versions: [u32; 2],

@@ -28,7 +28,7 @@ pub fn open_voids(draft: &mut Draft, is_solid: impl Fn(Point) -> bool) {
 
 /// Faces to drop, as indices, so that no closed surface is left whose middle `is_solid`.
 ///
-/// Of surfaces that enclose true cavities one each stays.
+/// One surface around each true cavity stays.
 fn superfluous(
     faces: &[[u32; 3]],
     at: impl Fn(u32) -> Point,

@@ -179,7 +179,7 @@ impl Creases {
         let (mut least, mut point) = nearest(at);
         for _ in 0..MOST_STEPS {
             let mut next = None;
-            // What is nearer by rounding only would walk in circles.
+            // A walk to triangles that are nearer by rounding only would go in circles.
             let mut limit = least * (1.0 - 1e-12);
             for &t in &self.neighbors[at as usize] {
                 let (distance_sq, q) = nearest(t);

@@ -236,7 +236,7 @@ impl PatchClassifier<'_> {
             let p = opening.patch as usize;
             sheets[p] |= self.counts[p] != 0 && opening.is_wide(tree);
         }
-        // What is sewn is of one kind.
+        // Patches that are sewn together are of one kind.
         for (p, patch) in self.patches.list.iter().enumerate() {
             sheets[p] |= self.counts[p] != 0 && sheets[patch.sewn as usize];
         }

@@ -22,7 +22,7 @@ pub fn seam_slivers(
     triangles: &[[u32; 3]],
     watch: &mut Watch,
 ) -> Result<Vec<[u32; 3]>, BuildError> {
-    // As their triangles use them.
+    // Open edges, in the direction in which their triangles use them.
     let mut open: Vec<[u32; 2]> = Vec::new();
     for (i, ([lo, hi], uses)) in Edges::new(vertices.len(), triangles, watch)?
         .iter()

@@ -44,7 +44,7 @@ pub fn leave_out_shared(
         if i % 64 == 0 {
             watch.again()?;
         }
-        // Of a sheet that leaves a solid not all are inside.
+        // A sheet that leaves a solid has points outside.
         let mut points = points_inside(&corners_of(t), INWARD).into_iter();
         is_inside[t] = points.all(|p| tree.winding(p).abs() > INSIDE);
     }

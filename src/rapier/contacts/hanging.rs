@@ -29,8 +29,9 @@ const TOUCHING: Real = 0.001;
 /// on each other's inner sides at all angles, and half of them would count at 90°.
 const PULLS: Real = 0.7;
 
-/// Gap of a contact, in units of what its pair can close now ([`crate::rapier::contacts::predicted_contacts`]), from
-/// which its pair has come to rest. At 1 those that move a little are computed at every step.
+/// Widest gap among a pair's contacts from which the pair counts as come to rest, in units of the gap that it can close
+/// now ([`reach()`]), and in those of the recycle distance: the solver still has contacts that cannot close. At 1 pairs
+/// that move a little are computed in every step.
 const RESTS: Real = 1.25;
 
 /// Thickness (a radius) below which contacts of a body are computed anew in each step, in units of the distance by
@@ -152,7 +153,7 @@ fn at_rest(
 ) -> bool {
     let points = pair.manifolds().iter().flat_map(|m| &m.points);
     let widest = points.map(|p| p.dist).fold(Real::MIN, Real::max) - skins;
-    // What can close is more than what a pair may move unasked.
+    // A pair may close a gap of the recycle distance before it is computed again.
     widest > RESTS * parameters.contact_recycle_distance()
         && widest > RESTS * reach(sides, parameters)
 }

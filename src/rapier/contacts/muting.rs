@@ -29,9 +29,9 @@ pub struct Muted {
     pub keys: HashSet<PairKey>,
     /// Whether some may bounce ([`Effects::restitution`](crate::Effects::restitution)).
     pub bouncing: bool,
-    /// Medial colliders of which rapier knows the wrong contacts with a partner with which they have restitution, and
-    /// would keep them for as long as the two hardly move: none of a pair that was muted only for a bounce, or those of
-    /// a pair that rested and is muted now.
+    /// Medial colliders whose contacts rapier must compute anew, because it may hold the wrong ones of a pair with
+    /// restitution, and would keep them for as long as the two hardly move: old contacts, of a pair that is muted now
+    /// for its bounce, or none, of a pair that may have been muted in the step before and is not now.
     pub stale: HashSet<ColliderHandle>,
 }
 
@@ -55,7 +55,7 @@ pub fn muted(
     } else {
         0.0
     };
-    // Of the whole step, of which parts before a stop may have spent some.
+    // Work of the whole step up to which pairs are looked at; its parts before a stop may have spent some.
     let most = work.spent() + policy.budget_left(work).min(policy.budget / 4);
     for pair in sweep(view, policy.dt, margin) {
         let [p, q] = pair.map(|k| &view.parts[k]);
@@ -117,7 +117,7 @@ fn reason(
     {
         return None;
     }
-    // What no force presses together does not rest, whatever its nearest points do.
+    // A pair that no force presses together does not rest, whatever its nearest points do.
     let rests = |speed: Option<Real>| speed.is_some_and(|s| s <= policy.least_bounce(view, pair));
     if may_bounce && (!view.may_be_pressed(pair) || !rests(policy.approach(view, pair, work))) {
         return Some(Reason::Bounces);

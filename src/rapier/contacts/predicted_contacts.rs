@@ -116,8 +116,8 @@ impl PredictedMotion {
     /// The motion of the two colliders of `job`, which is at their poses at the start of a step; with the job that
     /// computes their contacts.
     ///
-    /// Of these only those within [`reach()`] count, and of them those that no nearer one holds back: the others
-    /// of the prediction distance cost the solver as much as those that bear.
+    /// Only contacts within [`reach()`] count, and of them those that no nearer one holds back: the others within the
+    /// prediction distance cost the solver as much as those that bear.
     pub fn new(
         starts: [&MedialCollider; 2],
         parameters: &IntegrationParameters,

@@ -32,7 +32,7 @@ pub struct DedupEventHandler<'a> {
     state: Mutex<State>,
 }
 
-/// What rapier has told in this step.
+/// Events that rapier has sent in this step.
 #[derive(Default)]
 struct State {
     started: Vec<Pair>,

@@ -21,8 +21,9 @@ use rapier3d::dynamics::{
 };
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 
-/// The turn from which rapier's step is not asked: links that turn further may leave all numbers within one step, and
-/// then nothing is left to take back.
+/// Rotation of the fastest link in a step, in radians, above which a multibody is at rest for rapier's step, and joints
+/// alone move it: the velocities of faster ones may leave the range of floats within the step, and then nothing is left
+/// to take back.
 const WILD: Real = 4.0;
 
 /// Share of its energy that a multibody may gain in rapier's step. Free ones gain and lose some hundredths by turns;

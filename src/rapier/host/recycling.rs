@@ -20,9 +20,8 @@ use rapier3d::dynamics::IntegrationParameters;
 /// A pair's contacts are computed for all places that may touch until the pair has moved this far, and in the step
 /// after. So a smaller distance means that fewer contacts are computed, but more often. The contacts of hanging bodies
 /// are computed anew much sooner, and those of dynamic medial bodies whose thickness is less than a quarter of it in
-/// each step. rapier is asked for them by bit 31 of the collider's hooks, which is set until the next step and calls no
-/// hook. Bit 30 does the same: on medial colliders while they are few, and after that on what sleeps until it wakes. So
-/// change hooks by adding to `active_hooks()` or taking from it.
+/// each step. To have rapier do so, a step sets the bits 30 and 31 of some colliders' `active_hooks()`, which call no
+/// hook. So change hooks by adding to `active_hooks()` or taking from it.
 pub const RECYCLE_DISTANCE: Real = 0.004;
 
 /// Parameters of a step with medial colliders: contacts are kept no longer than [`RECYCLE_DISTANCE`] says.
@@ -80,8 +79,8 @@ impl RecyclingRecord {
         self.limits = [distance, distance.min(parameters.prediction_distance())];
     }
 
-    /// Whether rapier will update this pair in full, which it does in any case if it is `asked` to; if so
-    /// its account starts anew at this pose.
+    /// Whether rapier will update this pair in full, which it does in any case if it is `asked` to; if so, the pair's
+    /// record is set to this pose.
     pub fn needs_update(&mut self, pair: &Place, asked: bool) -> bool {
         let (limits, step) = (self.limits, self.step);
         if let Some(f) = self.frozen.get_mut(&pair.ids) {

@@ -3,7 +3,7 @@
 //! of the sub-step and `r` the vector from each centre of mass to the joint. Joints of multibodies stay closed, but
 //! turn wrong instead.
 //!
-//! What hangs together with a strained joint gets none. Where a joint is wide open, as where much more mass hangs on
+//! Bodies that joints tie to a strained joint get none. Where a joint is wide open, as where much more mass hangs on
 //! light links than rapier's solver holds, many sub-steps would close it at once, and throw what it holds. Where a
 //! joint presses its two bodies into each other, the joint and the contact gain energy in each sub-step: with twelve
 //! more in a step chains of five links of rapier's own capsules get to 169 m/s instead of 16, in the mean of 20.
@@ -158,6 +158,6 @@ fn needed(
         motion.angvel.cross(motion.angvel.cross(arm))
     });
     let opening = 0.5 * (a - b).length() * parameters.dt * parameters.dt;
-    // Of an opening that is no number none.
+    // An opening of NaN gives none.
     (opening / (MOST_OPENING * parameters.length_unit)).sqrt() as usize
 }

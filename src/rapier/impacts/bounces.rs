@@ -1,5 +1,5 @@
-//! Which pairs bounce within a step ([`Effects::restitution`](crate::Effects::restitution), whose inequality is in
-//! `docs/effects.md`), and what of a pair touches at its start, so that rapier's solver has it.
+//! Decides which pairs bounce within a step ([`Effects::restitution`](crate::Effects::restitution), whose inequality is
+//! in `docs/effects.md`), and which pairs touch at its start already, and are left to rapier's solver.
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -16,7 +16,8 @@ use parry3d::shape::Shape;
 /// square over 6 is 0.04 of the way.
 const SWINGS: Real = 0.5;
 
-/// By how much of its thickness the arc of a body's contact point ends short of its tangent before the body swings.
+/// Distance by which the arc of a contact point ends short of its tangent, in units of the pair's thickness, from which
+/// the body counts as swinging.
 const SHORT: Real = 0.5;
 
 impl CcdPolicy<'_> {
@@ -183,10 +184,10 @@ impl CcdPolicy<'_> {
 
 /// Nearest points of a pair.
 struct NearestPoints {
-    /// Of the shapes, a length.
+    /// Distance of the shapes, a length.
     distance: Real,
     /// From the first to the second, in the world.
     normal: Vector,
-    /// Of both bodies there.
+    /// Velocities of both bodies at the first one's nearest point.
     velocities: [Vector; 2],
 }

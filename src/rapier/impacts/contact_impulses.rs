@@ -20,14 +20,14 @@ use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::motion::Kind;
 use crate::rapier::view::step_view::StepView;
 
-/// Share of the speed that an impulse gives two bodies which joints and locked axes leave of it, below which these hold
-/// the contact itself, as between neighbours in a chain, or where a body is driven along an axis that is locked: there
-/// is nothing to push, and the impulse would have no bound.
+/// Least ratio of the speed that an impulse gives two bodies in their joints to the speed that it would give them
+/// without joints. Below it the joints and locked axes hold the contact, as between neighbours in a chain or where a
+/// body is driven along a locked axis, and no impulse is given: it would have no bound.
 const HELD: Real = 0.02;
 
 impl Response {
-    /// Gives both bodies the impulses of a contact, and what joints tie to them what they hand on; returns all of
-    /// these. `undisturbed`: as
+    /// Applies the two impulses of a contact, on velocities and on the motions of this step, to both bodies and,
+    /// through joints, to the bodies tied to them. Returns the indices of all of these. `undisturbed`: as
     /// [`ImpactHistory::undisturbed`](crate::rapier::impacts::impact_history::ImpactHistory::undisturbed) says.
     pub(super) fn push(
         &mut self,
@@ -128,7 +128,7 @@ impl Response {
             twists
         });
         let point = ContactPoint::new(view, both, hit);
-        // What stands at its limit resists as the stop does.
+        // A joint at its limit resists as the stop does.
         for system in [Some(&mut system), moving.as_mut()].into_iter().flatten() {
             let of = |b: &usize| view.bodies[*b].velocity;
             let twists: Vec<Twist> = system.bodies.iter().map(of).collect();

@@ -15,21 +15,23 @@ use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 /// on a surface without thickness may be taken for put into it.
 const SUNK: Real = 2.0e-3;
 
-/// How deep a pair is whose contacts are deep enough that even a slow one may get to the axes.
+/// Depth of a watched pair: its contacts are so deep that even a slow one may get to the medial axes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Deep {
     /// Whether a contact is deeper than [`SUNK`].
     pub is_sunk: bool,
-    /// The way, a length, from where the deepest below the floor and [`SUNK`] would not count as deep; 0 if none is.
+    /// Length by which the deepest contact exceeds the depth from which pairs are watched
+    /// ([`Tuning::guarded`](crate::rapier::tuning::Tuning::guarded)), if it is below the floor and deeper than
+    /// [`SUNK`]; 0 if none is.
     pub way: Real,
 }
 
 /// Pairs whose contacts in rapier are deep.
 #[derive(Default)]
 pub struct DeepPairs {
-    /// Those that are watched.
+    /// The pairs that are watched.
     pub watched: FastMap<[usize; 2], Deep>,
-    /// Those with a contact deeper than [`SUNK`], watched or not; of pairs without a medial collider only where a
+    /// The pairs with a contact deeper than [`SUNK`], watched or not; pairs without a medial collider only where a
     /// watched pair is below the floor.
     pub sunk: FastSet<[usize; 2]>,
 }

@@ -19,7 +19,7 @@ use parry3d::query::NonlinearRigidMotion;
 /// and more of them are searched for nothing.
 const MOST: usize = 256;
 
-/// What counts as fast, and as near.
+/// Limits from which a part counts as fast, and up to which one counts as near.
 #[derive(Clone, Copy)]
 pub struct FastParts {
     /// Seconds in which a fast part moves by its thickness against what it meets.
@@ -141,7 +141,7 @@ impl FastParts {
         side: usize,
     ) -> bool {
         let aabb = other.shape.compute_local_aabb();
-        // Its box is the whole world.
+        // The box of a half-space is the whole world.
         let plane = other.shape.as_halfspace();
         let starts = [side, 1 - side].map(|k| &motion.motions[k].start);
         let pos21: Pose = starts[1].inv_mul(starts[0]);

@@ -153,7 +153,7 @@ impl ImpactHistory {
         };
         let [v1, v2] = bodies.map(velocity);
         let approach = (v1 - v2).dot(hit.normal) * (policy.dt - time);
-        // What touches may sink in before it is met again, above the floor by more than below.
+        // A pair that touches may sink in by this before it meets again: by more above the floor than below.
         let tuning = &policy.tuning;
         let above = tuning.floor * thickness - hit.depth;
         let sinks = above.min(tuning.sink * thickness).max(tuning.hair * gap);

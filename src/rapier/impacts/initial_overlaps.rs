@@ -56,7 +56,7 @@ pub struct InitialOverlaps {
     left: FastSet<Pair>,
 }
 
-/// What a step leaves to the next about bodies that were put into each other, to be saved beside a world: where
+/// Record from one step for the next, to be saved beside a world, of bodies that were put into each other: where
 /// colliders were, and which pairs are left to rapier's solver.
 #[cfg(feature = "serde-serialize")]
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -73,7 +73,7 @@ struct End {
     kind: Kind,
 }
 
-/// What decides whether a collider collides with others: its groups, and the type of its body.
+/// Key of whether a collider collides with others: its groups, and the type of its body.
 type Kind = ([InteractionGroups; 2], Option<RigidBodyType>);
 
 fn kind(collider: &Collider, bodies: &RigidBodySet) -> Kind {
@@ -147,7 +147,7 @@ fn sorted([a, b]: Pair) -> Pair {
 
 #[cfg(feature = "serde-serialize")]
 impl InitialOverlaps {
-    /// What a world is saved with.
+    /// The record that a world is saved with.
     pub fn record(&self) -> OverlapsRecord {
         let ends = self.ends.iter().flatten();
         let mut record = OverlapsRecord {
@@ -269,7 +269,7 @@ impl InitialOverlaps {
             .iter()
             .filter(|(pair, deep)| is_left(pair, deep));
         let pairs: Vec<_> = left.map(|(pair, _)| *pair).collect();
-        // What does not take part stays as it is.
+        // A pair that does not take part stays as it is.
         let stays = |pair: &Pair| {
             let mut both = pair.iter();
             participants.is_some_and(|p| both.any(|h| p.is_bystander(*h)))

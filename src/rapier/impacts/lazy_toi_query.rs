@@ -15,7 +15,8 @@ use crate::rapier::view::step_view::StepView;
 /// The medial meshes of both, where they are.
 pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
 
-/// What earlier searches of the step left for later ones: the records of culling, and the lists of near primitives.
+/// Caches that earlier searches of the step left for later ones: the records of culling, and the lists of near
+/// primitives.
 pub type Known<'k> = (&'k mut PairCulling, &'k mut NearLists);
 
 /// The search for the first contact of one pair from some time on, valid while neither of the two has another motion.

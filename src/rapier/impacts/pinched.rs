@@ -78,11 +78,11 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
     pairs.map(|(pair, ..)| *pair).collect()
 }
 
-/// Watched pairs below the floor that joints press together as jaws do, because one of the two bodies hangs by joints
-/// on a third that moves and does not give way, as on a hand: those of which the other body does not give way, and
-/// those of which it is in something that does not. These only where the hand's joint is open by as much as the pair
-/// would have to part: a hand that holds a chain of rings over the ground presses nothing. Ropes and springs, which
-/// lock no axis, do not count.
+/// Watched pairs below the floor that joints press together as jaws do: one of the two bodies hangs by joints on a
+/// hand, a third body that moves and does not give way. Either the other body does not give way; or it is itself deep
+/// in one that does not, and the hand's joint is open by at least as much as the pair would have to part
+/// ([`Deep::way`]): a hand that holds a chain of rings over the ground presses nothing. Ropes and springs, which lock
+/// no axis, do not count.
 pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
     let is_below = |(_, deep): &(&[usize; 2], &Deep)| deep.way > 0.0;
     let below: Vec<_> = deep.watched.iter().filter(is_below).collect();
@@ -110,7 +110,7 @@ pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Ve
     pressed.map(|(pair, _)| *pair).collect()
 }
 
-/// What hangs by joints on bodies that move and do not give way.
+/// Bodies that hang by joints on hands: bodies that move and do not give way.
 struct Hands {
     /// Free bodies that joints hold together.
     groups: Groups,
@@ -149,7 +149,7 @@ impl Hands {
     }
 }
 
-/// What holds a group of bodies.
+/// The bodies that hold a group of bodies and do not give way to it.
 #[derive(Default)]
 struct Held {
     /// One of the bodies that do not give way.

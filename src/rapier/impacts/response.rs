@@ -167,8 +167,9 @@ impl Response {
     }
 
     /// Passes an impact of a pair at `time` on through the contacts of `changed`, to which it adds the bodies whose
-    /// motion it changes. `undisturbed`: of the pair that was struck, whose other contacts are thrown back as its
-    /// impact was, once; otherwise they would take back what it gave.
+    /// motion it changes. `undisturbed`: as [`ImpactHistory::undisturbed`] says, of the pair that was struck. Its other
+    /// contacts are pushed apart by the same rule as the impact, and in the first round only: else they would cancel
+    /// its impulse.
     fn propagate_impulses(
         &mut self,
         view: &mut StepView,
@@ -239,7 +240,8 @@ impl Response {
             self.courses[b].moved = true;
             view.bodies[b].awake = true;
         }
-        // What joints give one of theirs they take from others: of a system all velocities are told, or none.
+        // Joints take from some bodies what they give to others: the velocities of all bodies of a system are written
+        // back, or of none.
         for &body in from {
             let tied = joints.tied_to(view, &[body]);
             if tied.iter().any(|b| self.courses[*b].struck) {
@@ -252,8 +254,10 @@ impl Response {
         moved
     }
 
-    /// Whether a body that a driven one carries goes on whatever it meets here: what is not carried yet will be, after
-    /// as many impacts as a body may have.
+    /// Whether `body`, which a driven body carries along, keeps its motion at this contact, and counts no impact: where
+    /// the other body is free, not carried yet, and has had no more than
+    /// [`Tuning::max_carried`](crate::rapier::tuning::Tuning::max_carried) impacts. It will be carried too, once it has
+    /// had more than `max_events`.
     fn leads(&self, view: &StepView, policy: &CcdPolicy, [body, other]: [usize; 2]) -> bool {
         let [leader, led] = [self.courses[body], self.courses[other]];
         let free = view.bodies[other].kind == Kind::Free;

@@ -43,7 +43,7 @@ counters! {
 }
 
 impl Work {
-    /// What was spent of [`CcdPolicy::budget`].
+    /// Work spent so far, to be compared with [`CcdPolicy::budget`].
     pub fn spent(&self) -> u64 {
         self.counts.work()
     }
@@ -64,7 +64,7 @@ pub struct QueryOptions {
     pub floor: Option<ToiOptions>,
     /// All of both that may come as near as is asked, where that is known.
     pub reachable: Option<[ActivePrimitives; 2]>,
-    /// Of a body that slides over flat faces.
+    /// Depths up to which flat faces over which a body slides are no obstacles.
     pub sinks: Sinks,
 }
 
@@ -238,7 +238,7 @@ impl CcdPolicy<'_> {
         } else {
             gap * (1.0 + 2.0 * tuning.tolerance * met as Real)
         };
-        // What bounces does so where it touches; the solver does not keep it from sinking.
+        // A pair that bounces does so where it touches; the solver does not keep it from sinking.
         let by = match self.may_bounce(view, pair) {
             true => hair,
             false => (tuning.sink * thickness).max(hair),

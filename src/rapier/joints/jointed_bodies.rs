@@ -143,10 +143,11 @@ impl Joints {
         tied.any(|b| view.bodies[b].kind == Kind::Driven)
     }
 
-    /// Gives a body and what joints tie to it the motions from `time` on that joints let them make, and lets their
-    /// velocities follow, which together gain no energy. At the end of the step, `dt`, joints are to be as open as
-    /// rapier's step left them. `frozen`: of a body, whether it stays on its path; it takes what joints give it for the
-    /// next step. `goes_on`: nothing was struck; a piece of their motion has ended.
+    /// Moves a body and all bodies that joints tie to it along paths on which the joints stay as closed as they are,
+    /// from `time` (seconds into the step) on, and changes their velocities to match, without a gain of energy of all
+    /// together. At the end of the step, `dt`, joints are to be as open as rapier's step left them. `frozen`: whether a
+    /// body keeps its path; the joints then change its velocity for the next step only. `goes_on`: a piece of the
+    /// motion has ended, and nothing was struck. Moves nothing where the joints cannot be closed to [`UNCLOSED`].
     pub fn close(
         &self,
         view: &mut StepView,
@@ -175,7 +176,7 @@ impl Joints {
         let twist = |b: &usize| view.bodies[*b].twist(time);
         let mut before: Vec<Twist> = system.bodies.iter().map(twist).collect();
         if goes_on {
-            // What was executed is a chord; from here on it is the next one's tangent.
+            // The velocities so far are along a chord; those along the tangent start the next one.
             system.hold(&mut before);
         }
         let rest = dt - time;
@@ -226,9 +227,9 @@ impl Joints {
         Piece { moved, until }
     }
 
-    /// Velocities that the joints allow the bodies tied to `from`, when a frozen body blocks the path of `moved`. They
-    /// are taken where `moved` has the bodies and with the inertia of the next step, so that both bodies of a joint
-    /// agree in it.
+    /// Velocities at the end of a piece of the bodies tied to `from`, where one of them is frozen and so blocks the
+    /// path of `moved`: their own, less what joints forbid at the end poses of `moved`. A frozen body has its own
+    /// inertia here, as in the next step, so that both bodies of a joint go by the same velocities.
     fn without_path(
         &self,
         view: &StepView,
@@ -249,9 +250,9 @@ impl Joints {
     }
 }
 
-/// Gives bodies, where they are at `time`, the velocities and motions that their joints let them have: what was
-/// executed of a path is a chord, and an impact needs its tangent. `moving`: the system of the motions, where bodies
-/// keep theirs; `last`: that of the velocities at the end of the step.
+/// Replaces the velocities and motions of the bodies of a system at `time` by the nearest that their joints allow.
+/// Until then a motion is the chord of a bent path, and an impact needs the tangent. `moving`: the system for the
+/// motions, where some bodies keep theirs; `last`: the velocities that joints allow at the end of rapier's step.
 pub fn settle(
     view: &mut StepView,
     time: Real,

@@ -267,7 +267,7 @@ impl<'a> System<'a> {
         for (row, target) in self.rows_now().iter().zip(targets) {
             let off = f64::from(row.opening) - target;
             let unit = if row.is_angle { 1.0 } else { self.unit.into() };
-            // What is no number is not closed.
+            // A joint whose opening is NaN is not closed.
             let size = off.abs() / unit;
             most = f64::max(most, if size.is_nan() { f64::INFINITY } else { size });
             left.push(off);
@@ -308,7 +308,7 @@ impl<'a> System<'a> {
             .map(|poses| (0..own.len()).map(|k| frame(poses, k)).collect());
         let energy = |twists: &[Twist], poses: &[Pose], frame: &[Twist]| -> f64 {
             let of = |(k, inertia): (usize, &Inertia)| {
-                // Its inertia is that of the start.
+                // The inertia is that of the start.
                 let back = self.start[k].rotation * poses[k].rotation.inverse();
                 let [slide, turn] = [0, 1].map(|i| twists[k][i] - frame[k][i]);
                 inertia.energy([slide, back * turn])

@@ -11,8 +11,9 @@ use rapier3d::dynamics::{IntegrationParameters, MultibodyJointSet, RigidBodyHand
 use rapier3d::geometry::{ColliderHandle, ColliderSet};
 
 impl StepView {
-    /// Goes on with all bodies and colliders: those of this view in their motions, and of `whole`, taken after rapier's
-    /// step, those that did not take part, which were `still` before it.
+    /// Extends this view to the whole world. Bodies and colliders that took part keep their motions; the bystanders are
+    /// those of `whole`, a view made after rapier's step, with sleeping bodies put back to the poses before it, which
+    /// `still` has.
     pub fn complete(
         &mut self,
         mut whole: Self,

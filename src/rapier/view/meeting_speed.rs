@@ -69,7 +69,7 @@ fn box_below(aabb: Aabb, normal: Vector, height: Real) -> Option<Aabb> {
     let lowest = (normal * aabb.mins).min(normal * aabb.maxs);
     let (mut mins, mut maxs) = (aabb.mins, aabb.maxs);
     for axis in 0..3 {
-        // What is left for this coordinate where the two others add least.
+        // The height that is left for this coordinate where the two others add least.
         let room = height - (lowest.element_sum() - lowest[axis]);
         if normal[axis] > 0.0 {
             maxs[axis] = maxs[axis].min(room / normal[axis]);

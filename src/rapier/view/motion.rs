@@ -34,7 +34,8 @@ struct Bend {
     rate: [Vector; 2],
     /// Seconds into the step until which they do.
     until: Real,
-    /// Excess of its velocities over the tangent of the path; `None` of a body that they leave on its path.
+    /// Linear and angular velocity less the tangent of the path; `None` where joints change the velocities only, and
+    /// not the path.
     excess: Option<[Vector; 2]>,
 }
 
@@ -244,8 +245,8 @@ impl Body {
         self.taken_back -= linear;
     }
 
-    /// Stops it for the last `share` of the step: it gains no speed by forces in a time in which it gets nowhere.
-    /// What contacts took of that already is not taken twice.
+    /// Stops it for the last `share` of the step: it gains no speed by forces in a time in which it gets nowhere. The
+    /// part that contacts took already is not taken twice.
     pub fn hold(&mut self, share: Real) {
         let along = self.pull.normalize_or_zero();
         let length = self.gains(share).dot(along).max(0.0);
@@ -292,8 +293,9 @@ impl Body {
         [m.linvel + m.angvel.cross(arm), m.angvel]
     }
 
-    /// Gives it the motion that moves its centre of mass by a way and turns it, in some seconds, with the whole turns
-    /// that it makes; by then its velocities have gained so much.
+    /// Sets the motion that moves its centre of mass by `way` and rotates it by `turn` and the whole turns of its
+    /// motion so far, in `seconds`. `tangent`: its path's velocities now; `gained`: the change of its velocities by
+    /// joints in that time.
     pub fn aim(
         &mut self,
         (way, turn): (Vector, Rotation),
@@ -314,7 +316,7 @@ impl Body {
         self.is_rapiers = false;
     }
 
-    /// Lets it stay on its path, while joints add so much to its velocities in some seconds.
+    /// Keeps its path, while joints change its velocities by `gained` in `seconds`.
     pub fn gain(&mut self, gained: [Vector; 2], seconds: Real) {
         self.bend = Some(Bend {
             rate: gained.map(|gained| gained / seconds),

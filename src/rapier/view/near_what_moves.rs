@@ -46,7 +46,7 @@ fn add_near(participants: &mut Participants, sets: Sets, islands: &IslandManager
     let view = StepView::take(moving);
     let dt = sets.parameters.dt;
     let moves = |k: &usize| view.bodies[view.parts[*k].body].kind != Kind::Fixed;
-    // What rapier may wake in the step, and what is beside it then.
+    // Colliders that rapier may wake in the step, and those beside them then.
     let mut woken: Vec<ColliderHandle> = participants.still().everywhere().collect();
     let mut beside = Vec::new();
     for k in (0..view.parts.len()).filter(moves) {
@@ -119,7 +119,7 @@ impl SleepingIslands {
         Self(all)
     }
 
-    /// Those of an island, the first time they are asked for.
+    /// Takes the colliders of an island; none if they were taken before.
     fn take(&mut self, island: Option<u32>) -> Vec<ColliderHandle> {
         island
             .and_then(|island| self.0.remove(&island))

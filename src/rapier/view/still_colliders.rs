@@ -24,7 +24,7 @@ pub struct StillColliders {
     handles: Vec<ColliderHandle>,
     boxes: Vec<Aabb>,
     tree: Bvh,
-    /// Those without a box that the tree could hold.
+    /// Places of colliders whose boxes the tree cannot hold ([`LARGEST`]).
     everywhere: Vec<u32>,
     /// Place of each among all, by the index in its handle.
     places: Vec<u32>,
@@ -88,7 +88,7 @@ impl StillColliders {
         (*self.handles.get(place as usize)? == collider).then_some(place)
     }
 
-    /// Those without a box.
+    /// The colliders whose boxes the tree cannot hold.
     pub fn everywhere(&self) -> impl Iterator<Item = ColliderHandle> + '_ {
         self.everywhere.iter().map(|place| self.handle(*place))
     }
@@ -119,7 +119,7 @@ impl StillColliders {
     }
 }
 
-/// What is known from step to step about the still colliders of a world.
+/// Record, from step to step, of the still colliders of a world.
 #[derive(Default)]
 pub struct StillRecord {
     /// Hash of who is where.
@@ -132,9 +132,11 @@ pub struct StillRecord {
 }
 
 impl StillRecord {
-    /// The colliders that move, in the order of the set, and the still ones. `None` if these changed in the last steps,
-    /// or are fewer than `least`, or than so many times those that move; and where a collider that moved is gone or
-    /// collides with others than before, for rapier may then wake what rested on it. Boxes are grown by `margin`.
+    /// Splits the enabled colliders into the moving ones, in the order of the set, and the still ones. `None` if the
+    /// still ones have not been the same for [`STEPS`] steps, if there are fewer than `least` of them or fewer than
+    /// `times` for each moving one, and for [`STEPS`] steps after a moving collider was removed or came to collide with
+    /// others than before, since rapier may then wake what rested on it. The boxes in the tree are grown by `margin`, a
+    /// length.
     pub fn look(
         &mut self,
         (bodies, colliders): (&RigidBodySet, &ColliderSet),
