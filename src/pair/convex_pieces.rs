@@ -27,22 +27,22 @@ use crate::math::tolerance::ROUNDING_ULPS;
 
 /// Depth of two solid pieces in units of the thickness of the thinner, from which the shortest way apart may lead on
 /// through: there the middles of two alike pass each other.
-const THROUGH: f64 = 2.0;
+const MAX_RELIABLE_DEPTH: f64 = 2.0;
 
 /// The same depth for a piece in a surface, in units of the thickness of the piece.
-const THROUGH_SURFACE: f64 = 1.0;
+const MAX_RELIABLE_DEPTH_IN_SURFACE: f64 = 1.0;
 
 /// How deep two solid pieces may get in the same units, to be settled as a whole. Their primitives, which decide beyond
 /// it, point out of thin pieces on both sides: at 1.5, thirty cards that are dropped on each other are not at rest
 /// after 150 steps, at 1.95 they sleep after 106.
-const DEEPEST: f64 = 1.95;
+const MAX_PIECE_DEPTH: f64 = 1.95;
 
 /// The same depth for a piece in a surface, in units of the thickness of the piece.
-const DEEPEST_IN_SURFACE: f64 = 0.75;
+const MAX_PIECE_DEPTH_IN_SURFACE: f64 = 0.75;
 
 /// Distance below the gap at which pieces meet, in units of the tolerance, that a step of the search aims at. At 1 it
 /// would be the target distance itself, and pieces that come no nearer than that would not be found free.
-const PAST: f64 = 0.99;
+const AIM_BELOW: f64 = 0.99;
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Looks at two nodes, proven free until a time, as convex pieces.
@@ -107,9 +107,9 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         }
         let is_solid = thicknesses.iter().all(|t| t.is_finite());
         let (deepest, through) = if is_solid {
-            (DEEPEST, THROUGH)
+            (MAX_PIECE_DEPTH, MAX_RELIABLE_DEPTH)
         } else {
-            (DEEPEST_IN_SURFACE, THROUGH_SURFACE)
+            (MAX_PIECE_DEPTH_IN_SURFACE, MAX_RELIABLE_DEPTH_IN_SURFACE)
         };
         let contact = match by.filter(|_| touches && found.gap <= touching - depth) {
             None => touching - depth,
@@ -157,7 +157,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         for is_last in [false, true] {
             match free {
                 None => return Look::Free,
-                Some(free) if !self.soon(free, time) => return Look::FreeUntil(free),
+                Some(free) if !self.gains_too_little(free, time) => return Look::FreeUntil(free),
                 Some(_) => {}
             }
             let known = known.take();
@@ -240,12 +240,12 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let ((a, size_a), (b, size_b)) = (self.sides.0.piece(i), self.sides.1.piece(j));
         let n = pieces.direction;
         // Less than the gap at which they meet, so that a step comes to where they do.
-        let least = pieces.contact - PAST * self.earliest.limits.tolerance
+        let least = pieces.contact - AIM_BELOW * self.earliest.limits.tolerance
             + ROUNDING_ULPS * f64::EPSILON * (size_a + size_b);
         let far: Vec<_> = a.iter().map(|s| end_along(s, n, 1.0)).collect();
         let near: Vec<_> = b.iter().map(|s| end_along(s, n, -1.0)).collect();
         let on_chords = self.in_piece(time, |span| ends_hold([&far, &near], span, least, least))?;
-        if !self.soon(on_chords, time) {
+        if !self.gains_too_little(on_chords, time) {
             return Some(on_chords);
         }
         let [first, second] = &self.motions;
@@ -301,7 +301,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         if time == 0.0 && self.initial_contact == InitialContact::Stop {
             bracket.start_distance = met.distance - self.target;
         }
-        let goes_on = self
+        let continues = self
             .earliest
             .take(test, bracket, self.earliest.limits.start, primitives);
         let is_found = |(_, found, by): (_, Bracket<f64>, [u32; 2])| {
@@ -314,7 +314,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             let overlaps = self.earliest.status == ToiStatus::Overlapping;
             self.met = (!overlaps).then_some(met);
         }
-        goes_on
+        continues
     }
 
     /// Adds to the pieces that met all others that lie on each other in the same plane then: triangles of one ground,

@@ -179,10 +179,10 @@ pub(super) fn nearest_points(hulls: [&PlacedHull; 2], found: HullGap) -> HullGap
 /// that are apart by this much are not hard for it. The gap along the direction that it gives is no smaller than the
 /// best known: of all directions it has the largest gap of the moved hulls, and no direction gained more by the move
 /// than the best known.
-const APART: f64 = 0.02;
+const SHIFT: f64 = 0.02;
 
 /// Gain of a direction over the one before, in units of the gap, from which hulls are moved apart once more along it.
-const BETTER: f64 = 1.0e-3;
+const MIN_GAIN: f64 = 1.0e-3;
 
 /// Largest number of times that hulls are moved apart.
 const ROUNDS: usize = 4;
@@ -253,13 +253,13 @@ impl<'a> Best<'a> {
                 break;
             }
             let (before, along) = (self.gap, self.direction);
-            let way = along * (APART * unit - before);
+            let way = along * (SHIFT * unit - before);
             let Some((n, [p, q])) = proposed(self.hulls, y + way, unit) else {
                 break;
             };
             self.attempt_about(n);
             nearest = Some([p, q - way]);
-            if self.gap - before <= BETTER * before.abs() {
+            if self.gap - before <= MIN_GAIN * before.abs() {
                 break;
             }
         }

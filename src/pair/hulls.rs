@@ -24,11 +24,11 @@ use crate::medial::tree::NodeKind;
 /// filtered: with a primitive or a piece of a medial mesh, those that point into it are left out; with another shape,
 /// those that do not push it the shortest way out (`parry/deep_pieces.rs`). Larger, and a body may stay where such
 /// contacts hold it; smaller, and more pairs are computed without the tree.
-pub(crate) const DEEP: f64 = 0.25;
+pub(crate) const FILTER_DEPTH: f64 = 0.25;
 
 /// How much deeper two hulls may be along a contact's normal than along the best direction. At 1 a capsule that lies on
 /// two faces of a box would have one contact; larger, and contacts through the whole of a piece count.
-const OUTWARD: f64 = 2.0;
+const OUTWARD_DEPTH_RATIO: f64 = 2.0;
 
 /// Primitives below a node.
 fn below(body: &impl PrimitiveTree, node: u32) -> Vec<u32> {
@@ -170,7 +170,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
                     return Some(Vec::new());
                 }
                 let thinner = thickness(first, i).min(thickness(second, j));
-                let is_deep = found.gap < -DEEP * f64::from(thinner);
+                let is_deep = found.gap < -FILTER_DEPTH * f64::from(thinner);
                 is_deep.then(|| self.deep_contacts([i, j], found, margin, counts))
             }
         }
@@ -224,7 +224,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
         let hulls = self.pieces(nodes);
         found.retain(|contact| {
             let n = Vec3::from_vector(contact.normal);
-            gap_along(&hulls[0].spheres, &hulls[1].spheres, n) >= OUTWARD * hull.gap
+            gap_along(&hulls[0].spheres, &hulls[1].spheres, n) >= OUTWARD_DEPTH_RATIO * hull.gap
         });
         let primitives = [
             first

@@ -119,7 +119,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 direction.map(|n| self.held_until(balls.each_ref(), n, &tested.threshold, time));
             match held {
                 Some(None) => return,
-                Some(Some(free)) if !self.soon(free, time) => {
+                Some(Some(free)) if !self.gains_too_little(free, time) => {
                     self.wait(tested.nodes, free);
                     return;
                 }
@@ -168,7 +168,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         self.proofs += 1;
         match direction.map(|n| self.held_until(balls.each_ref(), n, &tested.threshold, time)) {
             Some(None) => {}
-            Some(Some(free)) if !self.soon(free, time) => {
+            Some(Some(free)) if !self.gains_too_little(free, time) => {
                 self.queue(Entry::at(free, Candidate::Parts(place)));
             }
             _ => {
@@ -369,7 +369,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         // Without a bound that lies later it has used up its iterations, or none of them gains any more.
         if settled || bracket.lower <= until {
             let (test, primitives) = (open.test, tested.primitives);
-            let goes_on = self.earliest.take(test, bracket, time, primitives);
+            let continues = self.earliest.take(test, bracket, time, primitives);
             let is_found = |(of, found, by): (ElementaryTest, Bracket<f64>, [u32; 2])| {
                 (of, by) == (test, primitives) && found.nearest.distance == bracket.nearest.distance
             };
@@ -377,7 +377,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 self.found = Some(self.tested[open.of as usize]);
                 self.met = None;
             }
-            return goes_on;
+            return continues;
         }
         self.earliest.iterations += bracket.iterations;
         self.earliest.tolerance = self.earliest.tolerance.max(bracket.tolerance);

@@ -38,7 +38,7 @@ const MOST_ANGLE: f64 = 0.5;
 
 /// Pairs on a list at most. Twice as many as there are bits: with more, as of a nut on its bolt, most of the trees is
 /// above some of them, and nothing is spared.
-const MOST: u32 = 2 * Bits::BITS;
+const MAX_LISTED_PAIRS: u32 = 2 * Bits::BITS;
 
 /// Primitive pairs, and pairs of convex pieces, that may come near each other, by the nodes of both trees above them.
 /// It may hold others.
@@ -95,7 +95,7 @@ impl NearPairs {
         list.walk(&mut sides).then_some(list)
     }
 
-    /// Whether no more than [`MOST`] are near.
+    /// Whether no more than [`MAX_LISTED_PAIRS`] are near.
     fn walk<A: PrimitiveTree, B: PrimitiveTree>(&mut self, sides: &mut (Side<A>, Side<B>)) -> bool {
         let reach = self.reach + self.margin;
         let mut listed: [Vec<Bits>; 2] = Default::default();
@@ -129,7 +129,7 @@ impl NearPairs {
                     bits[at as usize] |= 1 << (count % Bits::BITS);
                 }
                 count += 1;
-                if count > MOST {
+                if count > MAX_LISTED_PAIRS {
                     return false;
                 }
                 continue;

@@ -316,7 +316,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
         let Some(free) = free else {
             return true;
         };
-        if !self.soon(free, time) {
+        if !self.gains_too_little(free, time) {
             return self.wait([i, j], free);
         }
         if primitives.is_some() {

@@ -33,7 +33,7 @@ const SLACK: Real = 1.0e-6;
 
 /// How much deeper than a contact the other body may be along its normal, if it is to shield a part, in units of the
 /// part's thickness: what slides is tilted a little. Larger, and it may be deep in the part.
-const SUNK: Real = 0.1;
+const SHIELD_DEPTH: Real = 0.1;
 
 /// Cosine of the steepest fold at which a part's face rises above the one that shields it (3.6°): beyond it the body is
 /// struck at the rim of the next part, under the normal found.
@@ -316,7 +316,7 @@ fn shields(
     // Only the face of a solid that touches need be beyond the contact's plane.
     let n = first.normal;
     let lowest = -reach(&hidden[1 - side].solid(other), &poses[1 - side], -n);
-    let sunk = SUNK * parts[1].thickness(body);
+    let sunk = SHIELD_DEPTH * parts[1].thickness(body);
     if lowest - n.dot(first.place) < first.gap.min(0.0) - sunk - slack {
         return None;
     }

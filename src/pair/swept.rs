@@ -88,7 +88,7 @@ impl Swept {
 /// Rotation in the step, in radians, up to which the margins of 64 ulps of the coordinates, of which an arm is one,
 /// cover the rounding of the time as well: it is given half of them. Only rotation beyond it widens a node's ball.
 /// Larger, and a ball may be a few ulps too small.
-const COVERED: f64 = 32.0;
+const COVERED_TURN: f64 = 32.0;
 
 /// One side of a search. A node is swept once, however many nodes of the other side it meets.
 pub(super) struct Side<'a, V> {
@@ -250,8 +250,8 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         let length = self.times[1] - self.times[0];
         let acceleration = self.motion.acceleration(arms[0]);
         // Times are good to an ulp of the step, in which a point swings an ulp of the angle; up to
-        // `COVERED` the margins for coordinates cover that.
-        let swing = (self.motion.angle() - COVERED).max(0.0) * arms[0].length();
+        // `COVERED_TURN` the margins for coordinates cover that.
+        let swing = (self.motion.angle() - COVERED_TURN).max(0.0) * arms[0].length();
         let rounding = ROUNDING_ULPS * f64::EPSILON * swing;
         (
             from.center + arms[0],

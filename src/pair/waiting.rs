@@ -15,7 +15,7 @@ const WORTH_WAITING: f64 = 1.0e-3;
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
     /// Whether directions gain too little for two candidates to wait.
-    pub(super) fn soon(&self, free: f64, time: f64) -> bool {
+    pub(super) fn gains_too_little(&self, free: f64, time: f64) -> bool {
         free < time + WORTH_WAITING * (self.times[1] - self.times[0])
     }
 

@@ -8,7 +8,7 @@ use super::folds;
 use super::initial_contacts::{AtStart, Touching, approach_of_rounding};
 use super::inside;
 use super::shape_faces::for_each_flat_face;
-use super::sliding::{Sinks, Sliding};
+use super::sliding::{SinkLimits, Sliding};
 use super::swept_region::{started, swept_region};
 use super::swept_sphere_parts::{self, Parts, Unsweepable};
 use crate::elementary::first_contact::motion_is_finite;
@@ -80,7 +80,7 @@ impl Cast<'_> {
         &self,
         options: &ToiOptions,
         left: Option<[ActivePrimitives; 2]>,
-        sinks: Option<Sinks>,
+        sinks: Option<SinkLimits>,
     ) -> Result<ToiResult, Unsweepable> {
         let [start, end] = self.times;
         let motions = [self.motion1, self.motion2].map(|m| started(m, start));

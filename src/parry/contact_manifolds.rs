@@ -120,16 +120,16 @@ fn write_with_other<M, C>(
     C: Default + Copy + Send + Sync,
 {
     let (((_, side), pos12, _), prediction) = (pair, load.prediction);
-    let goes_on = write_on_flat(pair, prediction, manifolds, workspace);
-    if goes_on.is_none() {
+    let continues_previous = write_on_flat(pair, prediction, manifolds, workspace);
+    if continues_previous.is_none() {
         write_by_parry(dispatcher, pair, prediction, manifolds, workspace);
     }
-    correct(pair, (goes_on.is_none(), prediction), manifolds);
-    if goes_on != Some(true) {
+    correct(pair, (continues_previous.is_none(), prediction), manifolds);
+    if continues_previous != Some(true) {
         previous_contacts::transfer_impulses(manifolds, previous, prediction, side);
     }
     contact_reduction::choose(manifolds, pos12, load, previous, side);
-    if goes_on.is_some() {
+    if continues_previous.is_some() {
         manifolds.retain(|m| !m.points.is_empty());
     }
 }
@@ -244,14 +244,14 @@ where
         (g1, pos12.inverse())
     };
     let face = flat_face::face(mesh, other, &pose, prediction)?;
-    let goes_on = flat_face::wrote(manifolds);
-    if !goes_on {
+    let continues_previous = flat_face::wrote(manifolds);
+    if !continues_previous {
         // parry's workspace holds indices into the list that is written anew here.
         *workspace = None;
     }
     ensure_workspace::<M, C>(g1, g2, workspace);
     flat_face::write_manifolds(mesh, &face, &pose, side, prediction, manifolds);
-    Some(goes_on)
+    Some(continues_previous)
 }
 
 /// parry's manifolds of a mesh and another shape. It knows its own again; those of a flat face it would begin anew,

@@ -19,7 +19,7 @@ const TILT_OF_PARTS: Real = 5.0e-4;
 
 /// Bound of the slack that these tilts give, in units of the other body's size: steps that are higher than this are
 /// never taken for level.
-const LOW: Real = 1.0e-3;
+const MAX_STEP: Real = 1.0e-3;
 
 /// A convex part of a mesh.
 pub enum Part<'a> {
@@ -96,7 +96,7 @@ pub fn slack_of_parts(
     mesh: &MedialMesh,
     (other, pose): (&dyn Shape, &Pose),
 ) -> impl Fn(u32) -> Real {
-    let low = LOW * other.compute_local_aabb().extents().max_element();
+    let low = MAX_STEP * other.compute_local_aabb().extents().max_element();
     let of_all = slack(mesh, pose);
     move |primitive| {
         let part = Part::of(mesh, primitive);
@@ -112,7 +112,7 @@ pub fn slack_of(compound: &Compound, child: u32, mesh: &MedialMesh) -> Real {
     let bounds = compound.local_aabb();
     let own = compound.aabbs().get(child as usize);
     let size = own.map_or(0.0, |own| own.extents().max_element());
-    let low = LOW * mesh.aabb().extents().max_element();
+    let low = MAX_STEP * mesh.aabb().extents().max_element();
     low.min(TILT * size) + SLACK * bounds.mins.abs().max(bounds.maxs.abs()).max_element()
 }
 

@@ -61,7 +61,7 @@ impl MedialDispatcher {
         let [first, second] = if flipped { [1, 0] } else { [0, 1] };
         let mesh = medial(shapes[first]).ok_or(Unsupported)?;
         let pos12 = motions[0].start.inv_mul(&motions[1].start);
-        if self.exchange.passes(shapes[0], shapes[1], &pos12) {
+        if self.exchange.are_contacts_off(shapes[0], shapes[1], &pos12) {
             return Ok(None);
         }
         let cast = Cast {

@@ -23,14 +23,14 @@ use parry3d::shape::Shape;
 
 /// How deep a mesh may be in the plane that it slides along, lengths.
 #[derive(Clone, Copy, Debug)]
-pub struct Sinks {
+pub struct SinkLimits {
     /// Depth at the start up to which the mesh counts as lying on the plane.
-    pub lies: Real,
+    pub at_start: Real,
     /// A face is no obstacle only if the mesh gets no deeper in its plane than this within the step.
-    pub to: Real,
+    pub at_most: Real,
     /// A face is no obstacle only if the mesh sinks in its plane by no more than this within the step. Not asked of
     /// faces of solids.
-    pub by: Real,
+    pub change: Real,
 }
 
 /// A mesh at the start and at the end of a step, in the frame of the ground.
@@ -46,7 +46,7 @@ pub struct Sliding<'a> {
     rounding: f64,
     /// Height up to which the mesh counts as lying on a plane, a length: the query's target distance.
     target: f64,
-    sinks: Sinks,
+    sinks: SinkLimits,
     /// Planes of the faces below the mesh on which it lies.
     grounds: Vec<Lying>,
     /// Whether only faces of solids were looked at. Folds are between faces of a surface (a mesh, height field or
@@ -96,7 +96,7 @@ pub struct Lying {
 
 /// Rounding error of the heights of corners over a face, in units of their coordinates: eight ulps. More, and a fin may
 /// count as part of the ground that it stands on; less only lets bodies stumble.
-const CORNERS: Real = 8.0 * Real::EPSILON;
+const CORNER_ROUNDING: Real = 8.0 * Real::EPSILON;
 
 impl Lying {
     /// Whether a face that is in the plane or below it is in the plane, rounding apart.
@@ -124,7 +124,7 @@ impl<'a> Sliding<'a> {
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
         seconds: Real,
         target: Real,
-        sinks: Sinks,
+        sinks: SinkLimits,
     ) -> Option<Self> {
         if !has_flat_faces(ground) {
             return None;
@@ -206,7 +206,7 @@ impl<'a> Sliding<'a> {
 
     /// Whether the centres of spheres stay above a plane on which they lie.
     pub fn keeps_above(&self, spheres: &[MedialSphere]) -> bool {
-        spheres.iter().all(|s| s.radius >= self.sinks.lies)
+        spheres.iter().all(|s| s.radius >= self.sinks.at_start)
     }
 
     /// A ground in or below whose plane a face is, one along which the mesh slides if there is one.
@@ -250,7 +250,8 @@ impl<'a> Sliding<'a> {
             let mut heights = heights.map(|s| height[k](s.center) - f64::from(s.radius));
             heights.try_fold(f64::MAX, |low, h| (h >= least).then_some(low.min(h)))
         };
-        let [lies, to, by] = [self.sinks.lies, self.sinks.to, self.sinks.by].map(f64::from);
+        let [lies, to, by] =
+            [self.sinks.at_start, self.sinks.at_most, self.sinks.change].map(f64::from);
         let (center, radius) = self.bound;
         if n.dot(center - a) - radius > self.target {
             return None;
@@ -277,7 +278,7 @@ impl<'a> Sliding<'a> {
         Some(Lying {
             normal: n,
             place: a,
-            rounding: f64::from(CORNERS * coordinates.fold(0.0, Real::max)),
+            rounding: f64::from(CORNER_ROUNDING * coordinates.fold(0.0, Real::max)),
             slides: start >= least && lowest(1, least).is_some(),
             is_over,
         })

@@ -3,7 +3,7 @@
 //! stands on a table has normals to its sides, and trips over them.
 //!
 //! The gap of two convex bodies is their largest gap along any direction, so a normal is right if the gap along it is
-//! that of the contact. Where it is not, but that along the normal of a flat face of either body nearly is ([`ROOM`]),
+//! that of the contact. Where it is not, but that along the normal of a flat face of either body nearly is ([`GAP_TOLERANCE`]),
 //! it is turned to that. The points turn along: what rolls touches the face below its axis, and not ahead of it, where
 //! it comes down.
 
@@ -19,7 +19,7 @@ use parry3d::shape::{Shape, TypedShape};
 /// Tolerance, in units of the prediction distance: a contact's normal is turned to a face's if the gap along that falls
 /// short of the contact's gap by no more than this, while the gap along its own normal falls short by more. At 0 bodies
 /// that lie aslant over the end of a table stumble there.
-const ROOM: Real = 0.02;
+const GAP_TOLERANCE: Real = 0.02;
 
 /// Turns wrong normals to those of faces. The mesh is body `side` (0 or 1) of the manifolds; `other` is the other
 /// shape, and where it is in the mesh's frame.
@@ -65,7 +65,7 @@ pub fn correct<M, C>(
         if told >= least {
             continue;
         }
-        let room = ROOM * prediction;
+        let room = GAP_TOLERANCE * prediction;
         let room = if told < least - room { room } else { 0.0 };
         let Some((normal, is_of_mesh)) = flat_normal(&two, least - room) else {
             continue;

@@ -1,7 +1,7 @@
 //! Properties that bodies are given for the length of rapier's step, and lose after it.
 
 use crate::rapier::effects::EffectSettings;
-use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::multibody_energy::FastMultibodies;
 use crate::rapier::host::sleep_timers::SleepTimers;
 use crate::rapier::host::speculative::Speculators;
 use crate::rapier::host::substeps::Substeps;
@@ -21,7 +21,7 @@ impl Loans {
     /// multibodies that may gain energy, and the time to sleep of `moved`, the bodies that impacts moved in the step
     /// before.
     pub fn give(
-        (view, wild): (&StepView, &WildMultibodies),
+        (view, fast_multibodies): (&StepView, &FastMultibodies),
         (effects, moved): (&EffectSettings, &[RigidBodyHandle]),
         parameters: &IntegrationParameters,
         world: &mut World,
@@ -34,7 +34,7 @@ impl Loans {
             joints,
             world.narrow_phase,
             parameters,
-            wild,
+            fast_multibodies,
             world.bodies,
         );
         let contacts = (&*world.colliders, &*world.narrow_phase);

@@ -33,7 +33,7 @@ pub struct State {
     /// Which starts of contacts were reported.
     pub reported: ReportedStarts,
     /// Bodies that were put into each other.
-    pub placed: InitialOverlaps,
+    pub initial_overlaps: InitialOverlaps,
     /// The colliders that stood still in the last step.
     pub still: StillRecord,
     /// All medial colliders of the world, with what they were made for: the still colliders and gravity.
@@ -61,7 +61,7 @@ impl State {
                 budget: options.budget,
             },
             reported: ReportedStarts::default(),
-            placed: InitialOverlaps::default(),
+            initial_overlaps: InitialOverlaps::default(),
             still: StillRecord::default(),
             still_medial: None,
             links: KnownLinks::default(),

@@ -106,7 +106,7 @@ impl State {
         self.moved = Some(world.write_back(&plan.view, &outcome, args.parameters));
         if !is_kept || plan.view.followed {
             let participants = plan.participants.as_ref();
-            self.placed
+            self.initial_overlaps
                 .end(&plan.view, participants, &world.rules(args.filters));
         }
         let scene = Scene {
@@ -146,11 +146,11 @@ impl State {
         let clock = Instant::now();
         let parameters = args.parameters;
         let moved = self.moved.as_deref().unwrap_or_default();
-        let asked = (&plan.view, &plan.wild);
+        let asked = (&plan.view, &plan.fast_multibodies);
         let effects = (&self.settings.effects, moved);
         let loans = (!is_kept).then(|| Loans::give(asked, effects, parameters, world));
         report.speculative = loans.as_ref().map_or(0, Loans::speculative);
-        plan.wild.bring_to_rest(world.multibody_joints);
+        plan.fast_multibodies.bring_to_rest(world.multibody_joints);
         report.batch_seconds += clock.elapsed().as_secs_f64();
 
         self.exchange.begin_step(Arc::clone(&plan.narrow_phase));

@@ -18,7 +18,7 @@ use wgpu::BufferUsages;
 const MAX_ITERATIONS: u32 = 24;
 
 /// Lengths from here, in the user's unit, stay on the CPU: their products would overflow.
-const LARGEST: f32 = 1.0e8;
+const MAX_LENGTH: f32 = 1.0e8;
 
 /// How far the fourth corner may be from where the others put it, as a fraction of all four: what
 /// rounding of the corners makes of it is below 3 ulps. Larger and the device's slack, 32 ulps of the
@@ -150,7 +150,7 @@ fn pack(path: &LinearPath<f32>, domain: Domain, tolerance: f32) -> Query {
             let [a, b, c, d] = corners.map(|corner| corner[k]);
             let size = a.abs() + b.abs() + c.abs() + fourth * d.abs();
             let off = fourth * (b + c - a - d).abs();
-            sound &= (size < LARGEST) & (off <= FOLLOWS * size);
+            sound &= (size < MAX_LENGTH) & (off <= FOLLOWS * size);
         }
     }
     if !sound {

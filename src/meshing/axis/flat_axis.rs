@@ -30,10 +30,10 @@ const NO_HEIGHT: f64 = 0.03;
 
 /// Length, in units of the distance within which corners become one, up to which the surface may stick out of the other
 /// sheets' balls for a sheet to be left out: those between faces that are nearly coplanar.
-const BLUNT: f64 = 0.03;
+const BLUNT_HEIGHT: f64 = 0.03;
 
 /// A face's polygon turns by this more or less than once around (rad), by rounding.
-const ROUND: f64 = 1e-3;
+const TURN_ROUNDING: f64 = 1e-3;
 
 /// First guess of a distance (longest side 1); only time depends on it.
 const GUESS: f64 = 1e-7;
@@ -245,7 +245,7 @@ impl<'a> Body<'a> {
             }
             let widest = corners.iter().map(|&v| balls[v as usize].radius);
             let widest = widest.fold(0.0, f64::max);
-            if blunt.leaves_out([a, b].map(of), &self.planes, widest, BLUNT * same) {
+            if blunt.leaves_out([a, b].map(of), &self.planes, widest, BLUNT_HEIGHT * same) {
                 continue;
             }
             for &corner in &corners {
@@ -296,7 +296,7 @@ impl<'a> Body<'a> {
         let turns: Vec<f64> = turns.collect();
         let turn: f64 = turns.iter().sum();
         let sign = turn.signum();
-        if (turn.abs() - TAU).abs() > ROUND {
+        if (turn.abs() - TAU).abs() > TURN_ROUNDING {
             return f64::INFINITY;
         }
         let mut back = 0.0;

@@ -17,7 +17,7 @@ pub const SHEET: f64 = 1e-3;
 
 /// Most triangles that a medial mesh of sheets starts from: ten times what any count of primitives
 /// in use needs, and a second's collapse.
-const MOST: usize = 60_000;
+const MAX_TRIANGLES: usize = 60_000;
 
 /// Winding number from which a point of a sheet counts as inside solid matter.
 const INSIDE: f64 = 0.75;
@@ -37,7 +37,7 @@ pub fn open_sheets(
     watch: &mut Watch,
 ) -> Result<(Draft, usize), BuildError> {
     let mut soup = PrimitiveList::new(surface, |t| surface.sheet[t], watch)?;
-    if soup.triangles.len() > MOST {
+    if soup.triangles.len() > MAX_TRIANGLES {
         soup.merge_by_cells(soup.coarsest(), watch)?;
     }
     let buried = match surface.sheet.contains(&false) {
@@ -82,14 +82,14 @@ impl PrimitiveList {
         Ok(soup)
     }
 
-    /// Side of the cells that leave about [`MOST`] triangles: a cell of a flat sheet gives two.
+    /// Side of the cells that leave about [`MAX_TRIANGLES`] triangles: a cell of a flat sheet gives two.
     fn coarsest(&self) -> f64 {
         let area_of = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.points[v as usize]);
             0.5 * (b - a).cross(c - a).length()
         };
         let area: f64 = self.triangles.iter().map(area_of).sum();
-        (2.0 * area / MOST as f64).sqrt()
+        (2.0 * area / MAX_TRIANGLES as f64).sqrt()
     }
 
     /// Merges all points of a cell at their mean.

@@ -41,7 +41,7 @@ use crate::meshing::watch::Watch;
 use std::ops::ControlFlow;
 
 /// Share of its length by which a way out of the solid may be overstated.
-const WAY_OUT: f64 = 0.05;
+const EXIT_OVERESTIMATE: f64 = 0.05;
 
 /// Step off the surface that tells an enclosed part from the outside (longest side 1).
 const OFF_SURFACE: f64 = 1e-4;
@@ -49,15 +49,15 @@ const OFF_SURFACE: f64 = 1e-4;
 /// Directions along which a piece of the source is moved to get out of the solid. Faces that meet in a reflex edge
 /// are enlarged to cover rounding, and stand in each other's way: a corner of three needs two directions more than the
 /// normal.
-const WAYS: usize = 3;
+const EXIT_DIRECTIONS: usize = 3;
 
 /// How far each direction turns away from what was in the way of the one before, in units of its length.
-const TILT: f64 = 0.05;
+const EXIT_TILT: f64 = 0.05;
 
 /// Length of a second way out (longest side 1), tried where a piece is nearly on the boundary. Its direction turns as
 /// far as need be, since in a slit the other side is near. Twice the length by which bodies are enlarged to cover
 /// rounding.
-const SLIT: f64 = 5e-6;
+const SECOND_EXIT_LENGTH: f64 = 5e-6;
 
 /// Pieces that the search in either direction (source to solid, solid to source) may examine before it becomes coarser:
 /// about 0.2 s.
@@ -87,7 +87,7 @@ pub fn hausdorff(
         Some(boundary) => (&boundary.surface, &boundary.tree),
         None => (&surface, &tree),
     };
-    let measured = measure(seen, seen_tree, &tree, &draft, Effort::CLOSE, &mut watch)?;
+    let measured = measure(seen, seen_tree, &tree, &draft, Effort::FINE, &mut watch)?;
     Ok(in_unit(measured, surface.frame.scale))
 }
 
@@ -232,7 +232,11 @@ impl FromSource<'_> {
             } else {
                 best.min(allowed)
             };
-            Look::Distance(self.solid.nearest_exit(p, [way, enough], WAY_OUT).distance)
+            Look::Distance(
+                self.solid
+                    .nearest_exit(p, [way, enough], EXIT_OVERESTIMATE)
+                    .distance,
+            )
         }
     }
 
@@ -262,7 +266,7 @@ impl FromSource<'_> {
         }
         let gets_out = |far: f64, tilt: f64| {
             let mut way = normal;
-            (0..WAYS).any(|_| {
+            (0..EXIT_DIRECTIONS).any(|_| {
                 let moved = |p: Point| p + way * far;
                 let (corners, center) = (corners.map(moved), moved(center));
                 let inside = self.solid.exit_of_any(&corners, center, self.hint);
@@ -270,7 +274,10 @@ impl FromSource<'_> {
                 inside.is_none()
             })
         };
-        gets_out(allowed, TILT) || allowed > SLIT && to_hint(center) > -SLIT && gets_out(SLIT, 1.0)
+        gets_out(allowed, EXIT_TILT)
+            || allowed > SECOND_EXIT_LENGTH
+                && to_hint(center) > -SECOND_EXIT_LENGTH
+                && gets_out(SECOND_EXIT_LENGTH, 1.0)
     }
 
     /// Whether the surface point `p` lies inside matter that the source bounds.

@@ -71,7 +71,7 @@ impl Source {
     fn effort(&self) -> Effort {
         match self.limits.quality {
             Quality::Fast if self.limits.max_error.is_none() => Effort::COARSE,
-            _ => Effort::CLOSE,
+            _ => Effort::FINE,
         }
     }
 
@@ -190,7 +190,7 @@ impl Source {
         let mut before = None;
         if let Some(draft) = &enclosed.before {
             watch.begin("measure")?;
-            before = Some(self.error_of(draft, Effort::ROUGH, watch)?);
+            before = Some(self.error_of(draft, Effort::REPORT, watch)?);
         }
         Ok(Candidate {
             draft: enclosed.draft,

@@ -10,7 +10,7 @@ use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::options::Variant;
 use crate::meshing::recipe::candidate::{Candidate, Enclosed};
-use crate::meshing::recipe::polyhedron::MOST;
+use crate::meshing::recipe::polyhedron::MAX_PRIMITIVES;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::profile::{Profile, fewer};
 use crate::meshing::watch::Watch;
@@ -27,7 +27,7 @@ const THINNEST: f64 = 1e-4;
 const STEP: f64 = 0.85;
 
 /// Half of the thickness below which parts of a profile are ribs (longest side 1). All are tried.
-const THIN: [f64; 6] = [0.015, 0.02, 0.03, 0.045, 0.065, 0.09];
+const RIB_HALVES: [f64; 6] = [0.015, 0.02, 0.03, 0.045, 0.065, 0.09];
 
 /// Thickness within which a profile without its ribs is brought to fewer edges, in units of the thickness within which
 /// the whole profile was. All are tried.
@@ -38,14 +38,14 @@ const MOST_RIBBED: usize = 256;
 
 /// Length of the roof's ridges, in units of the thickness, below which their two ends become one. At 1 the count of
 /// slabs is hardly less.
-const SAME: f64 = 0.25;
+const MIN_RIDGE: f64 = 0.25;
 
 /// Radii are larger by this (longest side 1): what is covered needs no proof by the smallest pieces then.
 const MARGIN: f64 = 1e-5;
 
 /// Largest error at a few samples, in units of the thickness, of a draft that is not discarded: where it is more, the
 /// body is a prism by its outline alone.
-const FAR: f64 = 4.0;
+const MAX_ROUGH_ERROR: f64 = 4.0;
 
 /// Largest error (longest side 1) of a prism that is returned without a fit besides: fits of prisms by 200 primitives
 /// are off by .002 to .006.
@@ -70,7 +70,11 @@ impl Source {
         let Some(profile) = self.profile(watch)? else {
             return Ok(None);
         };
-        let most = self.limits.primitives.unwrap_or(MOST).min(MOST);
+        let most = self
+            .limits
+            .primitives
+            .unwrap_or(MAX_PRIMITIVES)
+            .min(MAX_PRIMITIVES);
         let mut best: Option<(f64, Prism)> = None;
         let rough = self.rough_target();
         for kind in [Kind::Roof, Kind::Ribbed] {
@@ -101,14 +105,18 @@ impl Source {
         let Some(profile) = self.profile(watch)? else {
             return Ok(None);
         };
-        let most = self.limits.primitives.unwrap_or(MOST).min(MOST);
+        let most = self
+            .limits
+            .primitives
+            .unwrap_or(MAX_PRIMITIVES)
+            .min(MAX_PRIMITIVES);
         let mut all = prisms(&profile, most, Kind::Roof, watch)?;
         all.extend(prisms(&profile, most, Kind::Ribbed, watch)?);
         all.sort_by_key(|prism| prism.count);
         let rough = self.rough_target();
         let effort = Effort {
             enough: limit,
-            ..Effort::CLOSE
+            ..Effort::FINE
         };
         for prism in all {
             let far = prism.far.min(limit);
@@ -208,9 +216,10 @@ fn prisms(
                 };
                 match kind {
                     Kind::Roof => {
-                        if let Some(draft) = prism_axis(&loops, profile.half, SAME * thickness) {
+                        if let Some(draft) = prism_axis(&loops, profile.half, MIN_RIDGE * thickness)
+                        {
                             let parts = "and the roof over that is exact".to_owned();
-                            add(draft, FAR * thickness, parts);
+                            add(draft, MAX_ROUGH_ERROR * thickness, parts);
                         }
                     }
                     Kind::Ribbed => ribbed(&loops, profile, (thickness, most), watch, &mut add)?,
@@ -236,7 +245,7 @@ fn ribbed(
     add: &mut impl FnMut(Draft, f64, String),
 ) -> Result<(), BuildError> {
     let mut seen: Vec<Vec<bool>> = Vec::new();
-    for thin in THIN {
+    for thin in RIB_HALVES {
         watch.again()?;
         let Some(opened) = Opened::new(loops, thin) else {
             continue;
@@ -267,7 +276,8 @@ fn ribbed(
                 // Each edge has a slab at each cap or more, but those of plates.
                 let least = 2 * edges + if rib == Rib::Exact { 2 * of_ribs } else { 0 };
                 if least <= most
-                    && let Some(draft) = opened.draft(&thick, profile.half, SAME * coarser, rib)
+                    && let Some(draft) =
+                        opened.draft(&thick, profile.half, MIN_RIDGE * coarser, rib)
                 {
                     add(draft, THICKEST, format!("{rest}, and ribs are {what}"));
                 }

@@ -11,7 +11,7 @@ use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::{Hausdorff, Variant};
 use crate::meshing::recipe::candidate::Candidate;
-use crate::meshing::recipe::polyhedron::{MOST, SAME_AREA, axis, faces_of, known};
+use crate::meshing::recipe::polyhedron::{MAX_PRIMITIVES, SAME_AREA, axis, faces_of, known};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::checked_surface::{Surface, cross};
 use crate::meshing::surface::flat_faces::{
@@ -22,7 +22,7 @@ use std::borrow::Cow;
 
 /// Pieces are used if the medial mesh is off by less than so many times that. More, and bodies whose faces are not
 /// quite flat count as exact.
-const CLOSE: f64 = 20.0;
+const EXACT_FACTOR: f64 = 20.0;
 
 /// An error up to this (longest side 1) is rounding.
 const ROUNDED: f64 = 2e-5;
@@ -34,7 +34,7 @@ impl Source {
     /// The medial axes of convex pieces of the body, if these have at most `most` primitives: of the convex parts that
     /// the source consists of, or of those that its faces make, whichever has fewer primitives.
     pub fn pieces(&self, most: usize, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
-        let most = most.min(MOST);
+        let most = most.min(MAX_PRIMITIVES);
         if self.bounds().0.sheet.contains(&true) {
             return Ok(None);
         }
@@ -47,7 +47,7 @@ impl Source {
                 let most = best
                     .as_ref()
                     .map_or(most, |best| best.draft.faces.len() - 1);
-                let next = self.of_parts(&parts, beside, CLOSE * flat, most, watch)?;
+                let next = self.of_parts(&parts, beside, EXACT_FACTOR * flat, most, watch)?;
                 best = next.or(best);
             }
             if best.is_some() {
@@ -155,7 +155,7 @@ impl Source {
             false => 0.0,
         };
         draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
-        let mut enclosed = self.measured(draft, None, Effort::QUICK, watch)?;
+        let mut enclosed = self.measured(draft, None, Effort::CHECK, watch)?;
         // Triangles without area may stick out of the pieces, which are of the others alone.
         let uncovered = f64::from(enclosed.hausdorff.uncovered);
         let is_short = self.limits.enclose && uncovered > self.limits.allow_uncovered;

@@ -18,7 +18,7 @@ use crate::meshing::watch::Watch;
 
 /// Ratio of the largest residuals, at few samples, of the plain collapses of two medial meshes of a body. One that is
 /// worse than the other by more than this is not fitted.
-const HOPELESS: f64 = 2.0;
+const MAX_ROUGH_RATIO: f64 = 2.0;
 
 /// Samples for tens of primitives.
 const FEW_SAMPLES: usize = 2_000;
@@ -175,7 +175,7 @@ impl Source {
         let mut is_sharp = sharp_first;
         // The other has that error to beat, and no fit gains more than so much.
         let bar = LARGEST_GAIN * best.error();
-        if second.rough_error <= bar.min(HOPELESS * first.rough_error) {
+        if second.rough_error <= bar.min(MAX_ROUGH_RATIO * first.rough_error) {
             let other = self.best_of(second, Some(best.error()), watch)?;
             if other.error() < best.error() || (sharp_first && other.error() == best.error()) {
                 (best, is_sharp) = (other, !sharp_first);

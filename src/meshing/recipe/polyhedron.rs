@@ -25,19 +25,19 @@ pub const EXACT: f64 = 1e-6;
 const EXACT_HERE: f64 = 0.6 * EXACT;
 
 /// Corners of the roof this near are one (longest side 1): tried in order.
-const SAME: [f64; 7] = [1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-9, 0.0];
+const MERGE_DISTANCES: [f64; 7] = [1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-9, 0.0];
 
 /// Orders in which the roof is cut, should rounding spoil it.
 const SEEDS: u64 = 4;
 
 /// Corners of the roof for each primitive allowed, at most: boxes and random hulls have .5 to .7.
-const CORNERS: usize = 8;
+const CORNERS_PER_PRIMITIVE: usize = 8;
 
 /// The source's triangles and the faces have the same area but for this share, by rounding.
 pub const SAME_AREA: f64 = 1e-5;
 
 /// Primitives at most, where no fewer are asked for: faces are compared each with each.
-pub const MOST: usize = 2_000;
+pub const MAX_PRIMITIVES: usize = 2_000;
 
 impl Axis {
     /// The axis as a build returns it, grown if asked to. Its errors are bounds, not samples.
@@ -98,7 +98,7 @@ pub fn polyhedra(
     if surface.sheet.contains(&true) {
         return Ok(None);
     }
-    let most = most.min(MOST);
+    let most = most.min(MAX_PRIMITIVES);
     let patches = surface.patch_of.iter().max();
     let mut bodies = vec![Vec::new(); patches.map_or(0, |&p| p as usize + 1)];
     for (t, &patch) in surface.patch_of.iter().enumerate() {
@@ -159,7 +159,11 @@ pub fn axis(
     for seed in 0..SEEDS {
         watch.again()?;
         let mut planes = faces.planes.clone();
-        let Some(corners) = roof(&mut planes, CORNERS.saturating_mul(most), seed) else {
+        let Some(corners) = roof(
+            &mut planes,
+            CORNERS_PER_PRIMITIVE.saturating_mul(most),
+            seed,
+        ) else {
             continue;
         };
         let body = Body::new(surface, faces, planes, corners);
@@ -174,7 +178,7 @@ pub fn axis(
         if too_blunt {
             return Ok(None);
         }
-        for same in SAME {
+        for same in MERGE_DISTANCES {
             watch.again()?;
             let found = body.axis(&polygons, same, tree);
             let count = found.draft.faces.len();

@@ -22,13 +22,13 @@ use crate::meshing::watch::Watch;
 use std::collections::BTreeSet;
 
 /// Most primitives that are tried where the count is free.
-const MOST: usize = 10_000;
+const MAX_COUNT: usize = 10_000;
 
 /// Factor from a count that breaks the limit to the next above that is tried.
 const STEP: f64 = 1.5;
 
 /// The result's count is the least that keeps the limit within one part in this many; fits scatter more.
-const CLOSE: usize = 50;
+const COUNT_RESOLUTION: usize = 50;
 
 /// Number of primitives up to which each smaller count is tried in turn, since small counts scatter.
 const EACH: usize = 64;
@@ -37,11 +37,11 @@ const EACH: usize = 64;
 const FAILURES: usize = 3;
 
 /// Counts in ratio [`STEP`] after which the search for a sufficient count ends if together they gained less than
-/// [`GAIN`]. The error is then that of the samples that the medial mesh is made from, which no count lowers.
+/// [`STALLED_GAIN`]. The error is then that of the samples that the medial mesh is made from, which no count lowers.
 const STALLED: usize = 3;
 
 /// Share of the error that [`STALLED`] counts have to gain together.
-const GAIN: f64 = 0.1;
+const STALLED_GAIN: f64 = 0.1;
 
 /// Least count at which a stall is believed.
 const FINE: usize = 500;
@@ -89,7 +89,7 @@ impl Source {
             .map(|l| l.finest.primitives())
             .max()
             .unwrap_or(0);
-        let top = most.unwrap_or(MOST).min(finest).max(1);
+        let top = most.unwrap_or(MAX_COUNT).min(finest).max(1);
         let mut search = Search {
             source: self,
             ladders,
@@ -136,7 +136,7 @@ impl Search<'_, '_> {
             residuals.push(self.residual);
             let stalled = residuals.len() > STALLED
                 && count >= FINE
-                && self.residual > (1.0 - GAIN) * residuals[residuals.len() - 1 - STALLED];
+                && self.residual > (1.0 - STALLED_GAIN) * residuals[residuals.len() - 1 - STALLED];
             if count >= top || stalled {
                 return Ok(Err(self.flat_from(count, watch)?));
             }
@@ -149,7 +149,7 @@ impl Search<'_, '_> {
                 None => breaks = below,
             }
         }
-        while best.count > breaks + (best.count / CLOSE).max(1) {
+        while best.count > breaks + (best.count / COUNT_RESOLUTION).max(1) {
             let middle = breaks + (best.count - breaks) / 2;
             match self.attempt(middle, watch)? {
                 Some(found) => best = found,
@@ -286,7 +286,7 @@ impl Search<'_, '_> {
         let (source, limit) = (self.source, self.limit);
         let effort = Effort {
             enough: limit,
-            ..Effort::CLOSE
+            ..Effort::FINE
         };
         let keeps = |e: &Enclosed| e.error() <= limit;
         let loose = source.enclosed(draft, effort, watch)?;

@@ -27,7 +27,7 @@ pub const GAIN_OF_TIGHT: f64 = 1.5;
 const OFFSET: f64 = 0.6;
 
 /// Share of the least error so far at or above which a round's error ends the rounds: another would gain little.
-const GAIN: f64 = 0.98;
+const STALLED_RATIO: f64 = 0.98;
 
 /// Largest number of rounds.
 const ROUNDS: usize = 4;
@@ -45,11 +45,11 @@ const BUDGET: f64 = 1.0;
 const POINTS: usize = 30_000;
 
 /// Distance by which a point sticks out of the draft to become a sample, in units of the error.
-const STICKS_OUT: f64 = 0.02;
+const SAMPLED_PROTRUSION: f64 = 0.02;
 
 /// Depth of a point inside the draft at which it becomes a sample, in units of the error. It is above [`OFFSET`], the
 /// depth that the fit aims at.
-const DEEP: f64 = 0.75;
+const SAMPLED_DEPTH: f64 = 0.75;
 
 impl Source {
     /// A draft that covers the surface more closely than `loose`; `None` where none was found, or where `loose` is off
@@ -88,7 +88,7 @@ impl Source {
             }
             draft = self.covering(draft, watch)?.0;
             let now = target.beyond + target.residuals(&draft, watch)?.largest;
-            let ends = now >= GAIN * error || watch.ends_fit(BUDGET);
+            let ends = now >= STALLED_RATIO * error || watch.ends_fit(BUDGET);
             if now < error {
                 (best, error) = (Some(draft.clone()), now);
             }
@@ -109,7 +109,7 @@ fn add_far(
     watch: &mut Watch,
 ) -> Result<(), BuildError> {
     let solid = Solid::new(draft);
-    let [out, deep] = [STICKS_OUT * error, DEEP * error];
+    let [out, deep] = [SAMPLED_PROTRUSION * error, SAMPLED_DEPTH * error];
     let mut hint = 0;
     let mut work = 0;
     for (i, sample) in points.iter().enumerate() {

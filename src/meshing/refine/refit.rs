@@ -42,7 +42,7 @@ const STEP: f64 = 0.9;
 const REFRESH: usize = 3;
 
 /// Short fits and insertion have envelope samples this much farther apart.
-const COARSE: f64 = 1.4;
+const COARSE_SPACING: f64 = 1.4;
 
 /// Least radius of a ball (longest side 1).
 const LEAST_RADIUS: f64 = 1e-4;
@@ -68,7 +68,8 @@ pub struct Target<'a> {
 impl Target<'_> {
     /// Rows of a draft, with fresh envelope samples.
     pub fn residuals(&self, draft: &Draft, watch: &mut Watch) -> Result<Residuals, BuildError> {
-        let mut envelope = envelope_samples(&Solid::new(draft), COARSE * self.spacing, watch)?;
+        let mut envelope =
+            envelope_samples(&Solid::new(draft), COARSE_SPACING * self.spacing, watch)?;
         let mut hints = vec![UNKNOWN; self.samples.len()];
         self.examine(draft, &mut hints, &mut envelope, watch)
     }
@@ -94,7 +95,7 @@ impl Target<'_> {
                 return Ok(None);
             }
         }
-        let envelope = envelope_samples(&solid, COARSE * self.spacing, watch)?;
+        let envelope = envelope_samples(&solid, COARSE_SPACING * self.spacing, watch)?;
         for (i, sample) in envelope.iter().enumerate() {
             if i % 512 == 0 {
                 watch.again()?;
@@ -144,7 +145,7 @@ pub fn refit(
     let mut envelope = Vec::new();
     let mut failures = 0;
     let short = iterations <= 2;
-    let spacing = target.spacing * if short { COARSE } else { 1.0 };
+    let spacing = target.spacing * if short { COARSE_SPACING } else { 1.0 };
     for iteration in 0..=iterations {
         // The last score of a long fit must not rest on samples that have moved far.
         let last = iteration == iterations && !short;

@@ -23,7 +23,7 @@ use crate::meshing::watch::{Watch, bytes_of};
 
 /// Share of its length by which a way out of the solid may be overstated. With a third of it searches look at 1.7 to 2
 /// times as many cells for a sample, and the M16 nut and bolt of 500 primitives are off by the same to 2 %.
-const WAY_OUT: f64 = 0.15;
+const EXIT_OVERESTIMATE: f64 = 0.15;
 
 /// Nodes of a tree that take as long to look at as a cell of a search for a way out.
 const NODES_OF_CELL: u64 = 40;
@@ -284,7 +284,7 @@ pub fn is_far_inside(solid: &Solid, sample: &Sample, near: &Nearest, beyond: f64
 }
 
 /// End of a way out of the solid from a sample that [`is_far_inside`], which is longer than the shortest by at most
-/// [`WAY_OUT`] of it, or is no longer than `beyond`; `hint` is a primitive near it. Nodes that the search looked at are
+/// [`EXIT_OVERESTIMATE`] of it, or is no longer than `beyond`; `hint` is a primitive near it. Nodes that the search looked at are
 /// added to `work`.
 pub fn way_out(
     solid: &Solid,
@@ -296,7 +296,7 @@ pub fn way_out(
     let p = sample.point;
     let way = solid.exit_distance(p, sample.normal, hint);
     let straight = way.is_finite().then(|| p + sample.normal * way);
-    let nearest = solid.nearest_exit(p, [way, beyond], WAY_OUT);
+    let nearest = solid.nearest_exit(p, [way, beyond], EXIT_OVERESTIMATE);
     *work += NODES_OF_CELL * nearest.cells;
     nearest.point.or(straight)
 }

@@ -18,7 +18,7 @@ use crate::meshing::watch::Watch;
 pub const LARGE: usize = 1000;
 
 /// Rounds end where two in turn leave scores above this many of the best: what they took out they cannot put back.
-const HOPELESS: f64 = 1.4;
+const MAX_SCORE_RATIO: f64 = 1.4;
 
 /// A fitted draft and its score.
 pub type Scored = (Draft, f64);
@@ -61,7 +61,7 @@ pub fn swap(
         grow(&mut draft, target, most, swaps.insertions, watch)?;
         watch.begin("refit")?;
         let score = refit(&mut draft, target, swaps.iterations, watch)?;
-        hopeless = if score > HOPELESS * best.1 {
+        hopeless = if score > MAX_SCORE_RATIO * best.1 {
             hopeless + 1
         } else {
             0

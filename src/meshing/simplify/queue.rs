@@ -11,10 +11,10 @@ use std::collections::BinaryHeap;
 
 /// Each time the heap is empty it takes the cheapest one in this many of the waiting collapses. Only speed depends on
 /// it.
-const SHARE: usize = 8;
+const REFILL_PART: usize = 8;
 
 /// Number of waiting collapses up to which the heap takes all of them. Only speed depends on it.
-const FEW: usize = 512;
+const REFILL_WHOLE: usize = 512;
 
 /// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).
 #[derive(Clone, Copy)]
@@ -76,8 +76,8 @@ impl Queue {
             self.later.retain(&current);
             let last = match self.later.len() {
                 0 => return None,
-                n if n <= FEW => n - 1,
-                n => n / SHARE,
+                n if n <= REFILL_WHOLE => n - 1,
+                n => n / REFILL_PART,
             };
             let by_cost = |x: &Candidate, y: &Candidate| x.cost.total_cmp(&y.cost);
             self.limit = self.later.select_nth_unstable_by(last, by_cost).1.cost;

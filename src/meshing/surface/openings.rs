@@ -24,7 +24,7 @@ const UNDECIDED: f64 = 0.3;
 const MOST_OPEN: f64 = 0.2;
 
 /// Largest number of points of a rim towards which a lid is probed, besides its middle, which something else may cover.
-const RIM: usize = 16;
+const RIM_PROBES: usize = 16;
 
 /// Places of these probes, as shares of the way from the lid's middle to the rim.
 const SHARES: [f64; 3] = [0.5, 0.25, 0.75];
@@ -148,7 +148,7 @@ impl Opening {
 
     /// Whether closing it would move the solid's boundary far from the surface.
     pub fn is_wide(&self, tree: &TriangleTree) -> bool {
-        let step = self.edges.len().div_ceil(RIM).max(1);
+        let step = self.edges.len().div_ceil(RIM_PROBES).max(1);
         let rim = self.edges.iter().step_by(step);
         let part_of_way = |share: f64| {
             let at = move |&[p, _]: &[Point; 2]| self.center * (1.0 - share) + p * share;

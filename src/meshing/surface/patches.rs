@@ -35,7 +35,7 @@ const BEHIND: f64 = 1e-7;
 
 /// Share of [`BEHIND`] at which the winding number is asked for again where it tells of parts that overlap: behind a
 /// point near a sharp edge there may be less matter. Smaller, and rounding would decide.
-const RIM: f64 = 1e-3;
+const EDGE_PROBE_SHARE: f64 = 1e-3;
 
 /// A patch with less than this behind it, on average, is inside out.
 const INSIDE_OUT: f64 = 0.3;
@@ -203,8 +203,8 @@ impl PatchClassifier<'_> {
             let winding = tree.winding(w.point - outward * BEHIND);
             let overlaps = |winding: f64| !(INSIDE_OUT..1.5).contains(&winding);
             // Next to a sharp edge the body may end before that point.
-            behind.overlapping |=
-                overlaps(winding) && overlaps(tree.winding(w.point - outward * (RIM * BEHIND)));
+            behind.overlapping |= overlaps(winding)
+                && overlaps(tree.winding(w.point - outward * (EDGE_PROBE_SHARE * BEHIND)));
             let Some(group) = self.group[patch] else {
                 continue;
             };

@@ -22,7 +22,7 @@ pub struct Candidates {
     /// The pairs of these that rapier will ask for: they have moved too much for it to keep their contacts.
     pub jobs: Vec<PairJob>,
     /// Motion of each job from the start of the step to where its contacts are computed, which brings them back.
-    pub ahead: Vec<PredictedMotion>,
+    pub predicted_motions: Vec<PredictedMotion>,
     /// All medial colliders, for pairs that rapier asks for and that are not among the jobs.
     pub colliders: MedialColliders,
     /// Colliders whose contacts rapier must be made to ask for.
@@ -48,13 +48,13 @@ pub fn find(
             && !scene.is_muted(pair, &place, muted)
     };
     let asked = scene.pairs.iter().filter(asked);
-    let (ahead, jobs) = asked.map(|pair| scene.at_the_end(pair)).unzip();
+    let (predicted_motions, jobs) = asked.map(|pair| scene.at_the_end(pair)).unzip();
     let forced = scene.medial.all.iter().zip(&scene.forced);
     let forced = forced.filter(|(_, forced)| **forced);
     Candidates {
         pairs: scene.pairs.len(),
         jobs,
-        ahead,
+        predicted_motions,
         forced: forced.map(|(collider, _)| collider.handle).collect(),
         depth: scene.depth,
         colliders: scene.medial,

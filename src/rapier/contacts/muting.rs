@@ -3,7 +3,7 @@
 //! too late for them, or lie at places where the bodies never meet. The inequality is that of `continuous` in
 //! `docs/effects.md`; the dispatcher then answers "no contacts" ([`crate::parry::narrow_phase_plan`]).
 //!
-//! Where both bodies may be moved, and one belongs to a multibody that turns wildly
+//! Where both bodies may be moved, and one belongs to a multibody that is unstable
 //! ([`crate::rapier::host::multibody_energy`]), touching pairs are left to the event loop too. So are those of a body
 //! that a joint has swing far in the step: rapier keeps the normal of the step's start and a point on either body,
 //! and a point that goes along an arc falls behind what flies on before it; it is pressed back, the harder the more
@@ -14,7 +14,7 @@
 
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::PairKey;
-use crate::rapier::host::multibody_energy::is_wild;
+use crate::rapier::host::multibody_energy::is_unstable;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::view::eligible_pairs::{Rules, sweep};
 use crate::rapier::view::motion::Kind;
@@ -97,7 +97,7 @@ pub fn muted(
 enum Reason {
     Bounces,
     IsFast,
-    IsWild,
+    IsUnstable,
     Swings,
 }
 
@@ -125,8 +125,8 @@ fn reason(
     if !is_fast {
         return None;
     }
-    if is_wild_pair(view, policy, pair) {
-        return Some(Reason::IsWild);
+    if is_unstable_pair(view, policy, pair) {
+        return Some(Reason::IsUnstable);
     }
     if !policy.touches(view, pair, work) {
         return Some(Reason::IsFast);
@@ -134,8 +134,8 @@ fn reason(
     policy.swings(view, pair, work).then_some(Reason::Swings)
 }
 
-/// Whether two bodies may be moved, and one is of a multibody that turns wildly.
-fn is_wild_pair(view: &StepView, policy: &CcdPolicy, pair: [usize; 2]) -> bool {
+/// Whether two bodies may be moved, and one is of a multibody that is unstable.
+fn is_unstable_pair(view: &StepView, policy: &CcdPolicy, pair: [usize; 2]) -> bool {
     let bodies = pair.map(|k| &view.bodies[view.parts[k].body]);
-    bodies.iter().all(|b| b.kind == Kind::Free) && bodies.iter().any(|b| is_wild(b, policy.dt))
+    bodies.iter().all(|b| b.kind == Kind::Free) && bodies.iter().any(|b| is_unstable(b, policy.dt))
 }

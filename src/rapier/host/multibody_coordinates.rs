@@ -144,7 +144,7 @@ fn coordinates(
     let mut turns = free(3);
     let hinge = turns.next().filter(|_| turns.next().is_none());
     let now = LinkAngles::of(link);
-    let turns = own.turned.goes_on(&now, between.rotation, hinge);
+    let turns = own.turned.displacements_to(&now, between.rotation, hinge);
     for (way, turn) in ways.iter_mut().zip(turns) {
         way.extend(free(3).map(|i| turn[i]));
     }

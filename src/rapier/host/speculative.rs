@@ -9,7 +9,7 @@ use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
 
 /// Distance for which contacts are predicted, in units of rapier's length unit: more than rapier lets a
 /// body travel in a step of a second.
-const FAR: Real = 1.0e3;
+const SPECULATIVE_DISTANCE: Real = 1.0e3;
 
 /// Bodies that speculate, and what they predicted before.
 pub struct Speculators(Vec<(RigidBodyHandle, Real)>);
@@ -37,7 +37,7 @@ impl Speculators {
                 && let Some(body) = bodies.get_mut(handle)
             {
                 own.push((handle, body.soft_ccd_prediction()));
-                body.set_soft_ccd_prediction(FAR * unit);
+                body.set_soft_ccd_prediction(SPECULATIVE_DISTANCE * unit);
             }
         }
         Self(own)

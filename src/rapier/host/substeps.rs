@@ -10,7 +10,7 @@
 
 use crate::math::Real;
 use crate::math::fast_hash::FastSet;
-use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::multibody_energy::FastMultibodies;
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::groups::Groups;
 use crate::rapier::view::joint_opening::opening;
@@ -44,7 +44,7 @@ impl Substeps {
         (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
         contacts: &NarrowPhase,
         parameters: &IntegrationParameters,
-        wild: &WildMultibodies,
+        fast_multibodies: &FastMultibodies,
         bodies: &mut RigidBodySet,
     ) -> Self {
         let mut medial = vec![false; view.bodies.len()];
@@ -58,7 +58,7 @@ impl Substeps {
             let [Some(&a), Some(&b)] = handles.map(|h| view.index.get(&h)) else {
                 return;
             };
-            if !(medial[a] || medial[b]) || !joint.is_enabled() || wild.rests(b) {
+            if !(medial[a] || medial[b]) || !joint.is_enabled() || fast_multibodies.rests(b) {
                 return;
             }
             let needed = needed(view, [a, b], joint, parameters);

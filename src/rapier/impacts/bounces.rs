@@ -14,11 +14,11 @@ use parry3d::shape::Shape;
 
 /// Turn in a step, in radians, from which a body that a joint holds may swing. Motors turn wheels by less, and its
 /// square over 6 is 0.04 of the way.
-const SWINGS: Real = 0.5;
+const SWING_TURN: Real = 0.5;
 
 /// Distance by which the arc of a contact point ends short of its tangent, in units of the pair's thickness, from which
 /// the body counts as swinging.
-const SHORT: Real = 0.5;
+const SWING_DEVIATION: Real = 0.5;
 
 impl CcdPolicy<'_> {
     /// Speed of approach, in units of length per second, up to which a pair does not bounce: twice what forces add in a
@@ -118,7 +118,7 @@ impl CcdPolicy<'_> {
             [false, true] => 1,
             _ => return false,
         };
-        if bodies.iter().any(|b| b.kind != Kind::Free) || turns[held] <= SWINGS {
+        if bodies.iter().any(|b| b.kind != Kind::Free) || turns[held] <= SWING_TURN {
             return false;
         }
         let Some(nearest) = self.nearest_at_start(view, pair, work) else {
@@ -126,7 +126,7 @@ impl CcdPolicy<'_> {
         };
         let speed = nearest.velocities[held].dot(nearest.normal);
         let way = speed.abs() * self.dt;
-        way * turns[held] * turns[held] / 6.0 > SHORT * view.thickness(pair)
+        way * turns[held] * turns[held] / 6.0 > SWING_DEVIATION * view.thickness(pair)
     }
 
     /// The nearest points of a pair that touches at the start of the step or is pressed; `None` if it is farther apart.

@@ -23,7 +23,7 @@ use crate::rapier::view::step_view::StepView;
 /// Least ratio of the speed that an impulse gives two bodies in their joints to the speed that it would give them
 /// without joints. Below it the joints and locked axes hold the contact, as between neighbours in a chain or where a
 /// body is driven along a locked axis, and no impulse is given: it would have no bound.
-const HELD: Real = 0.02;
+const HELD_RATIO: Real = 0.02;
 
 impl Response {
     /// Applies the two impulses of a contact, on velocities and on the motions of this step, to both bodies and,
@@ -51,7 +51,7 @@ impl Response {
         let own = point.impact(&system, material, is_driven);
         let (mut moved, mut impact) = (system, own);
         let free = both.map(|b| unlocked(view, both, b));
-        if own.resistance() >= HELD * resistance_alone(free, &point, hit.normal) {
+        if own.resistance() >= HELD_RATIO * resistance_alone(free, &point, hit.normal) {
             if let Some(j) = own.impulse(approach, 0.0) {
                 let poses = pair.map(|k| view.motion(k, hit.time).start);
                 let contact = (hit.point, hit.normal, -hit.depth);
@@ -69,11 +69,12 @@ impl Response {
             let approach = -motion.dot(hit.normal);
             let fastest = point.greatest_speed(both.map(|b| view.bodies[b].velocity));
             let out = way_out(view, policy, pair, hit, approach, fastest, undisturbed);
-            let free = [0, 1].map(|k| match self.courses[both[k]].frozen {
+            let free = [0, 1].map(|k| match self.body_states[both[k]].frozen {
                 true => Inertia::INFINITE,
                 false => free[k],
             });
-            let is_held = impact.resistance() < HELD * resistance_alone(free, &point, hit.normal);
+            let is_held =
+                impact.resistance() < HELD_RATIO * resistance_alone(free, &point, hit.normal);
             if let Some(j) = impact.impulse(motion, out).filter(|_| !is_held) {
                 change_motions(view, &moved, &point, j);
                 if is_stopped {
@@ -98,7 +99,7 @@ impl Response {
 
     /// Whether nothing changes the motion of a body any more.
     fn stands(&self, view: &StepView, body: usize) -> bool {
-        self.courses[body].frozen || view.bodies[body].kind != Kind::Free
+        self.body_states[body].frozen || view.bodies[body].kind != Kind::Free
     }
 
     /// System that resists the impulse on the velocities and, where that differs, the one on the motions; and the point
@@ -113,11 +114,13 @@ impl Response {
     ) -> (System<'j>, Option<System<'j>>, ContactPoint) {
         let resists = |view: &StepView, b: usize| inertia(view, both, b);
         let mut system = joints.system(view, &both, hit.time, |b| resists(view, b));
-        let free = system.bodies.iter().all(|b| !self.courses[*b].frozen);
+        let free = system.bodies.iter().all(|b| !self.body_states[*b].frozen);
         let mut moving = (!free).then(|| {
-            joints.system(view, &both, hit.time, |b| match self.courses[b].frozen {
-                true => Inertia::INFINITE,
-                false => resists(view, b),
+            joints.system(view, &both, hit.time, |b| {
+                match self.body_states[b].frozen {
+                    true => Inertia::INFINITE,
+                    false => resists(view, b),
+                }
             })
         });
         settle(view, hit.time, &system, moving.as_ref(), |view| {
@@ -150,7 +153,7 @@ impl Response {
             let body = &mut view.bodies[b];
             body.velocity[0] += dv;
             body.velocity[1] += dw;
-            self.courses[b].struck |= body.kind == Kind::Free;
+            self.body_states[b].struck |= body.kind == Kind::Free;
         }
     }
 }

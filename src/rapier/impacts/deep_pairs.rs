@@ -13,16 +13,16 @@ use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 /// Depth, in units of rapier's length unit, from which a pair that was put into each other may be left to the solver:
 /// twice the gap of a fast pair. Larger, and thin bodies spawned in one place are held there; smaller, and what rests
 /// on a surface without thickness may be taken for put into it.
-const SUNK: Real = 2.0e-3;
+const SUNK_DEPTH: Real = 2.0e-3;
 
 /// Depth of a watched pair: its contacts are so deep that even a slow one may get to the medial axes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Deep {
-    /// Whether a contact is deeper than [`SUNK`].
+    /// Whether a contact is deeper than [`SUNK_DEPTH`].
     pub is_sunk: bool,
     /// Length by which the deepest contact exceeds the depth from which pairs are watched
     /// ([`Tuning::guarded`](crate::rapier::tuning::Tuning::guarded)), if it is below the floor and deeper than
-    /// [`SUNK`]; 0 if none is.
+    /// [`SUNK_DEPTH`]; 0 if none is.
     pub way: Real,
 }
 
@@ -31,7 +31,7 @@ pub struct Deep {
 pub struct DeepPairs {
     /// The pairs that are watched.
     pub watched: FastMap<[usize; 2], Deep>,
-    /// The pairs with a contact deeper than [`SUNK`], watched or not; pairs without a medial collider only where a
+    /// The pairs with a contact deeper than [`SUNK_DEPTH`], watched or not; pairs without a medial collider only where a
     /// watched pair is below the floor.
     pub sunk: FastSet<[usize; 2]>,
 }
@@ -66,7 +66,7 @@ pub fn deep(
             }
             let thickness = view.thickness_at([i, j], [m.subshape1, m.subshape2]);
             let guarded = tuning.guarded() * thickness;
-            let is_sunk = depth > SUNK * policy.unit;
+            let is_sunk = depth > SUNK_DEPTH * policy.unit;
             if is_sunk {
                 deep.sunk.insert(pair);
             }
@@ -86,7 +86,7 @@ pub fn deep(
                 .manifolds()
                 .iter()
                 .map(|m| deepest(m, [&start1, &start2]));
-            depths.fold(0.0, Real::max) > SUNK * policy.unit
+            depths.fold(0.0, Real::max) > SUNK_DEPTH * policy.unit
         });
         deep.sunk
             .extend(sunk.map(|(_, pair)| in_order(view, *pair)));

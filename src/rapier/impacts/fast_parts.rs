@@ -17,7 +17,7 @@ use parry3d::query::NonlinearRigidMotion;
 /// Nodes, or pairs of them, that are looked at for one pair of colliders: beyond, fast parts count as near.
 /// Larger, and pairs in a thicket of thin parts cost more than the search they may be spared; smaller,
 /// and more of them are searched for nothing.
-const MOST: usize = 256;
+const MAX_NODE_LOOKS: usize = 256;
 
 /// Limits from which a part counts as fast, and up to which one counts as near.
 #[derive(Clone, Copy)]
@@ -119,7 +119,7 @@ impl FastParts {
             }
             looked += 1;
             match (p.kind(), q.kind()) {
-                _ if looked > MOST => return true,
+                _ if looked > MAX_NODE_LOOKS => return true,
                 (NodeKind::Primitive(_), NodeKind::Primitive(_)) => return true,
                 (NodeKind::Nodes(c, d), NodeKind::Primitive(_)) => open.extend([(c, j), (d, j)]),
                 (NodeKind::Primitive(_), NodeKind::Nodes(c, d)) => open.extend([(i, c), (i, d)]),

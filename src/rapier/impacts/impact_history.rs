@@ -156,7 +156,9 @@ impl ImpactHistory {
         // A pair that touches may sink in by this before it meets again: by more above the floor than below.
         let tuning = &policy.tuning;
         let above = tuning.floor * thickness - hit.depth;
-        let sinks = above.min(tuning.sink * thickness).max(tuning.hair * gap);
+        let sinks = above
+            .min(tuning.sink * thickness)
+            .max(tuning.min_sink * gap);
         (approach > opened.max(0.0) + sinks).then_some(hit)
     }
 }

@@ -16,14 +16,14 @@ const UNBOUNDED: Real = 1.0e12;
 
 /// Outlines of the colliders on their bodies' motions, each made when first wanted.
 pub struct PairCulling {
-    made: Vec<Option<Made>>,
+    made: Vec<Option<CachedOutline>>,
     proxies: Vec<Option<Arc<ProxyHull>>>,
     /// End of the step in seconds.
     end: Real,
 }
 
 /// `None` for what is not bounded.
-type Made = Option<Outline>;
+type CachedOutline = Option<Outline>;
 
 impl PairCulling {
     /// A record in which no outline is made yet.
@@ -66,7 +66,7 @@ impl PairCulling {
 
     /// The outline of a collider from its body's last impact on: of a mesh its own, of other shapes that of
     /// their box.
-    fn outline(&mut self, view: &StepView, part: usize) -> Made {
+    fn outline(&mut self, view: &StepView, part: usize) -> CachedOutline {
         let p = &view.parts[part];
         if self.proxies[part].is_none() {
             let proxy = match p.medial() {

@@ -32,7 +32,7 @@ const ROUNDS: usize = 64;
 /// Record of what the impacts of a step did so far.
 pub struct Response {
     /// State of each body.
-    pub courses: Vec<BodyImpactState>,
+    pub body_states: Vec<BodyImpactState>,
     /// Between two colliders, those of one normal summed.
     pub impulses: BTreeMap<Pair, Vec<ReportedImpulse>>,
     met: ImpactHistory,
@@ -50,7 +50,7 @@ impl Response {
     /// Nothing has happened to so many bodies.
     pub fn new(bodies: usize) -> Self {
         Self {
-            courses: vec![BodyImpactState::default(); bodies],
+            body_states: vec![BodyImpactState::default(); bodies],
             impulses: BTreeMap::new(),
             met: ImpactHistory::default(),
             joints: None,
@@ -67,7 +67,7 @@ impl Response {
     pub fn is_movable(&self, view: &StepView, policy: &CcdPolicy, pair: Pair) -> bool {
         bodies(view, pair).iter().any(|&b| {
             view.bodies[b].kind == Kind::Free
-                && self.courses[b].events <= policy.tuning.max_carried()
+                && self.body_states[b].events <= policy.tuning.max_carried()
         })
     }
 
@@ -86,13 +86,13 @@ impl Response {
         let leads = [bodies, [bodies[1], bodies[0]]].map(|both| self.leads(view, policy, both));
         for (b, leads) in bodies.into_iter().zip(leads) {
             if self.advance(view, b, hit.time) && !leads {
-                self.courses[b].events += 1;
+                self.body_states[b].events += 1;
             }
         }
         let mut changed = bodies.to_vec();
         if hit.normal == Vector::ZERO {
             for b in bodies {
-                let events = &mut self.courses[b].events;
+                let events = &mut self.body_states[b].events;
                 *events = (*events).max(policy.tuning.max_events + 1);
             }
         } else {
@@ -130,8 +130,8 @@ impl Response {
             rules.multibody_joints,
         ));
         for &b in bodies {
-            self.courses[b].moved = true;
-            self.courses[b].struck = true;
+            self.body_states[b].moved = true;
+            self.body_states[b].struck = true;
         }
         self.close_joints(view, policy, 0.0, bodies, true);
     }
@@ -161,7 +161,7 @@ impl Response {
         if free {
             view.bodies[body].advance(time);
             view.bodies[body].awake = true;
-            self.courses[body].moved = true;
+            self.body_states[body].moved = true;
         }
         free
     }
@@ -189,13 +189,13 @@ impl Response {
                 if own.is_some() && round > 0 {
                     continue;
                 }
-                let frozen = |b: usize| self.courses[b].frozen;
+                let frozen = |b: usize| self.body_states[b].frozen;
                 let closing = self.met.closing(view, policy, frozen, (pair, place), time);
                 let Some(hit) = closing else {
                     continue;
                 };
                 for b in self.push(view, policy, rules, pair, &hit, own) {
-                    if self.courses[b].frozen {
+                    if self.body_states[b].frozen {
                         continue;
                     }
                     for list in [&mut next, &mut *changed] {
@@ -220,33 +220,33 @@ impl Response {
         policy: &CcdPolicy,
         time: Real,
         from: &[usize],
-        goes_on: bool,
+        is_next_piece: bool,
     ) -> Vec<usize> {
         let Some(joints) = self.joints.take() else {
             return Vec::new();
         };
-        let courses = &self.courses;
-        let frozen = |b: usize| courses[b].frozen;
+        let body_states = &self.body_states;
+        let frozen = |b: usize| body_states[b].frozen;
         let mut moved: Vec<usize> = Vec::new();
         for &body in from {
             if moved.contains(&body) {
                 continue;
             }
-            let piece = joints.close(view, body, [time, policy.dt], goes_on, frozen);
+            let piece = joints.close(view, body, [time, policy.dt], is_next_piece, frozen);
             moved.extend(&piece.moved);
             self.pieces.begin(piece);
         }
         for &b in &moved {
-            self.courses[b].moved = true;
+            self.body_states[b].moved = true;
             view.bodies[b].awake = true;
         }
         // Joints take from some bodies what they give to others: the velocities of all bodies of a system are written
         // back, or of none.
         for &body in from {
             let tied = joints.tied_to(view, &[body]);
-            if tied.iter().any(|b| self.courses[*b].struck) {
+            if tied.iter().any(|b| self.body_states[*b].struck) {
                 for b in tied {
-                    self.courses[b].struck |= view.bodies[b].kind == Kind::Free;
+                    self.body_states[b].struck |= view.bodies[b].kind == Kind::Free;
                 }
             }
         }
@@ -259,7 +259,7 @@ impl Response {
     /// [`Tuning::max_carried`](crate::rapier::tuning::Tuning::max_carried) impacts. It will be carried too, once it has
     /// had more than `max_events`.
     fn leads(&self, view: &StepView, policy: &CcdPolicy, [body, other]: [usize; 2]) -> bool {
-        let [leader, led] = [self.courses[body], self.courses[other]];
+        let [leader, led] = [self.body_states[body], self.body_states[other]];
         let free = view.bodies[other].kind == Kind::Free;
         leader.driven && free && !led.driven && led.events <= policy.tuning.max_carried()
     }
@@ -272,22 +272,22 @@ impl Response {
         [body, other]: [usize; 2],
         time: Real,
     ) {
-        let (tuning, course) = (&policy.tuning, self.courses[body]);
-        if course.events <= tuning.max_events || view.bodies[body].kind != Kind::Free {
+        let (tuning, state) = (&policy.tuning, self.body_states[body]);
+        if state.events <= tuning.max_events || view.bodies[body].kind != Kind::Free {
             return;
         }
         let carrier = &view.bodies[other];
-        let carries = carrier.kind == Kind::Driven || self.courses[other].driven;
-        let carried = carries && course.events <= tuning.max_carried();
+        let carries = carrier.kind == Kind::Driven || self.body_states[other].driven;
+        let carried = carries && state.events <= tuning.max_carried();
         let carrying = carrier.motion_from(time);
-        self.courses[body].frozen = true;
-        self.courses[body].driven = carried;
+        self.body_states[body].frozen = true;
+        self.body_states[body].driven = carried;
         let held = &mut view.bodies[body];
         if carried {
             held.follow(&carrying);
         } else {
             held.hold(1.0 - time / policy.dt);
-            self.courses[body].struck = true;
+            self.body_states[body].struck = true;
         }
     }
 }

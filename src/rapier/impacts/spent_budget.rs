@@ -80,11 +80,11 @@ impl Response {
         let joints = self.joints(view, rules);
         let mut stopped = joints.tied_to(view, &[body]);
         self.joints = Some(joints);
-        stopped.retain(|b| view.bodies[*b].kind == Kind::Free && !self.courses[*b].waits);
+        stopped.retain(|b| view.bodies[*b].kind == Kind::Free && !self.body_states[*b].waits);
         self.pieces.end(&stopped);
         for &b in &stopped {
             self.advance(view, b, time);
-            let course = &mut self.courses[b];
+            let course = &mut self.body_states[b];
             (course.frozen, course.waits, course.struck) = (true, true, true);
             course.driven = false;
             course.events = course.events.max(policy.tuning.max_events + 1);

@@ -17,7 +17,7 @@ use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::ActivePrimitives;
 use crate::parry::cast::Cast;
 use crate::parry::initial_contacts::AtStart;
-use crate::parry::sliding::Sinks;
+use crate::parry::sliding::SinkLimits;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::impacts::fast_parts::FastParts;
 use crate::rapier::impacts::hit::Hit;
@@ -65,7 +65,7 @@ pub struct QueryOptions {
     /// All of both that may come as near as is asked, where that is known.
     pub reachable: Option<[ActivePrimitives; 2]>,
     /// Depths up to which flat faces over which a body slides are no obstacles.
-    pub sinks: Sinks,
+    pub sinks: SinkLimits,
 }
 
 /// Asks for first contacts in a step of `dt` seconds.
@@ -225,10 +225,10 @@ impl CcdPolicy<'_> {
             }),
             ..ToiOptions::default()
         };
-        let hair = tuning.hair * gap;
+        let min_sink = tuning.min_sink * gap;
         let pressed = match view.are_of_pieces(pair) {
-            true => (tuning.press * thickness).max(hair),
-            false => hair,
+            true => (tuning.flat_sink * thickness).max(min_sink),
+            false => min_sink,
         };
         let floor = options(0.5 * self.least_gap(), pressed, tuning.floor);
         // Where a meeting was, the gap is that of the target to within the tolerance: a larger target
@@ -240,8 +240,8 @@ impl CcdPolicy<'_> {
         };
         // A pair that bounces does so where it touches; the solver does not keep it from sinking.
         let by = match self.may_bounce(view, pair) {
-            true => hair,
-            false => (tuning.sink * thickness).max(hair),
+            true => min_sink,
+            false => (tuning.sink * thickness).max(min_sink),
         };
         let sinks = self.sinks(view, pair, by);
         Some(if fast {
@@ -262,13 +262,13 @@ impl CcdPolicy<'_> {
     }
 
     /// How deep a pair may lie on flat faces, where it may sink in `by` deeper elsewhere.
-    fn sinks(&self, view: &StepView, pair: [usize; 2], by: Real) -> Sinks {
+    fn sinks(&self, view: &StepView, pair: [usize; 2], by: Real) -> SinkLimits {
         let least = pair.map(|k| view.parts[k].least);
         let least = least[0].min(least[1]);
-        Sinks {
-            lies: least.min(self.tuning.lies * self.unit + self.sag),
-            to: self.tuning.floor * least,
-            by: by.min(self.tuning.sink * least),
+        SinkLimits {
+            at_start: least.min(self.tuning.flat_depth * self.unit + self.sag),
+            at_most: self.tuning.floor * least,
+            change: by.min(self.tuning.sink * least),
         }
     }
 
@@ -311,8 +311,8 @@ impl CcdPolicy<'_> {
             Some((hit, found.deepest))
         };
         let (hit, deepest) = query(&query_options.first, known)?;
-        let goes_on = hit.is_none_or(|h| h.time > time);
-        let deep = goes_on && deepest <= self.floor_depth();
+        let meets_later = hit.is_none_or(|h| h.time > time);
+        let deep = meets_later && deepest <= self.floor_depth();
         let floor = query_options.floor.as_ref().filter(|_| deep);
         match (hit, floor.and_then(|options| query(options, None)?.0)) {
             (Some(a), Some(b)) if a.time <= b.time => Some(a),

@@ -103,13 +103,13 @@ impl MedialPipeline {
     /// Record for the next step of bodies that were put into each other (spawned, teleported) and have not come apart.
     /// It is not part of the world: if your game puts bodies into each other, save it beside the world.
     pub fn overlaps(&self) -> OverlapsRecord {
-        self.state.placed.record()
+        self.state.initial_overlaps.record()
     }
 
     /// Restores what [`Self::overlaps`] was when the world was saved, so that bodies that were put into each other come
     /// apart as they would have.
     pub fn resume_overlaps(&mut self, record: OverlapsRecord, world: &PhysicsWorld) {
-        self.state.placed.resume(record, &world.colliders);
+        self.state.initial_overlaps.resume(record, &world.colliders);
     }
 }
 

@@ -146,14 +146,14 @@ impl Joints {
     /// Moves a body and all bodies that joints tie to it along paths on which the joints stay as closed as they are,
     /// from `time` (seconds into the step) on, and changes their velocities to match, without a gain of energy of all
     /// together. At the end of the step, `dt`, joints are to be as open as rapier's step left them. `frozen`: whether a
-    /// body keeps its path; the joints then change its velocity for the next step only. `goes_on`: a piece of the
+    /// body keeps its path; the joints then change its velocity for the next step only. `is_next_piece`: a piece of the
     /// motion has ended, and nothing was struck. Moves nothing where the joints cannot be closed to [`UNCLOSED`].
     pub fn close(
         &self,
         view: &mut StepView,
         from: usize,
         [time, dt]: [Real; 2],
-        goes_on: bool,
+        is_next_piece: bool,
         frozen: impl Fn(usize) -> bool,
     ) -> Piece {
         if !self.of_body.contains_key(&from) || time >= dt {
@@ -175,7 +175,7 @@ impl Joints {
         }
         let twist = |b: &usize| view.bodies[*b].twist(time);
         let mut before: Vec<Twist> = system.bodies.iter().map(twist).collect();
-        if goes_on {
+        if is_next_piece {
             // The velocities so far are along a chord; those along the tangent start the next one.
             system.hold(&mut before);
         }

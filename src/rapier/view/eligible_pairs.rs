@@ -23,7 +23,7 @@ pub struct Rules<'a> {
     /// Multibodies, likewise.
     pub multibody_joints: &'a MultibodyJointSet,
     /// Filters of the user.
-    pub verdicts: &'a FilterAnswers<'a>,
+    pub filter_answers: &'a FilterAnswers<'a>,
 }
 
 impl Rules<'_> {
@@ -86,7 +86,7 @@ impl Rules<'_> {
             return true;
         }
         let world = (self.bodies, self.colliders);
-        let flags = self.verdicts.of_pair(view, world, handles);
+        let flags = self.filter_answers.of_pair(view, world, handles);
         flags.is_some_and(|f| f.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
     }
 }

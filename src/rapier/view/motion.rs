@@ -13,7 +13,7 @@ use rapier3d::dynamics::{
 
 /// Turn in a step, in radians, from which the path of a body about a pivot is taken as an arc: an eighth of its square
 /// is the share of the radius by which its chord misses it.
-const TURNS: Real = 0.1;
+const ARC_TURN: Real = 0.1;
 
 /// Whether an impact may move a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,8 +79,8 @@ pub struct Body {
     pub locked: LockedAxes,
     /// rapier's dominance group.
     pub dominance: i16,
-    /// Radians per second of the fastest link of its multibody before rapier's step; 0 of a body of none.
-    pub whirl: Real,
+    /// Angular speed of the fastest link of its multibody before rapier's step, rad/s; 0 of a body of none.
+    pub link_spin: Real,
     /// Linear and angular velocity after rapier's step by the joints of its multibody, where they hold and not those of
     /// rapier's body.
     pub by_joints: Option<[Vector; 2]>,
@@ -125,7 +125,7 @@ impl Body {
             inverse_mass: properties.effective_inv_mass,
             locked: properties.flags,
             dominance: body.effective_dominance_group(),
-            whirl: 0.0,
+            link_spin: 0.0,
             by_joints: None,
             jointed: false,
             pivot: None,
@@ -164,7 +164,7 @@ impl Body {
             inverse_mass: Vector::ZERO,
             locked: LockedAxes::empty(),
             dominance: i16::from(i8::MAX) + 1,
-            whirl: 0.0,
+            link_spin: 0.0,
             by_joints: None,
             jointed: false,
             pivot: None,
@@ -203,7 +203,8 @@ impl Body {
         let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
         let turn = unwrapped(turn, angular * dt, iterations.max(1) as Real);
         // The path of a centre that goes round a pivot is an arc, of which rapier's step tells the chord.
-        let center = self.pivot.filter(|_| turn.length() > TURNS).unwrap_or(com);
+        let is_arc = turn.length() > ARC_TURN;
+        let center = self.pivot.filter(|_| is_arc).unwrap_or(com);
         self.reach += (center - com).length();
         self.motion.local_center = center;
         self.motion.linvel = (end * center - start * center) / dt;
@@ -293,9 +294,8 @@ impl Body {
         [m.linvel + m.angvel.cross(arm), m.angvel]
     }
 
-    /// Sets the motion that moves its centre of mass by `way` and rotates it by `turn` and the whole turns of its
-    /// motion so far, in `seconds`. `tangent`: its path's velocities now; `gained`: the change of its velocities by
-    /// joints in that time.
+    /// Sets the motion that takes its centre of mass by `way` and turns it by `turn`, and whole turns as before, in
+    /// `seconds`. `tangent`: velocities of its path now; `gained`: change of its velocities by joints until then.
     pub fn aim(
         &mut self,
         (way, turn): (Vector, Rotation),
@@ -365,8 +365,7 @@ impl Body {
         if !self.motion.start.is_finite() {
             return;
         }
-        // One that is awake keeps the time for which it has been slow, as with rapier's own contacts: pressed bodies
-        // that are struck in each step fall asleep.
+        // An awake body keeps its time of being slow, so that pressed bodies that are struck in each step fall asleep.
         let wakes = struck && body.is_sleeping();
         let end = *body.position();
         body.set_position(self.motion.start, wakes);

@@ -125,7 +125,7 @@ impl StepView {
             let turns = links.iter().map(turn);
             let fastest = turns.fold(0.0, Real::max);
             for b in links {
-                view.bodies[b].whirl = fastest;
+                view.bodies[b].link_spin = fastest;
             }
         }
         view.find_pivots(joints, multibodies);
