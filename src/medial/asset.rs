@@ -25,7 +25,7 @@
 
 use super::check::{check, check_primitives};
 use super::files::{self, file_error};
-use super::mesh::{MedialMesh, Parts};
+use super::mesh::{MedialMesh, MeshData};
 use super::simplex::Simplex;
 use super::sphere::MedialSphere;
 use super::tree::{Node, NodeKind, SphereTree};
@@ -291,7 +291,7 @@ fn read(content: &[u8], counts: &ItemCounts) -> Result<MedialMesh, AssetError> {
     let tree = SphereTree::from_nodes(nodes, primitives.len()).map_err(|index| {
         AssetError::content("node", index, "out of place", "in a tree of finite spheres")
     })?;
-    let parts = Parts {
+    let parts = MeshData {
         spheres,
         edges,
         faces,

@@ -233,7 +233,7 @@ pub struct BuildReport {
 }
 
 /// The options, checked, in double precision.
-pub(crate) struct Limits {
+pub(crate) struct BuildLimits {
     pub primitives: Option<usize>,
     pub max_error: Option<f64>,
     pub quality: Quality,
@@ -242,7 +242,7 @@ pub(crate) struct Limits {
     pub creases: Creases,
 }
 
-impl Limits {
+impl BuildLimits {
     pub fn new(options: &BuildOptions) -> Result<Self, BuildError> {
         if options.primitives == Some(0) {
             return Err(BuildError::Option {

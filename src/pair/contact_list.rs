@@ -2,9 +2,9 @@
 //!
 //! A body that is hardly larger than rapier's prediction distance has all its primitives within reach of the other's:
 //! two creatures of 3 cm and 500 primitives each have 110,000 contacts within rapier's default of 2 cm, of which those
-//! that touch are a handful. Once there are more than [`MAX_CONTACTS`], the nearer half stays, with all that nearly touch, and
-//! the search goes on for nearer ones only. What nearly touches is never dropped: of two plates of many slabs that lie
-//! on each other, the nearer half may be that of one side.
+//! that touch are a handful. Once there are more than [`MAX_CONTACTS`], the nearer half stays, with all that nearly
+//! touch, and the search goes on for nearer ones only. What nearly touches is never dropped: of two plates of many
+//! slabs that lie on each other, the nearer half may be that of one side.
 
 use super::SpherePair;
 use super::contact_grid::ContactGrid;

@@ -18,7 +18,7 @@ use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::path_ends::{held_on_paths, path_ends};
 use super::piece_contact::{Look, Nearest, Pieces, PiecesMet, is_blunt, patch, placed};
 use super::primitive_tree::{PrimitiveTree, thickness};
-use super::search::Search;
+use super::search::FirstContactSearch;
 use crate::elementary::bracket::Bracket;
 use crate::elementary::penetration::gap_along;
 use crate::elementary::test_list::{OwnedFeatures, for_each_test};
@@ -44,7 +44,7 @@ const MAX_PIECE_DEPTH_IN_SURFACE: f64 = 0.75;
 /// would be the target distance itself, and pieces that come no nearer than that would not be found free.
 const AIM_BELOW: f64 = 0.99;
 
-impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
+impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
     /// Looks at two nodes, proven free until a time, as convex pieces.
     pub(super) fn look_at_pieces(&mut self, [i, j]: [u32; 2], time: f64) -> Look {
         let nodes = [self.sides.0.node(i).node, self.sides.1.node(j).node];

@@ -2,18 +2,18 @@
 //! tests, in the order of the times until which they are proven not to meet.
 
 use super::deepening::Threshold;
-use super::tips::Part;
+use super::tips::SubPrimitive;
 use crate::elementary::test_list::ElementaryTest;
 use crate::math::least_first::least_first;
 
 /// An entry of the queue: a pair of nodes, a pair of primitives or parts of them, or an elementary test, of which it is
 /// not known yet whether the two meet.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Candidate {
+pub(super) enum WorkItem {
     /// Two swept nodes: their balls meet then, or directions keep their primitives apart until then.
     Nodes([u32; 2]),
     /// Parts of two primitives that are tested: their place in the list of these.
-    Parts(u32),
+    SubPrimitives(u32),
     /// An elementary test: its place in the list of those not settled.
     Test(u32),
 }
@@ -26,7 +26,7 @@ pub(super) struct Tested {
     pub(super) nodes: [u32; 2],
     pub(super) primitives: [u32; 2],
     /// Part of each that is tested.
-    pub(super) parts: [Part; 2],
+    pub(super) parts: [SubPrimitive; 2],
     /// Condition that counts as contact.
     pub(super) threshold: Threshold,
 }
@@ -53,12 +53,12 @@ pub(super) struct Entry {
     pub(super) depth: f64,
     /// The bodies' nodes; 0 for what is not a node pair.
     of: [u32; 2],
-    pub(super) candidate: Candidate,
+    pub(super) candidate: WorkItem,
 }
 
 impl Entry {
     /// Anything but a node pair.
-    pub(super) fn at(time: f64, candidate: Candidate) -> Self {
+    pub(super) fn at(time: f64, candidate: WorkItem) -> Self {
         Self {
             time,
             depth: -2.0,
@@ -73,7 +73,7 @@ impl Entry {
             time,
             depth,
             of,
-            candidate: Candidate::Nodes(swept),
+            candidate: WorkItem::Nodes(swept),
         }
     }
 }

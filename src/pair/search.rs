@@ -24,7 +24,7 @@ use super::outline::ActivePrimitives;
 use super::patch::Patch;
 use super::piece_contact::{Look, Pieces, PiecesMet};
 use super::primitive_tree::PrimitiveTree;
-use super::queue::{Candidate, Entry, Open, Tested};
+use super::queue::{Entry, Open, Tested, WorkItem};
 use super::swept::{Side, Touch, split};
 use crate::elementary::bracket::Limits;
 use crate::elementary::first_contact::{Earliest, options_limits};
@@ -52,7 +52,7 @@ const PIECE_ANGLE: f64 = 0.5;
 
 /// The state of one search for a first contact: both bodies, the queue, and what is under way. Its methods are in
 /// `waiting.rs`, `leaves.rs`, `convex_pieces.rs` and `ending.rs` too.
-pub(super) struct Search<'a, A, B> {
+pub(super) struct FirstContactSearch<'a, A, B> {
     pub(super) sides: (Side<'a, A>, Side<'a, B>),
     pub(super) motions: [RigidMotion<f64>; 2],
     /// Start and end of the piece searched.
@@ -108,7 +108,7 @@ enum Reached {
     Answer,
 }
 
-impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
+impl<'a, A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'a, A, B> {
     pub(super) fn new(
         bodies: (&'a A, &'a B),
         motions: [RigidMotion<f64>; 2],
@@ -230,9 +230,9 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
             }
             looked = true;
             let open = match entry.candidate {
-                Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
-                Candidate::Parts(place) => self.list_later(place, entry.time),
-                Candidate::Test(index) => self.advance(index, entry.time),
+                WorkItem::Nodes(nodes) => self.expand(nodes, entry.time),
+                WorkItem::SubPrimitives(place) => self.list_later(place, entry.time),
+                WorkItem::Test(index) => self.advance(index, entry.time),
             };
             if !open {
                 return Reached::Answer;

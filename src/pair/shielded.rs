@@ -41,12 +41,12 @@ const FOLD: Real = 0.998;
 
 /// A convex part of a body: a primitive, or the piece that a node holds.
 #[derive(Clone, Copy)]
-enum Part {
+enum PieceOrPrimitive {
     Primitive(u32),
     Piece(u32),
 }
 
-impl Part {
+impl PieceOrPrimitive {
     /// The part that a node of a body holds, if it is one.
     fn of_node(body: &impl PrimitiveTree, node: u32) -> Option<Self> {
         match (body.convex_piece(node), body.kind(node)) {
@@ -166,12 +166,12 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
         }
         let bodies = (search.sides.0.body, search.sides.1.body);
         let parts_of = |[i, j]: [u32; 2]| {
-            let first = Part::of_node(bodies.0, i)?;
-            Some([first, Part::of_node(bodies.1, j)?])
+            let first = PieceOrPrimitive::of_node(bodies.0, i)?;
+            Some([first, PieceOrPrimitive::of_node(bodies.1, j)?])
         };
         let hidden = match &search.met {
             Some(met) => parts_of(met.nodes)?,
-            None => toi.primitives.map(Part::Primitive),
+            None => toi.primitives.map(PieceOrPrimitive::Primitive),
         };
         let poses = [0, 1].map(|side| self.pose_at(side, toi.lower));
         let pos12 = poses[0].inv_mul(&poses[1]);
@@ -188,9 +188,10 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
                 _ => return None,
             };
             let contact = match parts {
-                [Part::Primitive(p), Part::Primitive(q)] => {
-                    of_primitives(bodies, [p, q], &pos12, gap)
-                }
+                [
+                    PieceOrPrimitive::Primitive(p),
+                    PieceOrPrimitive::Primitive(q),
+                ] => of_primitives(bodies, [p, q], &pos12, gap),
                 _ => of_pieces(bodies, *nodes, &pos12, gap),
             }?;
             let shield = (parts[side], &contact);
@@ -285,8 +286,8 @@ fn of_pieces(
 fn shields(
     (body, other): (&impl PrimitiveTree, &impl PrimitiveTree),
     side: usize,
-    (shield, contact): (Part, &SpherePair),
-    (hidden, found): ([Part; 2], &Toi),
+    (shield, contact): (PieceOrPrimitive, &SpherePair),
+    (hidden, found): ([PieceOrPrimitive; 2], &Toi),
     poses: &[Pose; 2],
 ) -> Option<Vector> {
     if !body.is_medial() {

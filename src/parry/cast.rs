@@ -10,7 +10,7 @@ use super::inside;
 use super::shape_faces::for_each_flat_face;
 use super::sliding::{SinkLimits, Sliding};
 use super::swept_region::{started, swept_region};
-use super::swept_sphere_parts::{self, Parts, Unsweepable};
+use super::swept_sphere_parts::{self, SweptParts, Unsweepable};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Pose, Real, Vector};
@@ -94,7 +94,7 @@ impl Cast<'_> {
         let target = options.target_distance + LIES_ABOVE * options.tolerance;
         let motions = motions.each_ref();
         let slides = |s| Sliding::new((self.mesh, self.other), motions, seconds, target, s);
-        let parts = Parts::under(sinks.and_then(slides));
+        let parts = SweptParts::under(sinks.and_then(slides));
         self.query(motions, seconds, options, left, parts)
     }
 
@@ -124,7 +124,7 @@ impl Cast<'_> {
         }
         let query = |options: &ToiOptions| {
             let motions = [&motion1, &motion2];
-            self.query(motions, seconds, options, None, Parts::default())
+            self.query(motions, seconds, options, None, SweptParts::default())
         };
         let found = query(&options)?;
         let ToiResult {
@@ -247,7 +247,7 @@ impl Cast<'_> {
         seconds: Real,
         options: &ToiOptions,
         left: Option<[ActivePrimitives; 2]>,
-        mut parts: Parts,
+        mut parts: SweptParts,
     ) -> Result<ToiResult, Unsweepable> {
         if let Some(other) = self.other.as_shape::<MedialMesh>() {
             return Ok(self.search(other, motion1, motion2, seconds, options, left));

@@ -56,7 +56,7 @@ mod tests {
     use crate::medial::MedialSphere;
     use crate::parry::inside::{holds_point, min_translation, most_distance};
     use crate::parry::shape_faces::for_each_flat_face;
-    use crate::parry::swept_sphere_parts::{Parts, add_shape};
+    use crate::parry::swept_sphere_parts::{SweptParts, add_shape};
     use parry3d::shape::SharedShape;
     use std::cell::Cell;
 
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn of_many_tiles_only_those_near_a_body_are_looked_at() {
         let region = on_a_tile();
-        let mut parts = Parts::default();
+        let mut parts = SweptParts::default();
         assert!(add_shape(
             &mut parts,
             &tiles(&SharedShape::ball(0.5)),

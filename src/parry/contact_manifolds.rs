@@ -4,7 +4,7 @@
 
 use super::by_parry;
 use super::contact_reduction::{self, Load};
-use super::convex_parts::{Part, child_reach, part_number, slack, slack_of, slack_of_parts};
+use super::convex_parts::{ConvexPart, child_reach, part_number, slack, slack_of, slack_of_parts};
 use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
@@ -157,7 +157,7 @@ fn correct<M, C>(
         }
         _ if is_parrys => {
             // First, so that none is turned to the normal of one that it is a ghost of.
-            let reach = |part, n| Part::of(mesh, part).reach(n);
+            let reach = |part, n| ConvexPart::of(mesh, part).reach(n);
             let slack = slack_of_parts(mesh, (other, &pose));
             leave_out_ghosts_of(manifolds, (side, reach), |child| child, slack);
             touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
@@ -177,7 +177,7 @@ fn leave_out_ghosts<M, C>(
     (mesh, side): (&MedialMesh, usize),
     pose: &Pose,
 ) {
-    let reach = |part, n| Part::of(mesh, part).reach(n);
+    let reach = |part, n| ConvexPart::of(mesh, part).reach(n);
     let slack = slack(mesh, pose);
     leave_out_ghosts_of(manifolds, (side, reach), |child| child, |_| slack);
 }

@@ -22,12 +22,12 @@ const TILT_OF_PARTS: Real = 5.0e-4;
 const MAX_STEP: Real = 1.0e-3;
 
 /// A convex part of a mesh.
-pub enum Part<'a> {
+pub enum ConvexPart<'a> {
     Piece(&'a ConvexPiece),
     Primitive(MedialPrimitive),
 }
 
-impl<'a> Part<'a> {
+impl<'a> ConvexPart<'a> {
     /// The one that a primitive of a mesh belongs to.
     pub fn of(mesh: &'a MedialMesh, primitive: u32) -> Self {
         let pieces = mesh.convex_pieces();
@@ -99,7 +99,7 @@ pub fn slack_of_parts(
     let low = MAX_STEP * other.compute_local_aabb().extents().max_element();
     let of_all = slack(mesh, pose);
     move |primitive| {
-        let part = Part::of(mesh, primitive);
+        let part = ConvexPart::of(mesh, primitive);
         let size = |n: Vector| part.reach(n) + part.reach(-n);
         let size = [Vector::X, Vector::Y, Vector::Z].map(size);
         let size = size.into_iter().fold(0.0, Real::max);

@@ -5,7 +5,7 @@
 //! manifold for each pair of primitives, so that each keeps its own normal. (With one manifold for each pair of
 //! colliders a chain of rings falls apart.)
 
-use super::convex_parts::{Part, part_number, slack};
+use super::convex_parts::{ConvexPart, part_number, slack};
 use crate::batch::PairResult;
 use crate::math::tolerance::ONE_DIRECTION;
 use crate::math::{Pose, Real, Vector};
@@ -165,7 +165,7 @@ fn without_ghosts<'a>(
             gap: c.distance,
         });
         let seen: Vec<PartContact> = seen.collect();
-        let reach = |part: u32, n: Vector| Part::of(meshes[k], part).reach(n);
+        let reach = |part: u32, n: Vector| ConvexPart::of(meshes[k], part).reach(n);
         let slack = slack(meshes[k], pos12);
         let ghosts = ghosts(&seen, reach, |_| slack);
         let mut ghosts = ghosts.into_iter();

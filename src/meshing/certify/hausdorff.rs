@@ -27,7 +27,7 @@ use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
 use crate::meshing::certify::inside::{Cell, Solid};
-use crate::meshing::certify::largest::{Effort, Look, Search, Side};
+use crate::meshing::certify::largest::{Effort, LargestDistance, Look, Side};
 use crate::meshing::draft::Draft;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Point, direction};
@@ -137,7 +137,7 @@ pub(crate) fn measure(
         }
     }
     let budget = PIECES + PIECES_PER_PRIMITIVE * draft.primitives().len() as f64;
-    let mut search = Search::new(&mut source, start, 0.0, effort, budget);
+    let mut search = LargestDistance::new(&mut source, start, 0.0, effort, budget);
     let triangles = surface.all_corners().zip(0..surface.triangles.len() as u32);
     let needles = surface.needle_corners().map(|corners| (corners, NEEDLE));
     search.in_depth(triangles.chain(needles), |part| watch.at(0.5 * part))?;
@@ -155,7 +155,7 @@ pub(crate) fn measure(
         effort.enough = 0.0;
     }
     // A distance below that of the other direction does not raise the error.
-    let mut search = Search::new(&mut boundary, 0.0, outward, effort, left.max(budget));
+    let mut search = LargestDistance::new(&mut boundary, 0.0, outward, effort, left.max(budget));
     let mut tick = |part| watch.at(0.5 + 0.5 * part);
     let cells = search.in_breadth(vec![solid.whole()], &mut tick)?;
     search.in_depth(cells.iter().copied(), tick)?;

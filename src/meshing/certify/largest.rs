@@ -109,7 +109,7 @@ impl Effort {
 }
 
 /// A search for the largest distance.
-pub struct Search<'a, S: Side> {
+pub struct LargestDistance<'a, S: Side> {
     side: &'a mut S,
     /// The largest distance found.
     pub best: f64,
@@ -128,7 +128,7 @@ pub struct Search<'a, S: Side> {
     widest: f64,
 }
 
-impl<'a, S: Side> Search<'a, S> {
+impl<'a, S: Side> LargestDistance<'a, S> {
     /// A search for distances above `floor`, with the distance `start` found before, over about
     /// the effort's share of `budget` pieces.
     pub fn new(side: &'a mut S, start: f64, floor: f64, effort: Effort, budget: f64) -> Self {

@@ -9,7 +9,7 @@ use crate::meshing::recipe::source::{GAVE_UP, Source};
 use crate::meshing::refine::fit::{self, Collapsed};
 use crate::meshing::refine::refit::Target;
 use crate::meshing::refine::swaps::LARGE;
-use crate::meshing::simplify::shared_count::Parts;
+use crate::meshing::simplify::shared_count::SolidAndSheets;
 use crate::meshing::watch::Watch;
 
 /// A fit whose largest residual is below this share of the plain collapse's is better without
@@ -76,7 +76,7 @@ impl Source {
     /// Collapses a medial mesh that keeps `creases`.
     pub fn collapses(
         &self,
-        parts: Parts,
+        parts: SolidAndSheets,
         creases: Vec<[Point; 2]>,
         most: usize,
         watch: &mut Watch,

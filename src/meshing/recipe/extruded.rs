@@ -77,7 +77,7 @@ impl Source {
             .min(MAX_PRIMITIVES);
         let mut best: Option<(f64, Prism)> = None;
         let rough = self.rough_target();
-        for kind in [Kind::Roof, Kind::Ribbed] {
+        for kind in [PrismKind::Roof, PrismKind::Ribbed] {
             for prism in prisms(&profile, most, kind, watch)?.into_iter().rev() {
                 let limit = best.as_ref().map_or(f64::INFINITY, |best| best.0);
                 let error = rough.largest_below(&prism.draft, limit.min(prism.far), watch)?;
@@ -110,8 +110,8 @@ impl Source {
             .primitives
             .unwrap_or(MAX_PRIMITIVES)
             .min(MAX_PRIMITIVES);
-        let mut all = prisms(&profile, most, Kind::Roof, watch)?;
-        all.extend(prisms(&profile, most, Kind::Ribbed, watch)?);
+        let mut all = prisms(&profile, most, PrismKind::Roof, watch)?;
+        all.extend(prisms(&profile, most, PrismKind::Ribbed, watch)?);
         all.sort_by_key(|prism| prism.count);
         let rough = self.rough_target();
         let effort = Effort {
@@ -170,7 +170,7 @@ impl Source {
 
 /// Construction of prisms.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum PrismKind {
     /// Roofs alone.
     Roof,
     /// Roofs and ribs.
@@ -181,14 +181,14 @@ enum Kind {
 fn prisms(
     profile: &Profile,
     most: usize,
-    kind: Kind,
+    kind: PrismKind,
     watch: &mut Watch,
 ) -> Result<Vec<Prism>, BuildError> {
     watch.begin("samples")?;
     // Each edge has a slab at each cap or more, but those of ribs.
     let most_edges = match kind {
-        Kind::Roof => most / 2,
-        Kind::Ribbed => most.min(MOST_RIBBED),
+        PrismKind::Roof => most / 2,
+        PrismKind::Ribbed => most.min(MOST_RIBBED),
     };
     let mut prisms = Vec::new();
     let mut last = 0;
@@ -215,14 +215,16 @@ fn prisms(
                     }
                 };
                 match kind {
-                    Kind::Roof => {
+                    PrismKind::Roof => {
                         if let Some(draft) = prism_axis(&loops, profile.half, MIN_RIDGE * thickness)
                         {
                             let parts = "and the roof over that is exact".to_owned();
                             add(draft, MAX_ROUGH_ERROR * thickness, parts);
                         }
                     }
-                    Kind::Ribbed => ribbed(&loops, profile, (thickness, most), watch, &mut add)?,
+                    PrismKind::Ribbed => {
+                        ribbed(&loops, profile, (thickness, most), watch, &mut add)?
+                    }
                 }
             }
         }

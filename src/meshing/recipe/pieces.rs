@@ -28,7 +28,7 @@ const EXACT_FACTOR: f64 = 20.0;
 const ROUNDED: f64 = 2e-5;
 
 /// A surface that holds a convex piece, and the piece's faces.
-type Part<'a> = (Cow<'a, Surface>, FlatFaces);
+type PieceSurface<'a> = (Cow<'a, Surface>, FlatFaces);
 
 impl Source {
     /// The medial axes of convex pieces of the body, if these have at most `most` primitives: of the convex parts that
@@ -64,7 +64,7 @@ impl Source {
         flat: f64,
         most: usize,
         watch: &mut Watch,
-    ) -> Result<Option<(Vec<Part<'_>>, f64)>, BuildError> {
+    ) -> Result<Option<(Vec<PieceSurface<'_>>, f64)>, BuildError> {
         if self.surface.simple {
             return Ok(None);
         }
@@ -94,7 +94,7 @@ impl Source {
         &self,
         flat: f64,
         watch: &mut Watch,
-    ) -> Result<Option<(Vec<Part<'_>>, f64)>, BuildError> {
+    ) -> Result<Option<(Vec<PieceSurface<'_>>, f64)>, BuildError> {
         let on = ON * flat;
         let (surface, _) = self.bounds();
         let body = (0..surface.triangles.len()).collect();
@@ -116,7 +116,7 @@ impl Source {
     /// less than `close`; the source's corners may be `beside` them.
     fn of_parts(
         &self,
-        parts: &[Part],
+        parts: &[PieceSurface],
         beside: f64,
         close: f64,
         most: usize,
@@ -183,7 +183,7 @@ impl Source {
     }
 
     /// The surface of a piece, with the source's own vertices where its corners are at these.
-    fn surface_of(&self, piece: &Piece, on: f64) -> Part<'_> {
+    fn surface_of(&self, piece: &Piece, on: f64) -> PieceSurface<'_> {
         let mut vertices: Vec<Point> = Vec::new();
         let mut index = |p: Point| {
             let near = |q: &Point| (p - *q).length() <= 2.0 * on;

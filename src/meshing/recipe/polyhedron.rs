@@ -12,7 +12,7 @@ use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::options::{Hausdorff, Limits, Variant};
+use crate::meshing::options::{BuildLimits, Hausdorff, Variant};
 use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::flat_faces::{FLAT, FlatFaces, convex_faces};
@@ -41,7 +41,7 @@ pub const MAX_PRIMITIVES: usize = 2_000;
 
 impl Axis {
     /// The axis as a build returns it, grown if asked to. Its errors are bounds, not samples.
-    pub fn candidate(self, limits: &Limits) -> Candidate {
+    pub fn candidate(self, limits: &BuildLimits) -> Candidate {
         let Self {
             mut draft,
             growth,

@@ -50,7 +50,7 @@ const FINE: usize = 500;
 const FLAT: f64 = 1.02;
 
 /// Search over the medial meshes of one body, with what was tried of them.
-struct Search<'a, 'b> {
+struct CountSearch<'a, 'b> {
     source: &'a Source,
     ladders: Vec<&'a mut Ladder<'b>>,
     limit: f64,
@@ -90,7 +90,7 @@ impl Source {
             .max()
             .unwrap_or(0);
         let top = most.unwrap_or(MAX_COUNT).min(finest).max(1);
-        let mut search = Search {
+        let mut search = CountSearch {
             source: self,
             ladders,
             limit,
@@ -119,7 +119,7 @@ impl Source {
     }
 }
 
-impl Search<'_, '_> {
+impl CountSearch<'_, '_> {
     /// The smallest number of primitives found that keeps the limit, or else the number from which on more of them gain
     /// nothing.
     fn run(&mut self, top: usize, watch: &mut Watch) -> Result<Result<Found, usize>, BuildError> {

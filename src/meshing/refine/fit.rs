@@ -12,7 +12,7 @@ use crate::meshing::refine::refit::{Target, refit};
 use crate::meshing::refine::swaps::{LARGE, Scored, Swaps, grow, remove, swap};
 use crate::meshing::simplify::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use crate::meshing::simplify::collapse::Simplifier;
-use crate::meshing::simplify::shared_count::Parts;
+use crate::meshing::simplify::shared_count::SolidAndSheets;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::samples::{even_samples, vertex_samples};
 use crate::meshing::watch::Watch;
@@ -99,7 +99,7 @@ pub const ROUND: [usize; 12] = [
 /// Collapses to `most` primitives, and to the round counts below as long as the topology stays: the
 /// drafts for each, the largest count first and by itself, and whether that one kept the topology.
 pub fn collapse(
-    mut parts: Parts,
+    mut parts: SolidAndSheets,
     most: usize,
     watch: &mut Watch,
 ) -> Result<(Collapsed, Vec<Collapsed>, bool), BuildError> {

@@ -284,8 +284,8 @@ pub fn is_far_inside(solid: &Solid, sample: &Sample, near: &Nearest, beyond: f64
 }
 
 /// End of a way out of the solid from a sample that [`is_far_inside`], which is longer than the shortest by at most
-/// [`EXIT_OVERESTIMATE`] of it, or is no longer than `beyond`; `hint` is a primitive near it. Nodes that the search looked at are
-/// added to `work`.
+/// [`EXIT_OVERESTIMATE`] of it, or is no longer than `beyond`; `hint` is a primitive near it. Nodes that the search
+/// looked at are added to `work`.
 pub fn way_out(
     solid: &Solid,
     sample: &Sample,

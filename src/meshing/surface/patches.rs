@@ -58,7 +58,7 @@ const ROUNDS: usize = 12;
 
 /// Verdict on a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum PatchKind {
     /// The patch bounds matter.
     Solid,
     /// The patch encloses nothing.
@@ -80,7 +80,7 @@ pub fn classify(
     tree: &mut TriangleTree,
     findings: &mut Findings,
     watch: &mut Watch,
-) -> Result<Vec<Kind>, BuildError> {
+) -> Result<Vec<PatchKind>, BuildError> {
     let total: f64 = patches.list.iter().map(|p| p.area).sum();
     let mut areas = vec![0.0; patches.list.len()];
     patches
@@ -148,8 +148,8 @@ pub fn classify(
     }
     findings.triangles_turned = patches.list.iter().map(|p| p.turned).sum();
     let kind = |&count: &i8| match count {
-        0 => Kind::Sheet,
-        _ => Kind::Solid,
+        0 => PatchKind::Sheet,
+        _ => PatchKind::Solid,
     };
     Ok(counts.iter().map(kind).collect())
 }

@@ -8,7 +8,7 @@ use crate::rapier::contacts::hanging;
 use crate::rapier::contacts::neighbor_speeds::{self, Neighbor};
 use crate::rapier::contacts::predicted_contacts::PredictedMotion;
 use crate::rapier::host::forced_updates::{is_hooked, kept_longer};
-use crate::rapier::host::recycling::{Place, RecyclingRecord, lowered};
+use crate::rapier::host::recycling::{PairPose, RecyclingRecord, lowered};
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
 use crate::rapier::view::overlapping_boxes::overlapping_pairs;
 use parry3d::bounding_volume::Aabb;
@@ -129,9 +129,9 @@ impl ContactScene {
         pair.map(|k| &self.medial.all[k])
     }
 
-    fn place(&self, pair: &[usize; 2]) -> Place {
+    fn place(&self, pair: &[usize; 2]) -> PairPose {
         let [a, b] = self.of(pair);
-        Place {
+        PairPose {
             ids: [a, b].map(|c| c.mesh.instance_id()),
             pos12: a.pose().inv_mul(b.pose()),
             rotations: [a, b].map(|c| c.pose().rotation),
@@ -139,7 +139,7 @@ impl ContactScene {
         }
     }
 
-    fn is_muted(&self, pair: &[usize; 2], place: &Place, muted: &HashSet<PairKey>) -> bool {
+    fn is_muted(&self, pair: &[usize; 2], place: &PairPose, muted: &HashSet<PairKey>) -> bool {
         let [a, b] = self.of(pair);
         !muted.is_empty() && muted.contains(&PairKey::new(&a.mesh, &b.mesh, &place.pos12))
     }

@@ -17,7 +17,7 @@ use crate::parry::narrow_phase_plan::PairKey;
 use crate::rapier::host::multibody_energy::is_unstable;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::view::eligible_pairs::{Rules, sweep};
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 use std::collections::HashSet;
@@ -137,5 +137,6 @@ fn reason(
 /// Whether two bodies may be moved, and one is of a multibody that is unstable.
 fn is_unstable_pair(view: &StepView, policy: &CcdPolicy, pair: [usize; 2]) -> bool {
     let bodies = pair.map(|k| &view.bodies[view.parts[k].body]);
-    bodies.iter().all(|b| b.kind == Kind::Free) && bodies.iter().any(|b| is_unstable(b, policy.dt))
+    bodies.iter().all(|b| b.kind == Mobility::Free)
+        && bodies.iter().any(|b| is_unstable(b, policy.dt))
 }

@@ -14,7 +14,7 @@ use crate::math::{Real, Rotation, Vector};
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::link_velocity::FAST_LINK_TURN;
-use crate::rapier::view::motion::{Body, Kind};
+use crate::rapier::view::motion::{Body, Mobility};
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{
     Multibody, MultibodyIndex, MultibodyJointSet, MultibodyLink, RigidBody, RigidBodyHandle,
@@ -59,7 +59,7 @@ impl FastMultibodies {
             let Some(handle) = link.map(|l| l.multibody) else {
                 continue;
             };
-            if body.kind != Kind::Free {
+            if body.kind != Mobility::Free {
                 continue;
             }
             match found.iter_mut().find(|w| w.handle == handle) {
@@ -171,7 +171,7 @@ fn partners(
     };
     let is_free = |b: usize| {
         let body = &view.bodies[b];
-        body.kind == Kind::Free && body.handle.is_some_and(is_loose)
+        body.kind == Mobility::Free && body.handle.is_some_and(is_loose)
     };
     let mut partners = Vec::new();
     for other in links.iter().flat_map(|b| pushing(*b)) {
@@ -222,7 +222,7 @@ fn damp(view: &mut StepView, multibody: &Multibody, dt: Real) {
             }
             let axis = base * data.local_frame1.rotation * Vector::AXES[axis - 3];
             let turned = |body: &Body, torque: Vector| {
-                let inertia = if body.kind == Kind::Free {
+                let inertia = if body.kind == Mobility::Free {
                     Inertia::of(body)
                 } else {
                     Inertia::INFINITE
@@ -240,7 +240,7 @@ fn damp(view: &mut StepView, multibody: &Multibody, dt: Real) {
                 let body = &mut view.bodies[b];
                 let change = turned(body, torque) * sign;
                 body.velocity[1] += change;
-                if body.kind == Kind::Free {
+                if body.kind == Mobility::Free {
                     body.go(body.velocity);
                 }
             }

@@ -36,7 +36,7 @@ pub fn lowered(parameters: &IntegrationParameters) -> IntegrationParameters {
 const ROTATION_COSINE: Real = 0.98;
 
 /// Placement of two colliders.
-pub struct Place {
+pub struct PairPose {
     /// Instance ids of their meshes.
     pub ids: [u64; 2],
     /// Pose of the second in the first's frame.
@@ -81,7 +81,7 @@ impl RecyclingRecord {
 
     /// Whether rapier will update this pair in full, which it does in any case if it is `asked` to; if so, the pair's
     /// record is set to this pose.
-    pub fn needs_update(&mut self, pair: &Place, asked: bool) -> bool {
+    pub fn needs_update(&mut self, pair: &PairPose, asked: bool) -> bool {
         let (limits, step) = (self.limits, self.step);
         if let Some(f) = self.frozen.get_mut(&pair.ids) {
             f.seen = step;
@@ -100,7 +100,7 @@ impl RecyclingRecord {
     }
 
     /// Whether rapier keeps the contacts of this pair, as far as is known now.
-    pub fn recycles(&self, pair: &Place) -> bool {
+    pub fn recycles(&self, pair: &PairPose) -> bool {
         let frozen = self.frozen.get(&pair.ids);
         frozen.is_some_and(|f| f.recycles(pair, self.limits))
     }
@@ -123,7 +123,7 @@ fn ids(job: &PairJob) -> [u64; 2] {
 }
 
 impl Frozen {
-    fn recycles(&self, pair: &Place, limits: [Real; 2]) -> bool {
+    fn recycles(&self, pair: &PairPose, limits: [Real; 2]) -> bool {
         let limit = limits[usize::from(!self.touching)];
         let turned = |k: usize| {
             let c = self.rotations[k].dot(pair.rotations[k]);
@@ -133,7 +133,7 @@ impl Frozen {
     }
 
     /// Bound on how far a point of either mesh moved relative to the other since.
-    fn drift(&self, pair: &Place) -> Real {
+    fn drift(&self, pair: &PairPose) -> Real {
         let (then, now) = (&self.pos12, &pair.pos12);
         let turn = then.rotation.inverse() * now.rotation;
         // The chord of a rotation by θ at distance 1 is 2 sin(θ/2) = 2 |vector part|.

@@ -3,7 +3,7 @@
 
 use crate::math::Real;
 use crate::rapier::effects::{Effect, EffectSettings};
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
 
@@ -32,7 +32,7 @@ impl Speculators {
             if let Some(handle) = body.handle
                 && calls
                 && body.awake
-                && body.kind == Kind::Free
+                && body.kind == Mobility::Free
                 && own.iter().all(|(known, _)| *known != handle)
                 && let Some(body) = bodies.get_mut(handle)
             {

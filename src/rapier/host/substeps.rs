@@ -14,7 +14,7 @@ use crate::rapier::host::multibody_energy::FastMultibodies;
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::groups::Groups;
 use crate::rapier::view::joint_opening::opening;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{
     GenericJoint, ImpulseJointSet, IntegrationParameters, MultibodyJointSet, RigidBodyHandle,
@@ -64,7 +64,7 @@ impl Substeps {
             let needed = needed(view, [a, b], joint, parameters);
             let added = needed.saturating_sub(parameters.num_solver_iterations);
             let added = added.min(MOST_ADDED);
-            let free = |k: &usize| view.bodies[[a, b][*k]].kind == Kind::Free;
+            let free = |k: &usize| view.bodies[[a, b][*k]].kind == Mobility::Free;
             if let Some(k) = (0..2).find(free)
                 && let Some(body) = bodies.get_mut(handles[k])
                 && added > body.additional_solver_iterations()
@@ -107,7 +107,7 @@ impl Strained {
             let [Some(&a), Some(&b)] = handles.map(|h| view.index.get(&h)) else {
                 return;
             };
-            let is_free = |k: &usize| view.bodies[*k].kind == Kind::Free;
+            let is_free = |k: &usize| view.bodies[*k].kind == Mobility::Free;
             if is_free(&a) && is_free(&b) {
                 groups.join([a, b]);
             }

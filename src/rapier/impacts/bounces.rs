@@ -8,7 +8,7 @@ use crate::rapier::effects::Effect;
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::impulse::Material;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 use parry3d::shape::Shape;
 
@@ -118,7 +118,7 @@ impl CcdPolicy<'_> {
             [false, true] => 1,
             _ => return false,
         };
-        if bodies.iter().any(|b| b.kind != Kind::Free) || turns[held] <= SWING_TURN {
+        if bodies.iter().any(|b| b.kind != Mobility::Free) || turns[held] <= SWING_TURN {
             return false;
         }
         let Some(nearest) = self.nearest_at_start(view, pair, work) else {

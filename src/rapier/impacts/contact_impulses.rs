@@ -17,7 +17,7 @@ use crate::rapier::joints::rows::Twist;
 use crate::rapier::joints::tied_system::System;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::inertia::Inertia;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 
 /// Least ratio of the speed that an impulse gives two bodies in their joints to the speed that it would give them
@@ -99,7 +99,7 @@ impl Response {
 
     /// Whether nothing changes the motion of a body any more.
     fn stands(&self, view: &StepView, body: usize) -> bool {
-        self.body_states[body].frozen || view.bodies[body].kind != Kind::Free
+        self.body_states[body].frozen || view.bodies[body].kind != Mobility::Free
     }
 
     /// System that resists the impulse on the velocities and, where that differs, the one on the motions; and the point
@@ -153,7 +153,7 @@ impl Response {
             let body = &mut view.bodies[b];
             body.velocity[0] += dv;
             body.velocity[1] += dw;
-            self.body_states[b].struck |= body.kind == Kind::Free;
+            self.body_states[b].struck |= body.kind == Mobility::Free;
         }
     }
 }
@@ -173,7 +173,7 @@ fn is_movable(view: &StepView, both: [usize; 2], body: usize) -> bool {
     let dominance = both.map(|b| view.bodies[b].dominance);
     let [first, second] = both.map(|b| b == body);
     let is_strong = first && dominance[0] > dominance[1] || second && dominance[1] > dominance[0];
-    view.bodies[body].kind == Kind::Free && !is_strong
+    view.bodies[body].kind == Mobility::Free && !is_strong
 }
 
 /// Inertia that resists an impulse on a body, where the two bodies of a contact are `both`.

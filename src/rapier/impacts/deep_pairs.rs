@@ -31,8 +31,8 @@ pub struct Deep {
 pub struct DeepPairs {
     /// The pairs that are watched.
     pub watched: FastMap<[usize; 2], Deep>,
-    /// The pairs with a contact deeper than [`SUNK_DEPTH`], watched or not; pairs without a medial collider only where a
-    /// watched pair is below the floor.
+    /// The pairs with a contact deeper than [`SUNK_DEPTH`], watched or not; pairs without a medial collider only where
+    /// a watched pair is below the floor.
     pub sunk: FastSet<[usize; 2]>,
 }
 

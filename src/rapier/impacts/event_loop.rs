@@ -29,7 +29,7 @@ use crate::rapier::impacts::response::Response;
 use crate::rapier::impacts::swept_boxes::SweptBoxes;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::view::eligible_pairs::{Rules, in_order, is_ccd_candidate, sweep};
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::near_what_moves;
 use crate::rapier::view::participants::{Contacts, Participants};
 use crate::rapier::view::step_view::StepView;
@@ -307,7 +307,7 @@ impl Loop<'_> {
 
     /// Asks from `time` on for all pairs of bodies that have another motion.
     fn ask_again(&mut self, bodies: &[usize], time: Real, work: &mut Work) {
-        let free = |b: &&usize| self.view.bodies[**b].kind == Kind::Free;
+        let free = |b: &&usize| self.view.bodies[**b].kind == Mobility::Free;
         let parts = bodies.iter().filter(free).map(|b| &self.parts_of[*b]);
         let mut changed: Vec<usize> = parts.flatten().copied().collect();
         changed.sort_unstable();
@@ -344,9 +344,9 @@ impl Loop<'_> {
             pushed[part.body] |= contacts.any(|c| c.total_impulse_magnitude() > 0.0);
         }
         for (b, body) in self.view.bodies.iter_mut().enumerate() {
-            if body.kind != Kind::Fixed && body.awake {
+            if body.kind != Mobility::Fixed && body.awake {
                 body_states[b].moved = true;
-                if body.kind == Kind::Free && !pushed[b] {
+                if body.kind == Mobility::Free && !pushed[b] {
                     body.undo_forces(left);
                     body_states[b].struck = true;
                 }

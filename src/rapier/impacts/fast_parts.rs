@@ -10,7 +10,7 @@
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::tree::{Node, NodeKind};
-use crate::rapier::view::step_view::{Part, StepView};
+use crate::rapier::view::step_view::{StepCollider, StepView};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::NonlinearRigidMotion;
 
@@ -89,7 +89,7 @@ impl FastParts {
         let motion = RelativeMotion::new(pair.map(|k| view.motion(k, time)), end - time);
         let reach = self.reach * (1.0 + 16.0 * Real::EPSILON) + motion.rounding;
         let wanted = Self { reach, ..*self };
-        match parts.map(Part::medial) {
+        match parts.map(StepCollider::medial) {
             [Some(a), Some(b)] => wanted.of_meshes(a, b, &motion),
             [Some(mesh), None] => wanted.of_mesh(mesh, parts[1], &motion, 0),
             [None, Some(mesh)] => wanted.of_mesh(mesh, parts[0], &motion, 1),
@@ -136,7 +136,7 @@ impl FastParts {
     fn of_mesh(
         &self,
         mesh: &MedialMesh,
-        other: &Part,
+        other: &StepCollider,
         motion: &RelativeMotion,
         side: usize,
     ) -> bool {

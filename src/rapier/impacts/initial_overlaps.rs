@@ -26,7 +26,7 @@ use crate::rapier::impacts::pinched::{one_dominates, pinched, pressed_by_joints}
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::participants::Participants;
-use crate::rapier::view::step_view::{Part, StepView};
+use crate::rapier::view::step_view::{StepCollider, StepView};
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, RigidBodyType};
 use rapier3d::geometry::{
     Collider, ColliderHandle, ContactManifold, InteractionGroups, NarrowPhase, SharedShape,
@@ -61,7 +61,7 @@ pub struct InitialOverlaps {
 #[cfg(feature = "serde-serialize")]
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct OverlapsRecord {
-    ends: Vec<(ColliderHandle, Pose, Kind)>,
+    ends: Vec<(ColliderHandle, Pose, CollisionKind)>,
     muted: Vec<BodyPair>,
     left: Vec<Pair>,
 }
@@ -70,13 +70,13 @@ pub struct OverlapsRecord {
 struct End {
     pose: Pose,
     shape: KnownShape,
-    kind: Kind,
+    kind: CollisionKind,
 }
 
 /// Key of whether a collider collides with others: its groups, and the type of its body.
-type Kind = ([InteractionGroups; 2], Option<RigidBodyType>);
+type CollisionKind = ([InteractionGroups; 2], Option<RigidBodyType>);
 
-fn kind(collider: &Collider, bodies: &RigidBodySet) -> Kind {
+fn kind(collider: &Collider, bodies: &RigidBodySet) -> CollisionKind {
     let body = collider.parent().and_then(|h| bodies.get(h));
     let groups = [collider.collision_groups(), collider.solver_groups()];
     (groups, body.map(|b| b.body_type()))
@@ -100,7 +100,7 @@ impl KnownShape {
 
     /// Bound on how far the surface of the collider was moved by the change from this shape to that of `part`, a
     /// length; infinite if the two are not alike.
-    fn moved_to(&self, part: &Part) -> Real {
+    fn moved_to(&self, part: &StepCollider) -> Real {
         match (self, Self::of(&part.shape)) {
             (Self::Medial(old), Self::Medial(new)) => moved_spheres(old, &new),
             (Self::Other(old), Self::Other(new)) if *old == new => 0.0,
@@ -308,7 +308,7 @@ impl InitialOverlaps {
                 }
             }
         }
-        let end = |part: &Part| {
+        let end = |part: &StepCollider| {
             let collider = rules.colliders.get(part.handle)?;
             let (pose, kind) = (*collider.position(), kind(collider, rules.bodies));
             let shape = KnownShape::of(&part.shape);

@@ -13,14 +13,14 @@ use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::groups::Groups;
 use crate::rapier::view::joint_opening::opening;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 
 /// The one of two bodies that gives way to the other, and the other: a free one to one that is not, or to one of a
 /// higher dominance group of rapier; `None` if each gives way.
 fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
     let [a, b] = bodies;
-    let [free1, free2] = bodies.map(|k| view.bodies[k].kind == Kind::Free);
+    let [free1, free2] = bodies.map(|k| view.bodies[k].kind == Mobility::Free);
     let [first, second] = bodies.map(|k| view.bodies[k].dominance);
     match (free1, free2) {
         (true, true) if first == second => None,
@@ -34,7 +34,7 @@ fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
 /// body of a higher group than one that nothing stops.
 pub fn one_dominates(view: &StepView, pair: [usize; 2]) -> bool {
     let [first, second] = pair.map(|k| &view.bodies[view.parts[k].body]);
-    match [first, second].map(|body| body.kind == Kind::Free) {
+    match [first, second].map(|body| body.kind == Mobility::Free) {
         [true, true] => first.dominance != second.dominance,
         [true, false] => first.dominance > second.dominance,
         [false, true] => second.dominance > first.dominance,
@@ -46,7 +46,7 @@ pub fn one_dominates(view: &StepView, pair: [usize; 2]) -> bool {
 /// them. One of these two moves, and with one of them a medial collider is below the floor; in the other the bodies
 /// need not be as deep as to be watched.
 pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
-    let free = |b: &usize| view.bodies[*b].kind == Kind::Free;
+    let free = |b: &usize| view.bodies[*b].kind == Mobility::Free;
     let is_below = |pair: &[usize; 2]| deep.watched.get(pair).is_some_and(|deep| deep.way > 0.0);
     let sunk = deep.sunk.iter();
     let sunk = sunk.map(|pair| (*pair, pair.map(|k| view.parts[k].body), is_below(pair)));
@@ -64,7 +64,7 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
         if let Some([body, jaw]) = yielding(view, *bodies) {
             let held = held.entry(groups.of(body)).or_default();
             held.is_below |= is_below;
-            held.moves |= view.bodies[jaw].kind != Kind::Fixed;
+            held.moves |= view.bodies[jaw].kind != Mobility::Fixed;
             held.is_pinched |= held.jaw.is_some_and(|other| other != jaw);
             held.jaw = Some(jaw);
         }
@@ -131,9 +131,13 @@ impl Hands {
                 return;
             }
             match [a, b].map(|k| view.bodies[k].kind) {
-                [Kind::Free, Kind::Free] => groups.join([a, b]),
-                [Kind::Free, Kind::Driven] => held.push(([a, b], opening(view, [a, b], joint))),
-                [Kind::Driven, Kind::Free] => held.push(([b, a], opening(view, [a, b], joint))),
+                [Mobility::Free, Mobility::Free] => groups.join([a, b]),
+                [Mobility::Free, Mobility::Driven] => {
+                    held.push(([a, b], opening(view, [a, b], joint)))
+                }
+                [Mobility::Driven, Mobility::Free] => {
+                    held.push(([b, a], opening(view, [a, b], joint)))
+                }
                 _ => {}
             }
         });

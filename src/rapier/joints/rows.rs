@@ -2,7 +2,7 @@
 //! limit at which a joint stops.
 
 use crate::math::{Pose, Real, Rotation, Vector};
-use crate::rapier::joints::limits::{Limit, Place};
+use crate::rapier::joints::limits::{AxisPosition, Limit};
 
 /// Linear and angular velocity, or force and torque, at a body's centre of mass.
 pub type Twist = [Vector; 2];
@@ -71,7 +71,7 @@ impl Ends {
 
     /// The row of a limit.
     pub fn limited(&self, limit: &Limit) -> Row {
-        let Place { at, axis, is_angle } = limit.place(self.frames);
+        let AxisPosition { at, axis, is_angle } = limit.place(self.frames);
         if is_angle {
             self.turn(axis, at)
         } else {

@@ -4,7 +4,7 @@
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Vector};
 use crate::rapier::view::motion::Body;
-use crate::rapier::view::step_view::{Part, StepView};
+use crate::rapier::view::step_view::{StepCollider, StepView};
 use crate::rapier::view::still_colliders::StillColliders;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{IntegrationParameters, MultibodyJointSet, RigidBodyHandle, RigidBodySet};
@@ -39,7 +39,7 @@ impl StepView {
             }
         }
         let parts = self.parts.iter().map(|part| (part.handle, part));
-        let parts: FastMap<ColliderHandle, &Part> = parts.collect();
+        let parts: FastMap<ColliderHandle, &StepCollider> = parts.collect();
         for part in &mut whole.parts {
             if let Some(known) = parts.get(&part.handle) {
                 let body = part.body;

@@ -3,7 +3,7 @@
 
 use crate::math::Real;
 use crate::rapier::view::filter_answers::FilterAnswers;
-use crate::rapier::view::motion::{Body, Kind};
+use crate::rapier::view::motion::{Body, Mobility};
 use crate::rapier::view::overlapping_boxes::overlapping_pairs;
 use crate::rapier::view::step_view::StepView;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -96,7 +96,7 @@ impl Rules<'_> {
 pub fn is_ccd_candidate(view: &StepView, [i, j]: [usize; 2]) -> bool {
     let (p, q) = (&view.parts[i], &view.parts[j]);
     let (a, b) = (&view.bodies[p.body], &view.bodies[q.body]);
-    let free = |body: &Body| body.kind == Kind::Free;
+    let free = |body: &Body| body.kind == Mobility::Free;
     p.body != q.body
         && (free(a) || free(b))
         && (a.awake || b.awake)
@@ -114,7 +114,7 @@ pub fn sweep(view: &StepView, dt: Real, margin: Real) -> Vec<[usize; 2]> {
     let mut parts: Vec<(usize, Aabb)> = (0..view.parts.len()).map(swept).collect();
     keep_near(&mut parts, |k| view.parts[k].medial().is_some());
     keep_near(&mut parts, |k| {
-        view.bodies[view.parts[k].body].kind != Kind::Fixed
+        view.bodies[view.parts[k].body].kind != Mobility::Fixed
     });
     let (parts, boxes): (Vec<usize>, Vec<Aabb>) = parts.into_iter().unzip();
     let met = overlapping_pairs(&boxes)

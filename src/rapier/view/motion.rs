@@ -17,7 +17,7 @@ const ARC_TURN: Real = 0.1;
 
 /// Whether an impact may move a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum Mobility {
     /// Never moves.
     Fixed,
     /// Moves, and nothing stops it: kinematic bodies, and links of multibodies of which a joint is kinematic or
@@ -45,7 +45,7 @@ pub struct Body {
     /// Body of rapier; `None` for the implicit static body.
     pub handle: Option<RigidBodyHandle>,
     /// Whether an impact may move it.
-    pub kind: Kind,
+    pub kind: Mobility,
     /// Took part in rapier's step.
     pub awake: bool,
     /// Motion from [`Self::time`] on, world frame, per second.
@@ -98,15 +98,15 @@ impl Body {
     /// A body at the start of a step; `is_free`: where it is dynamic, an impact may move it.
     pub fn new(handle: RigidBodyHandle, body: &RigidBody, is_free: bool) -> Self {
         let kind = match (body.is_fixed(), body.is_dynamic() && is_free) {
-            (true, _) => Kind::Fixed,
-            (false, true) => Kind::Free,
-            (false, false) => Kind::Driven,
+            (true, _) => Mobility::Fixed,
+            (false, true) => Mobility::Free,
+            (false, false) => Mobility::Driven,
         };
         let properties = body.mass_properties();
         Self {
             handle: Some(handle),
             kind,
-            awake: kind != Kind::Fixed && !body.is_sleeping(),
+            awake: kind != Mobility::Fixed && !body.is_sleeping(),
             motion: NonlinearRigidMotion {
                 local_center: properties.local_mprops.local_com,
                 ..NonlinearRigidMotion::constant_position(*body.position())
@@ -147,7 +147,7 @@ impl Body {
     pub fn ground() -> Self {
         Self {
             handle: None,
-            kind: Kind::Fixed,
+            kind: Mobility::Fixed,
             awake: false,
             motion: NonlinearRigidMotion::identity(),
             time: 0.0,
@@ -175,7 +175,7 @@ impl Body {
 
     /// Velocity with which the solver starts, before contacts: gravity and forces of the user.
     pub fn predict(&mut self, body: &RigidBody, gravity: Vector, dt: Real) {
-        if self.kind == Kind::Fixed || !self.awake {
+        if self.kind == Mobility::Fixed || !self.awake {
             return;
         }
         [self.motion.linvel, self.motion.angvel] = velocities(body, dt);

@@ -6,7 +6,7 @@
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
 use crate::rapier::view::medial_colliders::Sets;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::view::still_colliders::StillRecord;
@@ -45,7 +45,7 @@ fn add_near(participants: &mut Participants, sets: Sets, islands: &IslandManager
     };
     let view = StepView::take(moving);
     let dt = sets.parameters.dt;
-    let moves = |k: &usize| view.bodies[view.parts[*k].body].kind != Kind::Fixed;
+    let moves = |k: &usize| view.bodies[view.parts[*k].body].kind != Mobility::Fixed;
     // Colliders that rapier may wake in the step, and those beside them then.
     let mut woken: Vec<ColliderHandle> = participants.still().everywhere().collect();
     let mut beside = Vec::new();
@@ -94,7 +94,7 @@ fn add_near(participants: &mut Participants, sets: Sets, islands: &IslandManager
 pub fn leaves(view: &StepView, participants: &Participants, (dt, unit): (Real, Real)) -> bool {
     let moves = |k: &usize| {
         let body = &view.bodies[view.parts[*k].body];
-        body.kind != Kind::Fixed && body.awake
+        body.kind != Mobility::Fixed && body.awake
     };
     let mut moving = (0..view.parts.len()).filter(moves);
     moving.any(|k| {

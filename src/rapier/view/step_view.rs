@@ -8,7 +8,7 @@ use crate::parry::swept_sphere_parts;
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::link_angles::LinkAngles;
 use crate::rapier::view::medial_colliders::Sets;
-use crate::rapier::view::motion::{Body, Kind};
+use crate::rapier::view::motion::{Body, Mobility};
 use crate::rapier::view::participants::enabled;
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
@@ -25,9 +25,9 @@ pub const MOST_JOINTS: usize = 128;
 /// Turn in a step, in radians, up to which the boxes at both ends, grown by the sagitta, bound it.
 const SMALL_TURN: Real = 0.5;
 
-/// A collider as a step sees it: its shape, place, box and thickness. A body has one part for each of its colliders.
+/// A collider as a step sees it: its shape, place, box and thickness.
 #[derive(Clone)]
-pub struct Part {
+pub struct StepCollider {
     /// Handle of the collider.
     pub handle: ColliderHandle,
     /// Index of its body.
@@ -51,7 +51,7 @@ pub struct Part {
     restitution: (Real, CoefficientCombineRule),
 }
 
-impl Part {
+impl StepCollider {
     /// The medial mesh, if it is one.
     pub fn medial(&self) -> Option<&MedialMesh> {
         self.shape.as_shape::<MedialMesh>()
@@ -64,7 +64,7 @@ pub struct StepView {
     /// Bodies; the first stands for no body.
     pub bodies: Vec<Body>,
     /// Colliders that are solid and enabled.
-    pub parts: Vec<Part>,
+    pub parts: Vec<StepCollider>,
     /// rapier's length unit.
     pub unit: Real,
     /// Whether the motions are those that rapier's step made.
@@ -139,8 +139,8 @@ impl StepView {
                 return;
             };
             let held = match [a, b].map(|k| self.bodies[k].kind) {
-                [Kind::Free, Kind::Fixed | Kind::Driven] => (a, joint.local_frame1),
-                [Kind::Fixed | Kind::Driven, Kind::Free] => (b, joint.local_frame2),
+                [Mobility::Free, Mobility::Fixed | Mobility::Driven] => (a, joint.local_frame1),
+                [Mobility::Fixed | Mobility::Driven, Mobility::Free] => (b, joint.local_frame2),
                 _ => return,
             };
             if joint.is_enabled() && joint.locked_axes.contains(JointAxesMask::LIN_AXES) {
@@ -168,7 +168,7 @@ impl StepView {
             Some(mesh) => [mesh.thickness(), mesh.thicknesses().least()],
             None => [swept_sphere_parts::thickness(&*shape); 2],
         };
-        self.parts.push(Part {
+        self.parts.push(StepCollider {
             handle,
             body: index,
             offset,
@@ -190,12 +190,12 @@ impl StepView {
         multibodies: &MultibodyJointSet,
     ) {
         self.followed = true;
-        let enabled = |p: &Part| colliders.get(p.handle).is_some_and(Collider::is_enabled);
+        let enabled = |p: &StepCollider| colliders.get(p.handle).is_some_and(Collider::is_enabled);
         self.parts.retain(enabled);
         self.find_velocities_by_joints(parameters.dt, bodies, multibodies);
         for body in &mut self.bodies {
             if let Some(b) = body.handle.and_then(|h| bodies.get(h))
-                && body.kind != Kind::Fixed
+                && body.kind != Mobility::Fixed
             {
                 body.moved(b, parameters.num_solver_iterations, parameters.dt);
             }

@@ -135,10 +135,10 @@ pub struct StillRecord {
 
 impl StillRecord {
     /// Splits the enabled colliders into the moving ones, in the order of the set, and the still ones. `None` if the
-    /// still ones have not been the same for [`SETTLING_STEPS`] steps, if there are fewer than `least` of them or fewer than
-    /// `times` for each moving one, and for [`SETTLING_STEPS`] steps after a moving collider was removed or came to collide with
-    /// others than before, since rapier may then wake what rested on it. The boxes in the tree are grown by `margin`, a
-    /// length.
+    /// still ones have not been the same for [`SETTLING_STEPS`] steps, if there are fewer than `least` of them or fewer
+    /// than `times` for each moving one, and for [`SETTLING_STEPS`] steps after a moving collider was removed or came
+    /// to collide with others than before, since rapier may then wake what rested on it. The boxes in the tree are
+    /// grown by `margin`, a length.
     pub fn look(
         &mut self,
         (bodies, colliders): (&RigidBodySet, &ColliderSet),
