@@ -120,7 +120,7 @@ impl State {
             report.medial_colliders = medial_colliders::count(world.colliders);
         }
         if plan.view.followed {
-            report.participants = plan.view.parts.len();
+            report.participants = plan.view.colliders.len();
         }
         report.add_impacts(&outcome);
         report.event_seconds = clock.elapsed().as_secs_f64();

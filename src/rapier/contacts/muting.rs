@@ -58,7 +58,7 @@ pub fn muted(
     // Work of the whole step up to which pairs are looked at; its parts before a stop may have spent some.
     let most = work.spent() + policy.budget_left(work).min(policy.budget / 4);
     for pair in sweep(view, policy.dt, margin) {
-        let [p, q] = pair.map(|k| &view.parts[k]);
+        let [p, q] = pair.map(|k| &view.colliders[k]);
         let plane = p.shape.as_halfspace().or(q.shape.as_halfspace());
         let reach = prediction + p.skin + q.skin;
         let apart = |a: &parry3d::bounding_volume::Aabb, b: &parry3d::bounding_volume::Aabb| {
@@ -136,7 +136,7 @@ fn reason(
 
 /// Whether two bodies may be moved, and one is of a multibody that is unstable.
 fn is_unstable_pair(view: &StepView, policy: &CcdPolicy, pair: [usize; 2]) -> bool {
-    let bodies = pair.map(|k| &view.bodies[view.parts[k].body]);
-    bodies.iter().all(|b| b.kind == Mobility::Free)
+    let bodies = pair.map(|k| &view.bodies[view.colliders[k].body]);
+    bodies.iter().all(|b| b.mobility == Mobility::Free)
         && bodies.iter().any(|b| is_unstable(b, policy.dt))
 }

@@ -59,7 +59,7 @@ impl FastMultibodies {
             let Some(handle) = link.map(|l| l.multibody) else {
                 continue;
             };
-            if body.kind != Mobility::Free {
+            if body.mobility != Mobility::Free {
                 continue;
             }
             match found.iter_mut().find(|w| w.handle == handle) {
@@ -73,7 +73,7 @@ impl FastMultibodies {
         }
         found.retain(|fast| {
             let medial = |links: &[usize]| {
-                let mut parts = view.parts.iter();
+                let mut parts = view.colliders.iter();
                 parts.any(|p| p.medial().is_some() && links.contains(&p.body))
             };
             let multibody = multibodies.get_multibody(fast.handle);
@@ -160,7 +160,7 @@ fn partners(
         view.index.get(&body).copied()
     };
     let pushing = |b: usize| {
-        let parts = view.parts.iter().filter(move |p| p.body == b);
+        let parts = view.colliders.iter().filter(move |p| p.body == b);
         let pairs = parts.flat_map(|p| narrow_phase.contact_pairs_with(p.handle));
         let pairs = pairs.filter(|pair| pair.total_impulse_magnitude() > 0.0);
         pairs.flat_map(|pair| [place(pair.collider1), place(pair.collider2)])
@@ -171,7 +171,7 @@ fn partners(
     };
     let is_free = |b: usize| {
         let body = &view.bodies[b];
-        body.kind == Mobility::Free && body.handle.is_some_and(is_loose)
+        body.mobility == Mobility::Free && body.handle.is_some_and(is_loose)
     };
     let mut partners = Vec::new();
     for other in links.iter().flat_map(|b| pushing(*b)) {
@@ -222,7 +222,7 @@ fn damp(view: &mut StepView, multibody: &Multibody, dt: Real) {
             }
             let axis = base * data.local_frame1.rotation * Vector::AXES[axis - 3];
             let turned = |body: &Body, torque: Vector| {
-                let inertia = if body.kind == Mobility::Free {
+                let inertia = if body.mobility == Mobility::Free {
                     Inertia::of(body)
                 } else {
                     Inertia::INFINITE
@@ -240,7 +240,7 @@ fn damp(view: &mut StepView, multibody: &Multibody, dt: Real) {
                 let body = &mut view.bodies[b];
                 let change = turned(body, torque) * sign;
                 body.velocity[1] += change;
-                if body.kind == Mobility::Free {
+                if body.mobility == Mobility::Free {
                     body.go(body.velocity);
                 }
             }

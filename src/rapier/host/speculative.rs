@@ -26,13 +26,13 @@ impl Speculators {
         if !effects.any(|e| e.speculative == Effect::On) {
             return Self(own);
         }
-        for part in &view.parts {
+        for part in &view.colliders {
             let body = &view.bodies[part.body];
             let calls = effects.of([part.handle; 2]).speculative == Effect::On;
             if let Some(handle) = body.handle
                 && calls
                 && body.awake
-                && body.kind == Mobility::Free
+                && body.mobility == Mobility::Free
                 && own.iter().all(|(known, _)| *known != handle)
                 && let Some(body) = bodies.get_mut(handle)
             {

@@ -48,7 +48,7 @@ impl Substeps {
         bodies: &mut RigidBodySet,
     ) -> Self {
         let mut medial = vec![false; view.bodies.len()];
-        for part in &view.parts {
+        for part in &view.colliders {
             medial[part.body] |= part.medial().is_some();
         }
         let unit = parameters.length_unit;
@@ -64,7 +64,7 @@ impl Substeps {
             let needed = needed(view, [a, b], joint, parameters);
             let added = needed.saturating_sub(parameters.num_solver_iterations);
             let added = added.min(MOST_ADDED);
-            let free = |k: &usize| view.bodies[[a, b][*k]].kind == Mobility::Free;
+            let free = |k: &usize| view.bodies[[a, b][*k]].mobility == Mobility::Free;
             if let Some(k) = (0..2).find(free)
                 && let Some(body) = bodies.get_mut(handles[k])
                 && added > body.additional_solver_iterations()
@@ -107,7 +107,7 @@ impl Strained {
             let [Some(&a), Some(&b)] = handles.map(|h| view.index.get(&h)) else {
                 return;
             };
-            let is_free = |k: &usize| view.bodies[*k].kind == Mobility::Free;
+            let is_free = |k: &usize| view.bodies[*k].mobility == Mobility::Free;
             if is_free(&a) && is_free(&b) {
                 groups.join([a, b]);
             }

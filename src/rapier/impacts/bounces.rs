@@ -111,14 +111,14 @@ impl CcdPolicy<'_> {
     /// the normal of a pair that touches at the start of the step, and the other flies free. By a way `s` along the
     /// normal and a turn `θ` about the joint, an arc ends `s θ² / 6` short of its tangent, to first order.
     pub fn swings(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> bool {
-        let bodies = pair.map(|k| &view.bodies[view.parts[k].body]);
+        let bodies = pair.map(|k| &view.bodies[view.colliders[k].body]);
         let turns = bodies.map(|b| b.motion.angvel.length() * self.dt);
         let held = match bodies.map(|b| b.jointed) {
             [true, false] => 0,
             [false, true] => 1,
             _ => return false,
         };
-        if bodies.iter().any(|b| b.kind != Mobility::Free) || turns[held] <= SWING_TURN {
+        if bodies.iter().any(|b| b.mobility != Mobility::Free) || turns[held] <= SWING_TURN {
             return false;
         }
         let Some(nearest) = self.nearest_at_start(view, pair, work) else {
@@ -161,7 +161,7 @@ impl CcdPolicy<'_> {
         pair: [usize; 2],
     ) -> (Option<&'v MedialMesh>, &'v dyn Shape, Pose, bool) {
         let [start1, start2] = pair.map(|k| view.motion(k, 0.0).start);
-        let [shape1, shape2] = pair.map(|k| &*view.parts[k].shape);
+        let [shape1, shape2] = pair.map(|k| &*view.colliders[k].shape);
         match shape1.as_shape::<MedialMesh>() {
             Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2), false),
             None => (shape2.as_shape(), shape1, start2.inv_mul(&start1), true),

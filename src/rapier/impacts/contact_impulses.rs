@@ -44,7 +44,7 @@ impl Response {
             self.advance(view, b, hit.time);
         }
         let (system, moving, point) = self.at_contact(view, policy, &joints, both, hit);
-        let [c1, c2] = pair.map(|k| &rules.colliders[view.parts[k].handle]);
+        let [c1, c2] = pair.map(|k| &rules.colliders[view.colliders[k].handle]);
         let [v1, v2] = [0, 1].map(|k| point.velocity(view.bodies[both[k]].velocity, k));
         let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, Material::of(c1, c2));
         let is_driven = both.iter().any(|b| joints.hangs_on_driven(view, *b));
@@ -99,7 +99,7 @@ impl Response {
 
     /// Whether nothing changes the motion of a body any more.
     fn stands(&self, view: &StepView, body: usize) -> bool {
-        self.body_states[body].frozen || view.bodies[body].kind != Mobility::Free
+        self.body_states[body].frozen || view.bodies[body].mobility != Mobility::Free
     }
 
     /// System that resists the impulse on the velocities and, where that differs, the one on the motions; and the point
@@ -153,7 +153,7 @@ impl Response {
             let body = &mut view.bodies[b];
             body.velocity[0] += dv;
             body.velocity[1] += dw;
-            self.body_states[b].struck |= body.kind == Mobility::Free;
+            self.body_states[b].struck |= body.mobility == Mobility::Free;
         }
     }
 }
@@ -173,7 +173,7 @@ fn is_movable(view: &StepView, both: [usize; 2], body: usize) -> bool {
     let dominance = both.map(|b| view.bodies[b].dominance);
     let [first, second] = both.map(|b| b == body);
     let is_strong = first && dominance[0] > dominance[1] || second && dominance[1] > dominance[0];
-    view.bodies[body].kind == Mobility::Free && !is_strong
+    view.bodies[body].mobility == Mobility::Free && !is_strong
 }
 
 /// Inertia that resists an impulse on a body, where the two bodies of a contact are `both`.

@@ -44,7 +44,7 @@ pub fn deep(
     policy: &CcdPolicy,
 ) -> DeepPairs {
     let tuning = &policy.tuning;
-    let parts = view.parts.iter().enumerate();
+    let parts = view.colliders.iter().enumerate();
     let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
     let mut deep = DeepPairs::default();
     let mut others = Vec::new();
@@ -53,7 +53,7 @@ pub fn deep(
         let [Some(&i), Some(&j)] = places else {
             continue;
         };
-        if [i, j].iter().all(|k| view.parts[*k].medial().is_none()) {
+        if [i, j].iter().all(|k| view.colliders[*k].medial().is_none()) {
             others.push((found, [i, j]));
             continue;
         }

@@ -125,7 +125,7 @@ pub fn resolve(
     let mut response = Response::new(view.bodies.len());
     response.lead(view, &policy, &rules, &taken);
     let pairs = sweep(view, policy.dt, near_what_moves::MARGIN * policy.unit);
-    let shapes: Vec<_> = view.parts.iter().map(|p| p.shape.clone()).collect();
+    let shapes: Vec<_> = view.colliders.iter().map(|p| p.shape.clone()).collect();
     let mut impacts = Loop {
         view,
         policy,
@@ -266,7 +266,7 @@ impl Loop<'_> {
         let Some(mut query_options) = policy.query_options(self.view, pair, time, met, deep) else {
             return;
         };
-        let medial = |k: &usize| self.view.parts[*k].medial().is_some();
+        let medial = |k: &usize| self.view.colliders[*k].medial().is_some();
         self.jobs += usize::from(self.events == 0 && pair.iter().all(medial));
         // The floor is for primitives that the search for the first contact names.
         let known = known.filter(|known| known.deepest > policy.floor_depth());
@@ -307,7 +307,7 @@ impl Loop<'_> {
 
     /// Asks from `time` on for all pairs of bodies that have another motion.
     fn ask_again(&mut self, bodies: &[usize], time: Real, work: &mut Work) {
-        let free = |b: &&usize| self.view.bodies[**b].kind == Mobility::Free;
+        let free = |b: &&usize| self.view.bodies[**b].mobility == Mobility::Free;
         let parts = bodies.iter().filter(free).map(|b| &self.parts_of[*b]);
         let mut changed: Vec<usize> = parts.flatten().copied().collect();
         changed.sort_unstable();
@@ -339,14 +339,14 @@ impl Loop<'_> {
         let left = 1.0 - time / self.policy.dt;
         let body_states = &mut self.response.body_states;
         let mut pushed: Vec<bool> = body_states.iter().map(|c| c.struck).collect();
-        for part in &self.view.parts {
+        for part in &self.view.colliders {
             let mut contacts = narrow_phase.contact_pairs_with(part.handle);
             pushed[part.body] |= contacts.any(|c| c.total_impulse_magnitude() > 0.0);
         }
         for (b, body) in self.view.bodies.iter_mut().enumerate() {
-            if body.kind != Mobility::Fixed && body.awake {
+            if body.mobility != Mobility::Fixed && body.awake {
                 body_states[b].moved = true;
-                if body.kind == Mobility::Free && !pushed[b] {
+                if body.mobility == Mobility::Free && !pushed[b] {
                     body.undo_forces(left);
                     body_states[b].struck = true;
                 }
@@ -378,7 +378,7 @@ impl Loop<'_> {
             .impulses
             .iter()
             .map(|(pair, blows)| Impulse {
-                colliders: pair.map(|k| self.view.parts[k].handle),
+                colliders: pair.map(|k| self.view.colliders[k].handle),
                 blows: blows.clone(),
             })
             .collect();

@@ -85,7 +85,7 @@ impl FastParts {
     /// Whether there are such parts of two colliders from `time` to `end` (seconds into the step); where that is not
     /// known, it says so too.
     pub fn may_meet(&self, view: &StepView, pair: [usize; 2], [time, end]: [Real; 2]) -> bool {
-        let parts = pair.map(|k| &view.parts[k]);
+        let parts = pair.map(|k| &view.colliders[k]);
         let motion = RelativeMotion::new(pair.map(|k| view.motion(k, time)), end - time);
         let reach = self.reach * (1.0 + 16.0 * Real::EPSILON) + motion.rounding;
         let wanted = Self { reach, ..*self };

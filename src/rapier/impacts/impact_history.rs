@@ -57,8 +57,8 @@ impl ImpactHistory {
     pub fn undisturbed(&self, view: &StepView, pair: Pair, time: Real) -> Option<Real> {
         let since = self.last_time(pair).unwrap_or(0.0);
         let own = pair.into_iter().all(|k| {
-            let body = &view.bodies[view.parts[k].body];
-            body.kind != Mobility::Free || !body.jointed && body.time == since
+            let body = &view.bodies[view.colliders[k].body];
+            body.mobility != Mobility::Free || !body.jointed && body.time == since
         });
         (own && time > since).then_some(time - since)
     }
@@ -68,7 +68,7 @@ impl ImpactHistory {
         let meetings = self.of_pair.entry(pair).or_default();
         if meetings.count == 0 {
             for k in pair {
-                let body = view.parts[k].body;
+                let body = view.colliders[k].body;
                 self.of_body.entry(body).or_default().push(pair);
             }
         }
@@ -96,7 +96,7 @@ impl ImpactHistory {
         let mut pairs = Vec::new();
         let free = bodies
             .iter()
-            .filter(|b| view.bodies[**b].kind == Mobility::Free);
+            .filter(|b| view.bodies[**b].mobility == Mobility::Free);
         for pair in free.filter_map(|b| self.of_body.get(b)).flatten() {
             if !pairs.contains(pair) {
                 pairs.push(*pair);
@@ -136,8 +136,8 @@ impl ImpactHistory {
         (pair, place): (Pair, usize),
         time: Real,
     ) -> Option<Hit> {
-        let bodies = pair.map(|k| view.parts[k].body);
-        let driven = |b: usize| view.bodies[b].kind == Mobility::Driven;
+        let bodies = pair.map(|k| view.colliders[k].body);
+        let driven = |b: usize| view.bodies[b].mobility == Mobility::Driven;
         if bodies.into_iter().any(driven) || bodies.into_iter().all(frozen) {
             return None;
         }

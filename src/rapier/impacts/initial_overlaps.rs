@@ -192,7 +192,7 @@ impl InitialOverlaps {
             let end = self.end_of(*h);
             end.is_none_or(|end| kind_of(*h).is_none_or(|kind| kind != end.kind))
         };
-        let handles = view.parts.iter().map(|part| part.handle);
+        let handles = view.colliders.iter().map(|part| part.handle);
         let others: FastSet<_> = handles.filter(is_other).collect();
         self.others = others;
         if self.others.is_empty() && self.freed.is_empty() {
@@ -213,7 +213,7 @@ impl InitialOverlaps {
     /// Finds whose contacts joints turn off, and what they let go of.
     fn find_freed(&mut self, view: &StepView, rules: &Rules) {
         let muted_before = std::mem::take(&mut self.muted);
-        if view.parts.is_empty() {
+        if view.colliders.is_empty() {
             return;
         }
         for_each_joint(
@@ -236,12 +236,12 @@ impl InitialOverlaps {
         deep: &DeepPairs,
         rules: &Rules,
     ) -> Vec<[usize; 2]> {
-        let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
+        let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.colliders[k].handle));
         let was_put = |pair: [usize; 2], deep: &Deep| {
             let is_met = self.met.contains(&handles(pair));
             let is_other = pair
                 .iter()
-                .any(|k| self.others.contains(&view.parts[*k].handle));
+                .any(|k| self.others.contains(&view.colliders[*k].handle));
             match self.moved(view, pair) {
                 Some(_)
                     if (is_other || Self::among(&self.freed, view, pair))
@@ -291,7 +291,7 @@ impl InitialOverlaps {
 
     /// Whether the bodies of a pair are among some.
     fn among(bodies: &FastSet<BodyPair>, view: &StepView, pair: [usize; 2]) -> bool {
-        let both = pair.map(|k| view.bodies[view.parts[k].body].handle);
+        let both = pair.map(|k| view.bodies[view.colliders[k].body].handle);
         matches!(both, [Some(a), Some(b)] if bodies.contains(&body_pair([a, b])))
     }
 
@@ -314,10 +314,10 @@ impl InitialOverlaps {
             let shape = KnownShape::of(&part.shape);
             Some((part.handle, End { pose, shape, kind }))
         };
-        for (handle, end) in view.parts.iter().filter_map(end) {
+        for (handle, end) in view.colliders.iter().filter_map(end) {
             self.set_end(handle, end);
         }
-        self.seen = view.parts.iter().map(|part| part.handle).collect();
+        self.seen = view.colliders.iter().map(|part| part.handle).collect();
     }
 
     fn set_end(&mut self, handle: ColliderHandle, end: End) {
@@ -336,7 +336,7 @@ impl InitialOverlaps {
     /// Bound on how far points of two colliders were moved against each other between the last step and this one, a
     /// length; `None` if one of them is new.
     fn moved(&self, view: &StepView, pair: [usize; 2]) -> Option<Real> {
-        let [p, q] = pair.map(|k| &view.parts[k]);
+        let [p, q] = pair.map(|k| &view.colliders[k]);
         let start = |k: usize| view.start_pose(pair[k]);
         let [end1, end2] = [self.end_of(p.handle)?, self.end_of(q.handle)?];
         let before = end1.pose.inv_mul(&end2.pose);

@@ -52,7 +52,7 @@ impl NearLists {
         let motions = &pair.map(|k| view.motion(k, from));
         let seconds = end - from;
         let arms = [0, 1].map(|k| {
-            let bound = &view.parts[pair[k]].bound;
+            let bound = &view.colliders[pair[k]].bound;
             let arm = (bound.center() - motions[k].local_center).length() + bound.radius();
             f64::from(arm) * (1.0 + 8.0 * f64::from(Real::EPSILON))
         });

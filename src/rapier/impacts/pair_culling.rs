@@ -67,7 +67,7 @@ impl PairCulling {
     /// The outline of a collider from its body's last impact on: of a mesh its own, of other shapes that of
     /// their box.
     fn outline(&mut self, view: &StepView, part: usize) -> CachedOutline {
-        let p = &view.parts[part];
+        let p = &view.colliders[part];
         if self.proxies[part].is_none() {
             let proxy = match p.medial() {
                 Some(mesh) => Arc::clone(mesh.proxy_hull()),
@@ -98,7 +98,7 @@ fn spheres_apart_until(
     let centers = motions.each_ref().map(center);
     let mut radius = reach;
     for (k, motion) in pair.into_iter().zip(&motions) {
-        let bound = &view.parts[k].bound;
+        let bound = &view.colliders[k].bound;
         radius += (bound.center() - motion.local_center).length() + bound.radius();
     }
     // Rounding of the positions: a few ulps of all that they are sums of.

@@ -20,7 +20,7 @@ use crate::rapier::view::step_view::StepView;
 /// higher dominance group of rapier; `None` if each gives way.
 fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
     let [a, b] = bodies;
-    let [free1, free2] = bodies.map(|k| view.bodies[k].kind == Mobility::Free);
+    let [free1, free2] = bodies.map(|k| view.bodies[k].mobility == Mobility::Free);
     let [first, second] = bodies.map(|k| view.bodies[k].dominance);
     match (free1, free2) {
         (true, true) if first == second => None,
@@ -33,8 +33,8 @@ fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
 /// Whether dominance groups keep one of a pair from being pushed back: two free bodies of different groups, or a free
 /// body of a higher group than one that nothing stops.
 pub fn one_dominates(view: &StepView, pair: [usize; 2]) -> bool {
-    let [first, second] = pair.map(|k| &view.bodies[view.parts[k].body]);
-    match [first, second].map(|body| body.kind == Mobility::Free) {
+    let [first, second] = pair.map(|k| &view.bodies[view.colliders[k].body]);
+    match [first, second].map(|body| body.mobility == Mobility::Free) {
         [true, true] => first.dominance != second.dominance,
         [true, false] => first.dominance > second.dominance,
         [false, true] => second.dominance > first.dominance,
@@ -46,10 +46,10 @@ pub fn one_dominates(view: &StepView, pair: [usize; 2]) -> bool {
 /// them. One of these two moves, and with one of them a medial collider is below the floor; in the other the bodies
 /// need not be as deep as to be watched.
 pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
-    let free = |b: &usize| view.bodies[*b].kind == Mobility::Free;
+    let free = |b: &usize| view.bodies[*b].mobility == Mobility::Free;
     let is_below = |pair: &[usize; 2]| deep.watched.get(pair).is_some_and(|deep| deep.way > 0.0);
     let sunk = deep.sunk.iter();
-    let sunk = sunk.map(|pair| (*pair, pair.map(|k| view.parts[k].body), is_below(pair)));
+    let sunk = sunk.map(|pair| (*pair, pair.map(|k| view.colliders[k].body), is_below(pair)));
     let sunk: Vec<_> = sunk
         .filter(|(_, bodies, _)| bodies.iter().any(free))
         .collect();
@@ -64,7 +64,7 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
         if let Some([body, jaw]) = yielding(view, *bodies) {
             let held = held.entry(groups.of(body)).or_default();
             held.is_below |= is_below;
-            held.moves |= view.bodies[jaw].kind != Mobility::Fixed;
+            held.moves |= view.bodies[jaw].mobility != Mobility::Fixed;
             held.is_pinched |= held.jaw.is_some_and(|other| other != jaw);
             held.jaw = Some(jaw);
         }
@@ -90,7 +90,7 @@ pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Ve
         return Vec::new();
     }
     let hands = Hands::find(view, rules);
-    let bodies = |pair: &[usize; 2]| pair.map(|k| view.parts[k].body);
+    let bodies = |pair: &[usize; 2]| pair.map(|k| view.colliders[k].body);
     let sunk = deep.sunk.iter();
     let stuck: Vec<_> = sunk
         .filter_map(|pair| yielding(view, bodies(pair)))
@@ -130,7 +130,7 @@ impl Hands {
             if !joint.is_enabled() || joint.locked_axes.is_empty() {
                 return;
             }
-            match [a, b].map(|k| view.bodies[k].kind) {
+            match [a, b].map(|k| view.bodies[k].mobility) {
                 [Mobility::Free, Mobility::Free] => groups.join([a, b]),
                 [Mobility::Free, Mobility::Driven] => {
                     held.push(([a, b], opening(view, [a, b], joint)))

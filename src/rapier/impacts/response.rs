@@ -43,7 +43,7 @@ pub struct Response {
 
 /// The bodies of two colliders.
 pub(crate) fn bodies(view: &StepView, pair: Pair) -> [usize; 2] {
-    pair.map(|k| view.parts[k].body)
+    pair.map(|k| view.colliders[k].body)
 }
 
 impl Response {
@@ -66,7 +66,7 @@ impl Response {
     /// Whether an impact could still change the motion of either.
     pub fn is_movable(&self, view: &StepView, policy: &CcdPolicy, pair: Pair) -> bool {
         bodies(view, pair).iter().any(|&b| {
-            view.bodies[b].kind == Mobility::Free
+            view.bodies[b].mobility == Mobility::Free
                 && self.body_states[b].events <= policy.tuning.max_carried()
         })
     }
@@ -157,7 +157,7 @@ impl Response {
 
     /// Moves a free body to where it is at `time`; returns whether it is one.
     pub(crate) fn advance(&mut self, view: &mut StepView, body: usize, time: Real) -> bool {
-        let free = view.bodies[body].kind == Mobility::Free;
+        let free = view.bodies[body].mobility == Mobility::Free;
         if free {
             view.bodies[body].advance(time);
             view.bodies[body].awake = true;
@@ -246,7 +246,7 @@ impl Response {
             let tied = joints.tied_to(view, &[body]);
             if tied.iter().any(|b| self.body_states[*b].struck) {
                 for b in tied {
-                    self.body_states[b].struck |= view.bodies[b].kind == Mobility::Free;
+                    self.body_states[b].struck |= view.bodies[b].mobility == Mobility::Free;
                 }
             }
         }
@@ -260,7 +260,7 @@ impl Response {
     /// had more than `max_events`.
     fn leads(&self, view: &StepView, policy: &CcdPolicy, [body, other]: [usize; 2]) -> bool {
         let [leader, led] = [self.body_states[body], self.body_states[other]];
-        let free = view.bodies[other].kind == Mobility::Free;
+        let free = view.bodies[other].mobility == Mobility::Free;
         leader.driven && free && !led.driven && led.events <= policy.tuning.max_carried()
     }
 
@@ -273,11 +273,11 @@ impl Response {
         time: Real,
     ) {
         let (tuning, state) = (&policy.tuning, self.body_states[body]);
-        if state.events <= tuning.max_events || view.bodies[body].kind != Mobility::Free {
+        if state.events <= tuning.max_events || view.bodies[body].mobility != Mobility::Free {
             return;
         }
         let carrier = &view.bodies[other];
-        let carries = carrier.kind == Mobility::Driven || self.body_states[other].driven;
+        let carries = carrier.mobility == Mobility::Driven || self.body_states[other].driven;
         let carried = carries && state.events <= tuning.max_carried();
         let carrying = carrier.motion_from(time);
         self.body_states[body].frozen = true;

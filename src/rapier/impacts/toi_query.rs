@@ -113,7 +113,7 @@ impl CcdPolicy<'_> {
     }
 
     pub(super) fn effects_of(&self, view: &StepView, pair: [usize; 2]) -> Effects {
-        self.effects.of(pair.map(|k| view.parts[k].handle))
+        self.effects.of(pair.map(|k| view.colliders[k].handle))
     }
 
     /// Whether the pair as a whole is fast on its motion from `time` on: by default, when it would travel more than
@@ -147,12 +147,12 @@ impl CcdPolicy<'_> {
             Effect::Off => return false,
             Effect::Auto => {}
         }
-        let least = pair.map(|k| view.parts[k].least);
+        let least = pair.map(|k| view.colliders[k].least);
         let travel = view.travel(pair, self.dt);
         if travel <= self.tuning.fast * least[0].min(least[1]) {
             return false;
         }
-        let skins: Real = pair.iter().map(|k| view.parts[*k].skin).sum();
+        let skins: Real = pair.iter().map(|k| view.colliders[*k].skin).sum();
         let contact = skins + 2.0 * self.gap(view.thickness(pair));
         let fast = FastParts {
             seconds: self.dt / self.tuning.fast,
@@ -207,7 +207,7 @@ impl CcdPolicy<'_> {
         let tuning = &self.tuning;
         let thickness = view.thickness(pair);
         let gap = self.gap(thickness);
-        let skin = view.parts[pair[0]].skin + view.parts[pair[1]].skin;
+        let skin = view.colliders[pair[0]].skin + view.colliders[pair[1]].skin;
         let paths = match effects.exact_rotation {
             Effect::Off => Paths::Straight,
             Effect::On | Effect::Auto => Paths::Exact,
@@ -263,7 +263,7 @@ impl CcdPolicy<'_> {
 
     /// How deep a pair may lie on flat faces, where it may sink in `by` deeper elsewhere.
     fn sinks(&self, view: &StepView, pair: [usize; 2], by: Real) -> SinkLimits {
-        let least = pair.map(|k| view.parts[k].least);
+        let least = pair.map(|k| view.colliders[k].least);
         let least = least[0].min(least[1]);
         SinkLimits {
             at_start: least.min(self.tuning.flat_depth * self.unit + self.sag),
@@ -275,7 +275,7 @@ impl CcdPolicy<'_> {
     /// The first query of a pair of medial meshes at the start of the step, as a job of a batch; `None`
     /// for other pairs, and where nothing is to be asked.
     pub fn job(&self, view: &StepView, pair: [usize; 2], deep: bool) -> Option<ToiJob> {
-        let [Some(mesh1), Some(mesh2)] = pair.map(|k| view.parts[k].medial()) else {
+        let [Some(mesh1), Some(mesh2)] = pair.map(|k| view.colliders[k].medial()) else {
             return None;
         };
         let query_options = self.query_options(view, pair, 0.0, 0, deep)?;
@@ -322,7 +322,7 @@ impl CcdPolicy<'_> {
 
     /// Distance between two shapes, a length, up to which their surfaces count as `distance` apart, skins included.
     pub fn reach(&self, view: &StepView, [i, j]: [usize; 2], distance: Real) -> Real {
-        let skins = view.parts[i].skin + view.parts[j].skin;
+        let skins = view.colliders[i].skin + view.colliders[j].skin;
         distance + skins + TOUCHING_MORE * self.unit
     }
 
@@ -344,7 +344,7 @@ fn ask(
         reachable, sinks, ..
     }: &QueryOptions,
 ) -> Option<ToiResult> {
-    let [p, q] = pair.map(|k| &view.parts[k]);
+    let [p, q] = pair.map(|k| &view.colliders[k]);
     if let (Some(a), Some(b)) = (p.medial(), q.medial()) {
         let active = reachable.clone();
         let query = Query::new(motions.each_ref(), (a, b), seconds, options, active);

@@ -105,7 +105,7 @@ impl Joints {
         while next < bodies.len() {
             let body = bodies[next];
             next += 1;
-            if view.bodies[body].kind != Mobility::Free {
+            if view.bodies[body].mobility != Mobility::Free {
                 continue;
             }
             for &j in self.of_body.get(&body).into_iter().flatten() {
@@ -140,7 +140,7 @@ impl Joints {
     /// Whether a body hangs by joints on one that is driven.
     pub fn hangs_on_driven(&self, view: &StepView, body: usize) -> bool {
         let mut tied = self.tied(view, &[body]).0.into_iter().skip(1);
-        tied.any(|b| view.bodies[b].kind == Mobility::Driven)
+        tied.any(|b| view.bodies[b].mobility == Mobility::Driven)
     }
 
     /// Moves a body and all bodies that joints tie to it along paths on which the joints stay as closed as they are,
@@ -161,7 +161,7 @@ impl Joints {
         }
         let inertia = |view: &StepView, b: usize| {
             let body = &view.bodies[b];
-            if body.kind == Mobility::Free && !frozen(b) {
+            if body.mobility == Mobility::Free && !frozen(b) {
                 Inertia::of(body)
             } else {
                 Inertia::INFINITE
@@ -169,7 +169,7 @@ impl Joints {
         };
         let mut system = self.system(view, &[from], time, |b| inertia(view, b));
         for &b in &system.bodies {
-            if view.bodies[b].kind == Mobility::Free {
+            if view.bodies[b].mobility == Mobility::Free {
                 view.bodies[b].advance(time);
             }
         }
@@ -220,7 +220,7 @@ impl Joints {
             if !system.is_infinite(k) {
                 view.bodies[b].aim(system.moved(k), [before[k], gained], seconds);
                 moved.push(b);
-            } else if view.bodies[b].kind == Mobility::Free {
+            } else if view.bodies[b].mobility == Mobility::Free {
                 view.bodies[b].gain(gained, seconds);
             }
         }
@@ -238,7 +238,7 @@ impl Joints {
         moved: &System,
         own: &[Twist],
     ) -> Vec<Twist> {
-        let inertia = |b: usize| match view.bodies[b].kind {
+        let inertia = |b: usize| match view.bodies[b].mobility {
             Mobility::Free => Inertia::of(&view.bodies[b]),
             Mobility::Fixed | Mobility::Driven => Inertia::INFINITE,
         };

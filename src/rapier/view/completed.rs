@@ -27,7 +27,7 @@ impl StepView {
                 sleep_at(body, pose);
             }
         }
-        for part in &mut whole.parts {
+        for part in &mut whole.colliders {
             let pose = whole.bodies[part.body].start * part.offset;
             part.aabb = part.shape.compute_aabb(&pose);
         }
@@ -38,9 +38,9 @@ impl StepView {
                 body.clone_from(&self.bodies[k]);
             }
         }
-        let parts = self.parts.iter().map(|part| (part.handle, part));
+        let parts = self.colliders.iter().map(|part| (part.handle, part));
         let parts: FastMap<ColliderHandle, &StepCollider> = parts.collect();
-        for part in &mut whole.parts {
+        for part in &mut whole.colliders {
             if let Some(known) = parts.get(&part.handle) {
                 let body = part.body;
                 part.clone_from(known);

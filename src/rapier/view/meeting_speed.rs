@@ -17,11 +17,11 @@ impl StepView {
     pub fn meeting_speed(&self, pair: [usize; 2], [time, end]: [Real; 2], margin: Real) -> Real {
         let swept = |k: usize| {
             let aabb = self.swept_aabb(k, time, end);
-            aabb.loosened(margin + self.parts[k].skin)
+            aabb.loosened(margin + self.colliders[k].skin)
         };
         let common = swept(pair[0]).intersection(&swept(pair[1]));
         let below = |common: Option<Aabb>, (k, other): (usize, usize)| {
-            self.below_plane(k, common?, margin + self.parts[other].skin)
+            self.below_plane(k, common?, margin + self.colliders[other].skin)
         };
         let orders = [(pair[0], pair[1]), (pair[1], pair[0])];
         let Some(common) = orders.into_iter().fold(common, below) else {
@@ -49,7 +49,7 @@ impl StepView {
     /// collider is no half-space, or moves. The box of a half-space is the whole world, in which a wheel's top would
     /// count as meeting it.
     fn below_plane(&self, part: usize, aabb: Aabb, margin: Real) -> Option<Aabb> {
-        let p = &self.parts[part];
+        let p = &self.colliders[part];
         let motion = &self.bodies[p.body].motion;
         let still = motion.linvel == Vector::ZERO && motion.angvel == Vector::ZERO;
         let Some(plane) = p.shape.as_halfspace().filter(|_| still) else {

@@ -45,7 +45,7 @@ pub struct Body {
     /// Body of rapier; `None` for the implicit static body.
     pub handle: Option<RigidBodyHandle>,
     /// Whether an impact may move it.
-    pub kind: Mobility,
+    pub mobility: Mobility,
     /// Took part in rapier's step.
     pub awake: bool,
     /// Motion from [`Self::time`] on, world frame, per second.
@@ -97,7 +97,7 @@ pub struct Body {
 impl Body {
     /// A body at the start of a step; `is_free`: where it is dynamic, an impact may move it.
     pub fn new(handle: RigidBodyHandle, body: &RigidBody, is_free: bool) -> Self {
-        let kind = match (body.is_fixed(), body.is_dynamic() && is_free) {
+        let mobility = match (body.is_fixed(), body.is_dynamic() && is_free) {
             (true, _) => Mobility::Fixed,
             (false, true) => Mobility::Free,
             (false, false) => Mobility::Driven,
@@ -105,8 +105,8 @@ impl Body {
         let properties = body.mass_properties();
         Self {
             handle: Some(handle),
-            kind,
-            awake: kind != Mobility::Fixed && !body.is_sleeping(),
+            mobility,
+            awake: mobility != Mobility::Fixed && !body.is_sleeping(),
             motion: NonlinearRigidMotion {
                 local_center: properties.local_mprops.local_com,
                 ..NonlinearRigidMotion::constant_position(*body.position())
@@ -147,7 +147,7 @@ impl Body {
     pub fn ground() -> Self {
         Self {
             handle: None,
-            kind: Mobility::Fixed,
+            mobility: Mobility::Fixed,
             awake: false,
             motion: NonlinearRigidMotion::identity(),
             time: 0.0,
@@ -175,7 +175,7 @@ impl Body {
 
     /// Velocity with which the solver starts, before contacts: gravity and forces of the user.
     pub fn predict(&mut self, body: &RigidBody, gravity: Vector, dt: Real) {
-        if self.kind == Mobility::Fixed || !self.awake {
+        if self.mobility == Mobility::Fixed || !self.awake {
             return;
         }
         [self.motion.linvel, self.motion.angvel] = velocities(body, dt);
