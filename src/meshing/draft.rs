@@ -6,6 +6,7 @@ use crate::math::fast_hash::FastSet;
 use crate::math::lane::Vec3;
 pub use crate::math::sphere::Ball;
 use crate::math::{Real, Vector};
+use crate::medial::simplex::{sides, sorted};
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::meshing::surface::checked_surface::Frame;
 use crate::meshing::watch::bytes_of;
@@ -37,15 +38,12 @@ pub struct Signed {
 impl Draft {
     /// The volumes: slabs, then cones that belong to no slab, then lone balls.
     pub fn primitives(&self) -> Vec<Corners> {
-        let sorted = |a: u32, b: u32| (a.min(b), a.max(b));
         let mut joined = FastSet::default();
         let mut used = vec![false; self.balls.len()];
         let mut primitives = self.faces.clone();
-        for &[a, b, c] in &self.faces {
-            joined.extend([sorted(a, b), sorted(b, c), sorted(c, a)]);
-        }
+        joined.extend(self.faces.iter().flat_map(sides));
         for &[a, b] in &self.edges {
-            if joined.insert(sorted(a, b)) {
+            if joined.insert(sorted([a, b])) {
                 primitives.push([a, b, b]);
             }
         }

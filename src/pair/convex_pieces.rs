@@ -23,7 +23,7 @@ use crate::elementary::bracket::Bracket;
 use crate::elementary::penetration::gap_along;
 use crate::elementary::test_list::{OwnedFeatures, for_each_test};
 use crate::elementary::{InitialContact, ToiStatus};
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::F64_ROUNDING;
 
 /// Depth of two solid pieces in units of the thickness of the thinner, from which the shortest way apart may lead on
 /// through: there the middles of two alike pass each other.
@@ -241,7 +241,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
         let n = pieces.direction;
         // Less than the gap at which they meet, so that a step comes to where they do.
         let least = pieces.contact - AIM_BELOW * self.earliest.limits.tolerance
-            + ROUNDING_ULPS * f64::EPSILON * (size_a + size_b);
+            + F64_ROUNDING * (size_a + size_b);
         let far: Vec<_> = a.iter().map(|s| end_along(s, n, 1.0)).collect();
         let near: Vec<_> = b.iter().map(|s| end_along(s, n, -1.0)).collect();
         let on_chords = self.in_piece(time, |span| ends_hold([&far, &near], span, least, least))?;

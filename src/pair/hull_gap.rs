@@ -9,7 +9,7 @@ use super::primitive_tree::PrimitiveTree;
 use crate::elementary::distance::Ball;
 use crate::elementary::penetration::gap_along;
 use crate::math::lane::Vec3;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::F64_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::medial::convex_pieces::Face;
@@ -204,7 +204,7 @@ impl<'a> Best<'a> {
     fn new(hulls: [&'a PlacedHull<'a>; 2]) -> Self {
         Self {
             hulls,
-            rounding: 4.0 * ROUNDING_ULPS * f64::EPSILON * (hulls[0].size() + hulls[1].size()),
+            rounding: 4.0 * F64_ROUNDING * (hulls[0].size() + hulls[1].size()),
             gap: f64::MIN,
             direction: Vec3::new(1.0, 0.0, 0.0),
         }

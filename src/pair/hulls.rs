@@ -16,7 +16,7 @@ use crate::elementary::penetration::gap_along;
 use crate::math::Vector;
 use crate::math::fast_hash::FastMap;
 use crate::math::lane::Vec3;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::F64_ROUNDING;
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 
@@ -65,7 +65,7 @@ impl Resting {
 /// A lower bound of the distance of two hulls at rest; as soon as it is more than `enough` no better one is looked for.
 fn gap([first, second]: [&Resting; 2], enough: f64) -> f64 {
     let (a, b) = (&first.balls, &second.balls);
-    let rounding = ROUNDING_ULPS * f64::EPSILON * (a.size + b.size);
+    let rounding = F64_ROUNDING * (a.size + b.size);
     let y = second.middle - first.middle;
     // No direction says more.
     if y.length() - first.core - second.core <= enough {

@@ -29,7 +29,7 @@ use crate::elementary::first_contact::motion_is_finite;
 use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::F64_ROUNDING;
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
 
@@ -196,6 +196,6 @@ impl NearPairs {
             turns += arms[k] * (starts[1].angle_at_most(&starts[0]) + faster.length() * seconds);
         }
         let slides = slides.map(|s| s.length());
-        slides[0].max(slides[1]) + turns + ROUNDING_ULPS * f64::EPSILON * size
+        slides[0].max(slides[1]) + turns + F64_ROUNDING * size
     }
 }

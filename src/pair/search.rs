@@ -31,6 +31,7 @@ use crate::elementary::first_contact::{Earliest, options_limits};
 use crate::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
 use crate::math::fast_hash::FastMap;
 use crate::math::motion::RigidMotion;
+use crate::math::tolerance::PIECE_ANGLE;
 use crate::medial::tree::NodeKind;
 use std::collections::BinaryHeap;
 
@@ -45,10 +46,6 @@ pub(super) const LOOK: u64 = 16;
 
 /// Pieces whose pairs of roots do not count as work. As above.
 const ROOT_PIECES: u64 = 64;
-
-/// Angle in radians that a piece of the search turns at most: the sagitta is then below 3 % of the
-/// lever arm. Larger pieces cull worse, smaller ones repeat the walk down the trees.
-const PIECE_ANGLE: f64 = 0.5;
 
 /// The state of one search for a first contact: both bodies, the queue, and what is under way. Its methods are in
 /// `waiting.rs`, `leaves.rs`, `convex_pieces.rs` and `ending.rs` too.

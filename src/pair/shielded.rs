@@ -23,13 +23,11 @@ use super::primitive_tree::PrimitiveTree;
 use super::sphere_pair::SpherePair;
 use crate::elementary::{Toi, ToiStatus};
 use crate::math::lane::Vec3;
+use crate::math::tolerance::HEIGHT_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::exact::{balls, tangent_normals};
 use crate::medial::tree::NodeKind;
 use crate::medial::{MedialPrimitive, MedialSphere};
-
-/// Rounding of heights, in units of the coordinates.
-const SLACK: Real = 1.0e-6;
 
 /// How much deeper than a contact the other body may be along its normal, if it is to shield a part, in units of the
 /// part's thickness: what slides is tilted a little. Larger, and it may be deep in the part.
@@ -313,7 +311,7 @@ fn shields(
     let [first, second] = &contacts;
     let (pose, parts) = (&poses[side], [shield, hidden[side]]);
     let spheres = parts.map(|part| part.spheres(body));
-    let slack = SLACK * size(&spheres[0], pose).max(size(&spheres[1], pose));
+    let slack = HEIGHT_ROUNDING * size(&spheres[0], pose).max(size(&spheres[1], pose));
     // Only the face of a solid that touches need be beyond the contact's plane.
     let n = first.normal;
     let lowest = -reach(&hidden[1 - side].solid(other), &poses[1 - side], -n);

@@ -8,7 +8,7 @@ use super::primitive_tree::PrimitiveTree;
 use crate::math::approach::first_touch;
 use crate::math::lane::Vec3;
 use crate::math::motion::{Frame, RigidMotion};
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::{F64_ROUNDING, SIMILAR_RADII};
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 use std::ops::Range;
@@ -71,7 +71,7 @@ impl Swept {
         let y = other.start - self.start;
         let rate = other.chord - self.chord;
         let radius = self.radius + other.radius + reach;
-        let radius = (radius + ROUNDING_ULPS * f64::EPSILON * radius.abs()).max(0.0);
+        let radius = (radius + F64_ROUNDING * radius.abs()).max(0.0);
         let distance = y.length();
         if distance <= radius {
             return Touch::AtStart((distance - radius) / radius.max(f64::MIN_POSITIVE));
@@ -252,7 +252,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         // Times are good to an ulp of the step, in which a point swings an ulp of the angle; up to
         // `COVERED_TURN` the margins for coordinates cover that.
         let swing = (self.motion.angle() - COVERED_TURN).max(0.0) * arms[0].length();
-        let rounding = ROUNDING_ULPS * f64::EPSILON * swing;
+        let rounding = F64_ROUNDING * swing;
         (
             from.center + arms[0],
             (to.center - from.center) + (arms[1] - arms[0]),
@@ -270,7 +270,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         Swept {
             start,
             chord,
-            radius: radius + ROUNDING_ULPS * f64::EPSILON * size,
+            radius: radius + F64_ROUNDING * size,
             below: self.body.kind(node),
             near: self.near(node),
             node,
@@ -291,10 +291,6 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
     }
 }
 
-/// Ratio of their radii up to which two nodes are split together. With 1 (one at a time) approaches take a fifth
-/// longer, fast queries a tenth; 1.5 is nearly as good.
-const SIMILAR: f64 = 3.0;
-
 /// Children that replace two swept nodes, at least one of which is not a leaf.
 pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
     sides: &mut (Side<A>, Side<B>),
@@ -303,7 +299,10 @@ pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
     let (a, b) = (sides.0.node(i), sides.1.node(j));
     // Both at once where they are about as large: the pairs in between would be looked at only to
     // be split. Below that, the larger one.
-    let (small, large) = (a.radius * SIMILAR < b.radius, b.radius * SIMILAR < a.radius);
+    let (small, large) = (
+        a.radius * SIMILAR_RADII < b.radius,
+        b.radius * SIMILAR_RADII < a.radius,
+    );
     let inner = [a.below, b.below].map(|below| matches!(below, NodeKind::Nodes(..)));
     // A convex node is not split against one that is not convex until that is convex too: then the two are looked at
     // whole.

@@ -1,13 +1,11 @@
 //! The convex parts between which contacts are computed: of a medial mesh its convex pieces and lone primitives, of
 //! another shape itself or, of a compound, its children.
 
+use crate::math::tolerance::HEIGHT_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::convex_pieces::ConvexPiece;
 use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
 use parry3d::shape::{Compound, Shape, TypedShape};
-
-/// Slack of heights that are compared, in units of the sizes in play: about eight ulps of `f32`.
-const SLACK: Real = 1.0e-6;
 
 /// Tilt of parry's (GJK) normals that is allowed for between a compound's children, a slope. Of rings on tiles one in a
 /// hundred is off by more than 6e-5, one in seven thousand by more than 2e-4; what is off by more keeps its ghost.
@@ -113,12 +111,12 @@ pub fn slack_of(compound: &Compound, child: u32, mesh: &MedialMesh) -> Real {
     let own = compound.aabbs().get(child as usize);
     let size = own.map_or(0.0, |own| own.extents().max_element());
     let low = MAX_STEP * mesh.aabb().extents().max_element();
-    low.min(TILT * size) + SLACK * bounds.mins.abs().max(bounds.maxs.abs()).max_element()
+    low.min(TILT * size) + HEIGHT_ROUNDING * bounds.mins.abs().max(bounds.maxs.abs()).max_element()
 }
 
 /// Slack of heights of a mesh's parts, a length, where the other shape is at `pose` in the mesh's frame.
 pub fn slack(mesh: &MedialMesh, pose: &Pose) -> Real {
-    SLACK * (mesh.aabb().extents().max_element() + pose.translation.abs().max_element())
+    HEIGHT_ROUNDING * (mesh.aabb().extents().max_element() + pose.translation.abs().max_element())
 }
 
 #[cfg(test)]

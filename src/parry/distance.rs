@@ -13,7 +13,7 @@ use super::swept_sphere_parts::{self, SweptParts, Unsweepable};
 use crate::math::lane::Vec3;
 use crate::math::least_first::least_first;
 use crate::math::sphere::Ball;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::tree::NodeKind;
 use crate::medial::{MedialMesh, MedialSphere};
@@ -105,7 +105,7 @@ fn reach(mesh: &MedialMesh, other: &dyn Shape, pos21: &Pose, max_distance: Real)
         let distance = inside::most_distance(other, center) - s.radius;
         let sizes = [center, pos21.translation, s.center].map(|p| p.abs().max_element());
         let size = sizes.into_iter().fold(s.radius, |sum, size| sum + size);
-        inside::PROJECTION_SLACK * distance.max(0.0) + ROUNDING_ULPS as Real * Real::EPSILON * size
+        inside::PROJECTION_SLACK * distance.max(0.0) + REAL_ROUNDING * size
     });
     let bound = bounds.filter(|b| b.is_finite()).unwrap_or(Real::MAX);
     // Infinite boxes do not survive transformations.

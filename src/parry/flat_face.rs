@@ -3,8 +3,9 @@
 //! contacts are those of the spheres themselves, all with one normal. parry would run its iterative GJK algorithm for
 //! each primitive.
 
-use super::shape_faces::{ROUNDING, flat_sides};
+use super::shape_faces::flat_sides;
 use crate::math::lane::Vec3;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::tree::NodeKind;
@@ -77,7 +78,7 @@ fn side(
 fn is_flat(hull: &ConvexPolyhedron, face: usize, (normal, height): (Vector, Real)) -> bool {
     let points = hull.points();
     let size = points.iter().map(|p| p.abs().max_element());
-    let rounding = ROUNDING * size.fold(0.0, Real::max);
+    let rounding = REAL_ROUNDING * size.fold(0.0, Real::max);
     let above = |p: &Vector| normal.dot(*p) - height;
     let face = &hull.faces()[face];
     let first = face.first_vertex_or_edge as usize;

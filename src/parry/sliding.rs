@@ -15,7 +15,7 @@
 
 use super::shape_faces::{Face, has_flat_faces};
 use crate::math::lane::Vec3;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 use parry3d::query::NonlinearRigidMotion;
@@ -141,7 +141,7 @@ impl<'a> Sliding<'a> {
         let from_axis = farthest(&poses[0], motion2.local_center) + v * seconds;
         let acceleration = w1 * w1 * arm + w2 * w2 * from_axis + 2.0 * w2 * v;
         let sizes = poses.map(|p| p.translation.abs().max_element());
-        let rounding = ROUNDING_ULPS as Real * Real::EPSILON * (sizes[0] + sizes[1] + arm);
+        let rounding = REAL_ROUNDING * (sizes[0] + sizes[1] + arm);
         let bound = (
             Vec3::from_vector(poses[0] * ball.center),
             (ball.radius + rounding).into(),

@@ -7,10 +7,9 @@
 
 use super::axisymmetric::Axisymmetric;
 use super::compound_children::children_in;
-use super::shape_faces::{
-    Face, ROUNDING, all_faces, face_corners, for_each_triangle, free_faces, seen_from,
-};
+use super::shape_faces::{Face, all_faces, face_corners, for_each_triangle, free_faces, seen_from};
 use super::sliding::{Lying, Sliding};
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::PrimitiveList;
@@ -323,7 +322,7 @@ fn add_polyhedron(
     for_each_triangle(hull, pose, |corners| {
         let face = Aabb::from_points(corners);
         let sizes = [pose.translation, face.mins, face.maxs].map(|p| p.abs().max_element());
-        let face = face.loosened(border + ROUNDING * sizes.into_iter().sum::<Real>());
+        let face = face.loosened(border + REAL_ROUNDING * sizes.into_iter().sum::<Real>());
         // A region that is not a number holds everything.
         let apart = face.mins.cmpgt(region.maxs) | region.mins.cmpgt(face.maxs);
         if !apart.any() {

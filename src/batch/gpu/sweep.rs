@@ -6,14 +6,10 @@ use crate::batch::job::Sweep;
 use crate::elementary::first_contact::motion_is_finite;
 use crate::math::lane::Lane;
 use crate::math::motion::RigidMotion;
-use crate::math::tolerance::GPU_SLACK_ULPS;
+use crate::math::tolerance::{GPU_SLACK_ULPS, PIECE_ANGLE};
 
 /// Lengths above this, in the user's unit, stay on the CPU: their squares would overflow.
 const MAX_LENGTH: f64 = 1.0e15;
-
-/// Angle in radians that a body turns in a piece at most: the sagitta is then below 3 % of the lever
-/// arm. Larger pieces prove less, smaller ones cost a pair each.
-const PIECE_ANGLE: f64 = 0.5;
 
 /// Most pieces of a step; a body that turns further is left to the CPU, where endless turns end on the cap of
 /// the work ([`crate::pair`]): with more pieces for the CPU than for the device, the device would say free where

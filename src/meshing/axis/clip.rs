@@ -10,13 +10,14 @@ use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
 use crate::meshing::axis::crease_samples::CreaseSamples;
 use crate::meshing::axis::delaunay::{Delaunay, NONE};
-use crate::meshing::axis::inner_balls::{INSIDE, JITTER, buried, circumsphere, vote};
+use crate::meshing::axis::inner_balls::{JITTER, buried, circumsphere, vote};
 use crate::meshing::axis::shrinking_ball::shrink_from;
 use crate::meshing::axis::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::chunks::{COSTLY, map_each};
 use crate::meshing::geometry::random::Random;
+use crate::meshing::geometry::winding::INSIDE;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
 

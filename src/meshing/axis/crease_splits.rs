@@ -6,10 +6,12 @@
 
 use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
+use crate::medial::simplex::{sides, sorted};
 use crate::meshing::axis::clip::CreasedMesh;
 use crate::meshing::axis::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::direction;
+use crate::meshing::geometry::triangle_tree::GUESS;
 use crate::meshing::watch::Watch;
 
 /// Distance (longest side 1) by which the ball at the middle of an edge may stick out of the solid before the edge is
@@ -26,9 +28,6 @@ const DROP: f64 = 3e-3;
 
 /// Edges shorter than this (longest side 1) are not looked at.
 const MIN_EDGE: f64 = 1e-3;
-
-/// A first guess of the distance at an edge's middle (longest side 1); only time depends on it.
-const GUESS: f64 = 0.004;
 
 /// A ball may move by this many distances between samples to become tangent.
 const TANGENT_REACH: f64 = 2.0;
@@ -200,13 +199,4 @@ impl Faces<'_> {
 
 fn middle(a: &Ball, b: &Ball) -> Ball {
     Ball::interpolate([*a, *b, *b], [0.5, 0.5, 0.0])
-}
-
-/// The edges of a face: from its first ball to the second, the second to the third, the third to the first.
-fn sides(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]].map(sorted)
-}
-
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

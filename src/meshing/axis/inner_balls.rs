@@ -16,15 +16,13 @@ use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point};
 use crate::meshing::geometry::random::Random;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::winding::INSIDE;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::{Watch, bytes_of};
 
 /// A sample votes when the centre is seen from it within 72° of its normal or of the opposite:
 /// near the tangent plane noise decides.
 const VOTE: f64 = 0.3;
-
-/// Inside is where the surface winds more than this often: half of a closed surface.
-pub const INSIDE: f64 = 0.5;
 
 /// Random shift of each sample (longest side 1). Samples of boxes and tori are cospherical by the
 /// dozen, and exact predicates then cost twenty times more; the shift is far below any error.

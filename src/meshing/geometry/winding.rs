@@ -9,6 +9,9 @@ use crate::meshing::geometry::bounds::{Bounds, Point};
 use crate::meshing::geometry::triangle::solid_angle_of;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 
+/// Winding number from which a point is inside matter: half of that within a closed surface.
+pub const INSIDE: f64 = 0.5;
+
 /// A group is seen as a dipole from beyond this many of its radii. The error of the winding number
 /// is then below 0.05 on the models measured, and a ball is labelled by whether it exceeds ½.
 const DIPOLE_DISTANCE: f64 = 2.3;

@@ -9,9 +9,9 @@ use crate::error::BuildError;
 use crate::meshing::axis::shrinking_ball::{SMALLEST_BALL, shrink};
 use crate::meshing::draft::{Ball, Corners, Draft};
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::triangle_tree::{GUESS, TriangleTree};
 use crate::meshing::refine::refit::Target;
-use crate::meshing::refine::residuals::{GUESS, Row};
+use crate::meshing::refine::residuals::Row;
 use crate::meshing::watch::Watch;
 
 /// Error (longest side 1) below which no primitive is inserted.

@@ -15,9 +15,9 @@ use crate::error::BuildError;
 use crate::meshing::certify::inside::Solid;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::triangle_tree::{GUESS, TriangleTree};
 use crate::meshing::refine::residuals::{
-    EnvelopeSample, GUESS, Residuals, Row, UNKNOWN, envelope_samples, residuals,
+    EnvelopeSample, Residuals, Row, UNKNOWN, envelope_samples, residuals,
 };
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;

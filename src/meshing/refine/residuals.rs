@@ -28,9 +28,6 @@ const EXIT_OVERESTIMATE: f64 = 0.15;
 /// Nodes of a tree that take as long to look at as a cell of a search for a way out.
 const NODES_OF_CELL: u64 = 40;
 
-/// First guess of an envelope sample's distance (longest side 1); only time depends on it.
-pub const GUESS: f64 = 0.004;
-
 /// A sample, the balls that answer for it, and what is wrong there.
 #[derive(Clone, Copy)]
 pub struct Row {

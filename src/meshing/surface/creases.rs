@@ -7,6 +7,7 @@
 
 use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
+use crate::medial::simplex::sides;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::triangle::closest_on_triangle;
 use crate::meshing::geometry::union_find::Groups;
@@ -263,9 +264,4 @@ fn adjacent(
         }
     }
     Ok(pairs)
-}
-
-/// The edges of a triangle, each with its lower vertex first.
-fn sides(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)])
 }

@@ -6,6 +6,7 @@
 
 use crate::error::BuildError;
 use crate::math::fast_hash::{FastMap, FastSet};
+use crate::medial::simplex::sorted;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::surface::edges::Edges;
 use crate::meshing::watch::Watch;
@@ -129,8 +130,4 @@ fn chain(
         chain.push(here);
     }
     Some(chain)
-}
-
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

@@ -7,6 +7,7 @@
 //! other where they touch. It is `u(x) = v1 + ω1 × (x − c1) − v2 − ω2 × (x − c2)`, with the centres `c` about which the
 //! bodies turn.
 
+use crate::math::tolerance::FEW_OPERATIONS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::tree::{Node, NodeKind};
@@ -58,7 +59,7 @@ impl RelativeMotion {
             between: centers[1] - centers[0],
             drift,
             turns: motions.map(|m| m.angvel.length() * seconds),
-            rounding: 16.0 * Real::EPSILON * size,
+            rounding: FEW_OPERATIONS * size,
         }
     }
 
@@ -87,7 +88,7 @@ impl FastParts {
     pub fn may_meet(&self, view: &StepView, pair: [usize; 2], [time, end]: [Real; 2]) -> bool {
         let parts = pair.map(|k| &view.colliders[k]);
         let motion = RelativeMotion::new(pair.map(|k| view.motion(k, time)), end - time);
-        let reach = self.reach * (1.0 + 16.0 * Real::EPSILON) + motion.rounding;
+        let reach = self.reach * (1.0 + FEW_OPERATIONS) + motion.rounding;
         let wanted = Self { reach, ..*self };
         match parts.map(StepCollider::medial) {
             [Some(a), Some(b)] => wanted.of_meshes(a, b, &motion),
@@ -100,7 +101,7 @@ impl FastParts {
     /// Whether a part of this thickness, which lies in the ball of a node, may be fast.
     fn is_fast(&self, motion: &RelativeMotion, side: usize, node: &Node, thickness: Real) -> bool {
         let speed = motion.speed_near(side, node.center, node.radius + self.contact);
-        speed * self.seconds * (1.0 + 16.0 * Real::EPSILON) > thickness
+        speed * self.seconds * (1.0 + FEW_OPERATIONS) > thickness
     }
 
     fn of_meshes(&self, a: &MedialMesh, b: &MedialMesh, motion: &RelativeMotion) -> bool {

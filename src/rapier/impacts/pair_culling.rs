@@ -4,6 +4,7 @@
 use crate::math::Real;
 use crate::math::approach::first_touch;
 use crate::math::lane::Vec3;
+use crate::math::tolerance::FEW_OPERATIONS;
 use crate::medial::proxy_hull::ProxyHull;
 use crate::pair::outline::{ActivePrimitives, Outline, apart_until};
 use crate::rapier::view::step_view::StepView;
@@ -103,7 +104,7 @@ fn spheres_apart_until(
     }
     // Rounding of the positions: a few ulps of all that they are sums of.
     let terms = |m: &NonlinearRigidMotion| m.start.translation.length() + m.local_center.length();
-    radius += 16.0 * Real::EPSILON * (motions.iter().map(terms).sum::<Real>() + radius);
+    radius += FEW_OPERATIONS * (motions.iter().map(terms).sum::<Real>() + radius);
     let y = Vec3::<f64>::from_vector(centers[1]) - Vec3::from_vector(centers[0]);
     let rate = Vec3::<f64>::from_vector(motions[1].linvel) - Vec3::from_vector(motions[0].linvel);
     if y.length() > f64::from(radius) {

@@ -1,6 +1,7 @@
 //! How fast two colliders move against each other where they may meet: what decides whether rapier's solver gets them.
 //! Parts of medial meshes are looked at one by one in [`crate::rapier::impacts::fast_parts`].
 
+use crate::math::tolerance::FEW_OPERATIONS;
 use crate::math::{Real, Vector};
 use crate::rapier::view::step_view::StepView;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -42,7 +43,7 @@ impl StepView {
             moments.map(|[a, b]| (at(a) - at(b)).length())
         });
         // Rounding: a few ulps.
-        speeds.fold(0.0, Real::max) * (1.0 + 16.0 * Real::EPSILON)
+        speeds.fold(0.0, Real::max) * (1.0 + FEW_OPERATIONS)
     }
 
     /// Box of the part of a box that is below a half-space's plane or within `margin` of it; all of the box if the
@@ -58,7 +59,7 @@ impl StepView {
         let pose = self.motion(part, 0.0).start;
         let normal = pose.rotation * plane.normal;
         let size = aabb.mins.abs().max(aabb.maxs.abs()) + pose.translation.abs();
-        let rounding = 16.0 * Real::EPSILON * size.element_sum();
+        let rounding = FEW_OPERATIONS * size.element_sum();
         let height = normal.dot(pose.translation) + margin + p.skin + rounding;
         box_below(aabb, normal, height)
     }
