@@ -9,6 +9,7 @@ use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::union_find::Groups;
 use crate::meshing::surface::orient::Patches;
 use crate::meshing::watch::Watch;
 
@@ -101,18 +102,19 @@ fn all_openings(
     watch: &mut Watch,
 ) -> Result<Vec<Opening>, BuildError> {
     let mut places: FastMap<[u32; 2], u32> = FastMap::default();
-    let mut rims = Rims::default();
+    let mut rims = Groups::new(0);
     let mut edges: Vec<u32> = Vec::with_capacity(patches.rims.len());
     for (i, &([a, b], patch)) in patches.rims.iter().enumerate() {
         watch.every(i)?;
         let mut place = |v: u32| *places.entry([patch, v]).or_insert_with(|| rims.add());
         let [a, b] = [a, b].map(&mut place);
-        edges.push(rims.join(a, b));
+        rims.join(a, b);
+        edges.push(a);
     }
     let mut found: FastMap<u32, Opening> = FastMap::default();
     for (i, place) in edges.iter().enumerate() {
         watch.every(i)?;
-        let root = rims.root(*place);
+        let root = rims.find(*place);
         let ([a, b], patch) = patches.rims[i];
         let opening = found.entry(root).or_insert_with(|| Opening {
             patch,
@@ -164,30 +166,4 @@ impl Opening {
 /// Whether a point of a lid is at the boundary of the solid.
 fn is_at_boundary(tree: &TriangleTree, p: Point) -> bool {
     (tree.winding(p) - 0.5).abs() < UNDECIDED
-}
-
-/// Union and find over the ends of open edges.
-#[derive(Default)]
-struct Rims(Vec<u32>);
-
-impl Rims {
-    fn add(&mut self) -> u32 {
-        self.0.push(self.0.len() as u32);
-        self.0.len() as u32 - 1
-    }
-
-    fn root(&mut self, mut at: u32) -> u32 {
-        while self.0[at as usize] != at {
-            let up = self.0[at as usize];
-            self.0[at as usize] = self.0[up as usize];
-            at = self.0[at as usize];
-        }
-        at
-    }
-
-    fn join(&mut self, a: u32, b: u32) -> u32 {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-        a.min(b)
-    }
 }

@@ -12,7 +12,7 @@ use crate::math::Real;
 use crate::math::fast_hash::FastSet;
 use crate::rapier::host::multibody_energy::FastMultibodies;
 use crate::rapier::view::all_joints::for_each_joint;
-use crate::rapier::view::groups::Groups;
+use crate::rapier::view::groups::BodyGroups;
 use crate::rapier::view::joint_opening::opening;
 use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
@@ -91,7 +91,7 @@ impl Substeps {
 /// Bodies that hang together by joints, and which of them have a joint that is wide open, or presses its bodies into
 /// each other.
 struct Strained {
-    groups: Groups,
+    groups: BodyGroups,
     strained: FastSet<usize>,
 }
 
@@ -101,7 +101,7 @@ impl Strained {
         (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
         unit: Real,
     ) -> Self {
-        let mut groups = Groups::default();
+        let mut groups = BodyGroups::default();
         let mut strained = Vec::new();
         for_each_joint(joints, multibodies, |handles, joint| {
             let [Some(&a), Some(&b)] = handles.map(|h| view.index.get(&h)) else {

@@ -11,7 +11,7 @@ use crate::math::fast_hash::FastMap;
 use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
-use crate::rapier::view::groups::Groups;
+use crate::rapier::view::groups::BodyGroups;
 use crate::rapier::view::joint_opening::opening;
 use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
@@ -53,7 +53,7 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
     let sunk: Vec<_> = sunk
         .filter(|(_, bodies, _)| bodies.iter().any(free))
         .collect();
-    let mut groups = Groups::default();
+    let mut groups = BodyGroups::default();
     for (_, bodies, _) in &sunk {
         if yielding(view, *bodies).is_none() {
             groups.join(*bodies);
@@ -113,14 +113,14 @@ pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Ve
 /// Bodies that hang by joints on hands: bodies that move and do not give way.
 struct Hands {
     /// Free bodies that joints hold together.
-    groups: Groups,
+    groups: BodyGroups,
     /// A body that hangs on a hand, the hand, and the length by which their joint is open.
     held: Vec<([usize; 2], Real)>,
 }
 
 impl Hands {
     fn find(view: &StepView, rules: &Rules) -> Self {
-        let mut groups = Groups::default();
+        let mut groups = BodyGroups::default();
         let mut held = Vec::new();
         let joints = (rules.impulse_joints, rules.multibody_joints);
         for_each_joint(joints.0, joints.1, |handles, joint| {
