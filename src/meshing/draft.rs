@@ -8,7 +8,7 @@ pub use crate::math::sphere::Ball;
 use crate::math::{Real, Vector};
 use crate::medial::simplex::{sides, sorted};
 use crate::medial::{MedialMesh, MedialSphere};
-use crate::meshing::surface::checked_surface::Frame;
+use crate::meshing::surface::checked_surface::BuilderFrame;
 use crate::meshing::watch::bytes_of;
 
 /// Balls joined by edges and faces.
@@ -82,7 +82,7 @@ impl Draft {
     /// Rounding to `f32` moves a centre; its radius grows by as much and is rounded up, so that the
     /// solid still covers what it covered: the ball of weights α moves by at most Σ αᵢ δᵢ and grows
     /// by at least that.
-    pub fn to_medial_mesh(&self, frame: &Frame) -> Result<MedialMesh, MeshError> {
+    pub fn to_medial_mesh(&self, frame: &BuilderFrame) -> Result<MedialMesh, MeshError> {
         let spheres = self
             .balls
             .iter()
@@ -98,7 +98,7 @@ impl Draft {
     }
 
     /// The draft of a medial mesh, brought into `frame`.
-    pub fn from_medial_mesh(mesh: &MedialMesh, frame: &Frame) -> Self {
+    pub fn from_medial_mesh(mesh: &MedialMesh, frame: &BuilderFrame) -> Self {
         Self {
             balls: mesh
                 .spheres()

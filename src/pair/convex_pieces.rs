@@ -16,7 +16,7 @@ use super::apart::{end_along, ends_hold};
 use super::deepening::given;
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::path_ends::{held_on_paths, path_ends};
-use super::piece_contact::{Look, Nearest, Pieces, PiecesMet, is_blunt, patch, placed};
+use super::piece_contact::{PieceGap, PieceLook, PiecePair, PiecesMet, is_blunt, patch, placed};
 use super::primitive_tree::{PrimitiveTree, thickness};
 use super::search::FirstContactSearch;
 use crate::elementary::bracket::Bracket;
@@ -46,10 +46,10 @@ const AIM_BELOW: f64 = 0.99;
 
 impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
     /// Looks at two nodes, proven free until a time, as convex pieces.
-    pub(super) fn look_at_pieces(&mut self, [i, j]: [u32; 2], time: f64) -> Look {
+    pub(super) fn look_at_pieces(&mut self, [i, j]: [u32; 2], time: f64) -> PieceLook {
         let nodes = [self.sides.0.node(i).node, self.sides.1.node(j).node];
         if !(self.sides.0.body.is_convex(nodes[0]) && self.sides.1.body.is_convex(nodes[1])) {
-            return Look::Split;
+            return PieceLook::Split;
         }
         let pieces = match self.convex.get(&nodes) {
             Some(pieces) => *pieces,
@@ -60,7 +60,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
             }
         };
         let Some(mut pieces) = pieces else {
-            return Look::Split;
+            return PieceLook::Split;
         };
         self.sides.0.sweep_piece(i);
         self.sides.1.sweep_piece(j);
@@ -71,7 +71,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
 
     /// The gap at which two pieces meet; `None` if their primitives decide. Notes that they touch at the start, where
     /// they do and may.
-    fn begin_pieces(&mut self, nodes: [u32; 2], time: f64) -> Option<Pieces> {
+    fn begin_pieces(&mut self, nodes: [u32; 2], time: f64) -> Option<PiecePair> {
         let (a, b) = (self.sides.0.body, self.sides.1.body);
         let thicknesses = [thickness(a, nodes[0]), thickness(b, nodes[1])];
         let thickness = self.at_most(thicknesses[0].min(thicknesses[1]));
@@ -114,7 +114,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
         let contact = match by.filter(|_| touches && found.gap <= touching - depth) {
             None => touching - depth,
             Some(f64::INFINITY) => {
-                return Some(Pieces {
+                return Some(PiecePair {
                     contact: f64::NEG_INFINITY,
                     touched: false,
                     direction: found.direction,
@@ -134,7 +134,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
             let deepest = (contact - (touching - depth)) / thickness;
             self.touching.push((nodes, deepest));
         }
-        Some(Pieces {
+        Some(PiecePair {
             contact,
             touched,
             direction: found.direction,
@@ -147,17 +147,19 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
         &mut self,
         swept: [u32; 2],
         nodes: [u32; 2],
-        pieces: &mut Pieces,
+        pieces: &mut PiecePair,
         time: f64,
-    ) -> Look {
+    ) -> PieceLook {
         let mut free = self.pieces_held_until(swept, nodes, pieces, time);
         let mut found = None;
         let mut known = pieces.known.take().filter(|(at, _)| *at == time);
         // First any direction that keeps them apart now, then that of the largest gap.
         for is_last in [false, true] {
             match free {
-                None => return Look::Free,
-                Some(free) if !self.gains_too_little(free, time) => return Look::FreeUntil(free),
+                None => return PieceLook::Free,
+                Some(free) if !self.gains_too_little(free, time) => {
+                    return PieceLook::FreeUntil(free);
+                }
                 Some(_) => {}
             }
             let known = known.take();
@@ -177,7 +179,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
                     };
                     found = (hull.gap <= enough).then_some(hull);
                     match is_last {
-                        false => Nearest::of(hull),
+                        false => PieceGap::of(hull),
                         true => self.nearest(nodes, placed.each_ref(), hull, time),
                     }
                 }
@@ -193,21 +195,21 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
                 // How deep they are, hulls say; how far apart, primitives.
                 let is_sure = pieces.contact < 0.0 || near.distance <= pieces.contact;
                 return match near.primitives.filter(|_| is_sure) {
-                    Some(primitives) => Look::Met(PiecesMet::of(
+                    Some(primitives) => PieceLook::Met(PiecesMet::of(
                         nodes,
                         placed.each_ref(),
                         (primitives, near.distance, &near.hull),
                         self.earliest.limits.tolerance,
                     )),
-                    None => Look::Split,
+                    None => PieceLook::Split,
                 };
             }
         }
         match free {
-            None => Look::Free,
-            Some(free) if free > time => Look::FreeUntil(free),
+            None => PieceLook::Free,
+            Some(free) if free > time => PieceLook::FreeUntil(free),
             // Rounding.
-            Some(_) => Look::Split,
+            Some(_) => PieceLook::Split,
         }
     }
 
@@ -218,10 +220,10 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
         hulls: [&PlacedHull; 2],
         hull: HullGap,
         time: f64,
-    ) -> Nearest {
+    ) -> PieceGap {
         let frames = [0, 1].map(|k| self.motions[k].frame(time));
         let bodies = (self.sides.0.body, self.sides.1.body);
-        Nearest::search(
+        PieceGap::search(
             (bodies, nodes),
             (hulls, hull),
             |k, p| frames[k].point(p),
@@ -234,7 +236,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
         &self,
         [i, j]: [u32; 2],
         nodes: [u32; 2],
-        pieces: &Pieces,
+        pieces: &PiecePair,
         time: f64,
     ) -> Option<f64> {
         let ((a, size_a), (b, size_b)) = (self.sides.0.piece(i), self.sides.1.piece(j));

@@ -142,7 +142,7 @@ pub(super) struct HullGap {
 pub(super) fn hull_gap(hulls: [&PlacedHull; 2], enough: f64) -> HullGap {
     let [a, b] = hulls;
     let y = b.middle() - a.middle();
-    let mut best = Best::new(hulls);
+    let mut best = BestDirection::new(hulls);
     let faces = (a.normals.iter().copied()).chain(b.normals.iter().map(|n| -*n));
     let is_found = faces.chain([y]).any(|n| best.attempt(n) > enough);
     if is_found || best.attempt_edges() || best.gap > enough {
@@ -165,10 +165,10 @@ pub(super) fn nearest_points(hulls: [&PlacedHull; 2], found: HullGap) -> HullGap
     if found.nearest.is_some() {
         return found;
     }
-    let mut best = Best {
+    let mut best = BestDirection {
         gap: found.gap,
         direction: found.direction,
-        ..Best::new(hulls)
+        ..BestDirection::new(hulls)
     };
     let nearest = best.attempt_moved(f64::MAX);
     best.found(nearest)
@@ -193,14 +193,14 @@ const ROUNDS: usize = 4;
 const MOST_EDGES: usize = 2048;
 
 /// The direction of the largest gap of two hulls among those tried.
-struct Best<'a> {
+struct BestDirection<'a> {
     hulls: [&'a PlacedHull<'a>; 2],
     rounding: f64,
     gap: f64,
     direction: Vec3<f64>,
 }
 
-impl<'a> Best<'a> {
+impl<'a> BestDirection<'a> {
     fn new(hulls: [&'a PlacedHull<'a>; 2]) -> Self {
         Self {
             hulls,

@@ -7,7 +7,7 @@ use super::contact_list::ContactList;
 use super::face_contacts::{add_nearest, face_contacts};
 use super::first_contact::Counts;
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
-use super::piece_contact::Nearest;
+use super::piece_contact::PieceGap;
 use super::placement::Placement;
 use super::primitive_pair::PrimitivePair;
 use super::primitive_tree::{PrimitiveTree, thickness};
@@ -98,20 +98,20 @@ fn gap([first, second]: [&Resting; 2], enough: f64) -> f64 {
 pub(super) struct Hulls<'a, A, B> {
     bodies: (&'a A, &'a B),
     place: &'a Placement,
-    placed: [Placed; 2],
+    placed: [PlacedHulls; 2],
     /// Convex pieces that were asked for, by their nodes.
     pieces: [FastMap<u32, PlacedHull<'a>>; 2],
 }
 
 /// The hulls of one body that are placed already, because they were asked for.
 #[derive(Default)]
-struct Placed {
+struct PlacedHulls {
     /// One more than the place of each node's hull; 0 where it was not asked for.
     places: Vec<u32>,
     hulls: Vec<Resting>,
 }
 
-impl Placed {
+impl PlacedHulls {
     fn get(
         &mut self,
         body: &impl PrimitiveTree,
@@ -178,7 +178,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
 
     /// Distance of the convex pieces that two nodes hold, if they are within `margin` of each other and apart. Farther
     /// ones get a gap beyond the margin and no primitives.
-    pub(super) fn pieces_nearest(&mut self, nodes: [u32; 2], margin: f64) -> Option<Nearest> {
+    pub(super) fn pieces_nearest(&mut self, nodes: [u32; 2], margin: f64) -> Option<PieceGap> {
         let ((first, second), place) = (self.bodies, self.place);
         let pieces = [first.convex_piece(nodes[0]), second.convex_piece(nodes[1])];
         let is_piece = pieces.iter().any(Option::is_some);
@@ -188,13 +188,13 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
         let hulls = self.pieces(nodes);
         let hull = hull_gap(hulls, margin);
         if hull.gap > margin {
-            return Some(Nearest::of(hull));
+            return Some(PieceGap::of(hull));
         }
         if hull.gap <= 0.0 {
             return None;
         }
         let taken_back = |p| Vec3::from_vector(place.inverse_point(p));
-        Some(Nearest::search(
+        Some(PieceGap::search(
             ((first, second), nodes),
             (hulls, hull),
             |k, p| [p, place.placed(p)][k],

@@ -4,7 +4,7 @@
 use super::apart::{Balls, Reach};
 use super::deepening::{Threshold, free_way};
 use super::primitive_tree::PrimitiveTree;
-use super::queue::{Entry, Open, Tested, WorkItem};
+use super::queue::{Entry, OpenTest, Tested, WorkItem};
 use super::search::FirstContactSearch;
 use super::tips::{SubPrimitive, SubPrimitives};
 use crate::elementary::InitialContact;
@@ -329,7 +329,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
             if let Some(free) = self.above_until([&some[0], &some[1]], &threshold, time) {
                 let place = WorkItem::Test(self.open.len() as u32);
                 self.queue(Entry::at(free, place));
-                self.open.push(Open { of, test, spent: 0 });
+                self.open.push(OpenTest { of, test, spent: 0 });
             }
             true
         });

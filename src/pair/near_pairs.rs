@@ -24,7 +24,7 @@ use super::apart::free_until;
 use super::outline::ActivePrimitives;
 use super::pair_list::PairList;
 use super::primitive_tree::PrimitiveTree;
-use super::swept::{Bits, Side, Touch, split};
+use super::swept::{Bits, NodeContact, Side, split};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::math::Real;
 use crate::math::lane::Vec3;
@@ -106,7 +106,7 @@ impl NearPairs {
         }
         while let Some([i, j]) = stack.pop() {
             let (a, b) = (*sides.0.node(i), *sides.1.node(j));
-            if a.near & b.near == 0 || matches!(a.touch(&b, reach), Touch::Never) {
+            if a.near & b.near == 0 || matches!(a.touch(&b, reach), NodeContact::Never) {
                 continue;
             }
             self.nodes += 1;

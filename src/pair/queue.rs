@@ -33,7 +33,7 @@ pub(super) struct Tested {
 
 /// An elementary test that is under way: its bracket is neither closed nor proven free.
 #[derive(Clone, Copy)]
-pub(super) struct Open {
+pub(super) struct OpenTest {
     /// Place of its [`Tested`] pair in the list of these.
     pub(super) of: u32,
     pub(super) test: ElementaryTest,

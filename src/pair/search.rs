@@ -22,10 +22,10 @@
 
 use super::outline::ActivePrimitives;
 use super::patch::Patch;
-use super::piece_contact::{Look, Pieces, PiecesMet};
+use super::piece_contact::{PieceLook, PiecePair, PiecesMet};
 use super::primitive_tree::PrimitiveTree;
-use super::queue::{Entry, Open, Tested, WorkItem};
-use super::swept::{Side, Touch, split};
+use super::queue::{Entry, OpenTest, Tested, WorkItem};
+use super::swept::{NodeContact, Side, split};
 use crate::elementary::bracket::Limits;
 use crate::elementary::first_contact::{Earliest, options_limits};
 use crate::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
@@ -64,7 +64,7 @@ pub(super) struct FirstContactSearch<'a, A, B> {
     /// One candidate that is not in the heap.
     pub(super) first: Option<Entry>,
     /// Elementary tests that are not settled.
-    pub(super) open: Vec<Open>,
+    pub(super) open: Vec<OpenTest>,
     /// Parts that the open tests are of.
     pub(super) tested: Vec<Tested>,
     /// Pieces begun, and how many there are.
@@ -87,7 +87,7 @@ pub(super) struct FirstContactSearch<'a, A, B> {
     /// they may get, in the units of [`super::first_contact::Query::deepest`].
     pub(super) touching: Vec<([u32; 2], f64)>,
     /// Convex pieces looked at, by the bodies' nodes; `None` where their primitives decide.
-    pub(super) convex: FastMap<[u32; 2], Option<Pieces>>,
+    pub(super) convex: FastMap<[u32; 2], Option<PiecePair>>,
     /// The convex pieces that met, if the contact found is between pieces.
     pub(super) met: Option<PiecesMet>,
     /// Patch in which the pieces found, and all others that meet with them, lie on each other; set when it is asked
@@ -283,9 +283,9 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'a, A, B> {
         let reach = self.reach + self.earliest.limits.tolerance;
         let (mut time, mut depth) = (self.times[0], 0.0);
         match a.touch(b, reach) {
-            Touch::AtStart(deep) => depth = deep,
-            Touch::At(share) => time += share * (self.times[1] - self.times[0]),
-            Touch::Never => return,
+            NodeContact::AtStart(deep) => depth = deep,
+            NodeContact::At(share) => time += share * (self.times[1] - self.times[0]),
+            NodeContact::Never => return,
         }
         time = time.max(from);
         if time <= self.earliest.upper.min(self.times[1]) {
@@ -320,10 +320,10 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'a, A, B> {
             return self.list_tests([i, j], free);
         }
         match self.look_at_pieces([i, j], free) {
-            Look::Free => return true,
-            Look::FreeUntil(free) => return self.wait([i, j], free),
-            Look::Met(met) => return self.take_pieces(met, free),
-            Look::Split => {}
+            PieceLook::Free => return true,
+            PieceLook::FreeUntil(free) => return self.wait([i, j], free),
+            PieceLook::Met(met) => return self.take_pieces(met, free),
+            PieceLook::Split => {}
         }
         let [parts_of_a, parts_of_b] = split(&mut self.sides, [i, j]);
         for a in parts_of_a.clone() {

@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub(super) type Bits = u128;
 
 /// Listed primitive pairs below each node of both bodies, by its number.
-pub(super) type Listed = [Vec<Bits>; 2];
+pub(super) type ListedBits = [Vec<Bits>; 2];
 
 /// Chord of a node's centre over a piece, and the radius around it that covers the node, rounding
 /// included.
@@ -56,7 +56,7 @@ pub(super) fn add_bits(bits: &mut Vec<Bits>, node: u32, more: Bits) {
 }
 
 /// Time at which two swept nodes come within a distance.
-pub(super) enum Touch {
+pub(super) enum NodeContact {
     /// Contact at the start, so deep as a share of the distance, from 0 to -1.
     AtStart(f64),
     /// Contact at this share of the piece.
@@ -67,20 +67,20 @@ pub(super) enum Touch {
 
 impl Swept {
     /// Time at which the balls of two nodes are first within `reach` of each other.
-    pub(super) fn touch(&self, other: &Self, reach: f64) -> Touch {
+    pub(super) fn touch(&self, other: &Self, reach: f64) -> NodeContact {
         let y = other.start - self.start;
         let rate = other.chord - self.chord;
         let radius = self.radius + other.radius + reach;
         let radius = (radius + F64_ROUNDING * radius.abs()).max(0.0);
         let distance = y.length();
         if distance <= radius {
-            return Touch::AtStart((distance - radius) / radius.max(f64::MIN_POSITIVE));
+            return NodeContact::AtStart((distance - radius) / radius.max(f64::MIN_POSITIVE));
         }
         // The margins of the radii cover its rounding.
         let (entry, exists) = first_touch(y, rate, radius);
         match !exists || y.dot(rate) >= 0.0 || entry > 1.0 {
-            true => Touch::Never,
-            false => Touch::At(entry),
+            true => NodeContact::Never,
+            false => NodeContact::At(entry),
         }
     }
 }
@@ -104,7 +104,7 @@ pub(super) struct Side<'a, V> {
     /// Primitives that may meet the other side; `None`: all.
     left: Option<ActivePrimitives>,
     /// List of what may come near it, and which of the bodies this is.
-    near: Option<(Arc<Listed>, usize)>,
+    near: Option<(Arc<ListedBits>, usize)>,
 }
 
 impl<'a, V: PrimitiveTree> Side<'a, V> {
@@ -127,7 +127,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
     }
 
     /// Keeps the search to nodes above listed primitives of this side.
-    pub(super) fn keep_near(&mut self, near: Arc<Listed>, side: usize) {
+    pub(super) fn keep_near(&mut self, near: Arc<ListedBits>, side: usize) {
         self.near = Some((near, side));
     }
 

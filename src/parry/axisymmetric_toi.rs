@@ -100,14 +100,14 @@ struct AxisymmetricSearch<'a> {
     status: ToiStatus,
     lower: f64,
     upper: f64,
-    found: Option<Found>,
+    found: Option<FoundContact>,
     /// Depth of the deepest contact at the start, as [`crate::pair::first_contact::Query::deepest`].
     deepest: f64,
 }
 
 /// The contact found: the nearest sphere, the body's placement then, and the primitives on both sides.
 #[derive(Clone, Copy)]
-struct Found {
+struct FoundContact {
     near: NearBall,
     place: AxisFrame,
     primitives: [u32; 2],
@@ -169,7 +169,7 @@ impl AxisymmetricSearch<'_> {
             steps: 1,
         };
         let Advance { near, place, .. } = self.advance(body, &balls[..len], &limits);
-        self.found = Some(Found {
+        self.found = Some(FoundContact {
             near,
             place,
             primitives: [primitive, entry.body],
@@ -305,7 +305,7 @@ impl AxisymmetricSearch<'_> {
         let overlap =
             advance.met && advance.lower <= 0.0 && advance.near.distance() < target - advance.slack;
         if sooner || overlap {
-            self.found = Some(Found {
+            self.found = Some(FoundContact {
                 near: advance.near,
                 place: advance.place,
                 primitives,

@@ -37,7 +37,7 @@ pub struct SinkLimits {
 #[derive(Clone, Debug)]
 pub struct Sliding<'a> {
     mesh: &'a MedialMesh,
-    poses: [Placed; 2],
+    poses: [PlacedFrame; 2],
     /// A ball that holds the mesh at the start.
     bound: (Vec3<f64>, f64),
     /// How far paths are off their chords, rounding included, a length.
@@ -56,13 +56,13 @@ pub struct Sliding<'a> {
 
 /// The frame of the mesh in that of the ground.
 #[derive(Clone, Copy, Debug)]
-struct Placed {
+struct PlacedFrame {
     /// Columns of its rotation.
     columns: [Vec3<f64>; 3],
     origin: Vec3<f64>,
 }
 
-impl Placed {
+impl PlacedFrame {
     fn new(pose: &Pose) -> Self {
         let columns = [Vector::X, Vector::Y, Vector::Z];
         Self {
@@ -148,7 +148,7 @@ impl<'a> Sliding<'a> {
         );
         Some(Self {
             mesh,
-            poses: poses.map(|pose| Placed::new(&pose)),
+            poses: poses.map(|pose| PlacedFrame::new(&pose)),
             bound,
             bend: (0.125 * acceleration * seconds * seconds + rounding).into(),
             rounding: rounding.into(),
@@ -193,7 +193,7 @@ impl<'a> Sliding<'a> {
     /// from a ground up a slope, and its nearest point is on the fold between the two, straight ahead.
     pub fn comes_to_lie(&self, face: Face, pose: &Pose) -> Option<Vector> {
         let there = Self {
-            poses: [Placed::new(pose); 2],
+            poses: [PlacedFrame::new(pose); 2],
             bound: (self.bound.0, f64::MAX),
             bend: self.rounding,
             grounds: Vec::new(),

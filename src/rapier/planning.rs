@@ -11,7 +11,7 @@ use crate::rapier::host::forced_updates::{self, Forced};
 use crate::rapier::host::multibody_energy::FastMultibodies;
 use crate::rapier::impacts::toi_query::Work;
 use crate::rapier::report::StepReport;
-use crate::rapier::state::State;
+use crate::rapier::state::PipelineState;
 use crate::rapier::step_args::StepArgs;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::view::census::Census;
@@ -22,7 +22,7 @@ use crate::rapier::world::World;
 use std::sync::Arc;
 use web_time::Instant;
 
-impl State {
+impl PipelineState {
     /// Plans a step. Contacts of medial pairs are computed here, in one batch.
     pub fn plan(
         &mut self,

@@ -5,14 +5,14 @@ use crate::math::Real;
 use crate::rapier::impacts::event_loop;
 use crate::rapier::impacts::outcome::Outcome;
 use crate::rapier::impacts::toi_query::Work;
-use crate::rapier::state::State;
+use crate::rapier::state::PipelineState;
 use crate::rapier::step_args::StepArgs;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::view::participants::{Contacts, Participants};
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
 
-impl State {
+impl PipelineState {
     /// Finds and resolves the impacts within the step that rapier has just taken. `depth` is that of the deepest
     /// contact that rapier was given, a length. Where all colliders had to be looked at, the plan has no participants
     /// afterwards.

@@ -21,7 +21,7 @@ use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle};
 use std::sync::Arc;
 
 /// State that a [`MedialPipeline`](crate::MedialPipeline) keeps from step to step.
-pub struct State {
+pub struct PipelineState {
     /// The backend that computes contacts and first contacts of many pairs at once.
     pub batch: Batch,
     /// Place where the dispatcher in rapier's narrow phase finds the plan of a step.
@@ -46,7 +46,7 @@ pub struct State {
     pub kept: Option<StepPlan>,
 }
 
-impl State {
+impl PipelineState {
     /// The state before the first step.
     pub fn new(options: MedialOptions, batch: Batch) -> Self {
         let mut effects = EffectSettings::default();

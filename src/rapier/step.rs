@@ -10,7 +10,7 @@ use crate::rapier::host::sleep_timers::moved_before;
 use crate::rapier::impacts::toi_query::Work;
 use crate::rapier::loans::Loans;
 use crate::rapier::report::StepReport;
-use crate::rapier::state::State;
+use crate::rapier::state::PipelineState;
 use crate::rapier::step_args::StepArgs;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::view::filter_answers::FilterAnswers;
@@ -21,7 +21,7 @@ use rapier3d::pipeline::{EventHandler, PhysicsHooks};
 use std::sync::Arc;
 use web_time::Instant;
 
-impl State {
+impl PipelineState {
     /// Steps the world by `parameters.dt`, in as many parts as it stops. All parts together have one budget.
     pub fn step(
         &mut self,

@@ -59,7 +59,7 @@ pub struct Polygon {
 }
 
 /// A convex body and the roof over it.
-pub struct Body<'a> {
+pub struct ConvexBody<'a> {
     surface: &'a Surface,
     pub planes: Vec<Plane>,
     corners: Vec<RoofCorner>,
@@ -71,7 +71,7 @@ pub struct Body<'a> {
     ground: Vec<Point>,
 }
 
-impl<'a> Body<'a> {
+impl<'a> ConvexBody<'a> {
     /// A body of the source, with the planes and the corners of the roof over it.
     pub fn new(
         surface: &'a Surface,

@@ -24,7 +24,7 @@ const INSIDE: f64 = 0.75;
 
 /// Triangles to become slabs.
 #[derive(Default)]
-struct PrimitiveList {
+struct TriangleList {
     points: Vec<Point>,
     triangles: Vec<[u32; 3]>,
 }
@@ -36,7 +36,7 @@ pub fn open_sheets(
     tree: &TriangleTree,
     watch: &mut Watch,
 ) -> Result<(Draft, usize), BuildError> {
-    let mut soup = PrimitiveList::new(surface, |t| surface.sheet[t], watch)?;
+    let mut soup = TriangleList::new(surface, |t| surface.sheet[t], watch)?;
     if soup.triangles.len() > MAX_TRIANGLES {
         soup.merge_by_cells(soup.coarsest(), watch)?;
     }
@@ -54,12 +54,12 @@ pub fn thin_sheets(
     thickness: f64,
     watch: &mut Watch,
 ) -> Result<Draft, BuildError> {
-    let mut soup = PrimitiveList::new(surface, |t| thin[t], watch)?;
+    let mut soup = TriangleList::new(surface, |t| thin[t], watch)?;
     soup.merge_by_cells(thickness.max(soup.coarsest()), watch)?;
     soup.into_draft(watch)
 }
 
-impl PrimitiveList {
+impl TriangleList {
     fn new(
         surface: &Surface,
         wanted: impl Fn(usize) -> bool,

@@ -10,7 +10,7 @@ use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::quadric::Quadric;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::creases::Creases;
+use crate::meshing::surface::creases::SharpEdges;
 
 /// Largest number of steps of Newton's method; a ball that needs more is given up.
 const MAX_NEWTON_STEPS: usize = 30;
@@ -68,7 +68,7 @@ pub struct Faces<'a> {
     /// Tree of the surface.
     pub tree: &'a TriangleTree,
     /// Smooth groups of the surface.
-    pub creases: &'a Creases,
+    pub creases: &'a SharpEdges,
 }
 
 impl Faces<'_> {

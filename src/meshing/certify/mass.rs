@@ -12,7 +12,7 @@ use crate::math::Real;
 use crate::medial::mass::of_covariance;
 use crate::meshing::findings::MassSource;
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::surface::checked_surface::{Frame, Surface};
+use crate::meshing::surface::checked_surface::{BuilderFrame, Surface};
 use crate::meshing::watch::Watch;
 use nalgebra::Matrix3;
 use parry3d::mass_properties::MassProperties;
@@ -52,7 +52,7 @@ pub fn mass_properties(
 }
 
 /// Mass scales with the third power of the length, inertia with the fifth.
-fn in_user_unit(mut mass: MassProperties, frame: &Frame) -> Option<MassProperties> {
+fn in_user_unit(mut mass: MassProperties, frame: &BuilderFrame) -> Option<MassProperties> {
     let scale = frame.scale;
     mass.local_com = (Point::from_vector(mass.local_com) * scale + frame.center).to_vector();
     mass.inv_mass = (f64::from(mass.inv_mass) / scale.powi(3)) as Real;

@@ -6,7 +6,7 @@
 
 use crate::error::BuildError;
 use crate::math::Real;
-use crate::meshing::axis::flat_axis::{Axis, Body};
+use crate::meshing::axis::flat_axis::{Axis, ConvexBody};
 use crate::meshing::axis::roof::{FIRST, GROUND, roof};
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
@@ -166,7 +166,7 @@ pub fn axis(
         ) else {
             continue;
         };
-        let body = Body::new(surface, faces, planes, corners);
+        let body = ConvexBody::new(surface, faces, planes, corners);
         let polygons = body.polygons();
         let too_blunt = polygons.iter().any(|polygon| {
             let [a, b] = polygon.sides;

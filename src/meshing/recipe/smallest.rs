@@ -60,7 +60,7 @@ struct CountSearch<'a, 'b> {
 }
 
 /// A medial mesh that keeps the limit.
-struct Found {
+struct WithinLimit {
     enclosed: Enclosed,
     count: usize,
     kept_topology: bool,
@@ -122,7 +122,11 @@ impl Source {
 impl CountSearch<'_, '_> {
     /// The smallest number of primitives found that keeps the limit, or else the number from which on more of them gain
     /// nothing.
-    fn run(&mut self, top: usize, watch: &mut Watch) -> Result<Result<Found, usize>, BuildError> {
+    fn run(
+        &mut self,
+        top: usize,
+        watch: &mut Watch,
+    ) -> Result<Result<WithinLimit, usize>, BuildError> {
         let Some(mut count) = self.first(top, watch)? else {
             return Ok(Err(self.flat_from(top, watch)?));
         };
@@ -232,7 +236,11 @@ impl CountSearch<'_, '_> {
     }
 
     /// A medial mesh of a count that keeps the limit, if one is found.
-    fn attempt(&mut self, count: usize, watch: &mut Watch) -> Result<Option<Found>, BuildError> {
+    fn attempt(
+        &mut self,
+        count: usize,
+        watch: &mut Watch,
+    ) -> Result<Option<WithinLimit>, BuildError> {
         watch.attempt();
         self.tried.insert(count);
         self.residual = f64::INFINITY;
@@ -264,7 +272,7 @@ impl CountSearch<'_, '_> {
                 keeping = self.keeping(collapsed.plain, None, watch)?;
             }
             if let Some(enclosed) = keeping {
-                return Ok(Some(Found {
+                return Ok(Some(WithinLimit {
                     count: enclosed.draft.primitives().len(),
                     enclosed,
                     kept_topology,

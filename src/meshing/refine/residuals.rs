@@ -13,7 +13,7 @@
 
 use crate::error::BuildError;
 use crate::meshing::certify::inside::{Cell, Solid};
-use crate::meshing::certify::primitive_tree::Nearest;
+use crate::meshing::certify::primitive_tree::NearestPrimitive;
 use crate::meshing::draft::{Ball, Corners, Draft};
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::chunks::{VERY_COSTLY, map_chunks, map_each};
@@ -174,7 +174,7 @@ fn surface_rows(
     beyond: f64,
     watch: &mut Watch,
 ) -> Result<Vec<(Row, u64)>, BuildError> {
-    let row = |point: Point, near: &Nearest, residual: f64, on_boundary: Point| Row {
+    let row = |point: Point, near: &NearestPrimitive, residual: f64, on_boundary: Point| Row {
         corners: solid.primitives()[near.primitive as usize],
         weights: near.signed.weights,
         normal: direction(on_boundary - solid.ball(near).center),
@@ -274,7 +274,7 @@ fn envelope_rows(
 
 /// Whether a sample is inside the solid, its way out along its normal is longer than `beyond`, and the nearest point of
 /// the primitive that is deepest there is inside other primitives.
-pub fn is_far_inside(solid: &Solid, sample: &Sample, near: &Nearest, beyond: f64) -> bool {
+pub fn is_far_inside(solid: &Solid, sample: &Sample, near: &NearestPrimitive, beyond: f64) -> bool {
     near.signed.distance < 0.0
         && !solid.is_out(sample.point + sample.normal * beyond, near.primitive)
         && solid.onto_boundary(sample.point, near).is_none()

@@ -35,7 +35,7 @@ pub struct SharpEdge {
 }
 
 /// The sharp edges of a surface.
-pub struct Creases {
+pub struct SharpEdges {
     /// Edges at which matter is a wedge of less than 180°.
     pub convex: Vec<SharpEdge>,
     /// Edges at which it is one of more.
@@ -54,7 +54,7 @@ pub struct Creases {
     corners_of: FastMap<u32, Vec<u32>>,
 }
 
-impl Creases {
+impl SharpEdges {
     /// Edges at which normals differ by more than `angle` (rad).
     pub fn new(surface: &Surface, angle: f64, watch: &mut Watch) -> Result<Self, BuildError> {
         let adjacent = adjacent(surface, watch)?;

@@ -7,7 +7,7 @@ use crate::medial::check::LARGEST_REACH;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::surface::checked_surface::{Frame, Surface, corners, cross};
+use crate::meshing::surface::checked_surface::{BuilderFrame, Surface, corners, cross};
 use crate::meshing::surface::openings::{lids, openings};
 use crate::meshing::surface::orient::{Patches, orient};
 use crate::meshing::surface::patches::{PatchKind, classify};
@@ -187,7 +187,7 @@ fn check(vertices: &[Vector], indices: &[[u32; 3]], watch: &mut Watch) -> Result
 
 /// The frame from the box of the vertices that triangles use: a stray vertex must not shrink the
 /// rest.
-fn frame_of(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<Frame, BuildError> {
+fn frame_of(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<BuilderFrame, BuildError> {
     let used = indices
         .iter()
         .flatten()
@@ -202,7 +202,7 @@ fn frame_of(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<Frame, BuildErr
             ),
         });
     }
-    Ok(Frame {
+    Ok(BuilderFrame {
         center: bounds.center(),
         scale,
     })

@@ -16,7 +16,7 @@ use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::impact_history::ImpactHistory;
 use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::joints::jointed_bodies::Joints;
-use crate::rapier::joints::pieces::Pieces;
+use crate::rapier::joints::pieces::MotionPieces;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
@@ -38,7 +38,7 @@ pub struct Response {
     met: ImpactHistory,
     /// Joints, once something was struck.
     pub(crate) joints: Option<Joints>,
-    pub(crate) pieces: Pieces,
+    pub(crate) pieces: MotionPieces,
 }
 
 /// The bodies of two colliders.
@@ -54,7 +54,7 @@ impl Response {
             impulses: BTreeMap::new(),
             met: ImpactHistory::default(),
             joints: None,
-            pieces: Pieces::default(),
+            pieces: MotionPieces::default(),
         }
     }
 

@@ -32,7 +32,7 @@ const UNCLOSED: f64 = 1.0e-2;
 
 /// Result of closing joints: the bodies moved, and until when.
 #[derive(Default)]
-pub struct Piece {
+pub struct MotionPiece {
     /// Bodies whose motion it changed.
     pub moved: Vec<usize>,
     /// Seconds into the step at which their motion ends, if before the step.
@@ -155,9 +155,9 @@ impl Joints {
         [time, dt]: [Real; 2],
         is_next_piece: bool,
         frozen: impl Fn(usize) -> bool,
-    ) -> Piece {
+    ) -> MotionPiece {
         if !self.of_body.contains_key(&from) || time >= dt {
-            return Piece::default();
+            return MotionPiece::default();
         }
         let inertia = |view: &StepView, b: usize| {
             let body = &view.bodies[b];
@@ -203,7 +203,7 @@ impl Joints {
             targets = locked;
         }
         if system.left_open(&targets).1 > UNCLOSED {
-            return Piece::default();
+            return MotionPiece::default();
         }
         let own: Vec<Twist> = system
             .bodies
@@ -224,7 +224,7 @@ impl Joints {
                 view.bodies[b].gain(gained, seconds);
             }
         }
-        Piece { moved, until }
+        MotionPiece { moved, until }
     }
 
     /// Velocities at the end of a piece of the bodies tied to `from`, where one of them is frozen and so blocks the
