@@ -215,7 +215,7 @@ impl Loop<'_> {
         let (view, rules) = (&*self.view, self.rules);
         let allowed = self.allowed.entry(pair);
         let allowed = allowed.or_insert_with(|| rules.respond(view, pair));
-        let is_pressed = hit.depth > 0.0 && self.response.met(pair) == 0;
+        let is_pressed = hit.depth > 0.0 && self.response.impact_count(pair) == 0;
         *allowed &= !(is_pressed && rules.are_jointed(view, pair));
         if *allowed {
             self.queue.insert(pair, hit.time, Pending::Hit(hit));
@@ -257,7 +257,7 @@ impl Loop<'_> {
         {
             return;
         }
-        let met = self.response.met(pair);
+        let met = self.response.impact_count(pair);
         let (policy, deep) = (self.policy, self.is_deep(pair));
         if !self.rules.may_respond(self.view, pair) {
             self.allowed.insert(pair, false);

@@ -35,7 +35,7 @@ pub struct Response {
     pub body_states: Vec<BodyImpactState>,
     /// Between two colliders, those of one normal summed.
     pub impulses: BTreeMap<Pair, Vec<ReportedImpulse>>,
-    met: ImpactHistory,
+    history: ImpactHistory,
     /// Joints, once something was struck.
     pub(crate) joints: Option<Joints>,
     pub(crate) pieces: MotionPieces,
@@ -52,15 +52,15 @@ impl Response {
         Self {
             body_states: vec![BodyImpactState::default(); bodies],
             impulses: BTreeMap::new(),
-            met: ImpactHistory::default(),
+            history: ImpactHistory::default(),
             joints: None,
             pieces: MotionPieces::default(),
         }
     }
 
     /// How often a pair met.
-    pub fn met(&self, pair: Pair) -> u32 {
-        self.met.count(pair)
+    pub fn impact_count(&self, pair: Pair) -> u32 {
+        self.history.count(pair)
     }
 
     /// Whether an impact could still change the motion of either.
@@ -81,8 +81,8 @@ impl Response {
         hit: Hit,
     ) -> Vec<usize> {
         let bodies = bodies(view, pair);
-        let undisturbed = self.met.undisturbed(view, pair, hit.time);
-        self.met.add(view, pair, &hit);
+        let undisturbed = self.history.undisturbed(view, pair, hit.time);
+        self.history.add(view, pair, &hit);
         let leads = [bodies, [bodies[1], bodies[0]]].map(|both| self.leads(view, policy, both));
         for (b, leads) in bodies.into_iter().zip(leads) {
             if self.advance(view, b, hit.time) && !leads {
@@ -182,15 +182,17 @@ impl Response {
         let mut last = changed.clone();
         for round in 0..ROUNDS {
             let mut next = Vec::new();
-            let pairs = self.met.of(view, &last).into_iter();
-            let all = pairs.flat_map(|pair| (0..self.met.places(pair)).map(move |k| (pair, k)));
+            let pairs = self.history.of(view, &last).into_iter();
+            let all = pairs.flat_map(|pair| (0..self.history.places(pair)).map(move |k| (pair, k)));
             for (pair, place) in all.collect::<Vec<_>>() {
                 let own = undisturbed.filter(|_| pair == struck);
                 if own.is_some() && round > 0 {
                     continue;
                 }
                 let frozen = |b: usize| self.body_states[b].frozen;
-                let closing = self.met.closing(view, policy, frozen, (pair, place), time);
+                let closing = self
+                    .history
+                    .closing(view, policy, frozen, (pair, place), time);
                 let Some(hit) = closing else {
                     continue;
                 };
