@@ -12,7 +12,7 @@ use crate::math::lane::Vec3;
 use crate::math::tolerance::F64_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
-use crate::medial::convex_pieces::Face;
+use crate::medial::convex_pieces::PieceFace;
 use parry3d::query::details::contact_support_map_support_map;
 use parry3d::shape::SupportMap;
 
@@ -21,7 +21,7 @@ pub(super) struct PlacedHull<'a> {
     pub(super) spheres: Vec<Ball<f64>>,
     /// The flat faces of the hull in the frame of its body, and their outward normals at the pose. A primitive has
     /// none.
-    pub(super) faces: &'a [Face],
+    pub(super) faces: &'a [PieceFace],
     pub(super) normals: Vec<Vec3<f64>>,
     /// Edges, one of each direction, and the radius of all corners; `None` unless the hull is a polyhedron grown by
     /// that radius.

@@ -24,7 +24,7 @@ use super::apart::free_until;
 use super::outline::ActivePrimitives;
 use super::pair_list::PairList;
 use super::primitive_tree::PrimitiveTree;
-use super::swept::{Bits, NodeContact, Side, split};
+use super::swept::{Bits, NodeContact, SearchSide, split};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::math::Real;
 use crate::math::lane::Vec3;
@@ -86,8 +86,8 @@ impl NearPairs {
         }
         let (left1, left2) = left.map_or((None, None), |[a, b]| (Some(a), Some(b)));
         let mut sides = (
-            Side::new(bodies.0, first, left1),
-            Side::new(bodies.1, second, left2),
+            SearchSide::new(bodies.0, first, left1),
+            SearchSide::new(bodies.1, second, left2),
         );
         sides.0.begin(0.0, 1.0);
         sides.1.begin(0.0, 1.0);
@@ -96,7 +96,10 @@ impl NearPairs {
     }
 
     /// Whether no more than [`MAX_LISTED_PAIRS`] are near.
-    fn walk<A: PrimitiveTree, B: PrimitiveTree>(&mut self, sides: &mut (Side<A>, Side<B>)) -> bool {
+    fn walk<A: PrimitiveTree, B: PrimitiveTree>(
+        &mut self,
+        sides: &mut (SearchSide<A>, SearchSide<B>),
+    ) -> bool {
         let reach = self.reach + self.margin;
         let mut listed: [Vec<Bits>; 2] = Default::default();
         let mut count = 0;

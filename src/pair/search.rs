@@ -25,7 +25,7 @@ use super::patch::Patch;
 use super::piece_contact::{PieceLook, PiecePair, PiecesMet};
 use super::primitive_tree::PrimitiveTree;
 use super::queue::{Entry, OpenTest, Tested, WorkItem};
-use super::swept::{NodeContact, Side, split};
+use super::swept::{NodeContact, SearchSide, split};
 use crate::elementary::bracket::Limits;
 use crate::elementary::first_contact::{Earliest, options_limits};
 use crate::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
@@ -50,7 +50,7 @@ const ROOT_PIECES: u64 = 64;
 /// The state of one search for a first contact: both bodies, the queue, and what is under way. Its methods are in
 /// `waiting.rs`, `leaves.rs`, `convex_pieces.rs` and `ending.rs` too.
 pub(super) struct FirstContactSearch<'a, A, B> {
-    pub(super) sides: (Side<'a, A>, Side<'a, B>),
+    pub(super) sides: (SearchSide<'a, A>, SearchSide<'a, B>),
     pub(super) motions: [RigidMotion<f64>; 2],
     /// Start and end of the piece searched.
     pub(super) times: [f64; 2],
@@ -116,8 +116,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'a, A, B> {
         let target = f64::from(options.target_distance);
         Self {
             sides: (
-                Side::new(bodies.0, motions[0], left1),
-                Side::new(bodies.1, motions[1], left2),
+                SearchSide::new(bodies.0, motions[0], left1),
+                SearchSide::new(bodies.1, motions[1], left2),
             ),
             motions,
             times: [0.0, 1.0],

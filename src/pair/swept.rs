@@ -1,6 +1,6 @@
 //! One body over a piece of the step, as the search for a first contact ([`super::search`]) sees it: the chords
 //! along which the centres of its nodes and primitives move, and radii enlarged by the sagitta, which is how far a
-//! centre may be off its chord. Twin of `Side::chord` on a device: `sweep` in `shaders/swept.wgsl`.
+//! centre may be off its chord. Twin of `SearchSide::chord` on a device: `sweep` in `shaders/swept.wgsl`.
 
 use super::apart::{Balls, SweptBall};
 use super::outline::ActivePrimitives;
@@ -91,7 +91,7 @@ impl Swept {
 const COVERED_TURN: f64 = 32.0;
 
 /// One side of a search. A node is swept once, however many nodes of the other side it meets.
-pub(super) struct Side<'a, V> {
+pub(super) struct SearchSide<'a, V> {
     pub(super) body: &'a V,
     motion: RigidMotion<f64>,
     times: [f64; 2],
@@ -107,7 +107,7 @@ pub(super) struct Side<'a, V> {
     near: Option<(Arc<ListedBits>, usize)>,
 }
 
-impl<'a, V: PrimitiveTree> Side<'a, V> {
+impl<'a, V: PrimitiveTree> SearchSide<'a, V> {
     pub(super) fn new(
         body: &'a V,
         motion: RigidMotion<f64>,
@@ -293,7 +293,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
 
 /// Children that replace two swept nodes, at least one of which is not a leaf.
 pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
-    sides: &mut (Side<A>, Side<B>),
+    sides: &mut (SearchSide<A>, SearchSide<B>),
     [i, j]: [u32; 2],
 ) -> [Range<u32>; 2] {
     let (a, b) = (sides.0.node(i), sides.1.node(j));

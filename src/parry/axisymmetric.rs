@@ -62,7 +62,7 @@ pub struct AxisFrame {
 }
 
 /// Difference of two balls: of their centres, and of their radii.
-type Edge = (Vec3<f64>, f64);
+type BallDifference = (Vec3<f64>, f64);
 
 /// An interpolated sphere near the body.
 #[derive(Clone, Copy, Debug)]
@@ -82,7 +82,7 @@ impl NearBall {
     }
 
     /// Change of the signed distance along an edge: `edge` of the centre, `grow` of the radius.
-    fn slope(&self, (edge, grow): Edge) -> f64 {
+    fn slope(&self, (edge, grow): BallDifference) -> f64 {
         self.direction.dot(edge) - grow
     }
 }
@@ -220,7 +220,14 @@ impl Axisymmetric {
         }
     }
 
-    fn along(&self, place: &AxisFrame, from: Ball, edge: Edge, until: f64, sharp: f64) -> NearBall {
+    fn along(
+        &self,
+        place: &AxisFrame,
+        from: Ball,
+        edge: BallDifference,
+        until: f64,
+        sharp: f64,
+    ) -> NearBall {
         let ends = [from, moved(from, edge, until)];
         let is_sharp = |near: &NearBall| self.is_sharp(place, near, &ends, sharp);
         minimise(until, edge.0.length(), is_sharp, |x| {
@@ -238,11 +245,11 @@ impl Axisymmetric {
     }
 }
 
-fn edge(a: Ball, b: Ball) -> Edge {
+fn edge(a: Ball, b: Ball) -> BallDifference {
     (b.center - a.center, b.radius - a.radius)
 }
 
-fn moved(from: Ball, edge: Edge, share: f64) -> Ball {
+fn moved(from: Ball, edge: BallDifference, share: f64) -> Ball {
     Ball::new(from.center + edge.0 * share, from.radius + edge.1 * share)
 }
 

@@ -261,7 +261,7 @@ fn add_face(
 }
 
 /// One side of a rectangle about the origin of a plane.
-struct Side {
+struct RectangleSide {
     /// Stretch of the side that is nearest to anything within a span, and somewhat more.
     ends: [Real; 2],
     /// Lengths from the right angle to the ends of the legs: of two such, a triangle that covers both spans. The spans'
@@ -269,7 +269,7 @@ struct Side {
     leg: Option<[Real; 2]>,
 }
 
-impl Side {
+impl RectangleSide {
     /// `None` where none of it is within the span.
     fn new(half: Real, [least, most]: [Real; 2]) -> Option<Self> {
         if least > half || most < -half {
@@ -298,7 +298,7 @@ fn add_rectangle(
     spans: [[Real; 2]; 2],
     at: impl Fn([Real; 2]) -> MedialSphere,
 ) {
-    let [Some(x), Some(y)] = [0, 1].map(|k| Side::new(half[k], spans[k])) else {
+    let [Some(x), Some(y)] = [0, 1].map(|k| RectangleSide::new(half[k], spans[k])) else {
         return;
     };
     if let (Some([x, across]), Some([y, up])) = (x.leg, y.leg) {

@@ -11,7 +11,7 @@ use super::meshes::Meshes;
 use super::shaders::CULL;
 use super::stage::Stage;
 use super::texels::{ROW, Texels};
-use super::transfer::{ALIGNMENT, Target, Transfer};
+use super::transfer::{ALIGNMENT, CopyTarget, Transfer};
 use crate::error::GpuError;
 use wgpu::BufferUsages;
 
@@ -147,14 +147,20 @@ impl Cull {
         let (nodes, nodes_from) = unsent(&meshes.nodes, nodes * size_of::<Node>());
         let sent = primitives * size_of::<Primitive>();
         let (primitives, primitives_from) = unsent(&meshes.primitives, sent);
-        let items: [(&[u8], Target<'_>); 4] = [
+        let items: [(&[u8], CopyTarget<'_>); 4] = [
             (
                 bytemuck::bytes_of(&params),
-                Target::Buffer(&self.params.buffer, 0),
+                CopyTarget::Buffer(&self.params.buffer, 0),
             ),
-            (bytemuck::cast_slice(pairs), Target::Rows(&self.pairs, 0)),
-            (nodes, Target::Rows(&self.nodes, nodes_from)),
-            (primitives, Target::Rows(&self.primitives, primitives_from)),
+            (
+                bytemuck::cast_slice(pairs),
+                CopyTarget::Rows(&self.pairs, 0),
+            ),
+            (nodes, CopyTarget::Rows(&self.nodes, nodes_from)),
+            (
+                primitives,
+                CopyTarget::Rows(&self.primitives, primitives_from),
+            ),
         ];
         let sizes = items.map(|(bytes, to)| to.room(bytes.len()));
         up.begin(context, &sizes).await?;

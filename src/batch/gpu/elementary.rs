@@ -7,7 +7,7 @@ use super::layout::{ElementaryParams, FREE, Query, THREADS};
 use super::shaders::ELEMENTARY;
 use super::stage::Stage;
 use super::texels::Texels;
-use super::transfer::{ALIGNMENT, Target, Transfer};
+use super::transfer::{ALIGNMENT, CopyTarget, Transfer};
 use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
@@ -91,8 +91,8 @@ impl Elementary {
             }
         }
         self.bound = true;
-        let to_params = Target::Buffer(&self.params.buffer, 0);
-        let to_queries = Target::Rows(&self.queries, 0);
+        let to_params = CopyTarget::Buffer(&self.params.buffer, 0);
+        let to_queries = CopyTarget::Rows(&self.queries, 0);
         let sizes = [to_params.room(params.len()), to_queries.room(queries)];
         up.begin(context, &sizes).await?;
         let timed = Clock::bytes(context.clock.as_ref());

@@ -137,7 +137,7 @@ impl Cells {
 }
 
 /// One convex piece of a body.
-pub struct Piece {
+pub struct SolidPiece {
     /// Planes of the piece, outward, one for each face.
     pub planes: Vec<Plane>,
     /// Faces of the piece, which name their planes.
@@ -151,7 +151,7 @@ pub fn convex_pieces(
     on: f64,
     tree: &TriangleTree,
     watch: &mut Watch,
-) -> Result<Option<Vec<Piece>>, BuildError> {
+) -> Result<Option<Vec<SolidPiece>>, BuildError> {
     let Some(cells) = Cells::new(planes, on, tree, watch)? else {
         return Ok(None);
     };
@@ -198,7 +198,7 @@ pub fn convex_pieces(
 }
 
 /// The polyhedron on the sides `below` of the planes `kept`.
-fn bounded(planes: &[Plane], on: f64, below: u64, kept: u64) -> Option<Piece> {
+fn bounded(planes: &[Plane], on: f64, below: u64, kept: u64) -> Option<SolidPiece> {
     let mut solid = Convex::cube(HALF_BOX, BOX);
     let mut outward = Vec::new();
     for (i, plane) in planes.iter().enumerate() {
@@ -218,7 +218,7 @@ fn bounded(planes: &[Plane], on: f64, below: u64, kept: u64) -> Option<Piece> {
     let faces = &solid.faces;
     let all = (0..outward.len() as u32).all(|i| faces.iter().any(|face| face.plane == i));
     let closed = faces.iter().all(|face| face.plane != BOX);
-    (all && closed).then_some(Piece {
+    (all && closed).then_some(SolidPiece {
         planes: outward,
         solid,
     })

@@ -27,7 +27,7 @@ use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
 use crate::meshing::certify::inside::{Cell, Solid};
-use crate::meshing::certify::largest::{Effort, LargestDistance, Look, Side};
+use crate::meshing::certify::largest::{DividedSurface, Effort, LargestDistance, Look};
 use crate::meshing::draft::Draft;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Point, direction};
@@ -286,7 +286,7 @@ impl FromSource<'_> {
     }
 }
 
-impl Side for FromSource<'_> {
+impl DividedSurface for FromSource<'_> {
     type Piece = ([Point; 3], u32);
 
     fn radius(&self, (corners, _): &Self::Piece) -> f64 {
@@ -321,7 +321,7 @@ struct FromBoundary<'a> {
     triangle: u32,
 }
 
-impl Side for FromBoundary<'_> {
+impl DividedSurface for FromBoundary<'_> {
     type Piece = Cell;
 
     fn radius(&self, cell: &Cell) -> f64 {

@@ -225,11 +225,11 @@ impl<'a> Solid<'a> {
             point: None,
             cells: 0,
         };
-        let mut waiting = BinaryHeap::from([Waiting {
+        let mut waiting = BinaryHeap::from([PendingCell {
             bound: 0.0,
             cell: cube,
         }]);
-        while let Some(Waiting { bound, cell }) = waiting.pop() {
+        while let Some(PendingCell { bound, cell }) = waiting.pop() {
             let room = (share * best.distance).max(WAY_OUT_LENGTH);
             if best.distance <= enough || bound >= best.distance - room {
                 break;
@@ -247,7 +247,7 @@ impl<'a> Solid<'a> {
                 }
             }
             if cell.radius() > 0.5 * room {
-                waiting.extend(cell.children().map(|cell| Waiting {
+                waiting.extend(cell.children().map(|cell| PendingCell {
                     bound: cell.distance(p),
                     cell,
                 }));
@@ -269,12 +269,12 @@ pub struct Exit {
 }
 
 /// A cell to be searched, and its distance.
-struct Waiting {
+struct PendingCell {
     bound: f64,
     cell: Cell,
 }
 
-least_first!(Waiting, bound);
+least_first!(PendingCell, bound);
 
 #[cfg(test)]
 mod tests {

@@ -57,7 +57,7 @@ pub enum Look {
 }
 
 /// A surface in pieces, to find the largest distance over.
-pub trait Side {
+pub trait DividedSurface {
     /// A piece of it.
     type Piece: Copy;
     /// Distance from a piece's centre to its farthest point.
@@ -109,7 +109,7 @@ impl Effort {
 }
 
 /// A search for the largest distance.
-pub struct LargestDistance<'a, S: Side> {
+pub struct LargestDistance<'a, S: DividedSurface> {
     side: &'a mut S,
     /// The largest distance found.
     pub best: f64,
@@ -128,7 +128,7 @@ pub struct LargestDistance<'a, S: Side> {
     widest: f64,
 }
 
-impl<'a, S: Side> LargestDistance<'a, S> {
+impl<'a, S: DividedSurface> LargestDistance<'a, S> {
     /// A search for distances above `floor`, with the distance `start` found before, over about
     /// the effort's share of `budget` pieces.
     pub fn new(side: &'a mut S, start: f64, floor: f64, effort: Effort, budget: f64) -> Self {

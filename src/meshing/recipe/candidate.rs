@@ -10,7 +10,7 @@ use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::{Hausdorff, Quality, Variant};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::recipe::tightened::GAIN_OF_TIGHT;
-use crate::meshing::refine::refit::Target;
+use crate::meshing::refine::refit::FitTarget;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 
@@ -149,7 +149,7 @@ impl Source {
         &self,
         mut best: Option<Enclosed>,
         other: Draft,
-        target: Option<&Target>,
+        target: Option<&FitTarget>,
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
         let (loose, before) = self.covering(other, watch)?;

@@ -3,7 +3,7 @@
 
 use crate::error::BuildError;
 use crate::math::Real;
-use crate::meshing::axis::convex_pieces::{MOST_PLANES, Piece, convex_pieces};
+use crate::meshing::axis::convex_pieces::{MOST_PLANES, SolidPiece, convex_pieces};
 use crate::meshing::certify::largest::Effort;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
@@ -108,7 +108,8 @@ impl Source {
         let pieces = convex_pieces(&planes, on, &self.tree, watch)?;
         // Corners this near to a plane are on it, in cells and in pieces, and source corners beside it.
         let beside = 2.0 * on + beyond;
-        let parts = |pieces: Vec<Piece>| pieces.iter().map(|p| self.surface_of(p, on)).collect();
+        let parts =
+            |pieces: Vec<SolidPiece>| pieces.iter().map(|p| self.surface_of(p, on)).collect();
         Ok(pieces.map(|pieces| (parts(pieces), beside)))
     }
 
@@ -183,7 +184,7 @@ impl Source {
     }
 
     /// The surface of a piece, with the source's own vertices where its corners are at these.
-    fn surface_of(&self, piece: &Piece, on: f64) -> PieceSurface<'_> {
+    fn surface_of(&self, piece: &SolidPiece, on: f64) -> PieceSurface<'_> {
         let mut vertices: Vec<Point> = Vec::new();
         let mut index = |p: Point| {
             let near = |q: &Point| (p - *q).length() <= 2.0 * on;

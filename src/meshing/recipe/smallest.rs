@@ -17,7 +17,7 @@ use crate::meshing::recipe::ladder::Ladder;
 use crate::meshing::recipe::source::{GAVE_UP, Source};
 use crate::meshing::recipe::tightened::GAIN_OF_TIGHT;
 use crate::meshing::refine::fit;
-use crate::meshing::refine::refit::Target;
+use crate::meshing::refine::refit::FitTarget;
 use crate::meshing::watch::Watch;
 use std::collections::BTreeSet;
 
@@ -288,7 +288,7 @@ impl CountSearch<'_, '_> {
     fn keeping(
         &self,
         draft: Draft,
-        target: Option<&Target>,
+        target: Option<&FitTarget>,
         watch: &mut Watch,
     ) -> Result<Option<Enclosed>, BuildError> {
         let (source, limit) = (self.source, self.limit);

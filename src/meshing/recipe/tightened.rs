@@ -14,7 +14,7 @@ use crate::meshing::certify::inside::Solid;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::random::Random;
 use crate::meshing::recipe::source::Source;
-use crate::meshing::refine::refit::{Target, refit};
+use crate::meshing::refine::refit::{FitTarget, refit};
 use crate::meshing::refine::residuals::{is_far_inside, way_out};
 use crate::meshing::surface::samples::{Sample, even_samples, vertex_samples};
 use crate::meshing::watch::Watch;
@@ -58,7 +58,7 @@ impl Source {
         &self,
         loose: &Draft,
         most: f64,
-        target: &Target,
+        target: &FitTarget,
         watch: &mut Watch,
     ) -> Result<Option<Draft>, BuildError> {
         if !self.limits.enclose || watch.ends_fit(BUDGET) {

@@ -10,8 +10,8 @@ use crate::meshing::axis::shrinking_ball::{SMALLEST_BALL, shrink};
 use crate::meshing::draft::{Ball, Corners, Draft};
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::triangle_tree::{GUESS, TriangleTree};
-use crate::meshing::refine::refit::Target;
-use crate::meshing::refine::residuals::Row;
+use crate::meshing::refine::refit::FitTarget;
+use crate::meshing::refine::residuals::ResidualRow;
 use crate::meshing::watch::Watch;
 
 /// Error (longest side 1) below which no primitive is inserted.
@@ -38,7 +38,7 @@ const FACES_AT_EDGE: usize = 3;
 /// Inserts up to `budget` primitives; gives the number added.
 pub fn insert(
     draft: &mut Draft,
-    target: &Target,
+    target: &FitTarget,
     budget: usize,
     watch: &mut Watch,
 ) -> Result<usize, BuildError> {
@@ -96,7 +96,7 @@ enum InsertionSite {
     End,
 }
 
-fn place(row: &Row, sticks_out: bool, on_surface: bool) -> InsertionSite {
+fn place(row: &ResidualRow, sticks_out: bool, on_surface: bool) -> InsertionSite {
     let [a, b, c] = row.corners;
     if a == b {
         return if on_surface {
@@ -141,13 +141,13 @@ struct Inserter<'a> {
 }
 
 impl Inserter<'_> {
-    fn is_new_place(&self, row: &Row, size: f64) -> bool {
+    fn is_new_place(&self, row: &ResidualRow, size: f64) -> bool {
         let near = |(p, error): &(Point, f64)| (*p - row.point).length() < 3.0 * error.max(size);
         !self.served[row.primitive as usize] && !self.places.iter().any(near)
     }
 
     /// Inserts for one sample; `normal` is the surface's, for samples of it. Whether it did.
-    fn serve(&mut self, row: &Row, normal: Option<Point>, size: f64) -> bool {
+    fn serve(&mut self, row: &ResidualRow, normal: Option<Point>, size: f64) -> bool {
         let sticks_out = normal.is_some() && row.residual > 0.0;
         let touching = normal.map(|n| shrink(self.tree, row.point, -n));
         match place(row, sticks_out, normal.is_some()) {
@@ -181,7 +181,7 @@ impl Inserter<'_> {
     /// primitive crosses a groove, what touches its bottom belongs to another sheet.
     fn splitting_ball(
         &self,
-        row: &Row,
+        row: &ResidualRow,
         place: &InsertionSite,
         touching: Option<Ball>,
     ) -> Option<Ball> {

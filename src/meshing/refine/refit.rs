@@ -17,7 +17,7 @@ use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::triangle_tree::{GUESS, TriangleTree};
 use crate::meshing::refine::residuals::{
-    EnvelopeSample, Residuals, Row, UNKNOWN, envelope_samples, residuals,
+    EnvelopeSample, ResidualRow, Residuals, UNKNOWN, envelope_samples, residuals,
 };
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
@@ -49,7 +49,7 @@ const LEAST_RADIUS: f64 = 1e-4;
 
 /// The samples that a draft is fitted to.
 #[derive(Clone)]
-pub struct Target<'a> {
+pub struct FitTarget<'a> {
     /// The surface.
     pub tree: &'a TriangleTree,
     /// Points of it.
@@ -65,7 +65,7 @@ pub struct Target<'a> {
     pub budget: f64,
 }
 
-impl Target<'_> {
+impl FitTarget<'_> {
     /// Rows of a draft, with fresh envelope samples.
     pub fn residuals(&self, draft: &Draft, watch: &mut Watch) -> Result<Residuals, BuildError> {
         let mut envelope =
@@ -133,7 +133,7 @@ impl Target<'_> {
 /// never made worse by its score, which is returned. Ends early where the budget of fits is spent.
 pub fn refit(
     draft: &mut Draft,
-    target: &Target,
+    target: &FitTarget,
     iterations: usize,
     watch: &mut Watch,
 ) -> Result<f64, BuildError> {
@@ -187,7 +187,7 @@ pub fn refit(
 }
 
 /// Energy of the samples that answer to each ball.
-fn energies(rows: &[Row], balls: usize) -> Vec<f64> {
+fn energies(rows: &[ResidualRow], balls: usize) -> Vec<f64> {
     let mut energies = vec![0.0; balls];
     for row in rows {
         let energy = row.weight * row.residual.abs().powi(3);

@@ -30,7 +30,7 @@ const NODES_OF_CELL: u64 = 40;
 
 /// A sample, the balls that answer for it, and what is wrong there.
 #[derive(Clone, Copy)]
-pub struct Row {
+pub struct ResidualRow {
     /// Balls of its primitive.
     pub corners: Corners,
     /// Weights of the corners; sum 1.
@@ -72,7 +72,7 @@ impl EnvelopeSample {
 /// All rows of a draft: surface samples first, then envelope samples.
 pub struct Residuals {
     /// The rows.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ResidualRow>,
     /// How many of them are surface samples.
     pub surface_rows: usize,
     /// Largest residual of either kind.
@@ -141,7 +141,7 @@ pub fn residuals(
     let paired: Vec<(Sample, u32)> = samples.iter().copied().zip(hints.iter().copied()).collect();
     let counted = surface_rows(&solid, &paired, beyond, watch)?;
     let mut work = counted.iter().map(|c| c.1).sum();
-    let mut rows: Vec<Row> = counted.into_iter().map(|c| c.0).collect();
+    let mut rows: Vec<ResidualRow> = counted.into_iter().map(|c| c.0).collect();
     for (hint, row) in hints.iter_mut().zip(&rows) {
         *hint = row.primitive;
     }
@@ -156,7 +156,7 @@ pub fn residuals(
     watch.count_fit(envelope.len(), work);
     watch.hold(bytes_of(&rows) + bytes_of(&paired) + size_of_val(envelope));
     let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
-    let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();
+    let sum = |f: fn(&ResidualRow) -> f64| rows.iter().map(f).sum::<f64>();
     let squares = sum(|r| r.weight * r.residual * r.residual);
     let rms = (squares / sum(|r| r.weight).max(f64::MIN_POSITIVE)).sqrt();
     Ok(Residuals {
@@ -173,16 +173,17 @@ fn surface_rows(
     paired: &[(Sample, u32)],
     beyond: f64,
     watch: &mut Watch,
-) -> Result<Vec<(Row, u64)>, BuildError> {
-    let row = |point: Point, near: &NearestPrimitive, residual: f64, on_boundary: Point| Row {
-        corners: solid.primitives()[near.primitive as usize],
-        weights: near.signed.weights,
-        normal: direction(on_boundary - solid.ball(near).center),
-        residual,
-        weight: 1.0,
-        point,
-        primitive: near.primitive,
-    };
+) -> Result<Vec<(ResidualRow, u64)>, BuildError> {
+    let row =
+        |point: Point, near: &NearestPrimitive, residual: f64, on_boundary: Point| ResidualRow {
+            corners: solid.primitives()[near.primitive as usize],
+            weights: near.signed.weights,
+            normal: direction(on_boundary - solid.ball(near).center),
+            residual,
+            weight: 1.0,
+            point,
+            primitive: near.primitive,
+        };
     let found = map_chunks(paired, watch, |chunk| {
         let mut last = 0;
         let found = |&(sample, hint): &(Sample, u32)| {
@@ -234,7 +235,7 @@ fn envelope_rows(
     (envelope, share): (&[EnvelopeSample], f64),
     beyond: f64,
     watch: &mut Watch,
-) -> Result<Vec<(Row, u32, u64)>, BuildError> {
+) -> Result<Vec<(ResidualRow, u32, u64)>, BuildError> {
     map_chunks(envelope, watch, |chunk| {
         let mut hint = 0;
         let row = |sample: &EnvelopeSample| {
@@ -257,7 +258,7 @@ fn envelope_rows(
             } else {
                 1.0
             };
-            let row = Row {
+            let row = ResidualRow {
                 corners,
                 weights: sample.weights,
                 normal: sample.normal,

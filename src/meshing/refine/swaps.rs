@@ -9,7 +9,7 @@ use crate::error::BuildError;
 use crate::meshing::draft::Draft;
 use crate::meshing::refine::insert::insert;
 use crate::meshing::refine::measured_collapse::reduce_measured;
-use crate::meshing::refine::refit::{Target, refit};
+use crate::meshing::refine::refit::{FitTarget, refit};
 use crate::meshing::simplify::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::watch::Watch;
@@ -39,7 +39,7 @@ pub struct Swaps {
 /// Swaps among `most` primitives: the start, and after it each draft that is better than all before.
 pub fn swap(
     start: Scored,
-    target: &Target,
+    target: &FitTarget,
     most: usize,
     swaps: Swaps,
     watch: &mut Watch,
@@ -82,7 +82,7 @@ pub fn swap(
 pub fn remove(
     mut simplifier: Simplifier,
     most: usize,
-    target: &Target,
+    target: &FitTarget,
     watch: &mut Watch,
 ) -> Result<Draft, BuildError> {
     if most > LARGE {
@@ -98,7 +98,7 @@ pub fn remove(
 /// fits goes.
 pub fn grow(
     draft: &mut Draft,
-    target: &Target,
+    target: &FitTarget,
     most: usize,
     rounds: usize,
     watch: &mut Watch,
