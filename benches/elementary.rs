@@ -145,7 +145,7 @@ fn batched(queries: &Queries, tolerance: f64, lanes: Lanes) -> Vec<Answer> {
 }
 
 fn paper<S: Scalar>(paths: &[LinearPath<S>], domain: Domain, tolerance: f64) -> Vec<Answer> {
-    let limits = alternating::Limits {
+    let limits = alternating::AlternatingLimits {
         tolerance: S::splat(tolerance),
         max_iterations: CAP,
         start: AlternatingStart::End,

@@ -62,7 +62,7 @@ fn direction(a: Simplex, b: Simplex, t: f32) -> vec3<f32> {
   var best = vec3<f32>();
   var widest = -HUGE;
   for (var round = 0u; round < GILBERT_ROUNDS; round++) {
-    // Of a shorter y the square loses its digits, and n could be longer than 1.
+    // The square of a shorter y loses its digits, and n could be longer than 1.
     let n = y / max(length(y), sqrt(TINY));
     let s = support(a, n, t);
     let r = support(b, -n, t);

@@ -16,14 +16,14 @@ const CHANGES: [(bool, Change); 14] = [
     (false, ("tolerance", |t, x| t.tolerance *= x)),
     (false, ("touching", |t, x| t.touching *= x)),
     (false, ("sink", |t, x| t.sink *= x)),
-    (false, ("hair", |t, x| t.hair *= x)),
+    (false, ("min_sink", |t, x| t.min_sink *= x)),
     (
         false,
         ("max_events", |t, x| {
             t.max_events = (t.max_events as f32 * x) as u32
         }),
     ),
-    (false, ("push_from", |t, x| t.push_from *= x)),
+    (false, ("push_depth", |t, x| t.push_depth *= x)),
     (false, ("tips", |t, x| t.tips *= x)),
     (false, ("push", |t, x| t.push *= x)),
     (true, ("stopping", |t, x| t.stopping *= x)),

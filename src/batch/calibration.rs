@@ -8,7 +8,7 @@ use std::str::FromStr;
 /// The sizes of batches from which on [`super::Backend::Auto`] uses the GPU; see [`super::Batch::calibrate`]. Wrong
 /// sizes cost time, but change no answer.
 ///
-/// As text it has the lines `adapter = NAME`, `jobs = N` and `tests = N`, where N may be `never`. The program `medial`
+/// Its text has the lines `adapter = NAME`, `jobs = N` and `tests = N`, where N may be `never`. The program `medial`
 /// (features `cli` and `gpu`) measures and writes it:
 ///
 /// ```text
@@ -191,7 +191,7 @@ mod measure {
             match wins(1 << exponent) {
                 Ok(true) => least = Some(1 << exponent),
                 Ok(false) => break,
-                // Of no use at this size, be it at smaller ones.
+                // The device is of no use at this size, though it may be at smaller ones.
                 Err(GpuError::TooLarge { .. }) => break,
                 Err(error) => return Err(error),
             }

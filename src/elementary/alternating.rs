@@ -39,7 +39,7 @@ pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions)
         (center, Vec3::from_vector(s.displacement), s.radius)
     };
     let sides = [a, b].map(|side| side.iter().map(mover).collect::<Vec<_>>());
-    let limits = Limits {
+    let limits = AlternatingLimits {
         tolerance: options.tolerance,
         max_iterations: options.max_iterations,
         start: options.alternating_start,
@@ -57,7 +57,7 @@ pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions)
 
 /// Limits of the iteration, and its start.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits<S> {
+pub struct AlternatingLimits<S> {
     /// Distance at which a sphere pair counts as in contact, a length.
     pub tolerance: S,
     /// Cap of the iterations of one elementary test.
@@ -70,7 +70,7 @@ pub struct Limits<S> {
 pub(crate) fn search<S: Scalar>(
     a: &[Mover<S>],
     b: &[Mover<S>],
-    limits: &Limits<S>,
+    limits: &AlternatingLimits<S>,
 ) -> (Option<S>, u32) {
     let (mut first, mut iterations) = (None, 0);
     for_each_test(
@@ -95,9 +95,9 @@ pub(crate) fn search<S: Scalar>(
 pub fn iterate<S: Scalar>(
     path: &LinearPath<S>,
     domain: Domain,
-    limits: &Limits<S>,
+    limits: &AlternatingLimits<S>,
 ) -> (Option<S>, u32) {
-    let &Limits {
+    let &AlternatingLimits {
         tolerance,
         max_iterations,
         start,

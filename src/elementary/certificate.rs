@@ -86,9 +86,9 @@ impl<L: Lane> ActiveFace<L> {
         }
     }
 
-    /// A unit direction with `n·e = d` along the free edges, as optimality asks. `y/|y|` alone is
-    /// ill-conditioned for thin primitives: without this 8–13 % of such queries stall in `f32`.
-    /// Of the two the one with the larger bound is kept.
+    /// A unit direction with `n·e = d` along the free edges, as optimality asks. `y/|y|` alone is ill-conditioned for
+    /// thin primitives: without this 8–13 % of such queries stall in `f32`. The one of the two with the larger bound is
+    /// kept.
     #[inline(always)]
     pub fn direction(&self, domain: Domain, f: &Family<L>) -> Vec3<L> {
         let tiny = L::splat(L::TINY);

@@ -146,13 +146,14 @@ fn in_order<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
 
 /// Signed distance of two slabs, which have many elementary tests: first that one which may have the nearest spheres.
 fn nearest_first<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>) {
-    let mut waiting = [Waiting::new(ElementaryTest::cone_cone([0, 0], [0, 0]), a, b); MOST_TESTS];
+    let mut waiting =
+        [PendingTest::new(ElementaryTest::cone_cone([0, 0], [0, 0]), a, b); MOST_TESTS];
     let mut count = 0;
     for_each_test(
         OwnedFeatures::whole(a.len()),
         OwnedFeatures::whole(b.len()),
         |test| {
-            waiting[count] = Waiting::new(test, a, b);
+            waiting[count] = PendingTest::new(test, a, b);
             count += 1;
             count < MOST_TESTS
         },
@@ -201,13 +202,13 @@ fn nearest_first<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>]) -> (S, Option<Vec3<S>>
 
 /// A test of two primitives that is not computed yet.
 #[derive(Clone, Copy)]
-struct Waiting<S> {
+struct PendingTest<S> {
     test: ElementaryTest,
     /// A lower bound of the distance of its spheres.
     bound: S,
 }
 
-impl<S: Scalar> Waiting<S> {
+impl<S: Scalar> PendingTest<S> {
     /// A test with the lowest bound there can be: no two spheres are deeper in each other than the sum of their radii.
     fn new(test: ElementaryTest, a: &[Ball<S>], b: &[Ball<S>]) -> Self {
         let [p, q, r, s] = test.corners;

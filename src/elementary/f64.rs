@@ -172,7 +172,7 @@ pub fn alternating(a: &[MovingSphere], b: &[MovingSphere], options: &ToiOptions)
     let (Some(a), Some(b)) = (movers(a), movers(b)) else {
         return Toi::bad_input(options);
     };
-    let limits = baseline::Limits {
+    let limits = baseline::AlternatingLimits {
         tolerance: options.tolerance,
         max_iterations: options.max_iterations,
         start: options.alternating_start,

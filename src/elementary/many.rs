@@ -137,7 +137,7 @@ fn by_domain<L: Octet>(
 
 /// A query between two rounds.
 #[derive(Clone, Copy)]
-struct Open {
+struct OpenQuery {
     index: usize,
     /// State of a query in the rows of [`to_rows`] and [`from_rows`].
     state: [f32; LANES],
@@ -172,7 +172,7 @@ fn run<L: Octet>(
             let index = results.len();
             results.push(waiting(&state, !is_open));
             if is_open && limits.max_iterations > 0 {
-                open.push(Open { index, state });
+                open.push(OpenQuery { index, state });
             }
         }
     }
@@ -189,7 +189,7 @@ fn run<L: Octet>(
         let again = L::bits(running.active & rounds.lt(cap));
         let states = to_rows(&running, rounds);
         for lane in (0..count).filter(|lane| again >> lane & 1 == 1) {
-            open.push(Open {
+            open.push(OpenQuery {
                 state: states[lane],
                 ..group[lane]
             });
@@ -304,7 +304,7 @@ fn finish<L: Octet>(
     running: &Running<L>,
     states: &[[f32; LANES]; LANES],
     finished: impl Iterator<Item = usize>,
-    group: &[Open; LANES],
+    group: &[OpenQuery; LANES],
     results: &mut [Bracket<f32>],
 ) {
     let Bracket {

@@ -45,9 +45,9 @@ pub fn gap_along<S: Scalar>(a: &[Ball<S>], b: &[Ball<S>], n: Vec3<S>) -> S {
 
 /// Largest gap over all directions that can attain it, and that direction.
 ///
-/// Of directions whose gap is less by at most `hysteresis` (a fraction of the depth; 0: by
-/// rounding) the one nearest to `preferred` is taken: with the normal of the step before, the
-/// normal of a deep contact follows the bodies and turns over once, not at every tremble.
+/// The direction nearest to `preferred` is taken among those whose gap is less by at most `hysteresis` (a fraction of
+/// the depth; 0: by rounding): with the normal of the step before, the normal of a deep contact follows the bodies and
+/// turns over once, not at every tremble.
 pub fn deepest<S: Scalar>(
     a: &[Ball<S>],
     b: &[Ball<S>],

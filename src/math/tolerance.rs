@@ -1,6 +1,8 @@
 //! Every numeric constant of the queries, with its unit, its derivation and what breaks when it is
 //! wrong.
 
+use crate::math::Real;
+
 /// Rounding slack of a certificate, in units of `EPSILON × scale` (no unit).
 ///
 /// `scale` bounds the numbers whose rounding enters a bound of the distance ([`crate::elementary::path::Path::scale`]):
@@ -53,6 +55,28 @@ pub const ONE_DIRECTION: f64 = 0.985;
 /// tuned: far above what such a computation rounds. Too small, and a bound may be wrong by its rounding; larger, and
 /// pairs are looked at that need not be.
 pub const ROUNDING_ULPS: f64 = 64.0;
+
+/// The same rounding in [`Real`], as a fraction of the sum of the sizes.
+pub const REAL_ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
+
+/// The same rounding in `f64`, as a fraction of the sum of the sizes.
+pub const F64_ROUNDING: f64 = ROUNDING_ULPS * f64::EPSILON;
+
+/// Rounding of up to ten operations in [`Real`] on numbers of one size, as a fraction of it: bounds of speeds, ways and
+/// boxes are raised by it. Smaller, and a bound may be wrong by its rounding.
+pub const FEW_OPERATIONS: Real = 16.0 * Real::EPSILON;
+
+/// Rounding of heights of spheres along a direction that are compared, as a fraction of the coordinates: about eight
+/// ulps of `f32`. Smaller, and faces at one height may count as lower and higher.
+pub const HEIGHT_ROUNDING: Real = 1.0e-6;
+
+/// Angle in radians that a body turns at most in a piece of a search: the sagitta is then below 3 % of the lever arm.
+/// Larger pieces cull worse and prove less; smaller ones repeat the walk down the trees, and cost a pair each on a GPU.
+pub const PIECE_ANGLE: f64 = 0.5;
+
+/// Ratio of their radii up to which two nodes of trees are split together, here and in the shaders. With 1 (one at a
+/// time) approaches take a fifth longer, fast queries a tenth; 1.5 is nearly as good.
+pub const SIMILAR_RADII: f64 = 3.0;
 
 /// Rounding slack of a bound computed on a GPU, in units of `EPSILON × scale` (no unit).
 ///

@@ -19,14 +19,13 @@
 //! last 8       checksum of all before
 //! ```
 //!
-//! # Trust
-//! ItemCounts are compared with the length of the bytes before anything is allocated. The checksum finds every
-//! changed byte. A file forged with a good checksum is checked so far that no query on it panics. It is not
-//! checked that its tree bounds its primitives, that its mass is that of its solid, nor that its parts are convex.
+//! # Trust Counts are compared with the length of the bytes before anything is allocated. The checksum finds every
+//! changed byte. A file forged with a good checksum is checked so far that no query on it panics. It is not checked
+//! that its tree bounds its primitives, that its mass is that of its solid, nor that its parts are convex.
 
 use super::check::{check, check_primitives};
 use super::files::{self, file_error};
-use super::mesh::{MedialMesh, Parts};
+use super::mesh::{MedialMesh, MeshData};
 use super::simplex::Simplex;
 use super::sphere::MedialSphere;
 use super::tree::{Node, NodeKind, SphereTree};
@@ -292,7 +291,7 @@ fn read(content: &[u8], counts: &ItemCounts) -> Result<MedialMesh, AssetError> {
     let tree = SphereTree::from_nodes(nodes, primitives.len()).map_err(|index| {
         AssetError::content("node", index, "out of place", "in a tree of finite spheres")
     })?;
-    let parts = Parts {
+    let parts = MeshData {
         spheres,
         edges,
         faces,

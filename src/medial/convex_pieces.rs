@@ -18,7 +18,7 @@ const ON_FACE: f64 = 1.0e-4;
 
 /// A flat face of a convex piece.
 #[derive(Clone, Debug)]
-pub struct Face {
+pub struct PieceFace {
     /// Outward unit normal.
     pub normal: Vector,
     /// The spheres at its corners by their places in [`ConvexPiece::spheres`], counter-clockwise seen from outside. At
@@ -28,7 +28,7 @@ pub struct Face {
 
 /// The edges of a polyhedron, grown by a radius.
 #[derive(Clone, Debug)]
-pub struct Edges {
+pub struct PieceEdges {
     /// An edge of each direction, the longest: its ends by their places in [`ConvexPiece::spheres`].
     pub ends: Vec<[u32; 2]>,
     /// The radius of all corners, a length.
@@ -44,9 +44,9 @@ pub struct ConvexPiece {
     /// Spheres of the piece.
     pub spheres: Vec<MedialSphere>,
     /// Flat faces of the piece.
-    pub faces: Vec<Face>,
+    pub faces: Vec<PieceFace>,
     /// Edges of the piece, if it is a polyhedron grown by one radius; `None` otherwise.
-    pub edges: Option<Edges>,
+    pub edges: Option<PieceEdges>,
     /// Thickness of [`Self::primitive`], a length (`thickness.rs`).
     pub thickness: Real,
     /// Whether each primitive of the piece is blunt (`thickness.rs`).
@@ -86,10 +86,10 @@ impl ConvexPiece {
         let thinnest = thicknesses.min_by(|p, q| p.1.total_cmp(&q.1));
         let (primitive, thickness) = thinnest.unwrap_or((group[0], 0.0));
         let spheres: Vec<_> = vertices.iter().map(|v| spheres[*v as usize]).collect();
-        let mut faces: Vec<Face> = Vec::new();
+        let mut faces: Vec<PieceFace> = Vec::new();
         for found in normals.iter().filter_map(|n| face(&spheres, *n)) {
-            // Of a face that many slabs touch, rounding makes several normals.
-            let holds = |a: &Face, b: &Face| {
+            // A face that many slabs touch has several normals, by rounding.
+            let holds = |a: &PieceFace, b: &PieceFace| {
                 let all = b.corners.iter().all(|k| a.corners.contains(k));
                 all && a.normal.dot(b.normal) > 0.0
             };
@@ -110,9 +110,9 @@ impl ConvexPiece {
 }
 
 /// The edges of the hull of spheres that has these faces, if they close and their corners have one radius.
-fn edges(spheres: &[MedialSphere], faces: &[Face]) -> Option<Edges> {
+fn edges(spheres: &[MedialSphere], faces: &[PieceFace]) -> Option<PieceEdges> {
     let radius = spheres[*faces.first()?.corners.first()? as usize].radius;
-    // Of a closed surface each edge is passed once in each direction.
+    // Each edge of a closed surface is passed once in each direction.
     let mut passed = FastSet::default();
     let mut all = Vec::new();
     for face in faces {
@@ -148,11 +148,11 @@ fn edges(spheres: &[MedialSphere], faces: &[Face]) -> Option<Edges> {
             ends.push(edge);
         }
     }
-    Some(Edges { ends, radius })
+    Some(PieceEdges { ends, radius })
 }
 
 /// The face of the hull of spheres that looks along a unit normal, if it is one.
-fn face(spheres: &[MedialSphere], normal: Vec3<f64>) -> Option<Face> {
+fn face(spheres: &[MedialSphere], normal: Vec3<f64>) -> Option<PieceFace> {
     let center = |s: &MedialSphere| Vec3::<f64>::from_vector(s.center);
     let height = |s: &MedialSphere| normal.dot(center(s)) + f64::from(s.radius);
     let size = (spheres.iter()).map(|s| f64::from(s.center.abs().max_element() + s.radius));
@@ -172,7 +172,7 @@ fn face(spheres: &[MedialSphere], normal: Vec3<f64>) -> Option<Face> {
         p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
     });
     let corners = convex_polygon(&corners, |k| at(*k));
-    (corners.len() > 2).then(|| Face {
+    (corners.len() > 2).then(|| PieceFace {
         normal: normal.to_vector(),
         corners,
     })

@@ -168,8 +168,8 @@ impl<'a> Trimmer<'a> {
         }
         let owners = self.covers.iter().filter(|c| c.owner);
         self.owner = owners.map(|c| c.index).min().unwrap_or(0);
-        // What most likely hides a point is asked first: the sheet's own primitives, cheap to ask,
-        // then the others by their distance from its middle.
+        // The primitives that most likely hide a point are asked first: the sheet's own, cheap to ask, then the others
+        // by their distance from its middle.
         let middle = (lo + hi) * 0.5;
         self.covers.sort_by_cached_key(|c| c.rank(middle));
         self.last = 0;

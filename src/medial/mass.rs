@@ -96,7 +96,7 @@ pub(super) struct Moments {
 }
 
 /// A primitive with its outline's bounds on the lattice.
-struct Outline {
+struct LatticeOutline {
     solver: ChordSolver,
     reach: f64,
     rows: [f64; 2],
@@ -161,17 +161,17 @@ impl Moments {
         };
         let center = (corner(f64::min) + corner(f64::max)) * 0.5;
         let axes = line_frame();
-        let mut outlines: Vec<Outline> = primitives
+        let mut outlines: Vec<LatticeOutline> = primitives
             .iter()
             // A primitive of radius 0 has no volume, yet a line in its plane would hit it.
             .filter(|b| b.iter().any(|s| s.radius > 0.0))
-            .map(|b| Outline::new(b.map(|s| in_frame(s, center, &axes))))
+            .map(|b| LatticeOutline::new(b.map(|s| in_frame(s, center, &axes))))
             .collect();
         let mut moments = Self::in_axes(center, axes);
         let spacing = spacing(&outlines);
-        let first_row = |o: &Outline| (o.rows[0] / spacing).ceil().max(-INDEX_LIMIT);
+        let first_row = |o: &LatticeOutline| (o.rows[0] / spacing).ceil().max(-INDEX_LIMIT);
         outlines.sort_by(|a, b| a.rows[0].total_cmp(&b.rows[0]));
-        let mut active: Vec<&Outline> = Vec::new();
+        let mut active: Vec<&LatticeOutline> = Vec::new();
         let mut stretches: Vec<(f64, [f64; 2])> = Vec::new();
         let mut waiting = outlines.iter().peekable();
         let mut row = -INDEX_LIMIT;
@@ -228,7 +228,7 @@ impl Moments {
     }
 }
 
-impl Outline {
+impl LatticeOutline {
     fn new(balls: [Ball; 3]) -> Self {
         let rows = balls
             .iter()
@@ -294,7 +294,7 @@ impl Outline {
 }
 
 /// Spacing of the lattice: the wanted number of stretches over all outlines, however thin.
-fn spacing(outlines: &[Outline]) -> f64 {
+fn spacing(outlines: &[LatticeOutline]) -> f64 {
     let budget = CHORDS + CHORDS_PER_PRIMITIVE * outlines.len() as f64;
     let [area, sides] = outlines.iter().fold([0.0; 2], |[area, sides], o| {
         let [a, s] = o.size();

@@ -41,7 +41,7 @@ pub struct MedialMesh {
 
 #[derive(Debug)]
 struct MedialData {
-    parts: Parts,
+    parts: MeshData,
     aabb: Aabb,
     solid_mass: OnceLock<MassProperties>,
     boxes: OnceLock<Bvh>,
@@ -54,7 +54,7 @@ struct MedialData {
 
 /// Data of a mesh, and what was computed from it ahead of all queries.
 #[derive(Clone, Debug)]
-pub(super) struct Parts {
+pub(super) struct MeshData {
     pub(super) spheres: Vec<MedialSphere>,
     pub(super) edges: Vec<[u32; 2]>,
     pub(super) faces: Vec<[u32; 3]>,
@@ -116,7 +116,7 @@ impl MedialMesh {
         let primitives = primitives_of(spheres.len(), &edges, &faces);
         let tree = SphereTree::new(&spheres, &primitives);
         let thickness = thickness::typical(&spheres, &primitives);
-        let parts = Parts {
+        let parts = MeshData {
             spheres,
             edges,
             faces,
@@ -146,7 +146,7 @@ impl MedialMesh {
     }
 
     /// Takes parts that fit each other, and the solid's mass properties if they are known.
-    pub(super) fn from_parts(parts: Parts, solid_mass: OnceLock<MassProperties>) -> Self {
+    pub(super) fn from_parts(parts: MeshData, solid_mass: OnceLock<MassProperties>) -> Self {
         let aabb = parts.spheres.iter().fold(Aabb::new_invalid(), |a, s| {
             let r = Vector::splat(s.radius);
             Aabb::new(a.mins.min(s.center - r), a.maxs.max(s.center + r))
@@ -169,7 +169,7 @@ impl MedialMesh {
         }
     }
 
-    pub(super) fn parts(&self) -> &Parts {
+    pub(super) fn parts(&self) -> &MeshData {
         &self.data.parts
     }
 
@@ -177,7 +177,7 @@ impl MedialMesh {
     /// triangle mesh that it stands for; they are not checked. [`Self::from_trimesh`] sets those of its triangles
     /// itself. The data are copied: keep the result, and clone that.
     pub fn with_mass_properties(self, unit_density: MassProperties) -> Self {
-        let parts = Parts {
+        let parts = MeshData {
             source_mass: Some(unit_density),
             ..self.data.parts.clone()
         };
@@ -254,7 +254,7 @@ impl MedialMesh {
 
     /// Swept rectangles round what is below the inner nodes of its tree. Made at the first call.
     pub(crate) fn rectangles(&self) -> &SweptRectangles {
-        let Parts {
+        let MeshData {
             spheres,
             primitives,
             tree,
@@ -298,7 +298,7 @@ impl MedialMesh {
 
     /// How thin it is in each place. Computed at the first call.
     pub(crate) fn thicknesses(&self) -> &Thicknesses {
-        let Parts {
+        let MeshData {
             spheres,
             primitives,
             tree,

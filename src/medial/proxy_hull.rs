@@ -8,7 +8,7 @@ use crate::math::{Real, Vector};
 
 /// Most balls and primitives of an outline: the bits of a mask. A larger mesh is taken for nodes of its
 /// tree.
-pub const MOST: usize = 64;
+pub const MAX_PROXY_ITEMS: usize = 64;
 
 /// A body as a few balls and primitives, in its own frame.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +31,7 @@ impl ProxyHull {
             nodes: vec![0; count],
             ..Self::default()
         };
-        if spheres.len() <= MOST && simplices.len() <= MOST {
+        if spheres.len() <= MAX_PROXY_ITEMS && simplices.len() <= MAX_PROXY_ITEMS {
             proxy.is_exact = true;
             let bits = |vertices: &[u32]| vertices.iter().fold(0, |m, &v| m | 1 << v);
             proxy.balls = spheres.iter().map(|s| (s.center, s.radius)).collect();
@@ -65,11 +65,15 @@ impl ProxyHull {
         proxy
     }
 
-    /// The hull of a shape that lies within the hull of these points, [`MOST`] at most.
+    /// The hull of a shape that lies within the hull of these points, [`MAX_PROXY_ITEMS`] at most.
     pub fn of_points(points: &[Vector]) -> Self {
-        let count = points.len().min(MOST);
+        let count = points.len().min(MAX_PROXY_ITEMS);
         Self {
-            balls: points.iter().map(|p| (*p, 0.0)).take(MOST).collect(),
+            balls: points
+                .iter()
+                .map(|p| (*p, 0.0))
+                .take(MAX_PROXY_ITEMS)
+                .collect(),
             primitives: vec![(0..count).fold(0, |m, k| m | 1 << k)],
             nodes: Vec::new(),
             is_exact: false,
@@ -77,10 +81,10 @@ impl ProxyHull {
     }
 }
 
-/// Nodes of a mesh's tree, more than half of [`MOST`], that together hold all of it.
+/// Nodes of a mesh's tree, more than half of [`MAX_PROXY_ITEMS`], that together hold all of it.
 fn front(tree: &SphereTree) -> Vec<u32> {
     let mut front = vec![0];
-    while front.len() <= MOST / 2 {
+    while front.len() <= MAX_PROXY_ITEMS / 2 {
         let split = |at: u32| match tree.nodes()[at as usize].kind() {
             NodeKind::Nodes(first, second) => [Some(first), Some(second)],
             NodeKind::Primitive(_) => [Some(at), None],

@@ -3,7 +3,7 @@
 //! with swept sphere volumes" (1999).
 //!
 //! The plane of a rectangle is that of the two larger principal axes of the spheres' centres, its sides the best of
-//! `TURNS` directions in that plane. Sides are shortened as far as the swept sphere's roundings still hold
+//! `SIDE_DIRECTIONS` directions in that plane. Sides are shortened as far as the swept sphere's roundings still hold
 //! everything. Only square roots enter, so that rectangles are the same bits on every machine.
 
 use super::simplex::Simplex;
@@ -71,7 +71,7 @@ impl SweptRectangles {
 }
 
 /// Cosines and sines of the directions tried for a rectangle's sides: multiples of 11.25°.
-const TURNS: [(f64, f64); 8] = [
+const SIDE_DIRECTIONS: [(f64, f64); 8] = [
     (1.0, 0.0),
     (0.980_785_280_403_230_4, 0.195_090_322_016_128_27),
     (0.923_879_532_511_286_7, 0.382_683_432_365_089_8),
@@ -95,7 +95,7 @@ fn fitted(balls: &[Ball]) -> SweptRectangle {
         let [u, v] = rectangle.1.map(|[lo, hi]| hi - lo + 2.0 * rectangle.2);
         (u * v, sides, rectangle)
     };
-    let best = TURNS
+    let best = SIDE_DIRECTIONS
         .map(|(cos, sin)| sized([x * cos + y * sin, y * cos - x * sin]))
         .into_iter()
         .min_by(|a, b| a.0.total_cmp(&b.0));
@@ -153,7 +153,7 @@ fn around(
         }
         along[side] = range(lo, hi);
     }
-    // What decides: how far the balls reach from this rectangle.
+    // The measure that decides: how far the balls reach from this rectangle.
     let reach = balls.iter().map(local).map(|(at, r)| {
         let [x, y] = [0, 1].map(|k| beyond(at[k], along[k]));
         let z = at[2] - height;

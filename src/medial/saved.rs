@@ -12,7 +12,7 @@ use std::fmt;
 /// A mesh in text formats: lists of spheres, edges and faces.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "MedialMesh", deny_unknown_fields)]
-struct Listed {
+struct TextMesh {
     /// Centre and radius.
     spheres: Vec<[Real; 4]>,
     #[serde(default)]
@@ -34,7 +34,7 @@ impl Serialize for MedialMesh {
             return serializer.serialize_bytes(&self.to_bytes());
         }
         let numbers = |s: &MedialSphere| [s.center.x, s.center.y, s.center.z, s.radius];
-        Listed {
+        TextMesh {
             spheres: self.spheres().iter().map(numbers).collect(),
             edges: self.edges().to_vec(),
             faces: self.faces().to_vec(),
@@ -50,7 +50,7 @@ impl<'de> Deserialize<'de> for MedialMesh {
         if !deserializer.is_human_readable() {
             return deserializer.deserialize_bytes(Baked);
         }
-        let listed = Listed::deserialize(deserializer)?;
+        let listed = TextMesh::deserialize(deserializer)?;
         let sphere = |&[x, y, z, r]: &[Real; 4]| MedialSphere::new(Vector::new(x, y, z), r);
         let spheres = listed.spheres.iter().map(sphere).collect();
         let mesh = Self::new(spheres, listed.edges, listed.faces).map_err(D::Error::custom)?;

@@ -25,6 +25,12 @@ pub fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
+/// The edges of a triangle, each smaller index first: from its first corner to the second, the second to the third, the
+/// third to the first.
+pub fn sides(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(sorted)
+}
+
 /// Slabs in the order of the faces, then the cones of no slab, then the spheres of neither.
 pub fn primitives_of(spheres: usize, edges: &[[u32; 2]], faces: &[[u32; 3]]) -> Vec<Simplex> {
     let mut edge_taken = HashSet::new();

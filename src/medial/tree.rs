@@ -56,7 +56,7 @@ impl Node {
 
 /// Depth of the deepest node of a tree that is loaded: what is built here splits off an eighth at least, so that no
 /// tree of fewer than 2³² primitives is deeper, and what goes down one recursively has room.
-const DEEPEST: u32 = 192;
+const MAX_DEPTH: u32 = 192;
 
 /// Bounding spheres over primitives; node 0 is the root.
 #[derive(Clone, Debug)]
@@ -104,7 +104,7 @@ impl SphereTree {
 
     /// Takes the nodes of a tree built before over `primitives` primitives. Each node but the root has to
     /// be below exactly one that comes before it, and each primitive below exactly one: then every walk
-    /// ends. No node may be deeper than [`DEEPEST`]. Otherwise gives the first node that is wrong.
+    /// ends. No node may be deeper than [`MAX_DEPTH`]. Otherwise gives the first node that is wrong.
     pub(super) fn from_nodes(nodes: Vec<Node>, primitives: usize) -> Result<Self, usize> {
         let mut seen = vec![false; nodes.len() + primitives];
         let mut first = |index: usize| !std::mem::replace(&mut seen[index], true);
@@ -121,11 +121,11 @@ impl SphereTree {
                 let depth = depths[i] + 1;
                 depths[index..index + 2].fill(depth);
             }
-            if !(numbers && sound && depths[i] <= DEEPEST) {
+            if !(numbers && sound && depths[i] <= MAX_DEPTH) {
                 return Err(i);
             }
         }
-        // As many nodes as a binary tree of so many leaves has: none can be left out.
+        // A binary tree of so many leaves has this many nodes: none can be left out.
         if nodes.len() + 1 != 2 * primitives {
             return Err(nodes.len());
         }

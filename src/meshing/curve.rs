@@ -4,7 +4,7 @@ use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::meshing::certify::hausdorff::in_unit;
 use crate::meshing::draft::Draft;
-use crate::meshing::options::{BuildOptions, Hausdorff, Limits, Progress};
+use crate::meshing::options::{BuildLimits, BuildOptions, Hausdorff, Progress};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
@@ -31,8 +31,7 @@ pub struct ErrorAt {
 /// fitting, covering and measuring are done for each number. `progress` is called as in
 /// [`crate::MedialMesh::from_trimesh_with_progress`].
 ///
-/// # Errors
-/// Those of [`crate::MedialMesh::from_trimesh_with_progress`]; a number of 0 primitives is refused.
+/// # Errors The same as of [`crate::MedialMesh::from_trimesh_with_progress`]; a number of 0 primitives is refused.
 ///
 /// ```no_run
 /// use rapier3d::prelude::*;
@@ -62,12 +61,12 @@ pub fn error_curve(
     counts.dedup();
     for &count in [counts.first(), counts.last()].into_iter().flatten() {
         options.primitives = Some(count);
-        Limits::new(&options)?;
+        BuildLimits::new(&options)?;
     }
     let mut watch = Watch::new(progress);
     watch.begin("surface")?;
     let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;
-    let mut source = Source::new(surface, tree, Limits::new(&options)?);
+    let mut source = Source::new(surface, tree, BuildLimits::new(&options)?);
     let points = source.curve(counts, &mut watch)?;
     watch.finish()?;
     Ok((points, source.surface.frame.scale as Real))

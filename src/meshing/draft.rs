@@ -6,8 +6,9 @@ use crate::math::fast_hash::FastSet;
 use crate::math::lane::Vec3;
 pub use crate::math::sphere::Ball;
 use crate::math::{Real, Vector};
+use crate::medial::simplex::{sides, sorted};
 use crate::medial::{MedialMesh, MedialSphere};
-use crate::meshing::surface::checked_surface::Frame;
+use crate::meshing::surface::checked_surface::BuilderFrame;
 use crate::meshing::watch::bytes_of;
 
 /// Balls joined by edges and faces.
@@ -37,15 +38,12 @@ pub struct Signed {
 impl Draft {
     /// The volumes: slabs, then cones that belong to no slab, then lone balls.
     pub fn primitives(&self) -> Vec<Corners> {
-        let sorted = |a: u32, b: u32| (a.min(b), a.max(b));
         let mut joined = FastSet::default();
         let mut used = vec![false; self.balls.len()];
         let mut primitives = self.faces.clone();
-        for &[a, b, c] in &self.faces {
-            joined.extend([sorted(a, b), sorted(b, c), sorted(c, a)]);
-        }
+        joined.extend(self.faces.iter().flat_map(sides));
         for &[a, b] in &self.edges {
-            if joined.insert(sorted(a, b)) {
+            if joined.insert(sorted([a, b])) {
                 primitives.push([a, b, b]);
             }
         }
@@ -84,7 +82,7 @@ impl Draft {
     /// Rounding to `f32` moves a centre; its radius grows by as much and is rounded up, so that the
     /// solid still covers what it covered: the ball of weights α moves by at most Σ αᵢ δᵢ and grows
     /// by at least that.
-    pub fn to_medial_mesh(&self, frame: &Frame) -> Result<MedialMesh, MeshError> {
+    pub fn to_medial_mesh(&self, frame: &BuilderFrame) -> Result<MedialMesh, MeshError> {
         let spheres = self
             .balls
             .iter()
@@ -100,7 +98,7 @@ impl Draft {
     }
 
     /// The draft of a medial mesh, brought into `frame`.
-    pub fn from_medial_mesh(mesh: &MedialMesh, frame: &Frame) -> Self {
+    pub fn from_medial_mesh(mesh: &MedialMesh, frame: &BuilderFrame) -> Self {
         Self {
             balls: mesh
                 .spheres()

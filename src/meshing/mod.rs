@@ -35,7 +35,7 @@ use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
 use certify::hausdorff::in_unit;
 use certify::mass::mass_properties;
-use options::Limits;
+use options::BuildLimits;
 use recipe::source::Source;
 use std::ops::ControlFlow;
 use surface::checked_surface::Surface;
@@ -82,8 +82,8 @@ impl MedialMesh {
     /// Does the same as [`MedialMesh::from_trimesh`], and calls `progress` several times a second to tell how far
     /// the build is. If `progress` returns `Break`, the build stops.
     ///
-    /// # Errors
-    /// Those of [`MedialMesh::from_trimesh`], and [`BuildError::Cancelled`] if `progress` returned `Break`.
+    /// # Errors The same as of [`MedialMesh::from_trimesh`], and [`BuildError::Cancelled`] if `progress` returned
+    /// `Break`.
     ///
     /// ```
     /// use rapier3d::prelude::*;
@@ -107,7 +107,7 @@ impl MedialMesh {
         options: &BuildOptions,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(MedialMesh, BuildReport), BuildError> {
-        let limits = Limits::new(options)?;
+        let limits = BuildLimits::new(options)?;
         let mut watch = Watch::new(progress);
         watch.begin("surface")?;
         let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;

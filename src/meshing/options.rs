@@ -233,7 +233,7 @@ pub struct BuildReport {
 }
 
 /// The options, checked, in double precision.
-pub(crate) struct Limits {
+pub(crate) struct BuildLimits {
     pub primitives: Option<usize>,
     pub max_error: Option<f64>,
     pub quality: Quality,
@@ -242,7 +242,7 @@ pub(crate) struct Limits {
     pub creases: Creases,
 }
 
-impl Limits {
+impl BuildLimits {
     pub fn new(options: &BuildOptions) -> Result<Self, BuildError> {
         if options.primitives == Some(0) {
             return Err(BuildError::Option {
@@ -304,13 +304,13 @@ impl Limits {
     /// Measured up to 5,000 primitives: eight for each give nothing more.
     pub fn samples(&self, area: f64) -> usize {
         /// Least number of samples. With half of it, results at 500 primitives are a third worse.
-        const LEAST: usize = 10_000;
+        const MIN_SAMPLES: usize = 10_000;
         /// Largest number of samples, which bounds the time and memory of a build.
-        const MOST: usize = 200_000;
+        const MAX_SAMPLES: usize = 200_000;
         let by_count = self.primitives.map_or(0, |n| n.saturating_mul(2));
         let by_error = self.max_error.map_or(0.0, |e| area / (4.0 * e * e));
         by_count
-            .max((by_error as usize).min(2 * LEAST))
-            .clamp(LEAST, MOST)
+            .max((by_error as usize).min(2 * MIN_SAMPLES))
+            .clamp(MIN_SAMPLES, MAX_SAMPLES)
     }
 }

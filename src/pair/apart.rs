@@ -8,7 +8,7 @@
 use crate::elementary::distance::face;
 use crate::elementary::test_list::ElementaryTest;
 use crate::math::lane::Vec3;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::F64_ROUNDING;
 
 /// A ball on its way over a piece of the step: centre at the start, chord, and radius grown by the sagitta.
 pub(super) type SweptBall = (Vec3<f64>, Vec3<f64>, f64);
@@ -172,8 +172,8 @@ const ENOUGH: f64 = 0.02;
 /// ([`crate::elementary::certificate`]): its first root follows from those of all sphere pairs.
 /// The middles now and later give directions first, then edges and normals. Nodes have one direction.
 ///
-/// What comes within `tolerance` of the target and no nearer may be called free, but not for a while:
-/// where primitives come within the tolerance, their tests begin, and say that they touch.
+/// Nodes that come within `tolerance` of the target and no nearer may be called free, but not for a while: where
+/// primitives come within the tolerance, their tests begin, and say that they touch.
 pub(super) fn free_until(
     balls: [&Balls; 2],
     span: [f64; 2],
@@ -182,7 +182,7 @@ pub(super) fn free_until(
 ) -> Option<f64> {
     let ([a, b], [from, until]) = (balls, span);
     // Rounding: a few ulps of the numbers in play.
-    let least = target + ROUNDING_ULPS * f64::EPSILON * (a.size + b.size);
+    let least = target + F64_ROUNDING * (a.size + b.size);
     // Nodes are split instead of tried along more directions. What is below them may touch, and is told only by
     // tests, so within the tolerance they are not free for good.
     let is_node = a.len > 3 || b.len > 3;
@@ -224,7 +224,7 @@ pub(super) fn held_until(
     span: [f64; 2],
     contact: f64,
 ) -> Option<f64> {
-    let contact = contact + ROUNDING_ULPS * f64::EPSILON * (balls[0].size + balls[1].size);
+    let contact = contact + F64_ROUNDING * (balls[0].size + balls[1].size);
     holds(balls, n, span, contact, contact)
 }
 
@@ -239,7 +239,7 @@ impl Reach {
     /// Along `n`; what comes within `contact` counts as near.
     pub(super) fn new([a, b]: [&Balls; 2], n: Vec3<f64>, contact: f64) -> Self {
         let length = n.length();
-        let contact = contact + ROUNDING_ULPS * f64::EPSILON * (a.size + b.size);
+        let contact = contact + F64_ROUNDING * (a.size + b.size);
         Self {
             far: a.along(n, length),
             near: b.along(n, -length),

@@ -2,9 +2,9 @@
 //!
 //! A body that is hardly larger than rapier's prediction distance has all its primitives within reach of the other's:
 //! two creatures of 3 cm and 500 primitives each have 110,000 contacts within rapier's default of 2 cm, of which those
-//! that touch are a handful. Once there are more than [`MOST`], the nearer half stays, with all that nearly touch, and
-//! the search goes on for nearer ones only. What nearly touches is never dropped: of two plates of many slabs that lie
-//! on each other, the nearer half may be that of one side.
+//! that touch are a handful. Once there are more than [`MAX_CONTACTS`], the nearer half stays, with all that nearly
+//! touch, and the search goes on for nearer ones only. What nearly touches is never dropped: of two plates of many
+//! slabs that lie on each other, the nearer half may be that of one side.
 
 use super::SpherePair;
 use super::contact_grid::ContactGrid;
@@ -13,7 +13,7 @@ use crate::math::lane::Vec3;
 use crate::math::tolerance::ONE_DIRECTION;
 
 /// Number of contacts from which the farther ones are dropped. A nut of 500 primitives on its bolt has 975.
-const MOST: usize = 2048;
+const MAX_CONTACTS: usize = 2048;
 
 /// Distance, as a share of the prediction distance, up to which a contact nearly touches.
 const TOUCHING: Real = 0.125;
@@ -48,7 +48,7 @@ impl ContactList {
             limit: Real::INFINITY,
             margin: prediction,
             touching: TOUCHING * prediction.max(0.0) as Real,
-            most: MOST,
+            most: MAX_CONTACTS,
         }
     }
 
@@ -107,7 +107,7 @@ impl ContactList {
         self.contacts.retain(|c| c.distance <= limit);
         self.grid.clear();
         self.margin = self.margin.min(f64::from(limit));
-        self.most = MOST.max(2 * self.contacts.len());
+        self.most = MAX_CONTACTS.max(2 * self.contacts.len());
     }
 
     /// The contacts, in the order in which they were found.

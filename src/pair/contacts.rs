@@ -5,7 +5,7 @@
 //! primitives are taken pair by pair (`primitive_pair.rs`).
 
 use super::contact_list::ContactList;
-use super::descent::Step;
+use super::descent::Descent;
 use super::first_contact::Counts;
 use super::hulls::Hulls;
 use super::outline;
@@ -68,8 +68,8 @@ pub fn contacts(
         if y.length_sq() > reach * reach * (1.0 + 1.0e-12) {
             continue;
         }
-        let step = Step::of((body1, body2), [i, j]);
-        let is_leaf = matches!(step, Step::Leaves(_));
+        let step = Descent::of((body1, body2), [i, j]);
+        let is_leaf = matches!(step, Descent::Leaves(_));
         let [kept, split] = inner;
         let is_idle = split >= FAILED && 3 * kept <= split && margin >= 0.0;
         let is_tried = is_leaf || !(near.is_exact() || is_idle && splits < SPLITS);
@@ -88,14 +88,14 @@ pub fn contacts(
             splits.saturating_add(1)
         };
         match step {
-            Step::Leaves(primitives) => {
+            Descent::Leaves(primitives) => {
                 let pair = PrimitivePair::new(body1, body2, primitives, &place);
                 pair.contacts(&mut found, &mut counts);
             }
-            Step::First(children) => {
+            Descent::First(children) => {
                 stack.extend(children.map(|c| ([c, j], splits)).into_iter().rev())
             }
-            Step::Second(children) => {
+            Descent::Second(children) => {
                 stack.extend(children.map(|c| ([i, c], splits)).into_iter().rev())
             }
         }

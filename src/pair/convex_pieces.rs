@@ -16,40 +16,40 @@ use super::apart::{end_along, ends_hold};
 use super::deepening::given;
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
 use super::path_ends::{held_on_paths, path_ends};
-use super::piece_contact::{Look, Nearest, Pieces, PiecesMet, is_blunt, patch, placed};
+use super::piece_contact::{PieceGap, PieceLook, PiecePair, PiecesMet, is_blunt, patch, placed};
 use super::primitive_tree::{PrimitiveTree, thickness};
-use super::search::Search;
+use super::search::FirstContactSearch;
 use crate::elementary::bracket::Bracket;
 use crate::elementary::penetration::gap_along;
 use crate::elementary::test_list::{OwnedFeatures, for_each_test};
 use crate::elementary::{InitialContact, ToiStatus};
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::F64_ROUNDING;
 
 /// Depth of two solid pieces in units of the thickness of the thinner, from which the shortest way apart may lead on
 /// through: there the middles of two alike pass each other.
-const THROUGH: f64 = 2.0;
+const MAX_RELIABLE_DEPTH: f64 = 2.0;
 
 /// The same depth for a piece in a surface, in units of the thickness of the piece.
-const THROUGH_SURFACE: f64 = 1.0;
+const MAX_RELIABLE_DEPTH_IN_SURFACE: f64 = 1.0;
 
 /// How deep two solid pieces may get in the same units, to be settled as a whole. Their primitives, which decide beyond
 /// it, point out of thin pieces on both sides: at 1.5, thirty cards that are dropped on each other are not at rest
 /// after 150 steps, at 1.95 they sleep after 106.
-const DEEPEST: f64 = 1.95;
+const MAX_PIECE_DEPTH: f64 = 1.95;
 
 /// The same depth for a piece in a surface, in units of the thickness of the piece.
-const DEEPEST_IN_SURFACE: f64 = 0.75;
+const MAX_PIECE_DEPTH_IN_SURFACE: f64 = 0.75;
 
-/// How much less than the gap at which pieces meet a step of the search aims at, in units of the tolerance. At 1 it
-/// would be the target distance itself, and what comes to it no nearer would not be found free.
-const PAST: f64 = 0.99;
+/// Distance below the gap at which pieces meet, in units of the tolerance, that a step of the search aims at. At 1 it
+/// would be the target distance itself, and pieces that come no nearer than that would not be found free.
+const AIM_BELOW: f64 = 0.99;
 
-impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
+impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
     /// Looks at two nodes, proven free until a time, as convex pieces.
-    pub(super) fn look_at_pieces(&mut self, [i, j]: [u32; 2], time: f64) -> Look {
+    pub(super) fn look_at_pieces(&mut self, [i, j]: [u32; 2], time: f64) -> PieceLook {
         let nodes = [self.sides.0.node(i).node, self.sides.1.node(j).node];
         if !(self.sides.0.body.is_convex(nodes[0]) && self.sides.1.body.is_convex(nodes[1])) {
-            return Look::Split;
+            return PieceLook::Split;
         }
         let pieces = match self.convex.get(&nodes) {
             Some(pieces) => *pieces,
@@ -60,7 +60,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             }
         };
         let Some(mut pieces) = pieces else {
-            return Look::Split;
+            return PieceLook::Split;
         };
         self.sides.0.sweep_piece(i);
         self.sides.1.sweep_piece(j);
@@ -71,7 +71,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
 
     /// The gap at which two pieces meet; `None` if their primitives decide. Notes that they touch at the start, where
     /// they do and may.
-    fn begin_pieces(&mut self, nodes: [u32; 2], time: f64) -> Option<Pieces> {
+    fn begin_pieces(&mut self, nodes: [u32; 2], time: f64) -> Option<PiecePair> {
         let (a, b) = (self.sides.0.body, self.sides.1.body);
         let thicknesses = [thickness(a, nodes[0]), thickness(b, nodes[1])];
         let thickness = self.at_most(thicknesses[0].min(thicknesses[1]));
@@ -107,14 +107,14 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         }
         let is_solid = thicknesses.iter().all(|t| t.is_finite());
         let (deepest, through) = if is_solid {
-            (DEEPEST, THROUGH)
+            (MAX_PIECE_DEPTH, MAX_RELIABLE_DEPTH)
         } else {
-            (DEEPEST_IN_SURFACE, THROUGH_SURFACE)
+            (MAX_PIECE_DEPTH_IN_SURFACE, MAX_RELIABLE_DEPTH_IN_SURFACE)
         };
         let contact = match by.filter(|_| touches && found.gap <= touching - depth) {
             None => touching - depth,
             Some(f64::INFINITY) => {
-                return Some(Pieces {
+                return Some(PiecePair {
                     contact: f64::NEG_INFINITY,
                     touched: false,
                     direction: found.direction,
@@ -134,7 +134,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             let deepest = (contact - (touching - depth)) / thickness;
             self.touching.push((nodes, deepest));
         }
-        Some(Pieces {
+        Some(PiecePair {
             contact,
             touched,
             direction: found.direction,
@@ -147,17 +147,19 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         &mut self,
         swept: [u32; 2],
         nodes: [u32; 2],
-        pieces: &mut Pieces,
+        pieces: &mut PiecePair,
         time: f64,
-    ) -> Look {
+    ) -> PieceLook {
         let mut free = self.pieces_held_until(swept, nodes, pieces, time);
         let mut found = None;
         let mut known = pieces.known.take().filter(|(at, _)| *at == time);
         // First any direction that keeps them apart now, then that of the largest gap.
         for is_last in [false, true] {
             match free {
-                None => return Look::Free,
-                Some(free) if !self.soon(free, time) => return Look::FreeUntil(free),
+                None => return PieceLook::Free,
+                Some(free) if !self.gains_too_little(free, time) => {
+                    return PieceLook::FreeUntil(free);
+                }
                 Some(_) => {}
             }
             let known = known.take();
@@ -170,14 +172,14 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             let mut near = match known {
                 Some((_, near)) => near,
                 None => {
-                    // What was not enough is the largest that can be found.
+                    // A gap that was not enough is the largest that can be found.
                     let hull = match found {
                         Some(hull) => hull,
                         None => hull_gap(placed.each_ref(), enough),
                     };
                     found = (hull.gap <= enough).then_some(hull);
                     match is_last {
-                        false => Nearest::of(hull),
+                        false => PieceGap::of(hull),
                         true => self.nearest(nodes, placed.each_ref(), hull, time),
                     }
                 }
@@ -193,21 +195,21 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 // How deep they are, hulls say; how far apart, primitives.
                 let is_sure = pieces.contact < 0.0 || near.distance <= pieces.contact;
                 return match near.primitives.filter(|_| is_sure) {
-                    Some(primitives) => Look::Met(PiecesMet::of(
+                    Some(primitives) => PieceLook::Met(PiecesMet::of(
                         nodes,
                         placed.each_ref(),
                         (primitives, near.distance, &near.hull),
                         self.earliest.limits.tolerance,
                     )),
-                    None => Look::Split,
+                    None => PieceLook::Split,
                 };
             }
         }
         match free {
-            None => Look::Free,
-            Some(free) if free > time => Look::FreeUntil(free),
+            None => PieceLook::Free,
+            Some(free) if free > time => PieceLook::FreeUntil(free),
             // Rounding.
-            Some(_) => Look::Split,
+            Some(_) => PieceLook::Split,
         }
     }
 
@@ -218,10 +220,10 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         hulls: [&PlacedHull; 2],
         hull: HullGap,
         time: f64,
-    ) -> Nearest {
+    ) -> PieceGap {
         let frames = [0, 1].map(|k| self.motions[k].frame(time));
         let bodies = (self.sides.0.body, self.sides.1.body);
-        Nearest::search(
+        PieceGap::search(
             (bodies, nodes),
             (hulls, hull),
             |k, p| frames[k].point(p),
@@ -234,18 +236,18 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         &self,
         [i, j]: [u32; 2],
         nodes: [u32; 2],
-        pieces: &Pieces,
+        pieces: &PiecePair,
         time: f64,
     ) -> Option<f64> {
         let ((a, size_a), (b, size_b)) = (self.sides.0.piece(i), self.sides.1.piece(j));
         let n = pieces.direction;
         // Less than the gap at which they meet, so that a step comes to where they do.
-        let least = pieces.contact - PAST * self.earliest.limits.tolerance
-            + ROUNDING_ULPS * f64::EPSILON * (size_a + size_b);
+        let least = pieces.contact - AIM_BELOW * self.earliest.limits.tolerance
+            + F64_ROUNDING * (size_a + size_b);
         let far: Vec<_> = a.iter().map(|s| end_along(s, n, 1.0)).collect();
         let near: Vec<_> = b.iter().map(|s| end_along(s, n, -1.0)).collect();
         let on_chords = self.in_piece(time, |span| ends_hold([&far, &near], span, least, least))?;
-        if !self.soon(on_chords, time) {
+        if !self.gains_too_little(on_chords, time) {
             return Some(on_chords);
         }
         let [first, second] = &self.motions;
@@ -301,7 +303,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         if time == 0.0 && self.initial_contact == InitialContact::Stop {
             bracket.start_distance = met.distance - self.target;
         }
-        let goes_on = self
+        let continues = self
             .earliest
             .take(test, bracket, self.earliest.limits.start, primitives);
         let is_found = |(_, found, by): (_, Bracket<f64>, [u32; 2])| {
@@ -314,7 +316,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             let overlaps = self.earliest.status == ToiStatus::Overlapping;
             self.met = (!overlaps).then_some(met);
         }
-        goes_on
+        continues
     }
 
     /// Adds to the pieces that met all others that lie on each other in the same plane then: triangles of one ground,

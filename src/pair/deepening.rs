@@ -17,18 +17,18 @@ const CROSSED: f64 = 1.0e-2;
 
 /// Share of what is left between the axes that one query may take: however often a pair meets, something is left.
 /// Larger, and a few meetings bring the axes to rounding; smaller, and pairs that are pressed meet more often.
-const GIVEN: f64 = 0.0625;
+const SINK_SHARE: f64 = 0.0625;
 
 /// Distance of axes, in units of the asked tolerance, from which on that share is taken: in what is pressed on and
 /// on the axes come as near as that, and hardly nearer. Smaller, and rounding of poses puts sheets and wires of
 /// radius 0 past each other; larger, and what is thinner than that no longer sinks in at all.
-const CLOSEST: f64 = 0.25;
+const NEAR_AXES: f64 = 0.25;
 
 /// Share of what is left between axes that are nearer than that which one query may take.
-const PRESSED: f64 = 1.0e-4;
+const SINK_SHARE_NEAR_AXES: f64 = 1.0e-4;
 
 /// Share of the way that a query may take which is its tolerance.
-const TAKEN: f64 = 0.25;
+const TOLERANCE_SHARE: f64 = 0.25;
 
 /// Condition from which on two primitives count as in contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +72,7 @@ impl Threshold {
             return plain;
         }
         let by = given(by, axes, tolerance);
-        let tolerance = tolerance.min(TAKEN * by);
+        let tolerance = tolerance.min(TOLERANCE_SHARE * by);
         let (scale, target) = if distance > by {
             (1.0, distance - by)
         } else {
@@ -88,12 +88,12 @@ impl Threshold {
 
 /// How much deeper one query may let two primitives get, whose axes are that far from each other.
 pub(super) fn given(by: f64, axes: f64, tolerance: f64) -> f64 {
-    let share = GIVEN * (axes - CLOSEST * tolerance);
-    by.min(share.max(PRESSED * axes))
+    let share = SINK_SHARE * (axes - NEAR_AXES * tolerance);
+    by.min(share.max(SINK_SHARE_NEAR_AXES * axes))
 }
 
 /// How far two primitives that touch at the start may certainly travel before they are in contact by
 /// [`Threshold::deepened`], a length, if their axes are at least `axes` apart, a length above 0.
 pub fn free_way(by: f64, axes: f64, tolerance: f64) -> f64 {
-    (1.0 - TAKEN) * given(by, axes, tolerance)
+    (1.0 - TOLERANCE_SHARE) * given(by, axes, tolerance)
 }

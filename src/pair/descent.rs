@@ -6,7 +6,7 @@ use crate::medial::tree::NodeKind;
 
 /// The next step of a walk down two trees from two nodes. It depends on these two nodes alone, so all walks of two
 /// trees come to primitive pairs in one order.
-pub(super) enum Step {
+pub(super) enum Descent {
     /// Two leaves, of these primitives.
     Leaves([u32; 2]),
     /// The first node is replaced by its children, in this order.
@@ -15,9 +15,9 @@ pub(super) enum Step {
     Second([u32; 2]),
 }
 
-impl Step {
+impl Descent {
     pub(super) fn of((a, b): (&impl PrimitiveTree, &impl PrimitiveTree), [i, j]: [u32; 2]) -> Self {
-        // What is convex waits until the other is too: then both are looked at whole.
+        // A convex node waits until the other is convex too: then both are looked at whole.
         let first = || match (a.is_convex(i), b.is_convex(j)) {
             (true, false) => false,
             (false, true) => true,

@@ -53,7 +53,7 @@ pub fn near_spheres(
         return (None, counts);
     }
     let place = Placement::new(pos12);
-    let mut best = Best {
+    let mut best = NearestSoFar {
         pair: None,
         limit: max_distance.into(),
     };
@@ -121,13 +121,13 @@ pub fn near_spheres(
 }
 
 /// The nearest pair of spheres so far.
-struct Best {
+struct NearestSoFar {
     pair: Option<SpherePair>,
     /// Distance of the nearest pair found, or the largest that counts before one is found.
     limit: f64,
 }
 
-impl Best {
+impl NearestSoFar {
     /// Whether nothing that is apart by `gap` can be nearer.
     fn is_no_farther_than(&self, gap: f64) -> bool {
         // The answer is in single precision; what is asked for is exact.

@@ -4,9 +4,9 @@
 use super::apart::Balls;
 use super::deepening::Threshold;
 use super::primitive_tree::PrimitiveTree;
-use super::queue::{Candidate, Tested};
-use super::search::Search;
-use super::tips::Part;
+use super::queue::{Tested, WorkItem};
+use super::search::FirstContactSearch;
+use super::tips::SubPrimitive;
 use crate::elementary::bracket::{Bracket, Limits, witness};
 use crate::elementary::distance::{Ball, nearest_in_test, signed_distance};
 use crate::elementary::path::RigidPath;
@@ -20,17 +20,17 @@ use crate::medial::tree::NodeKind;
 /// Three spheres, those of a primitive or a part of it.
 type Spheres = [Ball<f64>; 3];
 
-impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
+impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
     /// Ends unresolved: nothing meets before `time`, and nothing is known from there on. The witness is of
     /// primitives that may come first.
-    pub(super) fn give_up(&mut self, time: f64, first: Option<Candidate>) {
+    pub(super) fn give_up(&mut self, time: f64, first: Option<WorkItem>) {
         let primitives = match first {
-            Some(Candidate::Test(place)) => {
+            Some(WorkItem::Test(place)) => {
                 let open = &self.open[place as usize];
                 self.tested[open.of as usize].primitives
             }
-            Some(Candidate::Parts(place)) => self.tested[place as usize].primitives,
-            Some(Candidate::Nodes([i, j])) => {
+            Some(WorkItem::SubPrimitives(place)) => self.tested[place as usize].primitives,
+            Some(WorkItem::Nodes([i, j])) => {
                 let (a, b) = (self.sides.0.node(i).below, self.sides.1.node(j).below);
                 [
                     some_leaf(self.sides.0.body, a),
@@ -82,7 +82,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let (a, mut share_a) = self.sides.0.body.primitive(i);
         let (b, mut share_b) = self.sides.1.body.primitive(j);
         if self.cores.is_some_and(|c| c.share > 0.0) {
-            // What a core loses depends on its partner, so none leaves a test to a neighbour.
+            // The radius that a core loses depends on its partner, so none leaves a test to a neighbour.
             [share_a, share_b] = [share_a, share_b].map(|s| OwnedFeatures::whole(s.spheres));
         }
         let local = |s: MedialSphere, loss: Loss| {
@@ -170,7 +170,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             (self.earliest.lower, self.earliest.upper) = (0.0, 0.0);
         }
         let [(a, share_a), (b, share_b)] = self.spheres(pair);
-        let whole = [share_a, share_b].map(|s| Part::whole(s.spheres));
+        let whole = [share_a, share_b].map(|s| SubPrimitive::whole(s.spheres));
         let found = self.found.map(|of| (of.parts, of.threshold.scale));
         let (parts, scale) = found.unwrap_or((whole, 1.0));
         let Some((test, bracket, _)) = &mut self.earliest.found else {

@@ -12,7 +12,7 @@ use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
 
 /// How much better, in cosines, the face of the second has to lie to be the one that contacts are measured from. At 0
 /// rounding decides, and contacts change from step to step.
-const BETTER: f64 = 1.0e-3;
+const FACE_PREFERENCE: f64 = 1.0e-3;
 
 /// Share of the depth of the hulls by which the deepest corner of two faces may be less deep. If it is missing more,
 /// the nearest points of the hulls become a contact of their own.
@@ -84,7 +84,7 @@ pub(super) fn facing_faces(
 ) -> Option<FacingFaces> {
     let best = [(hulls[0], direction), (hulls[1], -direction)].map(|(hull, n)| flattest(hull, n));
     let cosines = best.map(|face| face.map_or(-1.0, |(_, cosine)| cosine));
-    let of = usize::from(cosines[1] > cosines[0] + BETTER);
+    let of = usize::from(cosines[1] > cosines[0] + FACE_PREFERENCE);
     let (face, _) = best[of].filter(|_| cosines[of] >= ONE_DIRECTION)?;
     let (reference, other) = (hulls[of], hulls[1 - of]);
     let normal = reference.normals[face];

@@ -8,7 +8,7 @@ use super::pair_list::PairList;
 use super::patch::Patch;
 use super::piece_contact::PiecesMet;
 use super::primitive_tree::PrimitiveTree;
-use super::search::{LOOK, Search};
+use super::search::{FirstContactSearch, LOOK};
 use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
 use crate::elementary::{Paths, Toi, ToiOptions};
 use crate::math::counters::counters;
@@ -122,7 +122,7 @@ pub struct Query<'a, A, B> {
     seconds: Real,
     options: ToiOptions,
     /// `None` for bad input.
-    pub(super) search: Option<Search<'a, A, B>>,
+    pub(super) search: Option<FirstContactSearch<'a, A, B>>,
     settled: bool,
 }
 
@@ -146,7 +146,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
             if options.paths == Paths::Straight {
                 pair = pair.map(|m| m.straightened());
             }
-            Search::new(bodies, pair, options, left)
+            FirstContactSearch::new(bodies, pair, options, left)
         };
         Self {
             motions: motions.map(|m| *m),
@@ -178,7 +178,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         if self.settled {
             return None;
         }
-        let run = |s: &mut Search<A, B>| {
+        let run = |s: &mut FirstContactSearch<A, B>| {
             s.pause = s.worked().saturating_add(work);
             s.run(until)
         };
@@ -226,7 +226,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
 
     /// The answer with the primitives that were found.
     fn toi_of_found(&self) -> Toi {
-        let Some(Search {
+        let Some(FirstContactSearch {
             sides,
             earliest,
             found,
@@ -328,7 +328,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
 
     /// The work done so far.
     pub fn counts(&self) -> Counts {
-        let of = |s: &Search<A, B>| Counts {
+        let of = |s: &FirstContactSearch<A, B>| Counts {
             nodes: s.nodes.into(),
             tests: s.earliest.tests.into(),
             looks: s.looks,

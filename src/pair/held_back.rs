@@ -12,7 +12,7 @@
 
 use super::SpherePair;
 use crate::math::Real;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 
 /// How far two bodies may move against each other before their contacts are computed again.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +43,7 @@ impl RelativeMotionBound {
         let [gap_k, gap_c] = [k, c].map(|c| (c.distance - self.skins).max(0.0));
         // Too far by more than rounding, before any root is taken.
         let turned = self.angle * self.angle * k.points[0].distance_squared(c.points[0]);
-        if turned > gap_c * gap_c * (1.0 + ROUNDING_ULPS as Real * Real::EPSILON) {
+        if turned > gap_c * gap_c * (1.0 + REAL_ROUNDING) {
             return false;
         }
         let cosine = k.normal.dot(c.normal).clamp(-1.0, 1.0);

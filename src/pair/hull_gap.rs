@@ -9,10 +9,10 @@ use super::primitive_tree::PrimitiveTree;
 use crate::elementary::distance::Ball;
 use crate::elementary::penetration::gap_along;
 use crate::math::lane::Vec3;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::F64_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
-use crate::medial::convex_pieces::Face;
+use crate::medial::convex_pieces::PieceFace;
 use parry3d::query::details::contact_support_map_support_map;
 use parry3d::shape::SupportMap;
 
@@ -21,7 +21,7 @@ pub(super) struct PlacedHull<'a> {
     pub(super) spheres: Vec<Ball<f64>>,
     /// The flat faces of the hull in the frame of its body, and their outward normals at the pose. A primitive has
     /// none.
-    pub(super) faces: &'a [Face],
+    pub(super) faces: &'a [PieceFace],
     pub(super) normals: Vec<Vec3<f64>>,
     /// Edges, one of each direction, and the radius of all corners; `None` unless the hull is a polyhedron grown by
     /// that radius.
@@ -131,7 +131,7 @@ fn edges_of_simplex(spheres: &[MedialSphere]) -> Option<(&'static [[u32; 2]], Re
 pub(super) struct HullGap {
     /// The largest gap along the directions tried, less its rounding: a lower bound of the distance.
     pub(super) gap: f64,
-    /// Its direction, of length 1, from the first to the second.
+    /// Unit direction of the gap, from the first to the second.
     pub(super) direction: Vec3<f64>,
     /// The nearest points of the two, or those where they are deepest in each other, as parry found them, if it was
     /// asked.
@@ -142,7 +142,7 @@ pub(super) struct HullGap {
 pub(super) fn hull_gap(hulls: [&PlacedHull; 2], enough: f64) -> HullGap {
     let [a, b] = hulls;
     let y = b.middle() - a.middle();
-    let mut best = Best::new(hulls);
+    let mut best = BestDirection::new(hulls);
     let faces = (a.normals.iter().copied()).chain(b.normals.iter().map(|n| -*n));
     let is_found = faces.chain([y]).any(|n| best.attempt(n) > enough);
     if is_found || best.attempt_edges() || best.gap > enough {
@@ -165,23 +165,24 @@ pub(super) fn nearest_points(hulls: [&PlacedHull; 2], found: HullGap) -> HullGap
     if found.nearest.is_some() {
         return found;
     }
-    let mut best = Best {
+    let mut best = BestDirection {
         gap: found.gap,
         direction: found.direction,
-        ..Best::new(hulls)
+        ..BestDirection::new(hulls)
     };
     let nearest = best.attempt_moved(f64::MAX);
     best.found(nearest)
 }
 
-/// How far hulls are moved apart along the best direction known, to ask for the direction in which they are nearest
-/// then, in units of the larger one's extent. No gap is less along that: of all directions it has the largest gap of
-/// the moved hulls, and moving them added to the gap along the best one as much as to any. EPA errs where hulls just
-/// touch, and GJK has no more than single precision; hulls that are apart by this much are not hard for it.
-const APART: f64 = 0.02;
+/// Shift, in units of the larger hull's extent, by which hulls are moved apart along the best direction known before
+/// GJK is asked for a better one. EPA errs where hulls just touch, and GJK has no more than single precision; hulls
+/// that are apart by this much are not hard for it. The gap along the direction that it gives is no smaller than the
+/// best known: of all directions it has the largest gap of the moved hulls, and no direction gained more by the move
+/// than the best known.
+const SHIFT: f64 = 0.02;
 
 /// Gain of a direction over the one before, in units of the gap, from which hulls are moved apart once more along it.
-const BETTER: f64 = 1.0e-3;
+const MIN_GAIN: f64 = 1.0e-3;
 
 /// Largest number of times that hulls are moved apart.
 const ROUNDS: usize = 4;
@@ -192,18 +193,18 @@ const ROUNDS: usize = 4;
 const MOST_EDGES: usize = 2048;
 
 /// The direction of the largest gap of two hulls among those tried.
-struct Best<'a> {
+struct BestDirection<'a> {
     hulls: [&'a PlacedHull<'a>; 2],
     rounding: f64,
     gap: f64,
     direction: Vec3<f64>,
 }
 
-impl<'a> Best<'a> {
+impl<'a> BestDirection<'a> {
     fn new(hulls: [&'a PlacedHull<'a>; 2]) -> Self {
         Self {
             hulls,
-            rounding: 4.0 * ROUNDING_ULPS * f64::EPSILON * (hulls[0].size() + hulls[1].size()),
+            rounding: 4.0 * F64_ROUNDING * (hulls[0].size() + hulls[1].size()),
             gap: f64::MIN,
             direction: Vec3::new(1.0, 0.0, 0.0),
         }
@@ -252,13 +253,13 @@ impl<'a> Best<'a> {
                 break;
             }
             let (before, along) = (self.gap, self.direction);
-            let way = along * (APART * unit - before);
+            let way = along * (SHIFT * unit - before);
             let Some((n, [p, q])) = proposed(self.hulls, y + way, unit) else {
                 break;
             };
             self.attempt_about(n);
             nearest = Some([p, q - way]);
-            if self.gap - before <= BETTER * before.abs() {
+            if self.gap - before <= MIN_GAIN * before.abs() {
                 break;
             }
         }

@@ -7,7 +7,7 @@ use super::contact_list::ContactList;
 use super::face_contacts::{add_nearest, face_contacts};
 use super::first_contact::Counts;
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
-use super::piece_contact::Nearest;
+use super::piece_contact::PieceGap;
 use super::placement::Placement;
 use super::primitive_pair::PrimitivePair;
 use super::primitive_tree::{PrimitiveTree, thickness};
@@ -16,19 +16,19 @@ use crate::elementary::penetration::gap_along;
 use crate::math::Vector;
 use crate::math::fast_hash::FastMap;
 use crate::math::lane::Vec3;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::F64_ROUNDING;
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 
-/// How deep a convex piece and a primitive are in each other, in units of the thickness of the thinner, for contacts
-/// that point into the piece to be left out; in another shape than a medial mesh, for those that do not push it the
-/// shortest way out (`parry/deep_pieces.rs`). Larger, and a body may stay where such contacts hold it; smaller, and
-/// more pairs are computed without the tree.
-pub(crate) const DEEP: f64 = 0.25;
+/// Depth of a convex piece in its partner, in units of the thickness of the thinner, from which its contacts are
+/// filtered: with a primitive or a piece of a medial mesh, those that point into it are left out; with another shape,
+/// those that do not push it the shortest way out (`parry/deep_pieces.rs`). Larger, and a body may stay where such
+/// contacts hold it; smaller, and more pairs are computed without the tree.
+pub(crate) const FILTER_DEPTH: f64 = 0.25;
 
 /// How much deeper two hulls may be along a contact's normal than along the best direction. At 1 a capsule that lies on
 /// two faces of a box would have one contact; larger, and contacts through the whole of a piece count.
-const OUTWARD: f64 = 2.0;
+const OUTWARD_DEPTH_RATIO: f64 = 2.0;
 
 /// Primitives below a node.
 fn below(body: &impl PrimitiveTree, node: u32) -> Vec<u32> {
@@ -65,7 +65,7 @@ impl Resting {
 /// A lower bound of the distance of two hulls at rest; as soon as it is more than `enough` no better one is looked for.
 fn gap([first, second]: [&Resting; 2], enough: f64) -> f64 {
     let (a, b) = (&first.balls, &second.balls);
-    let rounding = ROUNDING_ULPS * f64::EPSILON * (a.size + b.size);
+    let rounding = F64_ROUNDING * (a.size + b.size);
     let y = second.middle - first.middle;
     // No direction says more.
     if y.length() - first.core - second.core <= enough {
@@ -98,20 +98,20 @@ fn gap([first, second]: [&Resting; 2], enough: f64) -> f64 {
 pub(super) struct Hulls<'a, A, B> {
     bodies: (&'a A, &'a B),
     place: &'a Placement,
-    placed: [Placed; 2],
+    placed: [PlacedHulls; 2],
     /// Convex pieces that were asked for, by their nodes.
     pieces: [FastMap<u32, PlacedHull<'a>>; 2],
 }
 
 /// The hulls of one body that are placed already, because they were asked for.
 #[derive(Default)]
-struct Placed {
+struct PlacedHulls {
     /// One more than the place of each node's hull; 0 where it was not asked for.
     places: Vec<u32>,
     hulls: Vec<Resting>,
 }
 
-impl Placed {
+impl PlacedHulls {
     fn get(
         &mut self,
         body: &impl PrimitiveTree,
@@ -170,7 +170,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
                     return Some(Vec::new());
                 }
                 let thinner = thickness(first, i).min(thickness(second, j));
-                let is_deep = found.gap < -DEEP * f64::from(thinner);
+                let is_deep = found.gap < -FILTER_DEPTH * f64::from(thinner);
                 is_deep.then(|| self.deep_contacts([i, j], found, margin, counts))
             }
         }
@@ -178,7 +178,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
 
     /// Distance of the convex pieces that two nodes hold, if they are within `margin` of each other and apart. Farther
     /// ones get a gap beyond the margin and no primitives.
-    pub(super) fn pieces_nearest(&mut self, nodes: [u32; 2], margin: f64) -> Option<Nearest> {
+    pub(super) fn pieces_nearest(&mut self, nodes: [u32; 2], margin: f64) -> Option<PieceGap> {
         let ((first, second), place) = (self.bodies, self.place);
         let pieces = [first.convex_piece(nodes[0]), second.convex_piece(nodes[1])];
         let is_piece = pieces.iter().any(Option::is_some);
@@ -188,13 +188,13 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
         let hulls = self.pieces(nodes);
         let hull = hull_gap(hulls, margin);
         if hull.gap > margin {
-            return Some(Nearest::of(hull));
+            return Some(PieceGap::of(hull));
         }
         if hull.gap <= 0.0 {
             return None;
         }
         let taken_back = |p| Vec3::from_vector(place.inverse_point(p));
-        Some(Nearest::search(
+        Some(PieceGap::search(
             ((first, second), nodes),
             (hulls, hull),
             |k, p| [p, place.placed(p)][k],
@@ -224,7 +224,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Hulls<'a, A, B> {
         let hulls = self.pieces(nodes);
         found.retain(|contact| {
             let n = Vec3::from_vector(contact.normal);
-            gap_along(&hulls[0].spheres, &hulls[1].spheres, n) >= OUTWARD * hull.gap
+            gap_along(&hulls[0].spheres, &hulls[1].spheres, n) >= OUTWARD_DEPTH_RATIO * hull.gap
         });
         let primitives = [
             first

@@ -4,9 +4,9 @@
 use super::apart::{Balls, Reach};
 use super::deepening::{Threshold, free_way};
 use super::primitive_tree::PrimitiveTree;
-use super::queue::{Candidate, Entry, Open, Tested};
-use super::search::Search;
-use super::tips::{Part, Parts};
+use super::queue::{Entry, OpenTest, Tested, WorkItem};
+use super::search::FirstContactSearch;
+use super::tips::{SubPrimitive, SubPrimitives};
 use crate::elementary::InitialContact;
 use crate::elementary::bracket::{Bracket, Limits};
 use crate::elementary::distance::{
@@ -18,7 +18,7 @@ use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::medial::tree::NodeKind;
 
-impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
+impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
     /// Lists the elementary tests of two primitives that are free until `time`; returns whether an
     /// earlier contact is still possible.
     pub(super) fn list_tests(&mut self, [i, j]: [u32; 2], time: f64) -> bool {
@@ -31,7 +31,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         let [(all_a, share_a), (all_b, share_b)] = self.spheres(pair);
         let (sa, sb) = (&all_a[..share_a.spheres], &all_b[..share_b.spheres]);
         let tolerance = self.earliest.limits.tolerance;
-        let whole = [share_a, share_b].map(|s| Part::whole(s.spheres));
+        let whole = [share_a, share_b].map(|s| SubPrimitive::whole(s.spheres));
         let mut target = self.target;
         if self.initial_contact == InitialContact::Stop {
             target = target.max(-thinnest(sa, sb));
@@ -119,7 +119,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 direction.map(|n| self.held_until(balls.each_ref(), n, &tested.threshold, time));
             match held {
                 Some(None) => return,
-                Some(Some(free)) if !self.soon(free, time) => {
+                Some(Some(free)) if !self.gains_too_little(free, time) => {
                     self.wait(tested.nodes, free);
                     return;
                 }
@@ -168,8 +168,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         self.proofs += 1;
         match direction.map(|n| self.held_until(balls.each_ref(), n, &tested.threshold, time)) {
             Some(None) => {}
-            Some(Some(free)) if !self.soon(free, time) => {
-                self.queue(Entry::at(free, Candidate::Parts(place)));
+            Some(Some(free)) if !self.gains_too_little(free, time) => {
+                self.queue(Entry::at(free, WorkItem::SubPrimitives(place)));
             }
             _ => {
                 let shares = tested.parts.map(|part| OwnedFeatures::whole(part.spheres));
@@ -211,8 +211,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             let (a, b) = (self.sides.0.body, self.sides.1.body);
             cores.kept([a.thickness(pair[0]), b.thickness(pair[1])])
         });
-        let parts_a = Parts::without_tips(sa, kept[0]);
-        let parts_b = Parts::without_tips(sb, kept[1]);
+        let parts_a = SubPrimitives::without_tips(sa, kept[0]);
+        let parts_b = SubPrimitives::without_tips(sb, kept[1]);
         let start = self.at_start(pair);
         if self.stays_shallow(nodes, pair, by, whole.1) {
             return;
@@ -228,7 +228,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
             } else {
                 signed_distance_along(pa, pb)
             };
-            // What is behind a tip may be farther off, and counts as touching as the tip does.
+            // The primitive behind a tip may be farther off, and counts as touching as the tip does.
             let distance = distance.min(self.target + tolerance);
             let axes = || {
                 let axis = |s: [Ball<f64>; 3]| s.map(|(center, _)| (center, 0.0));
@@ -242,8 +242,8 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 parts: [*a, *b],
                 threshold: Threshold::deepened(distance, thinnest, by, tolerance, axes),
             };
-            // What their contact needs, not the search's: what touches already has a target of its own, and mostly
-            // directions put it off for good.
+            // The tests are those that the contact needs, of whole parts, not those of the search: primitives that
+            // touch already have a target of their own, and mostly directions put them off for good.
             let balls = self.swept_parts(&tested);
             let shares = tested.parts.map(|part| OwnedFeatures::whole(part.spheres));
             if a.spheres.min(b.spheres) < 3 {
@@ -327,9 +327,9 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 balls[1].only(test.corners.map(|c| c.1)),
             ];
             if let Some(free) = self.above_until([&some[0], &some[1]], &threshold, time) {
-                let place = Candidate::Test(self.open.len() as u32);
+                let place = WorkItem::Test(self.open.len() as u32);
                 self.queue(Entry::at(free, place));
-                self.open.push(Open { of, test, spent: 0 });
+                self.open.push(OpenTest { of, test, spent: 0 });
             }
             true
         });
@@ -369,7 +369,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
         // Without a bound that lies later it has used up its iterations, or none of them gains any more.
         if settled || bracket.lower <= until {
             let (test, primitives) = (open.test, tested.primitives);
-            let goes_on = self.earliest.take(test, bracket, time, primitives);
+            let continues = self.earliest.take(test, bracket, time, primitives);
             let is_found = |(of, found, by): (ElementaryTest, Bracket<f64>, [u32; 2])| {
                 (of, by) == (test, primitives) && found.nearest.distance == bracket.nearest.distance
             };
@@ -377,12 +377,12 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
                 self.found = Some(self.tested[open.of as usize]);
                 self.met = None;
             }
-            return goes_on;
+            return continues;
         }
         self.earliest.iterations += bracket.iterations;
         self.earliest.tolerance = self.earliest.tolerance.max(bracket.tolerance);
         self.open[place as usize] = open;
-        self.queue(Entry::at(bracket.lower, Candidate::Test(place)));
+        self.queue(Entry::at(bracket.lower, WorkItem::Test(place)));
         true
     }
 }

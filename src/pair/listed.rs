@@ -3,15 +3,15 @@
 //!
 //! The contacts of a pair of meshes depend on the set of its primitive pairs within the prediction distance, and on the
 //! order in which these are taken: of sphere pairs at the same place under the same normal the first of the nearest is
-//! kept. The order is that in which a walk down both trees comes to them (`Step`). It depends on the trees alone: what
-//! a search rules out is missing in its walk, and moves nothing else. So a list that holds all primitive pairs within
-//! the distance, sorted in this order, has the contacts of [`contacts()`] bit by bit, whatever else it holds: farther
-//! pairs add none.
+//! kept. The order is that in which a walk down both trees comes to them (`Descent`). It depends on the trees alone:
+//! what a search rules out is missing in its walk, and moves nothing else. So a list that holds all primitive pairs
+//! within the distance, sorted in this order, has the contacts of [`contacts()`] bit by bit, whatever else it holds:
+//! farther pairs add none.
 
 use super::SpherePair;
 use super::contact_list::ContactList;
 use super::contacts::contacts;
-use super::descent::Step;
+use super::descent::Descent;
 use super::first_contact::Counts;
 use super::placement::Placement;
 use super::primitive_pair::PrimitivePair;
@@ -87,11 +87,11 @@ impl Walk<'_> {
         // The walk to one pair, or to one that is listed several times, passes no other.
         let first = pairs[0];
         while pairs.iter().any(|pair| *pair != first) {
-            let (side, [c, d]) = match Step::of((self.meshes[0], self.meshes[1]), at) {
-                Step::First(children) => (0, children),
-                Step::Second(children) => (1, children),
+            let (side, [c, d]) = match Descent::of((self.meshes[0], self.meshes[1]), at) {
+                Descent::First(children) => (0, children),
+                Descent::Second(children) => (1, children),
                 // Not reached: below two leaves there is one pair.
-                Step::Leaves(_) => break,
+                Descent::Leaves(_) => break,
             };
             let behind = self.orders[side].first[d as usize];
             let mut split = 0;

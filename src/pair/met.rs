@@ -13,10 +13,10 @@ use crate::medial::MedialSphere;
 /// The primitives or faces that met first: two primitives, with the radii that counted, or faces of two convex pieces.
 /// The contact can be computed again at other poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Met(Parts);
+pub struct Met(Features);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Parts {
+enum Features {
     /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]), and how many there
     /// are.
     Primitives([[MedialSphere; 3]; 2], [usize; 2]),
@@ -39,20 +39,20 @@ pub struct Touch {
 impl Met {
     /// Two primitives: so many spheres of each, in its body's frame.
     pub(super) fn primitives(spheres: [[MedialSphere; 3]; 2], counts: [usize; 2]) -> Self {
-        Self(Parts::Primitives(spheres, counts))
+        Self(Features::Primitives(spheres, counts))
     }
 
     /// Faces that lie on each other: nearest points of both, each in its body's frame, and the normal from the first to
     /// the second, in the frame of the body `of`.
     pub(super) fn faces(points: [Vec3<f64>; 2], normal: Vec3<f64>, of: usize) -> Self {
-        Self(Parts::Faces(points, normal, of))
+        Self(Features::Faces(points, normal, of))
     }
 
     /// The same contact with the second body as the first.
     pub fn flipped(&self) -> Self {
         Self(match self.0 {
-            Parts::Primitives([a, b], [m, n]) => Parts::Primitives([b, a], [n, m]),
-            Parts::Faces([p, q], normal, of) => Parts::Faces([q, p], -normal, 1 - of),
+            Features::Primitives([a, b], [m, n]) => Features::Primitives([b, a], [n, m]),
+            Features::Faces([p, q], normal, of) => Features::Faces([q, p], -normal, 1 - of),
         })
     }
 
@@ -60,8 +60,8 @@ impl Met {
     pub fn touch(&self, poses: [&Pose; 2]) -> Option<Touch> {
         let place = Placement::new(&poses[0].inv_mul(poses[1]));
         let (distance, normal, middle) = match self.0 {
-            Parts::Primitives(spheres, counts) => of_primitives(spheres, counts, &place)?,
-            Parts::Faces([p, q], normal, of) => {
+            Features::Primitives(spheres, counts) => of_primitives(spheres, counts, &place)?,
+            Features::Faces([p, q], normal, of) => {
                 let normal = if of == 0 {
                     normal
                 } else {

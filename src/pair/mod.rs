@@ -65,7 +65,7 @@ pub use distance::nearest_spheres;
 pub use first_contact::first_contact;
 pub use held_back::RelativeMotionBound;
 pub(crate) use hull_gap::Support;
-pub(crate) use hulls::DEEP;
+pub(crate) use hulls::FILTER_DEPTH;
 pub use listed::contacts_of_listed;
 pub use met::{Met, Touch};
 pub use primitive_tree::{PrimitiveList, PrimitiveTree};

@@ -24,12 +24,12 @@ use super::apart::free_until;
 use super::outline::ActivePrimitives;
 use super::pair_list::PairList;
 use super::primitive_tree::PrimitiveTree;
-use super::swept::{Bits, Side, Touch, split};
+use super::swept::{Bits, NodeContact, SearchSide, split};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::F64_ROUNDING;
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
 
@@ -38,7 +38,7 @@ const MOST_ANGLE: f64 = 0.5;
 
 /// Pairs on a list at most. Twice as many as there are bits: with more, as of a nut on its bolt, most of the trees is
 /// above some of them, and nothing is spared.
-const MOST: u32 = 2 * Bits::BITS;
+const MAX_LISTED_PAIRS: u32 = 2 * Bits::BITS;
 
 /// Primitive pairs, and pairs of convex pieces, that may come near each other, by the nodes of both trees above them.
 /// It may hold others.
@@ -86,8 +86,8 @@ impl NearPairs {
         }
         let (left1, left2) = left.map_or((None, None), |[a, b]| (Some(a), Some(b)));
         let mut sides = (
-            Side::new(bodies.0, first, left1),
-            Side::new(bodies.1, second, left2),
+            SearchSide::new(bodies.0, first, left1),
+            SearchSide::new(bodies.1, second, left2),
         );
         sides.0.begin(0.0, 1.0);
         sides.1.begin(0.0, 1.0);
@@ -95,8 +95,11 @@ impl NearPairs {
         list.walk(&mut sides).then_some(list)
     }
 
-    /// Whether no more than [`MOST`] are near.
-    fn walk<A: PrimitiveTree, B: PrimitiveTree>(&mut self, sides: &mut (Side<A>, Side<B>)) -> bool {
+    /// Whether no more than [`MAX_LISTED_PAIRS`] are near.
+    fn walk<A: PrimitiveTree, B: PrimitiveTree>(
+        &mut self,
+        sides: &mut (SearchSide<A>, SearchSide<B>),
+    ) -> bool {
         let reach = self.reach + self.margin;
         let mut listed: [Vec<Bits>; 2] = Default::default();
         let mut count = 0;
@@ -106,7 +109,7 @@ impl NearPairs {
         }
         while let Some([i, j]) = stack.pop() {
             let (a, b) = (*sides.0.node(i), *sides.1.node(j));
-            if a.near & b.near == 0 || matches!(a.touch(&b, reach), Touch::Never) {
+            if a.near & b.near == 0 || matches!(a.touch(&b, reach), NodeContact::Never) {
                 continue;
             }
             self.nodes += 1;
@@ -129,7 +132,7 @@ impl NearPairs {
                     bits[at as usize] |= 1 << (count % Bits::BITS);
                 }
                 count += 1;
-                if count > MOST {
+                if count > MAX_LISTED_PAIRS {
                     return false;
                 }
                 continue;
@@ -196,6 +199,6 @@ impl NearPairs {
             turns += arms[k] * (starts[1].angle_at_most(&starts[0]) + faster.length() * seconds);
         }
         let slides = slides.map(|s| s.length());
-        slides[0].max(slides[1]) + turns + ROUNDING_ULPS * f64::EPSILON * size
+        slides[0].max(slides[1]) + turns + F64_ROUNDING * size
     }
 }

@@ -14,7 +14,7 @@ use super::primitive_tree::PrimitiveTree;
 use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::{Real, Vector};
-use crate::medial::proxy_hull::{MOST, ProxyHull};
+use crate::medial::proxy_hull::{MAX_PROXY_ITEMS, ProxyHull};
 use parry3d::query::NonlinearRigidMotion;
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ struct CullState<'a> {
     primitives: u64,
     balls: u64,
     /// How far each ball reaches along the direction at both times.
-    reach: [[f64; 2]; MOST],
+    reach: [[f64; 2]; MAX_PROXY_ITEMS],
 }
 
 /// Places of the bits that are set.
@@ -94,7 +94,7 @@ fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let first = mask.trailing_zeros() as usize;
         mask &= mask.wrapping_sub(1);
-        (first < MOST).then_some(first)
+        (first < MAX_PROXY_ITEMS).then_some(first)
     })
 }
 
@@ -107,7 +107,7 @@ impl<'a> CullState<'a> {
             shares: [(from - start) / length, 1.0],
             primitives: (0..count).fold(0, |m, k| m | 1 << k),
             balls: 0,
-            reach: [[0.0; 2]; MOST],
+            reach: [[0.0; 2]; MAX_PROXY_ITEMS],
         };
         state.keep(state.primitives);
         state

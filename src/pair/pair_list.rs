@@ -1,13 +1,13 @@
 //! A set of primitive pairs of two bodies, by the nodes of both trees above them: a search goes down to these only.
 
 use super::primitive_tree::PrimitiveTree;
-use super::swept::{Bits, Listed, add_bits};
+use super::swept::{Bits, ListedBits, add_bits};
 use crate::medial::tree::NodeKind;
 use std::sync::Arc;
 
 /// Primitive pairs to search. It may hold others besides: of more than [`Bits::BITS`] pairs, several share a bit.
 #[derive(Clone, Default)]
-pub struct PairList(pub(super) Arc<Listed>);
+pub struct PairList(pub(super) Arc<ListedBits>);
 
 impl PairList {
     /// All pairs of primitives below these pairs of nodes of the first and the second body.

@@ -18,7 +18,7 @@ const ROUNDS: usize = 3;
 
 /// Two pieces that are looked at as a whole.
 #[derive(Clone, Copy)]
-pub(super) struct Pieces {
+pub(super) struct PiecePair {
     /// The gap of their hulls at which they meet, a length.
     pub(super) contact: f64,
     /// Whether they touched at the start.
@@ -26,7 +26,7 @@ pub(super) struct Pieces {
     /// The direction tried last.
     pub(super) direction: Vec3<f64>,
     /// How near they are at a time, where that is known and was not looked at yet.
-    pub(super) known: Option<(f64, Nearest)>,
+    pub(super) known: Option<(f64, PieceGap)>,
 }
 
 /// Contact of two convex pieces, in the frame of the motions.
@@ -70,7 +70,7 @@ impl PiecesMet {
 }
 
 /// Result of a look at the convex pieces that two nodes hold.
-pub(super) enum Look {
+pub(super) enum PieceLook {
     /// The pieces do not meet.
     Free,
     /// The pieces do not meet before this time.
@@ -115,7 +115,7 @@ pub(super) fn patch(
 
 /// How near two pieces are at a time.
 #[derive(Clone, Copy)]
-pub(super) struct Nearest {
+pub(super) struct PieceGap {
     /// The largest gap of their hulls found: never more than their distance.
     pub(super) hull: HullGap,
     /// Two of their primitives, and the signed distance of these: never less than theirs.
@@ -123,7 +123,7 @@ pub(super) struct Nearest {
     pub(super) distance: f64,
 }
 
-impl Nearest {
+impl PieceGap {
     /// The distance of two hulls whose nearest primitives are not known.
     pub(super) fn of(hull: HullGap) -> Self {
         Self {

@@ -20,7 +20,7 @@ use crate::elementary::{penetration, slab_crossing};
 use crate::math::Real;
 use crate::math::lane::Vec3;
 use crate::math::nearest::{Family, Nearest, edge_minimum};
-use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
+use crate::math::tolerance::{F64_ROUNDING, ONE_DIRECTION};
 use crate::medial::MedialSphere;
 
 /// Squared sine under which two cones count as parallel for a second contact point (6°).
@@ -72,7 +72,7 @@ impl<'a> PrimitivePair<'a> {
         let faces = self.along_faces();
         let (a, b) = self.spheres();
         let size = |s: &[Ball<f64>]| s.iter().map(|s| s.0.taxicab() + s.1.abs()).sum::<f64>();
-        let beyond = found.margin() + ROUNDING_ULPS * f64::EPSILON * (size(a) + size(b));
+        let beyond = found.margin() + F64_ROUNDING * (size(a) + size(b));
         let mut feature = 0;
         for_each_test(self.shares[0], self.shares[1], |test| {
             if !faces.iter().flatten().any(|ends| ends.gap(&test) > beyond) {

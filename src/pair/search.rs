@@ -22,15 +22,16 @@
 
 use super::outline::ActivePrimitives;
 use super::patch::Patch;
-use super::piece_contact::{Look, Pieces, PiecesMet};
+use super::piece_contact::{PieceLook, PiecePair, PiecesMet};
 use super::primitive_tree::PrimitiveTree;
-use super::queue::{Candidate, Entry, Open, Tested};
-use super::swept::{Side, Touch, split};
+use super::queue::{Entry, OpenTest, Tested, WorkItem};
+use super::swept::{NodeContact, SearchSide, split};
 use crate::elementary::bracket::Limits;
 use crate::elementary::first_contact::{Earliest, options_limits};
 use crate::elementary::{Cores, InitialContact, ToiOptions, ToiStatus};
 use crate::math::fast_hash::FastMap;
 use crate::math::motion::RigidMotion;
+use crate::math::tolerance::PIECE_ANGLE;
 use crate::medial::tree::NodeKind;
 use std::collections::BinaryHeap;
 
@@ -46,14 +47,10 @@ pub(super) const LOOK: u64 = 16;
 /// Pieces whose pairs of roots do not count as work. As above.
 const ROOT_PIECES: u64 = 64;
 
-/// Angle in radians that a piece of the search turns at most: the sagitta is then below 3 % of the
-/// lever arm. Larger pieces cull worse, smaller ones repeat the walk down the trees.
-const PIECE_ANGLE: f64 = 0.5;
-
 /// The state of one search for a first contact: both bodies, the queue, and what is under way. Its methods are in
 /// `waiting.rs`, `leaves.rs`, `convex_pieces.rs` and `ending.rs` too.
-pub(super) struct Search<'a, A, B> {
-    pub(super) sides: (Side<'a, A>, Side<'a, B>),
+pub(super) struct FirstContactSearch<'a, A, B> {
+    pub(super) sides: (SearchSide<'a, A>, SearchSide<'a, B>),
     pub(super) motions: [RigidMotion<f64>; 2],
     /// Start and end of the piece searched.
     pub(super) times: [f64; 2],
@@ -67,7 +64,7 @@ pub(super) struct Search<'a, A, B> {
     /// One candidate that is not in the heap.
     pub(super) first: Option<Entry>,
     /// Elementary tests that are not settled.
-    pub(super) open: Vec<Open>,
+    pub(super) open: Vec<OpenTest>,
     /// Parts that the open tests are of.
     pub(super) tested: Vec<Tested>,
     /// Pieces begun, and how many there are.
@@ -90,7 +87,7 @@ pub(super) struct Search<'a, A, B> {
     /// they may get, in the units of [`super::first_contact::Query::deepest`].
     pub(super) touching: Vec<([u32; 2], f64)>,
     /// Convex pieces looked at, by the bodies' nodes; `None` where their primitives decide.
-    pub(super) convex: FastMap<[u32; 2], Option<Pieces>>,
+    pub(super) convex: FastMap<[u32; 2], Option<PiecePair>>,
     /// The convex pieces that met, if the contact found is between pieces.
     pub(super) met: Option<PiecesMet>,
     /// Patch in which the pieces found, and all others that meet with them, lie on each other; set when it is asked
@@ -108,7 +105,7 @@ enum Reached {
     Answer,
 }
 
-impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
+impl<'a, A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'a, A, B> {
     pub(super) fn new(
         bodies: (&'a A, &'a B),
         motions: [RigidMotion<f64>; 2],
@@ -119,8 +116,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
         let target = f64::from(options.target_distance);
         Self {
             sides: (
-                Side::new(bodies.0, motions[0], left1),
-                Side::new(bodies.1, motions[1], left2),
+                SearchSide::new(bodies.0, motions[0], left1),
+                SearchSide::new(bodies.1, motions[1], left2),
             ),
             motions,
             times: [0.0, 1.0],
@@ -230,9 +227,9 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
             }
             looked = true;
             let open = match entry.candidate {
-                Candidate::Nodes(nodes) => self.expand(nodes, entry.time),
-                Candidate::Parts(place) => self.list_later(place, entry.time),
-                Candidate::Test(index) => self.advance(index, entry.time),
+                WorkItem::Nodes(nodes) => self.expand(nodes, entry.time),
+                WorkItem::SubPrimitives(place) => self.list_later(place, entry.time),
+                WorkItem::Test(index) => self.advance(index, entry.time),
             };
             if !open {
                 return Reached::Answer;
@@ -286,9 +283,9 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
         let reach = self.reach + self.earliest.limits.tolerance;
         let (mut time, mut depth) = (self.times[0], 0.0);
         match a.touch(b, reach) {
-            Touch::AtStart(deep) => depth = deep,
-            Touch::At(share) => time += share * (self.times[1] - self.times[0]),
-            Touch::Never => return,
+            NodeContact::AtStart(deep) => depth = deep,
+            NodeContact::At(share) => time += share * (self.times[1] - self.times[0]),
+            NodeContact::Never => return,
         }
         time = time.max(from);
         if time <= self.earliest.upper.min(self.times[1]) {
@@ -316,17 +313,17 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Search<'a, A, B> {
         let Some(free) = free else {
             return true;
         };
-        if !self.soon(free, time) {
+        if !self.gains_too_little(free, time) {
             return self.wait([i, j], free);
         }
         if primitives.is_some() {
             return self.list_tests([i, j], free);
         }
         match self.look_at_pieces([i, j], free) {
-            Look::Free => return true,
-            Look::FreeUntil(free) => return self.wait([i, j], free),
-            Look::Met(met) => return self.take_pieces(met, free),
-            Look::Split => {}
+            PieceLook::Free => return true,
+            PieceLook::FreeUntil(free) => return self.wait([i, j], free),
+            PieceLook::Met(met) => return self.take_pieces(met, free),
+            PieceLook::Split => {}
         }
         let [parts_of_a, parts_of_b] = split(&mut self.sides, [i, j]);
         for a in parts_of_a.clone() {

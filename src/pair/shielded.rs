@@ -23,17 +23,15 @@ use super::primitive_tree::PrimitiveTree;
 use super::sphere_pair::SpherePair;
 use crate::elementary::{Toi, ToiStatus};
 use crate::math::lane::Vec3;
+use crate::math::tolerance::HEIGHT_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::exact::{balls, tangent_normals};
 use crate::medial::tree::NodeKind;
 use crate::medial::{MedialPrimitive, MedialSphere};
 
-/// Rounding of heights, in units of the coordinates.
-const SLACK: Real = 1.0e-6;
-
 /// How much deeper than a contact the other body may be along its normal, if it is to shield a part, in units of the
 /// part's thickness: what slides is tilted a little. Larger, and it may be deep in the part.
-const SUNK: Real = 0.1;
+const SHIELD_DEPTH: Real = 0.1;
 
 /// Cosine of the steepest fold at which a part's face rises above the one that shields it (3.6°): beyond it the body is
 /// struck at the rim of the next part, under the normal found.
@@ -41,12 +39,12 @@ const FOLD: Real = 0.998;
 
 /// A convex part of a body: a primitive, or the piece that a node holds.
 #[derive(Clone, Copy)]
-enum Part {
+enum PieceOrPrimitive {
     Primitive(u32),
     Piece(u32),
 }
 
-impl Part {
+impl PieceOrPrimitive {
     /// The part that a node of a body holds, if it is one.
     fn of_node(body: &impl PrimitiveTree, node: u32) -> Option<Self> {
         match (body.convex_piece(node), body.kind(node)) {
@@ -92,7 +90,7 @@ impl Part {
         }
     }
 
-    /// Its thickness, a length: of a primitive its least radius.
+    /// The thickness, a length: of a primitive its least radius.
     fn thickness(self, body: &impl PrimitiveTree) -> Real {
         match self {
             Self::Primitive(_) => {
@@ -166,12 +164,12 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
         }
         let bodies = (search.sides.0.body, search.sides.1.body);
         let parts_of = |[i, j]: [u32; 2]| {
-            let first = Part::of_node(bodies.0, i)?;
-            Some([first, Part::of_node(bodies.1, j)?])
+            let first = PieceOrPrimitive::of_node(bodies.0, i)?;
+            Some([first, PieceOrPrimitive::of_node(bodies.1, j)?])
         };
         let hidden = match &search.met {
             Some(met) => parts_of(met.nodes)?,
-            None => toi.primitives.map(Part::Primitive),
+            None => toi.primitives.map(PieceOrPrimitive::Primitive),
         };
         let poses = [0, 1].map(|side| self.pose_at(side, toi.lower));
         let pos12 = poses[0].inv_mul(&poses[1]);
@@ -188,9 +186,10 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
                 _ => return None,
             };
             let contact = match parts {
-                [Part::Primitive(p), Part::Primitive(q)] => {
-                    of_primitives(bodies, [p, q], &pos12, gap)
-                }
+                [
+                    PieceOrPrimitive::Primitive(p),
+                    PieceOrPrimitive::Primitive(q),
+                ] => of_primitives(bodies, [p, q], &pos12, gap),
                 _ => of_pieces(bodies, *nodes, &pos12, gap),
             }?;
             let shield = (parts[side], &contact);
@@ -285,8 +284,8 @@ fn of_pieces(
 fn shields(
     (body, other): (&impl PrimitiveTree, &impl PrimitiveTree),
     side: usize,
-    (shield, contact): (Part, &SpherePair),
-    (hidden, found): ([Part; 2], &Toi),
+    (shield, contact): (PieceOrPrimitive, &SpherePair),
+    (hidden, found): ([PieceOrPrimitive; 2], &Toi),
     poses: &[Pose; 2],
 ) -> Option<Vector> {
     if !body.is_medial() {
@@ -312,11 +311,11 @@ fn shields(
     let [first, second] = &contacts;
     let (pose, parts) = (&poses[side], [shield, hidden[side]]);
     let spheres = parts.map(|part| part.spheres(body));
-    let slack = SLACK * size(&spheres[0], pose).max(size(&spheres[1], pose));
-    // Of a solid only the face that touches need be beyond the contact's plane.
+    let slack = HEIGHT_ROUNDING * size(&spheres[0], pose).max(size(&spheres[1], pose));
+    // Only the face of a solid that touches need be beyond the contact's plane.
     let n = first.normal;
     let lowest = -reach(&hidden[1 - side].solid(other), &poses[1 - side], -n);
-    let sunk = SUNK * parts[1].thickness(body);
+    let sunk = SHIELD_DEPTH * parts[1].thickness(body);
     if lowest - n.dot(first.place) < first.gap.min(0.0) - sunk - slack {
         return None;
     }

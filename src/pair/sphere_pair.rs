@@ -1,4 +1,4 @@
-//! What a contact of two bodies is: a pair of spheres.
+//! A contact of two bodies as a pair of spheres.
 
 use crate::math::{Real, Vector};
 

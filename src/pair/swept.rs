@@ -1,6 +1,6 @@
 //! One body over a piece of the step, as the search for a first contact ([`super::search`]) sees it: the chords
 //! along which the centres of its nodes and primitives move, and radii enlarged by the sagitta, which is how far a
-//! centre may be off its chord. Twin of `Side::chord` on a device: `sweep` in `shaders/swept.wgsl`.
+//! centre may be off its chord. Twin of `SearchSide::chord` on a device: `sweep` in `shaders/swept.wgsl`.
 
 use super::apart::{Balls, SweptBall};
 use super::outline::ActivePrimitives;
@@ -8,7 +8,7 @@ use super::primitive_tree::PrimitiveTree;
 use crate::math::approach::first_touch;
 use crate::math::lane::Vec3;
 use crate::math::motion::{Frame, RigidMotion};
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::{F64_ROUNDING, SIMILAR_RADII};
 use crate::medial::MedialSphere;
 use crate::medial::tree::NodeKind;
 use std::ops::Range;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub(super) type Bits = u128;
 
 /// Listed primitive pairs below each node of both bodies, by its number.
-pub(super) type Listed = [Vec<Bits>; 2];
+pub(super) type ListedBits = [Vec<Bits>; 2];
 
 /// Chord of a node's centre over a piece, and the radius around it that covers the node, rounding
 /// included.
@@ -56,7 +56,7 @@ pub(super) fn add_bits(bits: &mut Vec<Bits>, node: u32, more: Bits) {
 }
 
 /// Time at which two swept nodes come within a distance.
-pub(super) enum Touch {
+pub(super) enum NodeContact {
     /// Contact at the start, so deep as a share of the distance, from 0 to -1.
     AtStart(f64),
     /// Contact at this share of the piece.
@@ -67,30 +67,31 @@ pub(super) enum Touch {
 
 impl Swept {
     /// Time at which the balls of two nodes are first within `reach` of each other.
-    pub(super) fn touch(&self, other: &Self, reach: f64) -> Touch {
+    pub(super) fn touch(&self, other: &Self, reach: f64) -> NodeContact {
         let y = other.start - self.start;
         let rate = other.chord - self.chord;
         let radius = self.radius + other.radius + reach;
-        let radius = (radius + ROUNDING_ULPS * f64::EPSILON * radius.abs()).max(0.0);
+        let radius = (radius + F64_ROUNDING * radius.abs()).max(0.0);
         let distance = y.length();
         if distance <= radius {
-            return Touch::AtStart((distance - radius) / radius.max(f64::MIN_POSITIVE));
+            return NodeContact::AtStart((distance - radius) / radius.max(f64::MIN_POSITIVE));
         }
         // The margins of the radii cover its rounding.
         let (entry, exists) = first_touch(y, rate, radius);
         match !exists || y.dot(rate) >= 0.0 || entry > 1.0 {
-            true => Touch::Never,
-            false => Touch::At(entry),
+            true => NodeContact::Never,
+            false => NodeContact::At(entry),
         }
     }
 }
 
-/// Angle of the step in radians up to which rounding of the time is covered by the margins of 64 ulps of
-/// the coordinates, of which an arm is one: half of them. Larger, and a ball may be a few ulps too small.
-const COVERED: f64 = 32.0;
+/// Rotation in the step, in radians, up to which the margins of 64 ulps of the coordinates, of which an arm is one,
+/// cover the rounding of the time as well: it is given half of them. Only rotation beyond it widens a node's ball.
+/// Larger, and a ball may be a few ulps too small.
+const COVERED_TURN: f64 = 32.0;
 
 /// One side of a search. A node is swept once, however many nodes of the other side it meets.
-pub(super) struct Side<'a, V> {
+pub(super) struct SearchSide<'a, V> {
     pub(super) body: &'a V,
     motion: RigidMotion<f64>,
     times: [f64; 2],
@@ -103,10 +104,10 @@ pub(super) struct Side<'a, V> {
     /// Primitives that may meet the other side; `None`: all.
     left: Option<ActivePrimitives>,
     /// List of what may come near it, and which of the bodies this is.
-    near: Option<(Arc<Listed>, usize)>,
+    near: Option<(Arc<ListedBits>, usize)>,
 }
 
-impl<'a, V: PrimitiveTree> Side<'a, V> {
+impl<'a, V: PrimitiveTree> SearchSide<'a, V> {
     pub(super) fn new(
         body: &'a V,
         motion: RigidMotion<f64>,
@@ -126,7 +127,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
     }
 
     /// Keeps the search to nodes above listed primitives of this side.
-    pub(super) fn keep_near(&mut self, near: Arc<Listed>, side: usize) {
+    pub(super) fn keep_near(&mut self, near: Arc<ListedBits>, side: usize) {
         self.near = Some((near, side));
     }
 
@@ -135,7 +136,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
     pub(super) fn gathered(&self, mut bits: Vec<Bits>) -> Vec<Bits> {
         bits.resize(self.nodes.len(), 0);
         let mut gathered = Vec::new();
-        // What is below a node is swept after it.
+        // Nodes below a node are swept after it.
         for (at, swept) in self.nodes.iter().enumerate().rev() {
             if swept.next != NOT_YET {
                 let next = swept.next as usize;
@@ -249,9 +250,9 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         let length = self.times[1] - self.times[0];
         let acceleration = self.motion.acceleration(arms[0]);
         // Times are good to an ulp of the step, in which a point swings an ulp of the angle; up to
-        // `COVERED` the margins for coordinates cover that.
-        let swing = (self.motion.angle() - COVERED).max(0.0) * arms[0].length();
-        let rounding = ROUNDING_ULPS * f64::EPSILON * swing;
+        // `COVERED_TURN` the margins for coordinates cover that.
+        let swing = (self.motion.angle() - COVERED_TURN).max(0.0) * arms[0].length();
+        let rounding = F64_ROUNDING * swing;
         (
             from.center + arms[0],
             (to.center - from.center) + (arms[1] - arms[0]),
@@ -269,7 +270,7 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
         Swept {
             start,
             chord,
-            radius: radius + ROUNDING_ULPS * f64::EPSILON * size,
+            radius: radius + F64_ROUNDING * size,
             below: self.body.kind(node),
             near: self.near(node),
             node,
@@ -290,21 +291,21 @@ impl<'a, V: PrimitiveTree> Side<'a, V> {
     }
 }
 
-/// Ratio of their radii up to which two nodes are split together. With 1 (one at a time) approaches take a fifth
-/// longer, fast queries a tenth; 1.5 is nearly as good.
-const SIMILAR: f64 = 3.0;
-
 /// Children that replace two swept nodes, at least one of which is not a leaf.
 pub(super) fn split<A: PrimitiveTree, B: PrimitiveTree>(
-    sides: &mut (Side<A>, Side<B>),
+    sides: &mut (SearchSide<A>, SearchSide<B>),
     [i, j]: [u32; 2],
 ) -> [Range<u32>; 2] {
     let (a, b) = (sides.0.node(i), sides.1.node(j));
     // Both at once where they are about as large: the pairs in between would be looked at only to
     // be split. Below that, the larger one.
-    let (small, large) = (a.radius * SIMILAR < b.radius, b.radius * SIMILAR < a.radius);
+    let (small, large) = (
+        a.radius * SIMILAR_RADII < b.radius,
+        b.radius * SIMILAR_RADII < a.radius,
+    );
     let inner = [a.below, b.below].map(|below| matches!(below, NodeKind::Nodes(..)));
-    // What is convex is split against what is not only once that is convex too: then the two are looked at whole.
+    // A convex node is not split against one that is not convex until that is convex too: then the two are looked at
+    // whole.
     let convex = [
         sides.0.body.is_convex(a.node),
         sides.1.body.is_convex(b.node),

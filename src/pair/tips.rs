@@ -12,13 +12,13 @@ use crate::medial::MedialSphere;
 /// A part of a primitive, as up to three spheres that are means of the primitive's own: `shares[k][i]` is the share
 /// of the primitive's sphere `i` in sphere `k` of the part. The shares of one sphere sum to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Part {
+pub(super) struct SubPrimitive {
     shares: [[f64; 3]; 3],
     /// Number of spheres.
     pub(super) spheres: usize,
 }
 
-impl Part {
+impl SubPrimitive {
     /// All of a primitive of so many spheres.
     pub(super) fn whole(spheres: usize) -> Self {
         Self {
@@ -69,16 +69,16 @@ impl Part {
 
 /// Parts of a primitive that remain without its tips: one or two.
 #[derive(Clone, Copy)]
-pub(super) struct Parts {
-    parts: [Part; 2],
+pub(super) struct SubPrimitives {
+    parts: [SubPrimitive; 2],
     len: usize,
 }
 
-impl Parts {
+impl SubPrimitives {
     /// All of a primitive of so many spheres.
     pub(super) fn whole(spheres: usize) -> Self {
         Self {
-            parts: [Part::whole(spheres); 2],
+            parts: [SubPrimitive::whole(spheres); 2],
             len: 1,
         }
     }
@@ -86,7 +86,7 @@ impl Parts {
     /// Parts of a primitive where its radius is `kept` or more; the whole primitive if it is thinner everywhere.
     pub(super) fn without_tips(spheres: &[Ball<f64>], kept: f64) -> Self {
         let mut whole = Self::whole(spheres.len());
-        let at = |k: usize| Part::whole(3).shares[k];
+        let at = |k: usize| SubPrimitive::whole(3).shares[k];
         // From a thin sphere towards a thick one, where it is as thick as asked.
         let cut = |from: usize, to: usize| {
             let share = (kept - spheres[from].1) / (spheres[to].1 - spheres[from].1);
@@ -94,7 +94,7 @@ impl Parts {
             (shares[from], shares[to]) = (1.0 - share, share);
             shares
         };
-        let part = |shares: [[f64; 3]; 3]| Part {
+        let part = |shares: [[f64; 3]; 3]| SubPrimitive {
             shares,
             spheres: spheres.len(),
         };
@@ -122,7 +122,7 @@ impl Parts {
         whole
     }
 
-    pub(super) fn iter(&self) -> impl Iterator<Item = &Part> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = &SubPrimitive> {
         self.parts[..self.len].iter()
     }
 }

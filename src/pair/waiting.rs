@@ -5,7 +5,7 @@ use super::apart::{Balls, free_until, held_until};
 use super::deepening::Threshold;
 use super::primitive_tree::PrimitiveTree;
 use super::queue::Entry;
-use super::search::Search;
+use super::search::FirstContactSearch;
 use crate::math::lane::Vec3;
 
 /// Fraction of a piece by which directions must put off two primitives for them to wait in the queue;
@@ -13,9 +13,9 @@ use crate::math::lane::Vec3;
 /// larger runs tests that directions would have spared.
 const WORTH_WAITING: f64 = 1.0e-3;
 
-impl<A: PrimitiveTree, B: PrimitiveTree> Search<'_, A, B> {
+impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
     /// Whether directions gain too little for two candidates to wait.
-    pub(super) fn soon(&self, free: f64, time: f64) -> bool {
+    pub(super) fn gains_too_little(&self, free: f64, time: f64) -> bool {
         free < time + WORTH_WAITING * (self.times[1] - self.times[0])
     }
 

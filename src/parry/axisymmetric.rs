@@ -54,7 +54,7 @@ pub struct Axisymmetric {
 
 /// Placement of an [`Axisymmetric`] body: centre and axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct AxisFrame {
     /// Centre; points are given relative to it.
     pub origin: Vec3<f64>,
     /// Unit axis.
@@ -62,12 +62,12 @@ pub struct Place {
 }
 
 /// Difference of two balls: of their centres, and of their radii.
-type Edge = (Vec3<f64>, f64);
+type BallDifference = (Vec3<f64>, f64);
 
 /// An interpolated sphere near the body.
 #[derive(Clone, Copy, Debug)]
 pub struct NearBall {
-    /// The sphere, with its centre relative to [`Place::origin`].
+    /// The sphere, with its centre relative to [`AxisFrame::origin`].
     pub ball: Ball,
     /// Distance of its centre to the body, 0 inside.
     pub apart: f64,
@@ -82,7 +82,7 @@ impl NearBall {
     }
 
     /// Change of the signed distance along an edge: `edge` of the centre, `grow` of the radius.
-    fn slope(&self, (edge, grow): Edge) -> f64 {
+    fn slope(&self, (edge, grow): BallDifference) -> f64 {
         self.direction.dot(edge) - grow
     }
 }
@@ -119,7 +119,7 @@ impl Axisymmetric {
     }
 
     /// Support function in the direction `m`, of any length, about the centre.
-    pub fn support(&self, place: &Place, m: Vec3<f64>) -> f64 {
+    pub fn support(&self, place: &AxisFrame, m: Vec3<f64>) -> f64 {
         let along = m.dot(place.axis);
         let across = (m - place.axis * along).length() * self.radius;
         if self.pointed {
@@ -152,7 +152,7 @@ impl Axisymmetric {
     }
 
     /// The shortest way from a point inside to the surface: unit direction and length.
-    pub fn min_translation(&self, place: &Place, point: Vec3<f64>) -> (Vec3<f64>, f64) {
+    pub fn min_translation(&self, place: &AxisFrame, point: Vec3<f64>) -> (Vec3<f64>, f64) {
         let (h, r) = (self.half_height, self.radius);
         let y = point.dot(place.axis);
         let across = point - place.axis * y;
@@ -177,7 +177,7 @@ impl Axisymmetric {
             .map_or((place.axis, 0.0), |(n, way)| (n, way.max(0.0)))
     }
 
-    fn at(&self, place: &Place, ball: Ball) -> NearBall {
+    fn at(&self, place: &AxisFrame, ball: Ball) -> NearBall {
         let y = ball.center.dot(place.axis);
         let across = ball.center - place.axis * y;
         let rho = across.length();
@@ -198,7 +198,7 @@ impl Axisymmetric {
     }
 
     /// The interpolated sphere of 1 to 3 that is nearest; of none, a sphere at the origin.
-    pub fn nearest(&self, place: &Place, balls: &[Ball]) -> NearBall {
+    pub fn nearest(&self, place: &AxisFrame, balls: &[Ball]) -> NearBall {
         let far = balls
             .iter()
             .map(|ball| ball.center.length() + ball.radius.abs());
@@ -220,7 +220,14 @@ impl Axisymmetric {
         }
     }
 
-    fn along(&self, place: &Place, from: Ball, edge: Edge, until: f64, sharp: f64) -> NearBall {
+    fn along(
+        &self,
+        place: &AxisFrame,
+        from: Ball,
+        edge: BallDifference,
+        until: f64,
+        sharp: f64,
+    ) -> NearBall {
         let ends = [from, moved(from, edge, until)];
         let is_sharp = |near: &NearBall| self.is_sharp(place, near, &ends, sharp);
         minimise(until, edge.0.length(), is_sharp, |x| {
@@ -230,7 +237,7 @@ impl Axisymmetric {
     }
 
     /// Whether the bound of these corners along its direction is as large as the distance of a sphere, but for `sharp`.
-    fn is_sharp(&self, place: &Place, near: &NearBall, corners: &[Ball], sharp: f64) -> bool {
+    fn is_sharp(&self, place: &AxisFrame, near: &NearBall, corners: &[Ball], sharp: f64) -> bool {
         let m = near.direction;
         let ends = corners.iter().map(|ball| m.dot(ball.center) - ball.radius);
         let bound = ends.fold(f64::INFINITY, f64::min) - self.support(place, m);
@@ -238,11 +245,11 @@ impl Axisymmetric {
     }
 }
 
-fn edge(a: Ball, b: Ball) -> Edge {
+fn edge(a: Ball, b: Ball) -> BallDifference {
     (b.center - a.center, b.radius - a.radius)
 }
 
-fn moved(from: Ball, edge: Edge, share: f64) -> Ball {
+fn moved(from: Ball, edge: BallDifference, share: f64) -> Ball {
     Ball::new(from.center + edge.0 * share, from.radius + edge.1 * share)
 }
 

@@ -7,8 +7,8 @@
 //! bodies inside the cylinder or cone as overlapping, and never falls below minus the largest radius. For a contact,
 //! `upper = lower`, and `D` there is at most the tolerance. All is computed in double precision.
 
-use super::axisymmetric::{Axisymmetric, NearBall, Place, unit};
-use super::conservative_advancement::{Advance, CHASE_TOLERANCE_PER_SLACK, Limits, follow};
+use super::axisymmetric::{AxisFrame, Axisymmetric, NearBall, unit};
+use super::conservative_advancement::{Advance, CHASE_TOLERANCE_PER_SLACK, ChaseLimits, follow};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::lane::Vec3;
@@ -59,7 +59,7 @@ pub fn first_contact(
         return ToiResult::of(toi, Counts::default(), f64::INFINITY);
     }
     let motions = RigidMotion::<f64>::pair(motion1, motion2, seconds.into());
-    let mut search = Search {
+    let mut search = AxisymmetricSearch {
         mesh,
         motions,
         options,
@@ -87,7 +87,7 @@ pub fn first_contact(
 }
 
 /// The state of one search for the first contact of a mesh with cylinders and cones.
-struct Search<'a> {
+struct AxisymmetricSearch<'a> {
     mesh: &'a MedialMesh,
     motions: [RigidMotion<f64>; 2],
     options: &'a ToiOptions,
@@ -100,16 +100,16 @@ struct Search<'a> {
     status: ToiStatus,
     lower: f64,
     upper: f64,
-    found: Option<Found>,
+    found: Option<FoundContact>,
     /// Depth of the deepest contact at the start, as [`crate::pair::first_contact::Query::deepest`].
     deepest: f64,
 }
 
 /// The contact found: the nearest sphere, the body's placement then, and the primitives on both sides.
 #[derive(Clone, Copy)]
-struct Found {
+struct FoundContact {
     near: NearBall,
-    place: Place,
+    place: AxisFrame,
     primitives: [u32; 2],
 }
 
@@ -124,7 +124,7 @@ struct Entry {
 }
 least_first!(Entry, time, body, node, spent);
 
-impl Search<'_> {
+impl AxisymmetricSearch<'_> {
     /// Best-first over the tree and the bodies, by the time until which each node is proven free.
     fn run(&mut self, bodies: &[Axisymmetric]) {
         for (index, body) in bodies.iter().enumerate() {
@@ -161,7 +161,7 @@ impl Search<'_> {
             }
         };
         let (balls, len) = self.balls(primitive);
-        let limits = Limits {
+        let limits = ChaseLimits {
             start: entry.time,
             horizon: self.upper,
             target: self.options.target_distance.into(),
@@ -169,7 +169,7 @@ impl Search<'_> {
             steps: 1,
         };
         let Advance { near, place, .. } = self.advance(body, &balls[..len], &limits);
-        self.found = Some(Found {
+        self.found = Some(FoundContact {
             near,
             place,
             primitives: [primitive, entry.body],
@@ -187,7 +187,7 @@ impl Search<'_> {
     fn push(&mut self, body: &Axisymmetric, index: u32, node: u32, time: f64) {
         self.counts.nodes += 1;
         let (center, radius) = self.mesh.bound(node);
-        let limits = Limits {
+        let limits = ChaseLimits {
             start: time,
             horizon: self.upper,
             // A primitive below raises a negative target, to 0 at most.
@@ -224,7 +224,7 @@ impl Search<'_> {
         let cap = CAP.saturating_mul(self.options.max_iterations);
         let radii = all[..len].iter().map(|b| b.radius);
         let thinnest = radii.fold(f64::INFINITY, f64::min);
-        let mut limits = Limits {
+        let mut limits = ChaseLimits {
             start: entry.time,
             horizon: self.upper,
             // No sphere is deeper in a cylinder or cone than by its radius: a target below that would never be met.
@@ -240,7 +240,7 @@ impl Search<'_> {
         if let InitialContact::Deepen { by } | InitialContact::Approach { by } =
             self.options.initial_contact
         {
-            let at_start = Limits {
+            let at_start = ChaseLimits {
                 start: 0.0,
                 steps: 1,
                 ..limits
@@ -305,7 +305,7 @@ impl Search<'_> {
         let overlap =
             advance.met && advance.lower <= 0.0 && advance.near.distance() < target - advance.slack;
         if sooner || overlap {
-            self.found = Some(Found {
+            self.found = Some(FoundContact {
                 near: advance.near,
                 place: advance.place,
                 primitives,
@@ -321,7 +321,7 @@ impl Search<'_> {
         }
     }
 
-    fn advance(&mut self, body: &Axisymmetric, balls: &[Ball], limits: &Limits) -> Advance {
+    fn advance(&mut self, body: &Axisymmetric, balls: &[Ball], limits: &ChaseLimits) -> Advance {
         let advance = follow(&self.motions, body, balls, limits);
         self.work += advance.steps;
         advance

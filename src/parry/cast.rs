@@ -8,9 +8,9 @@ use super::folds;
 use super::initial_contacts::{AtStart, Touching, approach_of_rounding};
 use super::inside;
 use super::shape_faces::for_each_flat_face;
-use super::sliding::{Sinks, Sliding};
+use super::sliding::{SinkLimits, Sliding};
 use super::swept_region::{started, swept_region};
-use super::swept_sphere_parts::{self, Parts, Unsweepable};
+use super::swept_sphere_parts::{self, SweptParts, Unsweepable};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
 use crate::math::{Pose, Real, Vector};
@@ -80,7 +80,7 @@ impl Cast<'_> {
         &self,
         options: &ToiOptions,
         left: Option<[ActivePrimitives; 2]>,
-        sinks: Option<Sinks>,
+        sinks: Option<SinkLimits>,
     ) -> Result<ToiResult, Unsweepable> {
         let [start, end] = self.times;
         let motions = [self.motion1, self.motion2].map(|m| started(m, start));
@@ -94,7 +94,7 @@ impl Cast<'_> {
         let target = options.target_distance + LIES_ABOVE * options.tolerance;
         let motions = motions.each_ref();
         let slides = |s| Sliding::new((self.mesh, self.other), motions, seconds, target, s);
-        let parts = Parts::under(sinks.and_then(slides));
+        let parts = SweptParts::under(sinks.and_then(slides));
         self.query(motions, seconds, options, left, parts)
     }
 
@@ -124,7 +124,7 @@ impl Cast<'_> {
         }
         let query = |options: &ToiOptions| {
             let motions = [&motion1, &motion2];
-            self.query(motions, seconds, options, None, Parts::default())
+            self.query(motions, seconds, options, None, SweptParts::default())
         };
         let found = query(&options)?;
         let ToiResult {
@@ -152,9 +152,9 @@ impl Cast<'_> {
             toi = further.toi;
             counts += further.counts;
         }
-        // What slides along at the target distance is within the tolerance of a hit wherever it is, with a normal that
-        // may be off by as much as the tolerance lets the nearest points be. A hit it is where it comes nearer by more:
-        // otherwise a character could not step up along a wall.
+        // A mesh that slides along at the target distance is within the tolerance of a hit wherever it is, with a
+        // normal that may be off by as much as the tolerance lets the nearest points be. A hit it is where it comes
+        // nearer by more: otherwise a character could not step up along a wall.
         let slant = 2.0 * options.tolerance / self.target_distance.max(Real::MIN_POSITIVE);
         let slant = slant.sqrt().min(MOST_SLANT);
         let slides =
@@ -208,7 +208,7 @@ impl Cast<'_> {
         tolerance: Real,
     ) -> Result<Touching, Unsweepable> {
         let [start1, start2] = motions.map(|m| m.start);
-        // What the query took for a contact may be farther off by its tolerance, with a normal that says less.
+        // Shapes that the query took for touching may be farther apart by its tolerance, with a normal that says less.
         let reach = self.target_distance + tolerance;
         let pos12 = start1.inverse() * start2;
         let (nearest, _) = distance::nearest(self.mesh, self.other, &pos12, reach)?;
@@ -247,7 +247,7 @@ impl Cast<'_> {
         seconds: Real,
         options: &ToiOptions,
         left: Option<[ActivePrimitives; 2]>,
-        mut parts: Parts,
+        mut parts: SweptParts,
     ) -> Result<ToiResult, Unsweepable> {
         if let Some(other) = self.other.as_shape::<MedialMesh>() {
             return Ok(self.search(other, motion1, motion2, seconds, options, left));
@@ -283,7 +283,7 @@ impl Cast<'_> {
             other.toi.primitives[1] = parts.axisymmetric_subshape(other.toi.primitives[1]);
             found.counts += other.counts;
             found.toi = axisymmetric_toi::earlier(found.toi, other.toi);
-            // Of what met a cylinder or a cone the spheres alone do not tell the contact.
+            // The spheres that met a cylinder or a cone do not tell the contact.
             if found.toi.lower == other.toi.lower {
                 (found.met, found.middle) = (None, None);
             }

@@ -7,7 +7,7 @@ use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
 /// Length of normals of hits beyond 1: four ulps. rapier turns them into the world's frame, which took up to two off
 /// those of floors turned by a quarter (`scenes characters`). A normal that is shorter than 1 and straight up makes of
 /// a flat floor one that rapier's character controller slips on: it then drops the whole move (docs/host.md).
-const LONGER: Real = 4.0 * Real::EPSILON;
+const NORMAL_EXCESS: Real = 4.0 * Real::EPSILON;
 
 /// The hit of an answer. `start`: seconds at which the motions begin; `time`: seconds from there to the contact.
 pub(super) fn hit(
@@ -16,7 +16,7 @@ pub(super) fn hit(
     [start, time]: [Real; 2],
 ) -> ShapeCastHit {
     let [pose1, pose2] = motions.map(|m| m.position_at_time(time));
-    let long = |n: Vector| n.normalize_or_zero() * (1.0 + LONGER);
+    let long = |n: Vector| n.normalize_or_zero() * (1.0 + NORMAL_EXCESS);
     ShapeCastHit {
         time_of_impact: start + time,
         witness1: pose1.inverse_transform_point(toi.points[0]),

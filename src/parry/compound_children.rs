@@ -1,7 +1,7 @@
 //! The children of a compound that matter in a region of space, by the compound's hierarchy of boxes: a query of a
 //! level of thousands of tiles looks at the few around the body.
 
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Real, Vector};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::partitioning::BvhNode;
@@ -13,7 +13,7 @@ use parry3d::shape::Compound;
 fn holding(node: &BvhNode) -> Aabb {
     let aabb = node.aabb();
     let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
-    aabb.loosened(ROUNDING_ULPS as Real * Real::EPSILON * size)
+    aabb.loosened(REAL_ROUNDING * size)
 }
 
 /// Children whose boxes `region` (in the compound's frame) meets, in ascending order. A region that is not a number
@@ -37,10 +37,10 @@ pub fn least_over_children(
     slack: Real,
     length: impl Fn(u32) -> Real,
 ) -> Real {
-    let rounding = ROUNDING_ULPS as Real * Real::EPSILON * point.abs().max_element();
+    let rounding = REAL_ROUNDING * point.abs().max_element();
     let at_least = |node: &BvhNode, _| {
         let distance = holding(node).distance_to_local_point(point, true);
-        // What is below a box that is not a number is looked at.
+        // Children below a box of NaN are looked at.
         (distance / slack - rounding).max(0.0)
     };
     let least = compound
@@ -56,7 +56,7 @@ mod tests {
     use crate::medial::MedialSphere;
     use crate::parry::inside::{holds_point, min_translation, most_distance};
     use crate::parry::shape_faces::for_each_flat_face;
-    use crate::parry::swept_sphere_parts::{Parts, add_shape};
+    use crate::parry::swept_sphere_parts::{SweptParts, add_shape};
     use parry3d::shape::SharedShape;
     use std::cell::Cell;
 
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn of_many_tiles_only_those_near_a_body_are_looked_at() {
         let region = on_a_tile();
-        let mut parts = Parts::default();
+        let mut parts = SweptParts::default();
         assert!(add_shape(
             &mut parts,
             &tiles(&SharedShape::ball(0.5)),

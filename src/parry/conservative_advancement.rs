@@ -26,7 +26,7 @@
 //! play, so that `ULPS` ulps of it cover the bound. A tolerance below [`CHASE_TOLERANCE_PER_SLACK`] times
 //! that slack is raised to it.
 
-use super::axisymmetric::{Axisymmetric, NearBall, Place, unit};
+use super::axisymmetric::{AxisFrame, Axisymmetric, NearBall, unit};
 use crate::math::lane::Vec3;
 use crate::math::motion::{PointPath, RigidMotion};
 use crate::math::sphere::Ball;
@@ -49,7 +49,7 @@ const WIDER: f64 = 4.0;
 
 /// Limits of the time and the distance within which one volume is followed.
 #[derive(Clone, Copy)]
-pub struct Limits {
+pub struct ChaseLimits {
     /// Time until which the two are known to be free.
     pub start: f64,
     /// Contacts from here on are of no interest.
@@ -77,7 +77,7 @@ pub struct Advance {
     /// Nearest sphere at `lower`, its radius with the body's border.
     pub near: NearBall,
     /// Placement of the body at that time.
-    pub place: Place,
+    pub place: AxisFrame,
 }
 
 /// One corner sphere of the primitive, on its way.
@@ -106,7 +106,7 @@ struct Chase<'a> {
 
 /// State of a [`Chase`] at a time.
 struct Moment {
-    place: Place,
+    place: AxisFrame,
     balls: [Ball; 3],
     /// Velocities of the spheres against the body's centre.
     rates: [Vec3<f64>; 3],
@@ -167,7 +167,7 @@ impl<'a> Chase<'a> {
         let arms = self.largest(|c| c.path.terms()) + self.pivot.terms();
         let size = self.body.reach() + self.largest(|c| c.radius) + far + self.speed + arms;
         Moment {
-            place: Place {
+            place: AxisFrame {
                 origin: center.position,
                 axis: unit(motion2.direction(self.axis, turned[1])),
             },
@@ -283,10 +283,10 @@ pub fn follow(
     motions: &[RigidMotion<f64>; 2],
     body: &Axisymmetric,
     balls: &[Ball],
-    limits: &Limits,
+    limits: &ChaseLimits,
 ) -> Advance {
     let chase = Chase::new(motions, body, balls);
-    let place = Place {
+    let place = AxisFrame {
         origin: Vec3::zero(),
         axis: chase.axis,
     };

@@ -4,7 +4,7 @@
 
 use super::by_parry;
 use super::contact_reduction::{self, Load};
-use super::convex_parts::{Part, child_reach, part_number, slack, slack_of, slack_of_parts};
+use super::convex_parts::{ConvexPart, child_reach, part_number, slack, slack_of, slack_of_parts};
 use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
 use super::false_contacts;
@@ -58,7 +58,7 @@ impl MedialDispatcher {
         let meshes = (medial(g1), medial(g2));
         if plan.has_single_point(g1, g2) {
             let deepest = self.deepest(pos12, g1, g2, prediction)?;
-            // As above.
+            // It, too, holds indices into the list that is emptied here.
             *workspace = None;
             ensure_workspace::<M, C>(g1, g2, workspace);
             write_one_point(deepest, pos12, manifolds);
@@ -70,8 +70,8 @@ impl MedialDispatcher {
         if soft(g1) || soft(g2) {
             return Err(Unsupported);
         }
-        // What a load on one body is above: of two medial meshes the lighter lies on the other.
-        // (Their masses are known, where the volume of a solid would have to be measured first.)
+        // The body that bears the load of the other: of two medial meshes the lighter lies on the heavier. (Masses are
+        // known; the volume of a solid would have to be measured first.)
         let weight = |mesh: &MedialMesh| mesh.unit_mass_properties().mass();
         let (side, mesh) = match meshes {
             (Some(mesh1), Some(mesh2)) if weight(mesh1) > weight(mesh2) => (1, mesh2),
@@ -120,16 +120,16 @@ fn write_with_other<M, C>(
     C: Default + Copy + Send + Sync,
 {
     let (((_, side), pos12, _), prediction) = (pair, load.prediction);
-    let goes_on = write_on_flat(pair, prediction, manifolds, workspace);
-    if goes_on.is_none() {
+    let continues_previous = write_on_flat(pair, prediction, manifolds, workspace);
+    if continues_previous.is_none() {
         write_by_parry(dispatcher, pair, prediction, manifolds, workspace);
     }
-    correct(pair, (goes_on.is_none(), prediction), manifolds);
-    if goes_on != Some(true) {
+    correct(pair, (continues_previous.is_none(), prediction), manifolds);
+    if continues_previous != Some(true) {
         previous_contacts::transfer_impulses(manifolds, previous, prediction, side);
     }
     contact_reduction::choose(manifolds, pos12, load, previous, side);
-    if goes_on.is_some() {
+    if continues_previous.is_some() {
         manifolds.retain(|m| !m.points.is_empty());
     }
 }
@@ -157,7 +157,7 @@ fn correct<M, C>(
         }
         _ if is_parrys => {
             // First, so that none is turned to the normal of one that it is a ghost of.
-            let reach = |part, n| Part::of(mesh, part).reach(n);
+            let reach = |part, n| ConvexPart::of(mesh, part).reach(n);
             let slack = slack_of_parts(mesh, (other, &pose));
             leave_out_ghosts_of(manifolds, (side, reach), |child| child, slack);
             touching_normals::correct(manifolds, (mesh, side), (other, &pose), prediction);
@@ -177,7 +177,7 @@ fn leave_out_ghosts<M, C>(
     (mesh, side): (&MedialMesh, usize),
     pose: &Pose,
 ) {
-    let reach = |part, n| Part::of(mesh, part).reach(n);
+    let reach = |part, n| ConvexPart::of(mesh, part).reach(n);
     let slack = slack(mesh, pose);
     leave_out_ghosts_of(manifolds, (side, reach), |child| child, |_| slack);
 }
@@ -244,14 +244,14 @@ where
         (g1, pos12.inverse())
     };
     let face = flat_face::face(mesh, other, &pose, prediction)?;
-    let goes_on = flat_face::wrote(manifolds);
-    if !goes_on {
+    let continues_previous = flat_face::wrote(manifolds);
+    if !continues_previous {
         // parry's workspace holds indices into the list that is written anew here.
         *workspace = None;
     }
     ensure_workspace::<M, C>(g1, g2, workspace);
     flat_face::write_manifolds(mesh, &face, &pose, side, prediction, manifolds);
-    Some(goes_on)
+    Some(continues_previous)
 }
 
 /// parry's manifolds of a mesh and another shape. It knows its own again; those of a flat face it would begin anew,
@@ -312,7 +312,7 @@ where
         let written = self.write_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
         let points = manifolds.iter().flat_map(|m| &m.points);
         let depth = points.map(|p| -p.dist).fold(0.0, Real::max);
-        // What somebody else will write is unknown.
+        // The depth of contacts that another dispatcher will write is unknown.
         let depth = written.map_or(Real::MAX, |()| depth);
         self.exchange
             .note(|tally| tally.depth = tally.depth.max(depth));

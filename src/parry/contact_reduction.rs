@@ -22,7 +22,7 @@ const SOLVED: usize = 4;
 
 /// Gaps that differ by less count as equal, in units of the prediction distance: contacts that bore
 /// before stay, and wide ones come first. Without it the choice flickers, and impulses are lost.
-const EQUAL: f64 = 0.02;
+const GAP_TOLERANCE: f64 = 0.02;
 
 /// Contacts nearer to each other than this are one, in units of the prediction distance; as in rapier.
 const SAME_PLACE: f64 = 0.25;
@@ -31,7 +31,7 @@ const SAME_PLACE: f64 = 0.25;
 /// deeper one only that one bears. One ahead of a wheel's axle would stop what comes down on it, and the wheel with it.
 /// Smaller, and wheels of few cones are braked; larger, and what rocks slowly has one contact. How the other body turns
 /// is not looked at.
-const PASSED: f64 = 3.0;
+const ROLL_WIDTH: f64 = 3.0;
 
 /// Steepest facet, as a gradient, where the load is beside all contacts and the body tips over: contacts
 /// deeper than that slope from the edge it tips over are not left in. With 1 a knot slept 60 mm deep.
@@ -42,11 +42,11 @@ const WIDER: f64 = 1.0e-3;
 
 /// A contact that does not touch counts for less, in proportion to the smaller of its gap and its height above the
 /// facet, in units of the prediction distance, but for no less than this part.
-const HIGH: f64 = 0.3;
+const MIN_WEIGHT: f64 = 0.3;
 
 /// Factor for contacts that bore before, which keeps the choice from flickering between contacts that are worth the
 /// same.
-const BORE: f64 = 1.15;
+const KEEP_BONUS: f64 = 1.15;
 
 /// Pivots after which the facet found so far has to do.
 const PIVOTS: usize = 64;
@@ -64,7 +64,7 @@ struct Seen {
     bore: bool,
 }
 
-/// What a body's contacts have to bear.
+/// The load that a body's contacts have to bear.
 pub struct Load {
     /// Centre of mass of the body, in the first body's frame.
     pub center: Vector,
@@ -104,7 +104,7 @@ pub fn choose<M, C: Copy>(
     side: usize,
 ) {
     let prediction = f64::from(load.prediction);
-    let equal = EQUAL * prediction;
+    let equal = GAP_TOLERANCE * prediction;
     let mut left_out = Vec::new();
     for group in groups(manifolds, equal) {
         let [n, _] = normals(&manifolds[group[0]]);
@@ -132,7 +132,7 @@ pub fn choose<M, C: Copy>(
         if let (Some(turn), Some(deepest)) = (&load.turn, deepest) {
             let [m, i] = deepest.contact;
             let (place, normal) = (places(&manifolds[m], i)[side], normals(&manifolds[m])[side]);
-            let passed = PASSED * f64::from(turn.rolls(place, normal));
+            let passed = ROLL_WIDTH * f64::from(turn.rolls(place, normal));
             if passed > SAME_PLACE * prediction {
                 left_out.extend(without_doubles(&mut seen, passed));
             }
@@ -240,8 +240,8 @@ fn bearing(seen: &[Seen], prediction: f64) -> Vec<usize> {
         let chosen: Vec<[f64; 2]> = bear.iter().map(|b| seen[*b].at).collect();
         let worth = |s: &Seen| {
             let low = (1.0 - above(&plane, s).min(s.gap) / prediction.max(f64::MIN_POSITIVE))
-                .clamp(HIGH, 1.0);
-            let counts = if s.bore { BORE * low } else { low };
+                .clamp(MIN_WEIGHT, 1.0);
+            let counts = if s.bore { KEEP_BONUS * low } else { low };
             let gain = counts * gained(&chosen, s.at);
             let to = |c: &[f64; 2]| square([s.at[0] - c[0], s.at[1] - c[1]]);
             let apart = counts * counts * chosen.iter().map(to).fold(f64::MAX, f64::min);
@@ -270,7 +270,7 @@ fn gained(of: &[[f64; 2]], p: [f64; 2]) -> f64 {
         [a, b, c] => {
             let parts = [twice(a, b), twice(b, c), twice(c, a)];
             let whole: f64 = parts.iter().sum();
-            // What is on the other side of an edge.
+            // The parts on the other side of an edge.
             parts
                 .iter()
                 .map(|part| (-part * whole.signum()).max(0.0))

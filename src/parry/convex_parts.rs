@@ -1,13 +1,11 @@
 //! The convex parts between which contacts are computed: of a medial mesh its convex pieces and lone primitives, of
 //! another shape itself or, of a compound, its children.
 
+use crate::math::tolerance::HEIGHT_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::convex_pieces::ConvexPiece;
 use crate::medial::{MedialMesh, MedialPrimitive, MedialSphere};
 use parry3d::shape::{Compound, Shape, TypedShape};
-
-/// Slack of heights that are compared, in units of the sizes in play: about eight ulps of `f32`.
-const SLACK: Real = 1.0e-6;
 
 /// Tilt of parry's (GJK) normals that is allowed for between a compound's children, a slope. Of rings on tiles one in a
 /// hundred is off by more than 6e-5, one in seven thousand by more than 2e-4; what is off by more keeps its ghost.
@@ -17,16 +15,17 @@ const TILT: Real = 1.0e-4;
 /// 4e-4 (scenes `medial_floors`).
 const TILT_OF_PARTS: Real = 5.0e-4;
 
-/// A step lower than this share of a body's size may count as level on account of that.
-const LOW: Real = 1.0e-3;
+/// Bound of the slack that these tilts give, in units of the other body's size: steps that are higher than this are
+/// never taken for level.
+const MAX_STEP: Real = 1.0e-3;
 
 /// A convex part of a mesh.
-pub enum Part<'a> {
+pub enum ConvexPart<'a> {
     Piece(&'a ConvexPiece),
     Primitive(MedialPrimitive),
 }
 
-impl<'a> Part<'a> {
+impl<'a> ConvexPart<'a> {
     /// The one that a primitive of a mesh belongs to.
     pub fn of(mesh: &'a MedialMesh, primitive: u32) -> Self {
         let pieces = mesh.convex_pieces();
@@ -95,10 +94,10 @@ pub fn slack_of_parts(
     mesh: &MedialMesh,
     (other, pose): (&dyn Shape, &Pose),
 ) -> impl Fn(u32) -> Real {
-    let low = LOW * other.compute_local_aabb().extents().max_element();
+    let low = MAX_STEP * other.compute_local_aabb().extents().max_element();
     let of_all = slack(mesh, pose);
     move |primitive| {
-        let part = Part::of(mesh, primitive);
+        let part = ConvexPart::of(mesh, primitive);
         let size = |n: Vector| part.reach(n) + part.reach(-n);
         let size = [Vector::X, Vector::Y, Vector::Z].map(size);
         let size = size.into_iter().fold(0.0, Real::max);
@@ -111,13 +110,13 @@ pub fn slack_of(compound: &Compound, child: u32, mesh: &MedialMesh) -> Real {
     let bounds = compound.local_aabb();
     let own = compound.aabbs().get(child as usize);
     let size = own.map_or(0.0, |own| own.extents().max_element());
-    let low = LOW * mesh.aabb().extents().max_element();
-    low.min(TILT * size) + SLACK * bounds.mins.abs().max(bounds.maxs.abs()).max_element()
+    let low = MAX_STEP * mesh.aabb().extents().max_element();
+    low.min(TILT * size) + HEIGHT_ROUNDING * bounds.mins.abs().max(bounds.maxs.abs()).max_element()
 }
 
 /// Slack of heights of a mesh's parts, a length, where the other shape is at `pose` in the mesh's frame.
 pub fn slack(mesh: &MedialMesh, pose: &Pose) -> Real {
-    SLACK * (mesh.aabb().extents().max_element() + pose.translation.abs().max_element())
+    HEIGHT_ROUNDING * (mesh.aabb().extents().max_element() + pose.translation.abs().max_element())
 }
 
 #[cfg(test)]

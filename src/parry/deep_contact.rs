@@ -23,11 +23,11 @@ use parry3d::shape::{Shape, SupportMap, TypedShape};
 const SAME_DEPTH: [Real; 2] = [1.0e-3, 1.0e-6];
 
 /// A convex part of one of the bodies.
-struct Part<'a> {
+struct PlacedPart<'a> {
     map: Map<'a>,
-    /// What its support map is grown by, a length.
+    /// Radius by which its support map is grown, a length.
     border: Real,
-    /// Its pose in the frame of its body, and of the mesh.
+    /// Poses in the frame of its body, and of the mesh.
     poses: [Pose; 2],
     subshape: u32,
     /// Boxes around it in its own frame, and in that of the mesh.
@@ -40,7 +40,7 @@ enum Map<'a> {
     Shape(&'a dyn SupportMap),
 }
 
-impl<'a> Part<'a> {
+impl<'a> PlacedPart<'a> {
     fn new(map: Map<'a>, border: Real, poses: [Pose; 2], subshape: u32) -> Self {
         let mut part = Self {
             map,
@@ -87,7 +87,7 @@ impl<'a> Part<'a> {
 }
 
 /// Parts of a mesh at `pose` that may meet a box: its convex pieces and lone primitives.
-fn parts_of_mesh<'a>(mesh: &MedialMesh, pose: &Pose, region: &Aabb) -> Vec<Part<'a>> {
+fn parts_of_mesh<'a>(mesh: &MedialMesh, pose: &Pose, region: &Aabb) -> Vec<PlacedPart<'a>> {
     let pieces = mesh.convex_pieces();
     let own_region = region.transform_by(&pose.inverse());
     let is_near = |k: &u32| mesh.primitive(*k as usize).aabb().intersects(&own_region);
@@ -95,21 +95,22 @@ fn parts_of_mesh<'a>(mesh: &MedialMesh, pose: &Pose, region: &Aabb) -> Vec<Part<
     let lone = (0..mesh.primitive_count() as u32)
         .filter(is_lone)
         .filter(is_near);
-    let lone = lone.map(|k| Part::of_spheres(mesh.primitive(k as usize).spheres(), pose, k));
-    let of_piece = |piece: &ConvexPiece| Part::of_spheres(&piece.spheres, pose, piece.primitive);
+    let lone = lone.map(|k| PlacedPart::of_spheres(mesh.primitive(k as usize).spheres(), pose, k));
+    let of_piece =
+        |piece: &ConvexPiece| PlacedPart::of_spheres(&piece.spheres, pose, piece.primitive);
     let all = pieces.iter().map(of_piece).chain(lone);
     all.filter(|part| part.bounds.intersects(region)).collect()
 }
 
 /// Convex parts of any shape at `pose` that may meet a box. Meshes of triangles, height fields, voxels and half-spaces
 /// have none.
-fn parts_of<'a>(shape: &'a dyn Shape, pose: &Pose, region: &Aabb) -> Vec<Part<'a>> {
+fn parts_of<'a>(shape: &'a dyn Shape, pose: &Pose, region: &Aabb) -> Vec<PlacedPart<'a>> {
     if let Some(mesh) = shape.as_shape::<MedialMesh>() {
         return parts_of_mesh(mesh, pose, region);
     }
     let solid = |child: &'a dyn Shape, own: Pose, subshape| {
         let map = Map::Shape(child.as_support_map()?);
-        Some(Part::new(map, 0.0, [own, *pose * own], subshape))
+        Some(PlacedPart::new(map, 0.0, [own, *pose * own], subshape))
     };
     match shape.as_typed_shape() {
         TypedShape::Compound(compound) => {
@@ -184,12 +185,12 @@ pub fn shortest_way_out(
 }
 
 /// How far the second of two parts has to move along a unit direction to be out of the first, a length.
-fn separation(parts: &[Vec<Part>; 2], [i, j]: [usize; 2], n: Vector) -> Real {
+fn separation(parts: &[Vec<PlacedPart>; 2], [i, j]: [usize; 2], n: Vector) -> Real {
     parts[0][i].reach(n) + parts[1][j].reach(-n)
 }
 
 /// The two parts that are deepest in each other, and their contact.
-fn deepest_parts(parts: &[Vec<Part>; 2]) -> Option<([usize; 2], SpherePair)> {
+fn deepest_parts(parts: &[Vec<PlacedPart>; 2]) -> Option<([usize; 2], SpherePair)> {
     let mut most = Vec::new();
     for (i, a) in parts[0].iter().enumerate() {
         for (j, b) in parts[1].iter().enumerate() {
@@ -227,7 +228,7 @@ fn deepest_parts(parts: &[Vec<Part>; 2]) -> Option<([usize; 2], SpherePair)> {
 }
 
 /// The contact of two parts that overlap. Its depth is what separates them along its normal.
-fn way_out(a: &Part, b: &Part) -> Option<SpherePair> {
+fn way_out(a: &PlacedPart, b: &PlacedPart) -> Option<SpherePair> {
     let borders = a.border + b.border;
     let pose = a.poses[1].inv_mul(&b.poses[1]);
     let found = scaled_contact::contact(

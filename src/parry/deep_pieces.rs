@@ -10,14 +10,14 @@ use super::scaled_contact;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::pair::{DEEP, Support};
+use crate::pair::{FILTER_DEPTH, Support};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::ContactManifold;
 use parry3d::shape::{Shape, SupportMap};
 
 /// Cosine of the angle between a contact's normal and the way out from which on the contact helps. No other value was
 /// tried.
-const HELPS: Real = 0.5;
+const HELPING_COSINE: Real = 0.5;
 
 /// Removes contacts of deep pieces that do not push them the shortest way out, as long as others of the piece do. The
 /// mesh is body `side` (0 or 1) of the manifolds; `other` is the other shape, and its pose in the mesh's frame.
@@ -40,15 +40,16 @@ pub fn leave_out<M, C>(
         let depth = m.points.iter().map(|p| -p.dist).fold(0.0, Real::max);
         if let Some([node, part]) = ids(m)
             && let Some(piece) = pieces.of_node(node)
-            && depth > DEEP as Real * piece.thickness
+            && depth > FILTER_DEPTH as Real * piece.thickness
         {
             let spheres = piece.spheres.iter().map(|s| (s.center, s.radius));
             ways.entry([node, part])
                 .or_insert_with(|| way_out(&Support(spheres.collect()), other, part));
         }
     }
-    let helps =
-        |m: &ContactManifold<M, C>, way: Vector| [m.local_n1, m.local_n2][side].dot(way) >= HELPS;
+    let helps = |m: &ContactManifold<M, C>, way: Vector| {
+        [m.local_n1, m.local_n2][side].dot(way) >= HELPING_COSINE
+    };
     ways.retain(|of, way| {
         let of_it = |m: &&ContactManifold<M, C>| ids(m) == Some(*of) && !m.points.is_empty();
         way.is_some_and(|way| manifolds.iter().filter(of_it).any(|m| helps(m, way)))

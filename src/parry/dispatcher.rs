@@ -7,6 +7,7 @@ use super::distance;
 use super::initial_contacts::AtStart;
 use super::narrow_phase_plan::{PlanExchange, Sweeps};
 use crate::batch::{PairJob, PairResult};
+use crate::math::tolerance::FEW_OPERATIONS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
@@ -61,7 +62,7 @@ impl MedialDispatcher {
         let [first, second] = if flipped { [1, 0] } else { [0, 1] };
         let mesh = medial(shapes[first]).ok_or(Unsupported)?;
         let pos12 = motions[0].start.inv_mul(&motions[1].start);
-        if self.exchange.passes(shapes[0], shapes[1], &pos12) {
+        if self.exchange.are_contacts_off(shapes[0], shapes[1], &pos12) {
             return Ok(None);
         }
         let cast = Cast {
@@ -143,7 +144,7 @@ fn passed_by(pos12: &Pose, velocity: Vector, g1: &dyn Shape, g2: &dyn Shape, tar
         return 0.0;
     }
     // Rounding must not end the cast before the last contact.
-    let passed = (apart + size) / speed * (1.0 + 16.0 * Real::EPSILON);
+    let passed = (apart + size) / speed * (1.0 + FEW_OPERATIONS);
     passed.min(Real::MAX)
 }
 

@@ -7,13 +7,13 @@
 //! parry's own answers come from its iterative GJK algorithm: they are off by up to 1e-3 of the distance at times, are
 //! missing for height fields and voxels, and are in the wrong frame for contacts of compounds with half-spaces.
 
-use super::axisymmetric::{Axisymmetric, NearBall, Place, unit};
+use super::axisymmetric::{AxisFrame, Axisymmetric, NearBall, unit};
 use super::inside;
-use super::swept_sphere_parts::{self, Parts, Unsweepable};
+use super::swept_sphere_parts::{self, SweptParts, Unsweepable};
 use crate::math::lane::Vec3;
 use crate::math::least_first::least_first;
 use crate::math::sphere::Ball;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::tree::NodeKind;
 use crate::medial::{MedialMesh, MedialSphere};
@@ -70,7 +70,7 @@ fn near(
         mesh.aabb()
             .transform_by(&pos21)
             .loosened(reach(mesh, other, &pos21, max_distance));
-    let mut parts = Parts::default();
+    let mut parts = SweptParts::default();
     if !swept_sphere_parts::add_shape(&mut parts, other, &region) {
         return Err(Unsweepable);
     }
@@ -105,7 +105,7 @@ fn reach(mesh: &MedialMesh, other: &dyn Shape, pos21: &Pose, max_distance: Real)
         let distance = inside::most_distance(other, center) - s.radius;
         let sizes = [center, pos21.translation, s.center].map(|p| p.abs().max_element());
         let size = sizes.into_iter().fold(s.radius, |sum, size| sum + size);
-        inside::PROJECTION_SLACK * distance.max(0.0) + ROUNDING_ULPS as Real * Real::EPSILON * size
+        inside::PROJECTION_SLACK * distance.max(0.0) + REAL_ROUNDING * size
     });
     let bound = bounds.filter(|b| b.is_finite()).unwrap_or(Real::MAX);
     // Infinite boxes do not survive transformations.
@@ -146,7 +146,7 @@ fn nearest_axisymmetric(
     counts: &mut Counts,
 ) -> Option<SpherePair> {
     let pos21 = pos12.inverse();
-    let place = Place {
+    let place = AxisFrame {
         origin: Vec3::from_vector(body.center),
         axis: unit(Vec3::from_vector(body.axis)),
     };
@@ -204,7 +204,7 @@ fn nearest_axisymmetric(
 }
 
 /// Unit direction from the body to a sphere, and the signed distance; of a centre inside, the way out.
-fn out_of(body: &Axisymmetric, place: &Place, near: &NearBall) -> (Vec3<f64>, f64) {
+fn out_of(body: &Axisymmetric, place: &AxisFrame, near: &NearBall) -> (Vec3<f64>, f64) {
     if near.apart <= 0.0 {
         let (out, way) = body.min_translation(place, near.ball.center);
         return (out, -way - near.ball.radius);

@@ -5,7 +5,7 @@
 //! points. The nearest spheres take the place of such a contact. A single sphere's are those of parry's ball.
 
 use super::inward_contacts::triangle;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::PrimitiveList;
@@ -19,9 +19,6 @@ const DEEPER: Real = 0.01;
 
 /// Cosine with the nearest normal that is allowed from which one is allowed (2.5°).
 const ALLOWED: Real = 0.999;
-
-/// Rounding error of a depth, in units of the coordinates in the mesh's frame.
-const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// Corrects the contacts of a mesh's primitives that belong to no convex piece. The mesh is body `side` (0 or 1) of the
 /// manifolds; `ground` are the triangles, and where they are in the mesh's frame. Where rapier allows some normals
@@ -66,7 +63,7 @@ pub fn correct<M, C: Default + Copy>(
         };
         let size = corners.map(Vector::length).into_iter().fold(0.0, Real::max);
         let thickest = spheres.iter().map(|s| s.radius).fold(0.0, Real::max);
-        let slack = DEEPER * thickest + ROUNDING * size;
+        let slack = DEEPER * thickest + REAL_ROUNDING * size;
         let has_normal = m.points.is_empty() || m.local_n1.length_squared() > 0.5;
         let depths = m.points.iter().map(|point| point.dist);
         let deepest = depths.fold(Real::MAX, Real::min);

@@ -3,8 +3,9 @@
 //! contacts are those of the spheres themselves, all with one normal. parry would run its iterative GJK algorithm for
 //! each primitive.
 
-use super::shape_faces::{ROUNDING, flat_sides};
+use super::shape_faces::flat_sides;
 use crate::math::lane::Vec3;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::tree::NodeKind;
@@ -15,7 +16,7 @@ use parry3d::shape::{ConvexPolyhedron, PackedFeatureId, Shape, TypedShape};
 
 /// A plane with all of a mesh that can touch it above it or in it, in the mesh's frame.
 #[derive(Clone, Copy)]
-pub struct Face {
+pub struct SupportPlane {
     /// Unit normal, out of the other shape.
     normal: Vec3<f64>,
     /// Height of the plane along the normal.
@@ -24,7 +25,12 @@ pub struct Face {
 
 /// The face of `other`, at `pose` in the mesh's frame, that holds all contacts of `mesh` within
 /// `prediction`; none where an edge may be nearer, or the way out may be through another side.
-pub fn face(mesh: &MedialMesh, other: &dyn Shape, pose: &Pose, prediction: Real) -> Option<Face> {
+pub fn face(
+    mesh: &MedialMesh,
+    other: &dyn Shape,
+    pose: &Pose,
+    prediction: Real,
+) -> Option<SupportPlane> {
     let region = || mesh.aabb().transform_by(&pose.inverse());
     let (normal, height) = match other.as_typed_shape() {
         TypedShape::HalfSpace(plane) => (plane.normal, 0.0),
@@ -46,7 +52,7 @@ pub fn face(mesh: &MedialMesh, other: &dyn Shape, pose: &Pose, prediction: Real)
         _ => return None,
     };
     let [normal, origin] = [pose.rotation * normal, pose.translation].map(Vec3::from_vector);
-    Some(Face {
+    Some(SupportPlane {
         normal,
         height: f64::from(height) + normal.dot(origin),
     })
@@ -77,7 +83,7 @@ fn side(
 fn is_flat(hull: &ConvexPolyhedron, face: usize, (normal, height): (Vector, Real)) -> bool {
     let points = hull.points();
     let size = points.iter().map(|p| p.abs().max_element());
-    let rounding = ROUNDING * size.fold(0.0, Real::max);
+    let rounding = REAL_ROUNDING * size.fold(0.0, Real::max);
     let above = |p: &Vector| normal.dot(*p) - height;
     let face = &hull.faces()[face];
     let first = face.first_vertex_or_edge as usize;
@@ -93,7 +99,7 @@ fn is_flat(hull: &ConvexPolyhedron, face: usize, (normal, height): (Vector, Real
 /// mesh's frame. Manifolds that were there keep their data, and contacts of a sphere their impulses.
 pub fn write_manifolds<M, C>(
     mesh: &MedialMesh,
-    face: &Face,
+    face: &SupportPlane,
     pose: &Pose,
     side: usize,
     prediction: Real,
@@ -151,7 +157,7 @@ pub fn wrote<M, C>(manifolds: &[ContactManifold<M, C>]) -> bool {
     manifolds.iter().all(flat)
 }
 
-impl Face {
+impl SupportPlane {
     /// Gap between the plane and a ball in the mesh's frame.
     fn gap(&self, center: Vector, radius: Real) -> f64 {
         self.normal.dot(Vec3::from_vector(center)) - self.height - f64::from(radius)
@@ -159,7 +165,7 @@ impl Face {
 }
 
 /// Primitive and sphere of every contact, sorted, each sphere with the first of its primitives.
-fn near(mesh: &MedialMesh, face: &Face, prediction: Real) -> Vec<[u32; 2]> {
+fn near(mesh: &MedialMesh, face: &SupportPlane, prediction: Real) -> Vec<[u32; 2]> {
     let within = |center: Vector, radius: Real| face.gap(center, radius) <= f64::from(prediction);
     let mut found = Vec::new();
     let mut open: Vec<u32> = (0..mesh.roots()).collect();

@@ -8,7 +8,7 @@
 
 use super::shape_faces::Face;
 use super::sliding::ALIKE;
-use super::swept_sphere_parts::Parts;
+use super::swept_sphere_parts::SweptParts;
 use crate::elementary::ToiStatus;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
@@ -27,7 +27,7 @@ const FLAT: Real = 0.999;
 const SAME_NORMAL: Real = 0.99999;
 
 /// How a mesh meets a triangle, in the ground's frame.
-struct Met {
+struct FoldContact {
     /// Nearest point of the triangle.
     point: Vector,
     /// Unit normal from there to the mesh.
@@ -38,7 +38,7 @@ struct Met {
     size: Real,
 }
 
-impl Met {
+impl FoldContact {
     /// Unit normal of a triangle to the side of the mesh: that of its nearest point, unless this is beside the
     /// triangle.
     fn facing(&self, [a, b, c]: [Vector; 3]) -> Vector {
@@ -80,7 +80,7 @@ impl Met {
 /// mesh and of the ground.
 pub fn correct_normal(
     found: &mut ToiResult,
-    parts: &Parts,
+    parts: &SweptParts,
     mesh: &MedialMesh,
     motions: [&NonlinearRigidMotion; 2],
     seconds: Real,
@@ -95,7 +95,7 @@ pub fn correct_normal(
     let poses = motions.map(|m| m.position_at_time(toi.lower * seconds));
     let (point, to_ground) = (toi.points[1], poses[1].inverse());
     let pose = to_ground * poses[0];
-    let met = Met {
+    let met = FoldContact {
         point: to_ground * point,
         normal: to_ground.rotation * -toi.normal,
         middle: pose * mesh.aabb().center(),
@@ -109,7 +109,8 @@ pub fn correct_normal(
     };
     let known = parts.normals.iter().find(|(p, _)| *p == toi.primitives[1]);
     let primitive = mesh.primitive(toi.primitives[0] as usize);
-    // What is thick has its centres above the surface, so that its normals are right but for what it has sunk in.
+    // A thick primitive has its centres above the surface, so that its normals are right but for the depth to which it
+    // has sunk in.
     let at_fold = || match sliding.keeps_above(primitive.spheres()) {
         true => normal(face, others(), &met).filter(|n| met.is_within(face, *n, others())),
         false => normal(face, others(), &met),
@@ -159,7 +160,7 @@ fn meets_at([a, b, c]: [Vector; 3], edge: [Vector; 2], at: Vector) -> bool {
 fn normal(
     face: [Vector; 3],
     others: impl Iterator<Item = [Vector; 3]> + Clone,
-    met: &Met,
+    met: &FoldContact,
 ) -> Option<Vector> {
     let own = met.facing(face);
     let mut allowed: Option<Vector> = None;

@@ -26,11 +26,11 @@ const FURTHER: Real = 0.1;
 /// half an ulp each, so that a facet of a plane, seen from the body, is off by up to four of them, and so is the way
 /// along it. Smaller, and the next facet of a floor may stop what slides on it; larger, and what slides comes nearer by
 /// more in each cast.
-const SLIDE: Real = 4.0 * Real::EPSILON;
+const SLIDE_ROUNDING: Real = 4.0 * Real::EPSILON;
 
 /// Length by which what slides seems to come nearer, from the sum of the lengths in play: coordinates and the way.
 pub fn approach_of_rounding(lengths: Real) -> Real {
-    (SLIDE * lengths).clamp(Real::MIN_POSITIVE, Real::MAX)
+    (SLIDE_ROUNDING * lengths).clamp(Real::MIN_POSITIVE, Real::MAX)
 }
 
 /// How a cast treats contacts at its start.
@@ -124,7 +124,7 @@ impl Touching {
         options: &ToiOptions,
     ) -> ToiOptions {
         let depth = (options.target_distance - self.gap).max(0.0) + self.closing(seconds);
-        // What is found within the tolerance of the target is as deep as it is allowed to get.
+        // A pair that is found within the tolerance of the target is as deep as it is allowed to get.
         let sinks = depth + self.slide(seconds) + options.tolerance;
         ToiOptions {
             initial_contact: InitialContact::Deepen {

@@ -8,7 +8,7 @@
 
 use super::manifold_points::places;
 use crate::math::fast_hash::FastSet;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::convex_pieces::ConvexPiece;
@@ -17,9 +17,6 @@ use parry3d::shape::{Shape, TrianglePseudoNormals, TypedShape};
 
 /// Depth by which a contact of a piece may exceed the depth of the piece, in units of its thickness.
 const DEEPER: Real = 0.01;
-
-/// Rounding error of a piece's depth, in units of the triangle's coordinates in the mesh's frame.
-const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// Removes deep contacts of a mesh's convex pieces along which the piece reaches beyond the contact by more than the
 /// contact's depth, as long as the piece has another deep one. Also removes contacts that are deeper than the piece is
@@ -65,7 +62,7 @@ pub fn leave_out<M, C>(
             let (corners, normals) = triangle(ground, id)?;
             let is_one_sided = normals.is_some_and(|n| !n.two_sided);
             let size = corners.iter().map(|p| p.length()).fold(0.0, Real::max);
-            let more = prediction.min(DEEPER * piece.thickness) + ROUNDING * size;
+            let more = prediction.min(DEEPER * piece.thickness) + REAL_ROUNDING * size;
             let half = prediction.min(0.5 * piece.thickness);
             Some(gap(piece, (corners, is_one_sided), half) - more)
         };

@@ -5,7 +5,7 @@
 //! manifold for each pair of primitives, so that each keeps its own normal. (With one manifold for each pair of
 //! colliders a chain of rings falls apart.)
 
-use super::convex_parts::{Part, part_number, slack};
+use super::convex_parts::{ConvexPart, part_number, slack};
 use crate::batch::PairResult;
 use crate::math::tolerance::ONE_DIRECTION;
 use crate::math::{Pose, Real, Vector};
@@ -82,7 +82,7 @@ pub fn write_manifolds<M, C>(
         {
             Some(m) => m,
             None => {
-                // What the user's hooks keep stays where the normal turns over.
+                // Data that the user's hooks keep in a manifold stay where its normal turns over.
                 let of_pair =
                     |m: &&ContactManifold<M, C>| [m.subshape1, m.subshape2] == c.primitives;
                 let mut same = old.iter().filter(of_pair);
@@ -165,7 +165,7 @@ fn without_ghosts<'a>(
             gap: c.distance,
         });
         let seen: Vec<PartContact> = seen.collect();
-        let reach = |part: u32, n: Vector| Part::of(meshes[k], part).reach(n);
+        let reach = |part: u32, n: Vector| ConvexPart::of(meshes[k], part).reach(n);
         let slack = slack(meshes[k], pos12);
         let ghosts = ghosts(&seen, reach, |_| slack);
         let mut ghosts = ghosts.into_iter();

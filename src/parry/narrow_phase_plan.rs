@@ -188,7 +188,7 @@ pub struct PlanExchange {
     plan: RwLock<Arc<NarrowPhasePlan>>,
     tally: Mutex<Tally>,
     /// Whether the user turned off all contacts of a pair, as far as was noted in this step.
-    passing: RwLock<HashMap<PairKey, bool>>,
+    contacts_off: RwLock<HashMap<PairKey, bool>>,
 }
 
 impl PlanExchange {
@@ -201,8 +201,8 @@ impl PlanExchange {
     /// Takes plan and tally back, and forgets which pairs rapier's sweeps were to let pass.
     pub fn end_step(&self) -> Tally {
         *self.plan.write().unwrap_or_else(PoisonError::into_inner) = Arc::default();
-        let passing = self.passing.write();
-        passing.unwrap_or_else(PoisonError::into_inner).clear();
+        let contacts_off = self.contacts_off.write();
+        contacts_off.unwrap_or_else(PoisonError::into_inner).clear();
         self.note(std::mem::take)
     }
 
@@ -235,18 +235,24 @@ impl PlanExchange {
 
     /// Notes, under the keys of a pair, whether the user turned off some of its contacts. If all contacts that are
     /// noted of it are off, rapier's sweeps let the pair pass in this step.
-    pub fn let_pass(&self, keys: &[PairKey], off: bool) {
-        let mut passing = self.passing.write().unwrap_or_else(PoisonError::into_inner);
+    pub fn note_contacts_off(&self, keys: &[PairKey], off: bool) {
+        let mut contacts_off = self
+            .contacts_off
+            .write()
+            .unwrap_or_else(PoisonError::into_inner);
         for key in keys {
-            *passing.entry(*key).or_insert(true) &= off;
+            *contacts_off.entry(*key).or_insert(true) &= off;
         }
     }
 
-    /// Whether rapier's sweeps let a pair pass.
-    pub fn passes(&self, shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> bool {
-        let passing = self.passing.read().unwrap_or_else(PoisonError::into_inner);
-        let noted = |key| passing.get(&key) == Some(&true);
-        !passing.is_empty()
+    /// Whether the user turned off all contacts of a pair: rapier's sweeps then let it pass.
+    pub fn are_contacts_off(&self, shape1: &dyn Shape, shape2: &dyn Shape, pos12: &Pose) -> bool {
+        let contacts_off = self
+            .contacts_off
+            .read()
+            .unwrap_or_else(PoisonError::into_inner);
+        let noted = |key| contacts_off.get(&key) == Some(&true);
+        !contacts_off.is_empty()
             && (noted(PairKey::new(shape1, shape2, pos12))
                 || noted(PairKey::anywhere(shape1, shape2)))
     }

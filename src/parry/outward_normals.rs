@@ -8,7 +8,7 @@
 //! away. (parry asks for none where balls meet balls, and capsules capsules.) Our dispatcher looks at all contacts of a
 //! mesh together, and needs those too (`ghost_contacts.rs`, `touching_normals.rs`).
 
-use super::convex_parts::Part;
+use super::convex_parts::ConvexPart;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use parry3d::query::details::NormalConstraints;
@@ -37,8 +37,8 @@ impl OutwardNormals {
 
 impl NormalConstraints for OutwardNormals {
     fn project_local_normal_mut(&self, normal: &mut Vector) -> bool {
-        let own = Part::Primitive(self.mesh.primitive(self.primitive as usize));
-        let piece = Part::of(&self.mesh, self.primitive);
+        let own = ConvexPart::Primitive(self.mesh.primitive(self.primitive as usize));
+        let piece = ConvexPart::of(&self.mesh, self.primitive);
         let slack = SLACK * self.mesh.aabb().extents().max_element();
         let is_outward = |n: &Vector| own.reach(*n) >= piece.reach(*n) - slack;
         if is_outward(normal) {

@@ -13,7 +13,7 @@ use parry3d::shape::{PolygonalFeature, PolygonalFeatureMap, SupportMap};
 
 /// How much larger than 1 the other body may get, as a power of 2: beyond it single precision is coarser than parry's
 /// tolerances, and the smaller body is asked about smaller.
-const LARGEST: Real = 1024.0;
+const MAX_SIZE: Real = 1024.0;
 
 /// A support map times a factor, a power of 2.
 struct Scaled<'a, T: ?Sized> {
@@ -106,13 +106,13 @@ fn scale_points<M, C>(manifold: &mut ContactManifold<M, C>, factor: Real) {
 }
 
 /// The length that becomes 1, a power of 2: that of the smaller body, unless coordinates would be larger than
-/// [`LARGEST`].
+/// [`MAX_SIZE`].
 fn unit(bounds: [&Aabb; 2], pos12: &Pose) -> Real {
     let sizes = bounds.map(|b| b.extents().max_element());
     let coordinates = bounds.map(|b| b.mins.abs().max(b.maxs.abs()).max_element());
     let largest = coordinates[0].max(coordinates[1]);
     let largest = largest.max(pos12.translation.abs().max_element());
-    power_of_2(sizes[0].min(sizes[1]).max(largest / LARGEST))
+    power_of_2(sizes[0].min(sizes[1]).max(largest / MAX_SIZE))
 }
 
 /// The power of 2 at or below a size, 1 where it has none. Lengths that are divided by it lose no digit.

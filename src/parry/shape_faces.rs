@@ -2,13 +2,10 @@
 //! height fields and voxels.
 
 use super::compound_children::children_in;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use parry3d::bounding_volume::Aabb;
 use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, Triangle, TypedShape, VoxelState};
-
-/// Rounding error of coordinates put in another frame, in units of the coordinates.
-pub const ROUNDING: Real = ROUNDING_ULPS as Real * Real::EPSILON;
 
 /// A flat face of a shape.
 #[derive(Clone, Copy, Debug)]
@@ -188,5 +185,8 @@ pub fn seen_from(pose: &Pose, region: &Aabb) -> Aabb {
     let sizes = [pose.translation, region.mins, region.maxs].map(|p| p.abs().max_element());
     let size: Real = sizes.into_iter().sum();
     let seen = region.transform_by(&pose.inverse());
-    Aabb::new(seen.mins - size * ROUNDING, seen.maxs + size * ROUNDING)
+    Aabb::new(
+        seen.mins - size * REAL_ROUNDING,
+        seen.maxs + size * REAL_ROUNDING,
+    )
 }

@@ -15,7 +15,7 @@
 
 use super::shape_faces::{Face, has_flat_faces};
 use crate::math::lane::Vec3;
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
 use parry3d::query::NonlinearRigidMotion;
@@ -23,21 +23,21 @@ use parry3d::shape::Shape;
 
 /// How deep a mesh may be in the plane that it slides along, lengths.
 #[derive(Clone, Copy, Debug)]
-pub struct Sinks {
-    /// Deepest at the start, if it is to count as lying on the plane.
-    pub lies: Real,
-    /// Deepest in the step, if the face is to be no obstacle.
-    pub to: Real,
-    /// Largest change of the depth within the step, if the face is to be no obstacle; faces of solids are not asked for
-    /// it.
-    pub by: Real,
+pub struct SinkLimits {
+    /// Depth at the start up to which the mesh counts as lying on the plane.
+    pub at_start: Real,
+    /// A face is no obstacle only if the mesh gets no deeper in its plane than this within the step.
+    pub at_most: Real,
+    /// A face is no obstacle only if the mesh sinks in its plane by no more than this within the step. Not asked of
+    /// faces of solids.
+    pub change: Real,
 }
 
 /// A mesh at the start and at the end of a step, in the frame of the ground.
 #[derive(Clone, Debug)]
 pub struct Sliding<'a> {
     mesh: &'a MedialMesh,
-    poses: [Placed; 2],
+    poses: [PlacedFrame; 2],
     /// A ball that holds the mesh at the start.
     bound: (Vec3<f64>, f64),
     /// How far paths are off their chords, rounding included, a length.
@@ -46,7 +46,7 @@ pub struct Sliding<'a> {
     rounding: f64,
     /// Height up to which the mesh counts as lying on a plane, a length: the query's target distance.
     target: f64,
-    sinks: Sinks,
+    sinks: SinkLimits,
     /// Planes of the faces below the mesh on which it lies.
     grounds: Vec<Lying>,
     /// Whether only faces of solids were looked at. Folds are between faces of a surface (a mesh, height field or
@@ -56,13 +56,13 @@ pub struct Sliding<'a> {
 
 /// The frame of the mesh in that of the ground.
 #[derive(Clone, Copy, Debug)]
-struct Placed {
+struct PlacedFrame {
     /// Columns of its rotation.
     columns: [Vec3<f64>; 3],
     origin: Vec3<f64>,
 }
 
-impl Placed {
+impl PlacedFrame {
     fn new(pose: &Pose) -> Self {
         let columns = [Vector::X, Vector::Y, Vector::Z];
         Self {
@@ -96,7 +96,7 @@ pub struct Lying {
 
 /// Rounding error of the heights of corners over a face, in units of their coordinates: eight ulps. More, and a fin may
 /// count as part of the ground that it stands on; less only lets bodies stumble.
-const CORNERS: Real = 8.0 * Real::EPSILON;
+const CORNER_ROUNDING: Real = 8.0 * Real::EPSILON;
 
 impl Lying {
     /// Whether a face that is in the plane or below it is in the plane, rounding apart.
@@ -124,7 +124,7 @@ impl<'a> Sliding<'a> {
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
         seconds: Real,
         target: Real,
-        sinks: Sinks,
+        sinks: SinkLimits,
     ) -> Option<Self> {
         if !has_flat_faces(ground) {
             return None;
@@ -141,14 +141,14 @@ impl<'a> Sliding<'a> {
         let from_axis = farthest(&poses[0], motion2.local_center) + v * seconds;
         let acceleration = w1 * w1 * arm + w2 * w2 * from_axis + 2.0 * w2 * v;
         let sizes = poses.map(|p| p.translation.abs().max_element());
-        let rounding = ROUNDING_ULPS as Real * Real::EPSILON * (sizes[0] + sizes[1] + arm);
+        let rounding = REAL_ROUNDING * (sizes[0] + sizes[1] + arm);
         let bound = (
             Vec3::from_vector(poses[0] * ball.center),
             (ball.radius + rounding).into(),
         );
         Some(Self {
             mesh,
-            poses: poses.map(|pose| Placed::new(&pose)),
+            poses: poses.map(|pose| PlacedFrame::new(&pose)),
             bound,
             bend: (0.125 * acceleration * seconds * seconds + rounding).into(),
             rounding: rounding.into(),
@@ -193,7 +193,7 @@ impl<'a> Sliding<'a> {
     /// from a ground up a slope, and its nearest point is on the fold between the two, straight ahead.
     pub fn comes_to_lie(&self, face: Face, pose: &Pose) -> Option<Vector> {
         let there = Self {
-            poses: [Placed::new(pose); 2],
+            poses: [PlacedFrame::new(pose); 2],
             bound: (self.bound.0, f64::MAX),
             bend: self.rounding,
             grounds: Vec::new(),
@@ -206,7 +206,7 @@ impl<'a> Sliding<'a> {
 
     /// Whether the centres of spheres stay above a plane on which they lie.
     pub fn keeps_above(&self, spheres: &[MedialSphere]) -> bool {
-        spheres.iter().all(|s| s.radius >= self.sinks.lies)
+        spheres.iter().all(|s| s.radius >= self.sinks.at_start)
     }
 
     /// A ground in or below whose plane a face is, one along which the mesh slides if there is one.
@@ -250,7 +250,8 @@ impl<'a> Sliding<'a> {
             let mut heights = heights.map(|s| height[k](s.center) - f64::from(s.radius));
             heights.try_fold(f64::MAX, |low, h| (h >= least).then_some(low.min(h)))
         };
-        let [lies, to, by] = [self.sinks.lies, self.sinks.to, self.sinks.by].map(f64::from);
+        let [lies, to, by] =
+            [self.sinks.at_start, self.sinks.at_most, self.sinks.change].map(f64::from);
         let (center, radius) = self.bound;
         if n.dot(center - a) - radius > self.target {
             return None;
@@ -277,7 +278,7 @@ impl<'a> Sliding<'a> {
         Some(Lying {
             normal: n,
             place: a,
-            rounding: f64::from(CORNERS * coordinates.fold(0.0, Real::max)),
+            rounding: f64::from(CORNER_ROUNDING * coordinates.fold(0.0, Real::max)),
             slides: start >= least && lowest(1, least).is_some(),
             is_over,
         })

@@ -1,6 +1,6 @@
 //! Where a shape cast may take a medial mesh: a box, so that of a large shape only what is near is searched.
 
-use crate::math::tolerance::ROUNDING_ULPS;
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::PrimitiveTree;
@@ -52,6 +52,6 @@ pub fn swept_region(
     ];
     let sizes = sizes.as_flattened().iter().map(|p| p.abs().max_element());
     let size = reach + sizes.sum::<Real>();
-    let reach = Vector::splat(reach + ROUNDING_ULPS as Real * Real::EPSILON * size);
+    let reach = Vector::splat(reach + REAL_ROUNDING * size);
     Aabb::new(from.min(to) - reach, from.max(to) + reach)
 }

@@ -7,10 +7,9 @@
 
 use super::axisymmetric::Axisymmetric;
 use super::compound_children::children_in;
-use super::shape_faces::{
-    Face, ROUNDING, all_faces, face_corners, for_each_triangle, free_faces, seen_from,
-};
+use super::shape_faces::{Face, all_faces, face_corners, for_each_triangle, free_faces, seen_from};
 use super::sliding::{Lying, Sliding};
+use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::PrimitiveList;
@@ -27,7 +26,7 @@ pub struct Unsweepable;
 
 /// A shape as swept spheres, cylinders and cones, in the shape's frame.
 #[derive(Clone, Debug, Default)]
-pub struct Parts<'a> {
+pub struct SweptParts<'a> {
     /// Swept spheres.
     pub primitives: PrimitiveList,
     /// Cylinders and cones.
@@ -44,7 +43,7 @@ pub struct Parts<'a> {
     pub(super) normals: Vec<(u32, Vector)>,
 }
 
-impl<'a> Parts<'a> {
+impl<'a> SweptParts<'a> {
     /// An empty list of parts. Flat faces along which the searched mesh only slides will be left out.
     pub fn under(sliding: Option<Sliding<'a>>) -> Self {
         Self {
@@ -116,14 +115,14 @@ pub fn thickness(shape: &dyn Shape) -> Real {
 
 /// Adds the surface of `shape`, in whose frame the parts are, as far as it meets `region`, and gives the parts a
 /// hierarchy. Returns `false` for a shape that has no such surface: a custom one, or a compound with one in the region.
-pub fn add_shape(parts: &mut Parts, shape: &dyn Shape, region: &Aabb) -> bool {
+pub fn add_shape(parts: &mut SweptParts, shape: &dyn Shape, region: &Aabb) -> bool {
     let added = add_surface(parts, shape, &Pose::IDENTITY, region);
     parts.primitives.build_tree();
     added
 }
 
 /// Adds the surface of `shape`, placed at `pose` in the parts' frame, as [`add_shape`] does.
-fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
+fn add_surface(parts: &mut SweptParts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
     if let Some(body) = Axisymmetric::new(shape, pose) {
         parts.axisymmetric.push(body);
         parts.name(0);
@@ -173,7 +172,7 @@ fn add_surface(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb)
 }
 
 /// Adds the triangles, segments or voxels of a shape that is made of them, as [`add_surface`] does.
-fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
+fn add_elements(parts: &mut SweptParts, shape: &dyn Shape, pose: &Pose, region: &Aabb) -> bool {
     let local = seen_from(pose, region);
     let flat = |p: Vector| MedialSphere::new(pose * p, 0.0);
     match shape.as_typed_shape() {
@@ -210,7 +209,7 @@ fn add_elements(parts: &mut Parts, shape: &dyn Shape, pose: &Pose, region: &Aabb
 }
 
 /// The faces of a cuboid, as far as `region` (in the parts' frame) meets them.
-fn add_cuboid(parts: &mut Parts, cuboid: &Cuboid, pose: &Pose, border: Real, region: &Aabb) {
+fn add_cuboid(parts: &mut SweptParts, cuboid: &Cuboid, pose: &Pose, border: Real, region: &Aabb) {
     let kind = Face::of_solid(&[], border);
     add_faces(parts, cuboid, all_faces(), pose, kind, region);
 }
@@ -218,7 +217,7 @@ fn add_cuboid(parts: &mut Parts, cuboid: &Cuboid, pose: &Pose, border: Real, reg
 /// Some faces of a cuboid, each by axis and side, as far as `region` (in the parts' frame) meets them. `kind` has no
 /// corners.
 fn add_faces(
-    parts: &mut Parts,
+    parts: &mut SweptParts,
     cuboid: &Cuboid,
     faces: impl Iterator<Item = (usize, Real)>,
     pose: &Pose,
@@ -262,7 +261,7 @@ fn add_face(
 }
 
 /// One side of a rectangle about the origin of a plane.
-struct Side {
+struct RectangleSide {
     /// Stretch of the side that is nearest to anything within a span, and somewhat more.
     ends: [Real; 2],
     /// Lengths from the right angle to the ends of the legs: of two such, a triangle that covers both spans. The spans'
@@ -270,7 +269,7 @@ struct Side {
     leg: Option<[Real; 2]>,
 }
 
-impl Side {
+impl RectangleSide {
     /// `None` where none of it is within the span.
     fn new(half: Real, [least, most]: [Real; 2]) -> Option<Self> {
         if least > half || most < -half {
@@ -299,7 +298,7 @@ fn add_rectangle(
     spans: [[Real; 2]; 2],
     at: impl Fn([Real; 2]) -> MedialSphere,
 ) {
-    let [Some(x), Some(y)] = [0, 1].map(|k| Side::new(half[k], spans[k])) else {
+    let [Some(x), Some(y)] = [0, 1].map(|k| RectangleSide::new(half[k], spans[k])) else {
         return;
     };
     if let (Some([x, across]), Some([y, up])) = (x.leg, y.leg) {
@@ -314,7 +313,7 @@ fn add_rectangle(
 
 /// The faces of a hull as triangles, as far as `region` (in the parts' frame) meets their boxes.
 fn add_polyhedron(
-    parts: &mut Parts,
+    parts: &mut SweptParts,
     hull: &ConvexPolyhedron,
     pose: &Pose,
     border: Real,
@@ -323,7 +322,7 @@ fn add_polyhedron(
     for_each_triangle(hull, pose, |corners| {
         let face = Aabb::from_points(corners);
         let sizes = [pose.translation, face.mins, face.maxs].map(|p| p.abs().max_element());
-        let face = face.loosened(border + ROUNDING * sizes.into_iter().sum::<Real>());
+        let face = face.loosened(border + REAL_ROUNDING * sizes.into_iter().sum::<Real>());
         // A region that is not a number holds everything.
         let apart = face.mins.cmpgt(region.maxs) | region.mins.cmpgt(face.maxs);
         if !apart.any() {

@@ -3,11 +3,11 @@
 //! stands on a table has normals to its sides, and trips over them.
 //!
 //! The gap of two convex bodies is their largest gap along any direction, so a normal is right if the gap along it is
-//! that of the contact. Where it is not, but that along the normal of a flat face of either body nearly is ([`ROOM`]),
-//! it is turned to that. The points turn along: what rolls touches the face below its axis, and not ahead of it, where
-//! it comes down.
+//! that of the contact. Where it is not, but that along the normal of a flat face of either body nearly is
+//! ([`GAP_TOLERANCE`]), it is turned to that. The points turn along: what rolls touches the face below its axis, and
+//! not ahead of it, where it comes down.
 
-use super::convex_parts::{Part, child_of, part_number, slack};
+use super::convex_parts::{ConvexPart, child_of, part_number, slack};
 use super::manifold_points::places;
 use super::shape_faces::flat_sides;
 use crate::math::fast_hash::FastMap;
@@ -16,10 +16,10 @@ use crate::medial::MedialMesh;
 use parry3d::query::ContactManifold;
 use parry3d::shape::{Shape, TypedShape};
 
-/// How much smaller than the contact's gap that along a face's normal may be, in units of the prediction distance, if
-/// that along the contact's own normal is smaller still. With none, bodies that lie aslant over the end of a table
-/// stumble there.
-const ROOM: Real = 0.02;
+/// Tolerance, in units of the prediction distance: a contact's normal is turned to a face's if the gap along that falls
+/// short of the contact's gap by no more than this, while the gap along its own normal falls short by more. At 0 bodies
+/// that lie aslant over the end of a table stumble there.
+const GAP_TOLERANCE: Real = 0.02;
 
 /// Turns wrong normals to those of faces. The mesh is body `side` (0 or 1) of the manifolds; `other` is the other
 /// shape, and where it is in the mesh's frame.
@@ -46,7 +46,7 @@ pub fn correct<M, C>(
         let Some((child, placed)) = child_of((other, pose), others) else {
             continue;
         };
-        let two = (Part::of(mesh, own), (child, &placed));
+        let two = (ConvexPart::of(mesh, own), (child, &placed));
         let Some(told) = gap_along(&two, [m.local_n1, m.local_n2][side]) else {
             continue;
         };
@@ -65,7 +65,7 @@ pub fn correct<M, C>(
         if told >= least {
             continue;
         }
-        let room = ROOM * prediction;
+        let room = GAP_TOLERANCE * prediction;
         let room = if told < least - room { room } else { 0.0 };
         let Some((normal, is_of_mesh)) = flat_normal(&two, least - room) else {
             continue;
@@ -109,7 +109,7 @@ fn border(shape: &dyn Shape) -> Real {
 }
 
 /// A part of the mesh, and a convex shape at a pose in the mesh's frame.
-type Two<'a> = (Part<'a>, (&'a dyn Shape, &'a Pose));
+type Two<'a> = (ConvexPart<'a>, (&'a dyn Shape, &'a Pose));
 
 /// Gap of two shapes along a unit direction out of the mesh, negative where they overlap along it. `None` for a shape
 /// without a support map.

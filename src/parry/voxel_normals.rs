@@ -19,7 +19,7 @@ const POSSIBLE: Real = 0.99;
 
 /// Cosine with the only face that a contact is on, from which a normal is turned to that of the face (down to 6° below
 /// its plane). A normal below that is left: the mesh is on the other side.
-const AWAY: Real = -0.1;
+const BACKFACE_COSINE: Real = -0.1;
 
 /// Turns normals that the deepest contact cannot have to the nearest that it can. The mesh is body `side` (0 or 1) of
 /// the manifolds, and the voxels are at `pose` in its frame.
@@ -82,7 +82,7 @@ fn nearest(faces: &[(usize, Real)], normal: Vector) -> Option<Vector> {
         sum[axis] += sign * (normal[axis] * sign).max(0.0);
     }
     if let [(axis, sign)] = *faces
-        && normal[axis] * sign > AWAY
+        && normal[axis] * sign > BACKFACE_COSINE
     {
         sum = Vector::ZERO;
         sum[axis] = sign;

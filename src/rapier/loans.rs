@@ -1,7 +1,7 @@
 //! Properties that bodies are given for the length of rapier's step, and lose after it.
 
 use crate::rapier::effects::EffectSettings;
-use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::multibody_energy::FastMultibodies;
 use crate::rapier::host::sleep_timers::SleepTimers;
 use crate::rapier::host::speculative::Speculators;
 use crate::rapier::host::substeps::Substeps;
@@ -17,10 +17,11 @@ pub struct Loans {
 }
 
 impl Loans {
-    /// Gives them what the view of a step and its multibodies that gain energy ask for; `moved` are the bodies that
-    /// impacts moved in the step before.
+    /// Sets the properties that bodies need in rapier's step: speculative contacts and sub-steps by the view and by the
+    /// multibodies that may gain energy, and the time to sleep of `moved`, the bodies that impacts moved in the step
+    /// before.
     pub fn give(
-        (view, wild): (&StepView, &WildMultibodies),
+        (view, fast_multibodies): (&StepView, &FastMultibodies),
         (effects, moved): (&EffectSettings, &[RigidBodyHandle]),
         parameters: &IntegrationParameters,
         world: &mut World,
@@ -33,7 +34,7 @@ impl Loans {
             joints,
             world.narrow_phase,
             parameters,
-            wild,
+            fast_multibodies,
             world.bodies,
         );
         let contacts = (&*world.colliders, &*world.narrow_phase);

@@ -3,7 +3,7 @@
 //! A step in order (`step.rs`): it takes a view of the world (`view/`) and makes the plan of the step (`planning.rs`,
 //! by the rules of `contacts/`: the contacts that rapier will ask for, and the pairs that are muted, that is kept from
 //! its solver); then rapier steps; then the impacts within the step that rapier missed are resolved (`resolving.rs`, by
-//! `impacts/` and `joints/`). What rapier 0.36 has to be told in roundabout ways is in `host/`.
+//! `impacts/` and `joints/`). The workarounds for rapier 0.36 are in `host/`.
 //!
 //! # Files
 //! - What users call: `pipeline.rs`, with sets of their own `pipeline_for_sets.rs`, and between two steps `prepare.rs`;

@@ -4,7 +4,7 @@
 use crate::batch::Batch;
 use crate::rapier::effects::{Effects, MedialOptions};
 use crate::rapier::report::StepReport;
-use crate::rapier::state::State;
+use crate::rapier::state::PipelineState;
 use crate::rapier::tuning::Tuning;
 use rapier3d::geometry::ColliderHandle;
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsWorld};
@@ -36,7 +36,7 @@ use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsWorld};
 /// # Ok::<(), rapier3d_medial::MeshError>(())
 /// ```
 pub struct MedialPipeline {
-    pub(crate) state: State,
+    pub(crate) state: PipelineState,
     pub(super) is_attached: bool,
 }
 
@@ -58,7 +58,7 @@ impl MedialPipeline {
     /// A pipeline that uses a backend opened before; [`MedialOptions::backend`] is ignored.
     pub fn with_batch(options: MedialOptions, batch: Batch) -> Self {
         Self {
-            state: State::new(options, batch),
+            state: PipelineState::new(options, batch),
             is_attached: false,
         }
     }

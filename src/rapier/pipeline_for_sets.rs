@@ -18,7 +18,7 @@ impl MedialPipeline {
     /// Prepares like [`Self::attach`], for games that keep rapier's sets themselves.
     pub fn attach_sets(&mut self, narrow_phase: &mut NarrowPhase) {
         self.is_attached = true;
-        // Those that impacts moved in another world, or a later state of it.
+        // The bodies in it are of another world, or of a later state of this one.
         self.state.moved = None;
         let dispatcher = MedialDispatcher::new(Arc::clone(&self.state.exchange));
         narrow_phase.set_query_dispatcher(dispatcher.chain(DefaultQueryDispatcher));

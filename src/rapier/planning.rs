@@ -8,10 +8,10 @@ use crate::rapier::contacts::outnumbered::{are_outnumbered, keeps_nothing};
 use crate::rapier::contacts::predicted_contacts::predicted;
 use crate::rapier::effects::{Effect, Effects};
 use crate::rapier::host::forced_updates::{self, Forced};
-use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::multibody_energy::FastMultibodies;
 use crate::rapier::impacts::toi_query::Work;
 use crate::rapier::report::StepReport;
-use crate::rapier::state::State;
+use crate::rapier::state::PipelineState;
 use crate::rapier::step_args::StepArgs;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::view::census::Census;
@@ -22,7 +22,7 @@ use crate::rapier::world::World;
 use std::sync::Arc;
 use web_time::Instant;
 
-impl State {
+impl PipelineState {
     /// Plans a step. Contacts of medial pairs are computed here, in one batch.
     pub fn plan(
         &mut self,
@@ -42,8 +42,10 @@ impl State {
             StepView::take(world.sets(parameters, participants.as_ref()))
         };
         let rules = world.rules(args.filters);
-        self.placed.begin(&view, world.narrow_phase, &rules);
-        let wild = WildMultibodies::find(&view, &rules, world.narrow_phase, parameters.dt);
+        self.initial_overlaps
+            .begin(&view, world.narrow_phase, &rules);
+        let fast_multibodies =
+            FastMultibodies::find(&view, &rules, world.narrow_phase, parameters.dt);
         let policy = self.settings.policy(args, world.gravity, false);
         let contacts = (&*world.narrow_phase, parameters.prediction_distance());
         let Muted {
@@ -79,7 +81,7 @@ impl State {
             narrow_phase: Arc::new(narrow_phase),
             depth,
             outnumbered,
-            wild,
+            fast_multibodies,
             bouncing,
         }
     }
@@ -95,7 +97,7 @@ impl State {
         let mut results = self.batch.run(&found.jobs);
         report.pairs = found.pairs;
         report.jobs = found.jobs.len();
-        let jobs = found.jobs.iter().zip(&found.ahead);
+        let jobs = found.jobs.iter().zip(&found.predicted_motions);
         for ((job, ahead), result) in jobs.clone().zip(&mut results) {
             ahead.rebase_to_step_start(result);
             self.recycled.set_touching(job, !result.contacts.is_empty());
@@ -119,8 +121,8 @@ impl State {
         }
     }
 
-    /// What rapier's own sweeps find. Fixed partners are the event loop's as all others are, and rapier would stop
-    /// bodies before.
+    /// Which bodies rapier's own sweeps may stop. Fixed partners are the event loop's as all others are, and rapier
+    /// would stop bodies before.
     fn sweeps(&self, world: &World, census: &Census) -> Sweeps {
         let off = |e: &Effects| e.continuous == Effect::Off;
         let takes_all = !self.settings.effects.any(off) && !census.any_modified;

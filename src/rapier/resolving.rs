@@ -5,14 +5,14 @@ use crate::math::Real;
 use crate::rapier::impacts::event_loop;
 use crate::rapier::impacts::outcome::Outcome;
 use crate::rapier::impacts::toi_query::Work;
-use crate::rapier::state::State;
+use crate::rapier::state::PipelineState;
 use crate::rapier::step_args::StepArgs;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::view::participants::{Contacts, Participants};
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::world::World;
 
-impl State {
+impl PipelineState {
     /// Finds and resolves the impacts within the step that rapier has just taken. `depth` is that of the deepest
     /// contact that rapier was given, a length. Where all colliders had to be looked at, the plan has no participants
     /// afterwards.
@@ -31,8 +31,8 @@ impl State {
         let sets = (&*world.bodies, &*world.colliders);
         plan.view.follow(parameters, sets, world.multibody_joints);
         let rules = world.rules(args.filters);
-        let wild = std::mem::take(&mut plan.wild);
-        wild.take_back(&mut plan.view, &rules, world.narrow_phase, parameters.dt);
+        let fast_multibodies = std::mem::take(&mut plan.fast_multibodies);
+        fast_multibodies.take_back(&mut plan.view, &rules, world.narrow_phase, parameters.dt);
         let depth = plan.depth.max(depth);
         let Some(participants) = plan.participants.take() else {
             return self.among_all(world, args, (plan, depth), work);
@@ -78,7 +78,11 @@ impl State {
         if active.any(|h| !plan.view.index.contains_key(&h) && still.pose(h).is_some()) {
             return None;
         }
-        let before = (plan.view.clone(), *work, self.placed.left_to_solver());
+        let before = (
+            plan.view.clone(),
+            *work,
+            self.initial_overlaps.left_to_solver(),
+        );
         let contacts = Contacts {
             participants: Some(participants),
             ..Contacts::of_all(world.narrow_phase, depth)
@@ -87,7 +91,7 @@ impl State {
         if resolved.is_none() {
             let left;
             (plan.view, *work, left) = before;
-            self.placed.leave_again(left);
+            self.initial_overlaps.leave_again(left);
         }
         resolved
     }
@@ -101,7 +105,15 @@ impl State {
     ) -> Option<Outcome> {
         let policy = self.settings.policy(args, world.gravity, plan.bouncing);
         let rules = world.rules(args.filters);
-        let (placed, batch) = (&mut self.placed, &mut self.batch);
-        event_loop::resolve(&mut plan.view, policy, rules, contacts, placed, batch, work)
+        let (initial_overlaps, batch) = (&mut self.initial_overlaps, &mut self.batch);
+        event_loop::resolve(
+            &mut plan.view,
+            policy,
+            rules,
+            contacts,
+            initial_overlaps,
+            batch,
+            work,
+        )
     }
 }

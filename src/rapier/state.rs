@@ -21,7 +21,7 @@ use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle};
 use std::sync::Arc;
 
 /// State that a [`MedialPipeline`](crate::MedialPipeline) keeps from step to step.
-pub struct State {
+pub struct PipelineState {
     /// The backend that computes contacts and first contacts of many pairs at once.
     pub batch: Batch,
     /// Place where the dispatcher in rapier's narrow phase finds the plan of a step.
@@ -33,7 +33,7 @@ pub struct State {
     /// Which starts of contacts were reported.
     pub reported: ReportedStarts,
     /// Bodies that were put into each other.
-    pub placed: InitialOverlaps,
+    pub initial_overlaps: InitialOverlaps,
     /// The colliders that stood still in the last step.
     pub still: StillRecord,
     /// All medial colliders of the world, with what they were made for: the still colliders and gravity.
@@ -46,7 +46,7 @@ pub struct State {
     pub kept: Option<StepPlan>,
 }
 
-impl State {
+impl PipelineState {
     /// The state before the first step.
     pub fn new(options: MedialOptions, batch: Batch) -> Self {
         let mut effects = EffectSettings::default();
@@ -61,7 +61,7 @@ impl State {
                 budget: options.budget,
             },
             reported: ReportedStarts::default(),
-            placed: InitialOverlaps::default(),
+            initial_overlaps: InitialOverlaps::default(),
             still: StillRecord::default(),
             still_medial: None,
             links: KnownLinks::default(),

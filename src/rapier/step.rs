@@ -10,7 +10,7 @@ use crate::rapier::host::sleep_timers::moved_before;
 use crate::rapier::impacts::toi_query::Work;
 use crate::rapier::loans::Loans;
 use crate::rapier::report::StepReport;
-use crate::rapier::state::State;
+use crate::rapier::state::PipelineState;
 use crate::rapier::step_args::StepArgs;
 use crate::rapier::step_plan::StepPlan;
 use crate::rapier::view::filter_answers::FilterAnswers;
@@ -21,7 +21,7 @@ use rapier3d::pipeline::{EventHandler, PhysicsHooks};
 use std::sync::Arc;
 use web_time::Instant;
 
-impl State {
+impl PipelineState {
     /// Steps the world by `parameters.dt`, in as many parts as it stops. All parts together have one budget.
     pub fn step(
         &mut self,
@@ -106,7 +106,7 @@ impl State {
         self.moved = Some(world.write_back(&plan.view, &outcome, args.parameters));
         if !is_kept || plan.view.followed {
             let participants = plan.participants.as_ref();
-            self.placed
+            self.initial_overlaps
                 .end(&plan.view, participants, &world.rules(args.filters));
         }
         let scene = Scene {
@@ -120,7 +120,7 @@ impl State {
             report.medial_colliders = medial_colliders::count(world.colliders);
         }
         if plan.view.followed {
-            report.participants = plan.view.parts.len();
+            report.participants = plan.view.colliders.len();
         }
         report.add_impacts(&outcome);
         report.event_seconds = clock.elapsed().as_secs_f64();
@@ -146,11 +146,11 @@ impl State {
         let clock = Instant::now();
         let parameters = args.parameters;
         let moved = self.moved.as_deref().unwrap_or_default();
-        let asked = (&plan.view, &plan.wild);
+        let asked = (&plan.view, &plan.fast_multibodies);
         let effects = (&self.settings.effects, moved);
         let loans = (!is_kept).then(|| Loans::give(asked, effects, parameters, world));
         report.speculative = loans.as_ref().map_or(0, Loans::speculative);
-        plan.wild.bring_to_rest(world.multibody_joints);
+        plan.fast_multibodies.bring_to_rest(world.multibody_joints);
         report.batch_seconds += clock.elapsed().as_secs_f64();
 
         self.exchange.begin_step(Arc::clone(&plan.narrow_phase));

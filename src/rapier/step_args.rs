@@ -1,4 +1,4 @@
-//! What a step is taken with: the user's arguments, and the settings of the pipeline.
+//! Input of a step: the user's arguments, and the settings of the pipeline.
 
 use crate::math::Vector;
 use crate::rapier::effects::EffectSettings;

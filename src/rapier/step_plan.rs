@@ -3,7 +3,7 @@
 
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::NarrowPhasePlan;
-use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::multibody_energy::FastMultibodies;
 use crate::rapier::view::census::Census;
 use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::StepView;
@@ -24,7 +24,7 @@ pub struct StepPlan {
     /// Whether few of the pairs that move have a medial collider, so that rapier goes by the user's recycle distance.
     pub outnumbered: bool,
     /// Multibodies that gain energy in rapier's step.
-    pub wild: WildMultibodies,
+    pub fast_multibodies: FastMultibodies,
     /// Whether pairs may bounce ([`Effects::restitution`](crate::Effects::restitution)).
     pub bouncing: bool,
 }

@@ -1,12 +1,12 @@
 //! The constants of the event loop, in one place so that `cargo bench --bench effects -- --sweep` can vary them.
 //! None needs tuning by users.
 //!
-//! Each but [`Tuning::press`] and [`Tuning::lies`], which are for flat faces and for triangles, was halved and doubled
-//! alone, in 1,458 flights of two fast bodies, and in heaps of 27 loops at 20, 60 and 150 m/s, with restitution 0
-//! (measured at commit 343b3fc) and 0.9, where energy is judged. With no value was a contact missed or invented, a loop
-//! linked wrongly, or, at 0.9, energy gained, and the median error of the first change of velocity stayed within 0.01.
-//! Where something else moves, the constant says so; with all others, depth stays within 0.1 of the radii, and the
-//! number of queries within a quarter.
+//! Each but [`Tuning::flat_sink`] and [`Tuning::flat_depth`], which are for flat faces and for triangles, was halved
+//! and doubled alone, in 1,458 flights of two fast bodies, and in heaps of 27 loops at 20, 60 and 150 m/s, with
+//! restitution 0 (measured at commit 343b3fc) and 0.9, where energy is judged. With no value was a contact missed or
+//! invented, a loop linked wrongly, or, at 0.9, energy gained, and the median error of the first change of velocity
+//! stayed within 0.01. Where something else moves, the constant says so; with all others, depth stays within 0.1 of the
+//! radii, and the number of queries within a quarter.
 
 use crate::math::Real;
 
@@ -51,10 +51,10 @@ pub struct Tuning {
     /// 10,000 times as heavy as others make 406 and 2,322 impacts in 400 steps at 0.02, and about 9,800 without. At
     /// 0.04 a frame that is pressed against a wall still moves when the press has stopped. Rings have none of this: a
     /// heavy one would drive a light one into the ground.
-    pub press: Real,
+    pub flat_sink: Real,
     /// The least that a pair may get deeper in one go, in units of the gap. At 0 it would never leave its first
     /// contact.
-    pub hair: Real,
+    pub min_sink: Real,
     /// Impacts of a body in one step after which it stays where it is. Halved and doubled, 1.7 times and
     /// half as many bodies do at 150 m/s, for 0.75 and 1.33 times the queries.
     pub max_events: u32,
@@ -69,9 +69,9 @@ pub struct Tuning {
     pub least_bounce: Real,
     /// Depth up to which a body lies on the plane of a face, in units of rapier's length unit, beyond what gravity
     /// presses it in: bodies that slide are not that deep, and what is deeper beside a face may strike its edge.
-    pub lies: Real,
+    pub flat_depth: Real,
     /// Depth from which bodies in an impact are pushed apart, in units of the thickness.
-    pub push_from: Real,
+    pub push_depth: Real,
     /// Share of the depth below it that is pushed out in a step.
     pub push: Real,
 }
@@ -89,14 +89,14 @@ impl Default for Tuning {
             touching: 0.45,
             stopping: 0.25,
             sink: 0.1,
-            press: 0.02,
-            hair: 0.1,
+            flat_sink: 0.02,
+            min_sink: 0.1,
             max_events: 16,
             least_still: [64, 2],
             max_stops: 8,
             least_bounce: 1.0e-3,
-            lies: 6.0e-3,
-            push_from: 0.1,
+            flat_depth: 6.0e-3,
+            push_depth: 0.1,
             push: 0.2,
         }
     }

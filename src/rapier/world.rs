@@ -52,13 +52,13 @@ impl World<'_> {
     }
 
     /// The rules by which colliders respond to each other.
-    pub fn rules<'s>(&'s self, verdicts: &'s FilterAnswers<'s>) -> Rules<'s> {
+    pub fn rules<'s>(&'s self, filter_answers: &'s FilterAnswers<'s>) -> Rules<'s> {
         Rules {
             bodies: self.bodies,
             colliders: self.colliders,
             impulse_joints: self.impulse_joints,
             multibody_joints: self.multibody_joints,
-            verdicts,
+            filter_answers,
         }
     }
 

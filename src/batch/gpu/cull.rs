@@ -11,7 +11,7 @@ use super::meshes::Meshes;
 use super::shaders::CULL;
 use super::stage::Stage;
 use super::texels::{ROW, Texels};
-use super::transfer::{ALIGNMENT, Target, Transfer};
+use super::transfer::{ALIGNMENT, CopyTarget, Transfer};
 use crate::error::GpuError;
 use wgpu::BufferUsages;
 
@@ -89,7 +89,7 @@ impl Cull {
         pairs: &[Pair],
         meshes: &mut Meshes,
     ) -> Result<(), GpuError> {
-        // Of what may be replaced some may be, before there is no room for the rest.
+        // The flag stays false if this fails: some buffers may be replaced before there is no room for the rest.
         let bound = std::mem::replace(&mut self.bound, false);
         let (nodes, primitives) = (&meshes.nodes[..], &meshes.primitives[..]);
         let moved = self.nodes.reserve(context, size_of_val(nodes))?
@@ -105,7 +105,7 @@ impl Cull {
             | self.near.reserve(context, near as u64)?
             | self.answers.reserve(context, answers as u64)?;
         if moved || fresh || !bound {
-            // As they are bound.
+            // In the order of the shader's bindings.
             let resources = [
                 self.params.bound(),
                 self.pairs.bound(),
@@ -147,14 +147,20 @@ impl Cull {
         let (nodes, nodes_from) = unsent(&meshes.nodes, nodes * size_of::<Node>());
         let sent = primitives * size_of::<Primitive>();
         let (primitives, primitives_from) = unsent(&meshes.primitives, sent);
-        let items: [(&[u8], Target<'_>); 4] = [
+        let items: [(&[u8], CopyTarget<'_>); 4] = [
             (
                 bytemuck::bytes_of(&params),
-                Target::Buffer(&self.params.buffer, 0),
+                CopyTarget::Buffer(&self.params.buffer, 0),
             ),
-            (bytemuck::cast_slice(pairs), Target::Rows(&self.pairs, 0)),
-            (nodes, Target::Rows(&self.nodes, nodes_from)),
-            (primitives, Target::Rows(&self.primitives, primitives_from)),
+            (
+                bytemuck::cast_slice(pairs),
+                CopyTarget::Rows(&self.pairs, 0),
+            ),
+            (nodes, CopyTarget::Rows(&self.nodes, nodes_from)),
+            (
+                primitives,
+                CopyTarget::Rows(&self.primitives, primitives_from),
+            ),
         ];
         let sizes = items.map(|(bytes, to)| to.room(bytes.len()));
         up.begin(context, &sizes).await?;
@@ -166,7 +172,7 @@ impl Cull {
         for (bytes, to) in items {
             up.send(&mut encoder, bytes, to)?;
         }
-        // What was not looked at is not free, whatever the batch before said.
+        // A pair that was not looked at is not free, whatever the batch before said.
         encoder.clear_buffer(&self.answers.buffer, 0, Some(answers as u64));
         // No more threads than it has, as far as they may take all: the next mesh pair goes to whichever
         // is done with one.

@@ -7,7 +7,7 @@ use super::layout::{ElementaryParams, FREE, Query, THREADS};
 use super::shaders::ELEMENTARY;
 use super::stage::Stage;
 use super::texels::Texels;
-use super::transfer::{ALIGNMENT, Target, Transfer};
+use super::transfer::{ALIGNMENT, CopyTarget, Transfer};
 use crate::elementary::path::LinearPath;
 use crate::elementary::test_list::Domain;
 use crate::error::GpuError;
@@ -18,7 +18,7 @@ use wgpu::BufferUsages;
 const MAX_ITERATIONS: u32 = 24;
 
 /// Lengths from here, in the user's unit, stay on the CPU: their products would overflow.
-const LARGEST: f32 = 1.0e8;
+const MAX_LENGTH: f32 = 1.0e8;
 
 /// How far the fourth corner may be from where the others put it, as a fraction of all four: what
 /// rounding of the corners makes of it is below 3 ulps. Larger and the device's slack, 32 ulps of the
@@ -79,7 +79,7 @@ impl Elementary {
         let params = bytemuck::bytes_of(&params);
         let queries = paths.len() * QUERY;
         let answers = paths.len() * size_of::<u32>();
-        // As for mesh pairs.
+        // Stays false if this fails, as for mesh pairs.
         let bound = std::mem::replace(&mut self.bound, false);
         let fresh = self.queries.reserve(context, queries)?
             | self.answers.reserve(context, answers as u64)?;
@@ -91,8 +91,8 @@ impl Elementary {
             }
         }
         self.bound = true;
-        let to_params = Target::Buffer(&self.params.buffer, 0);
-        let to_queries = Target::Rows(&self.queries, 0);
+        let to_params = CopyTarget::Buffer(&self.params.buffer, 0);
+        let to_queries = CopyTarget::Rows(&self.queries, 0);
         let sizes = [to_params.room(params.len()), to_queries.room(queries)];
         up.begin(context, &sizes).await?;
         let timed = Clock::bytes(context.clock.as_ref());
@@ -150,7 +150,7 @@ fn pack(path: &LinearPath<f32>, domain: Domain, tolerance: f32) -> Query {
             let [a, b, c, d] = corners.map(|corner| corner[k]);
             let size = a.abs() + b.abs() + c.abs() + fourth * d.abs();
             let off = fourth * (b + c - a - d).abs();
-            sound &= (size < LARGEST) & (off <= FOLLOWS * size);
+            sound &= (size < MAX_LENGTH) & (off <= FOLLOWS * size);
         }
     }
     if !sound {

@@ -3,6 +3,7 @@
 
 use crate::math::lane::Lane;
 use crate::math::tolerance;
+use crate::math::tolerance::SIMILAR_RADII;
 use bytemuck::{Pod, Zeroable};
 
 /// Offset and size of a field on the host, in bytes.
@@ -111,8 +112,8 @@ twins! {
     }
 }
 
-/// A test or a mesh pair that is proven free in the whole step; not 0, which is what no shader has written.
-/// Of a mesh pair `FREE + n`: `n` primitive pairs are not proven free.
+/// A test or a mesh pair that is proven free in the whole step; not 0, which is what no shader has written. For a mesh
+/// pair, `FREE + n` says that `n` primitive pairs are not proven free.
 pub const FREE: u32 = 1;
 /// A test or a mesh pair without a list that is not proven free; or less, by the proofs of other primitive pairs.
 pub const OPEN: u32 = 1 << 30;
@@ -158,8 +159,6 @@ const _: () = {
 };
 /// Primitive pairs that a thread proves at most, for the same reason.
 pub const PROOFS: usize = 1024;
-/// Ratio of their radii up to which two nodes are split together, as on the CPU.
-const WALK_SIMILAR: f64 = 3.0;
 /// Directions tried in turn, each from where the last proof ends.
 const PROOF_ROUNDS: u32 = 6;
 
@@ -186,7 +185,7 @@ pub fn constants() -> String {
         ("HUGE", f64::from(f32::MAX)),
         ("GPU_SLACK_ULPS", tolerance::GPU_SLACK_ULPS),
         ("STEP_ULPS", tolerance::STEP_ULPS),
-        ("WALK_SIMILAR", WALK_SIMILAR),
+        ("WALK_SIMILAR", SIMILAR_RADII),
     ];
     let counts = [
         ("FREE", FREE),

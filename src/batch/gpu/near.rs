@@ -25,9 +25,9 @@ pub struct Proposals {
     found: Vec<u32>,
 }
 
-/// Counts of a batch, beside its answers.
+/// Mesh pairs of a batch whose lists are missing or not complete.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Found {
+pub struct ListingGaps {
     /// Mesh pairs that were given up, or never begun.
     pub given_up: u64,
     /// Mesh pairs of which not all primitive pairs are listed.
@@ -75,7 +75,7 @@ impl Proposals {
         answers: &[u32],
         list: &[[u8; size_of::<Near>()]],
         stamp: u32,
-    ) -> Found {
+    ) -> ListingGaps {
         self.clear();
         self.each.resize(sweeps, Proposal::Unfit);
         let given_up = |answer: u32| !(FREE..GIVEN_UP).contains(&answer);
@@ -100,7 +100,7 @@ impl Proposals {
                 self.place(&entry, ranges);
             }
         }
-        let mut found = Found::default();
+        let mut found = ListingGaps::default();
         for (k, (&sweep, &answer)) in asked.iter().zip(answers).enumerate() {
             let said = &mut self.each[sweep as usize];
             let (first, count) = (self.starts[k], entries(answer));

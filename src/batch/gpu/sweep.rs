@@ -6,14 +6,10 @@ use crate::batch::job::Sweep;
 use crate::elementary::first_contact::motion_is_finite;
 use crate::math::lane::Lane;
 use crate::math::motion::RigidMotion;
-use crate::math::tolerance::GPU_SLACK_ULPS;
+use crate::math::tolerance::{GPU_SLACK_ULPS, PIECE_ANGLE};
 
 /// Lengths above this, in the user's unit, stay on the CPU: their squares would overflow.
-const LARGEST: f64 = 1.0e15;
-
-/// Angle in radians that a body turns in a piece at most: the sagitta is then below 3 % of the lever
-/// arm. Larger pieces prove less, smaller ones cost a pair each.
-const PIECE_ANGLE: f64 = 0.5;
+const MAX_LENGTH: f64 = 1.0e15;
 
 /// Most pieces of a step; a body that turns further is left to the CPU, where endless turns end on the cap of
 /// the work ([`crate::pair`]): with more pieces for the CPU than for the device, the device would say free where
@@ -71,9 +67,9 @@ impl Sweep<'_> {
         let numbers: &[f32] = bytemuck::cast_slice(&sides);
         let plain = numbers
             .iter()
-            .fold(true, |all, x| all & (x.abs() < LARGEST as f32));
+            .fold(true, |all, x| all & (x.abs() < MAX_LENGTH as f32));
         let finite = self.motions.iter().all(motion_is_finite);
-        let sound = finite && turns_little && scale < LARGEST && plain;
+        let sound = finite && turns_little && scale < MAX_LENGTH && plain;
         sound.then(|| Pair {
             sides,
             roots,

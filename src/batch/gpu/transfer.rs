@@ -48,14 +48,14 @@ impl Signal {
 
 /// Place that an item of the upload buffer is copied to.
 #[derive(Clone, Copy)]
-pub(super) enum Target<'a> {
+pub(super) enum CopyTarget<'a> {
     /// A buffer, from this byte on.
     Buffer(&'a Buffer, u64),
     /// A texture, from this row on.
     Rows(&'a Texels, usize),
 }
 
-impl Target<'_> {
+impl CopyTarget<'_> {
     /// Bytes that an item of so many bytes takes of the upload buffer: whole rows are copied to a texture.
     pub(super) fn room(&self, bytes: usize) -> usize {
         bytes.next_multiple_of(match self {
@@ -135,7 +135,7 @@ impl Transfer {
         })
     }
 
-    /// Makes room for all items of a step; sizes in bytes, those to send as [`Target::room`] has them.
+    /// Makes room for all items of a step; sizes in bytes, those to send as [`CopyTarget::room`] has them.
     pub(super) async fn begin(
         &mut self,
         context: &mut Context,
@@ -158,7 +158,7 @@ impl Transfer {
         &mut self,
         encoder: &mut CommandEncoder,
         bytes: &[u8],
-        to: Target<'_>,
+        to: CopyTarget<'_>,
     ) -> Result<(), GpuError> {
         if bytes.is_empty() {
             return Ok(());
@@ -178,7 +178,7 @@ impl Transfer {
         &mut self,
         encoder: &mut CommandEncoder,
         items: impl ExactSizeIterator<Item = [u8; N]>,
-        to: Target<'_>,
+        to: CopyTarget<'_>,
     ) -> Result<(), GpuError> {
         let (from, bytes) = (self.used as u64, items.len() * N);
         let range = from..from + bytes as u64;

@@ -77,7 +77,7 @@ struct Comparison {
     heaps: u64,
     steps: usize,
     colliders: Vec<Row>,
-    /// What the build of the medial mesh says.
+    /// Notes of the build of the medial mesh.
     notes: Vec<String>,
 }
 

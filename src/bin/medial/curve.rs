@@ -23,7 +23,7 @@ struct Point {
     errors: Errors,
 }
 
-/// What `info --curve` prints.
+/// The output of `info --curve`.
 #[derive(Serialize)]
 struct Curve {
     longest_side: f32,

@@ -46,7 +46,7 @@ pub enum PlanError {
 /// `output`, which is made if it is not there and does not have the name of a mesh; a single one goes to the file, or
 /// into the folder.
 ///
-/// What goes into a folder is baked if `bake` says so.
+/// Files that go into a folder are baked if `bake` says so.
 pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, PlanError> {
     let mut meshes = Vec::new();
     for input in inputs {

@@ -50,7 +50,7 @@ impl FromStr for Length {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        // As a whole first: the e of 2e-5 and the letters of `inf` and `NaN` are no unit.
+        // The whole text is read as a number first: the e of 2e-5 and the letters of `inf` and `NaN` are no unit.
         let (number, unit) = match text.parse::<f64>() {
             Ok(number) => (number, None),
             Err(_) => {

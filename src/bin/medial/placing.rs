@@ -18,10 +18,10 @@ pub struct PlacingArguments {
 /// The axis that points up.
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 enum Up {
-    /// As in rapier's examples and glTF.
+    /// The y axis, as in rapier's examples and glTF.
     #[default]
     Y,
-    /// As in CAD programs and Blender.
+    /// The z axis, as in CAD programs and Blender.
     Z,
 }
 

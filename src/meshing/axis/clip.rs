@@ -10,18 +10,19 @@ use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
 use crate::meshing::axis::crease_samples::CreaseSamples;
 use crate::meshing::axis::delaunay::{Delaunay, NONE};
-use crate::meshing::axis::inner_balls::{INSIDE, JITTER, buried, circumsphere, vote};
+use crate::meshing::axis::inner_balls::{JITTER, buried, circumsphere, vote};
 use crate::meshing::axis::shrinking_ball::shrink_from;
 use crate::meshing::axis::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::chunks::{COSTLY, map_each};
 use crate::meshing::geometry::random::Random;
+use crate::meshing::geometry::winding::INSIDE;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
 
 /// A ball may move by this many distances between samples to become tangent.
-const REACH: f64 = 3.0;
+const TANGENT_REACH: f64 = 3.0;
 
 /// A ball that cannot be made tangent is dropped where the surface is nearer than this share of its radius.
 const TRUE_RADIUS: f64 = 0.7;
@@ -35,7 +36,7 @@ const ABOUT: f64 = 1.01;
 
 /// Half the side of the cube whose corners are added to the samples, so that no Voronoi polygon of a
 /// sample is unbounded (longest side 1).
-const FAR: f64 = 2.0;
+const HALF_BOX: f64 = 2.0;
 
 /// Tetrahedra around an edge at most; more are of samples on a circle, in the jitter's order.
 const LONGEST_RING: usize = 400;
@@ -102,7 +103,7 @@ fn with_far_points(samples: &[Sample]) -> Vec<Point> {
     let mut points = crate::meshing::axis::inner_balls::shifted(samples);
     for corner in 0..8u32 {
         let mut side = |bit: u32| {
-            let far = FAR + 0.1 * random.unit() + JITTER;
+            let far = HALF_BOX + 0.1 * random.unit() + JITTER;
             if corner >> bit & 1 == 1 { far } else { -far }
         };
         points.push(Point::new(side(0), side(1), side(2)));
@@ -170,7 +171,7 @@ impl Clipper<'_> {
     fn settle(&self, ball: Ball, corners: [u32; 4]) -> Option<Tangent> {
         let around = corners.map(|v| self.samples[v as usize]);
         let distances = corners.map(|v| self.distances[v as usize]);
-        let reach = REACH * distances.into_iter().fold(0.0, f64::max);
+        let reach = TANGENT_REACH * distances.into_iter().fold(0.0, f64::max);
         let mut triangles = around.map(|s| s.triangle).to_vec();
         if let Some(tangent) = self.faces.tangent(ball, &triangles, reach) {
             return Some(tangent);

@@ -29,7 +29,7 @@ const MOST_PIECES: usize = 64;
 const ORDERS: u64 = 32;
 
 /// Half the side of the box that is cut (longest side of the body 1, centred).
-const FAR: f64 = 1.0;
+const HALF_BOX: f64 = 1.0;
 
 /// The plane of the box's sides.
 const BOX: u32 = u32::MAX;
@@ -59,7 +59,7 @@ impl Cells {
         tree: &TriangleTree,
         watch: &mut Watch,
     ) -> Result<Option<Self>, BuildError> {
-        let mut all = vec![Convex::cube(FAR, BOX)];
+        let mut all = vec![Convex::cube(HALF_BOX, BOX)];
         for (i, plane) in planes.iter().enumerate() {
             watch.again()?;
             all = all
@@ -137,7 +137,7 @@ impl Cells {
 }
 
 /// One convex piece of a body.
-pub struct Piece {
+pub struct SolidPiece {
     /// Planes of the piece, outward, one for each face.
     pub planes: Vec<Plane>,
     /// Faces of the piece, which name their planes.
@@ -151,7 +151,7 @@ pub fn convex_pieces(
     on: f64,
     tree: &TriangleTree,
     watch: &mut Watch,
-) -> Result<Option<Vec<Piece>>, BuildError> {
+) -> Result<Option<Vec<SolidPiece>>, BuildError> {
     let Some(cells) = Cells::new(planes, on, tree, watch)? else {
         return Ok(None);
     };
@@ -198,8 +198,8 @@ pub fn convex_pieces(
 }
 
 /// The polyhedron on the sides `below` of the planes `kept`.
-fn bounded(planes: &[Plane], on: f64, below: u64, kept: u64) -> Option<Piece> {
-    let mut solid = Convex::cube(FAR, BOX);
+fn bounded(planes: &[Plane], on: f64, below: u64, kept: u64) -> Option<SolidPiece> {
+    let mut solid = Convex::cube(HALF_BOX, BOX);
     let mut outward = Vec::new();
     for (i, plane) in planes.iter().enumerate() {
         if kept >> i & 1 == 0 {
@@ -218,7 +218,7 @@ fn bounded(planes: &[Plane], on: f64, below: u64, kept: u64) -> Option<Piece> {
     let faces = &solid.faces;
     let all = (0..outward.len() as u32).all(|i| faces.iter().any(|face| face.plane == i));
     let closed = faces.iter().all(|face| face.plane != BOX);
-    (all && closed).then_some(Piece {
+    (all && closed).then_some(SolidPiece {
         planes: outward,
         solid,
     })

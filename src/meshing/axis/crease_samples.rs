@@ -7,7 +7,7 @@ use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::random::Random;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::creases::{Creases, SharpEdge};
+use crate::meshing::surface::creases::{SharpEdge, SharpEdges};
 use crate::meshing::surface::samples::{
     CANDIDATES, Grid, Sample, dense_samples, even_samples, spacing, vertex_samples_where,
 };
@@ -50,7 +50,7 @@ pub struct CreaseSamples {
 pub fn crease_samples(
     surface: &Surface,
     tree: &TriangleTree,
-    creases: &Creases,
+    creases: &SharpEdges,
     count: usize,
     watch: &mut Watch,
 ) -> Result<CreaseSamples, BuildError> {
@@ -111,7 +111,7 @@ pub fn crease_samples(
 struct Sampler<'a> {
     surface: &'a Surface,
     tree: &'a TriangleTree,
-    creases: &'a Creases,
+    creases: &'a SharpEdges,
     local: LocalSpacing<'a>,
     grid: Grid,
     /// Places on creases that have a pair.

@@ -6,10 +6,12 @@
 
 use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
+use crate::medial::simplex::{sides, sorted};
 use crate::meshing::axis::clip::CreasedMesh;
 use crate::meshing::axis::tangent::{Faces, Tangent, TangentPlane};
 use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::direction;
+use crate::meshing::geometry::triangle_tree::GUESS;
 use crate::meshing::watch::Watch;
 
 /// Distance (longest side 1) by which the ball at the middle of an edge may stick out of the solid before the edge is
@@ -25,13 +27,10 @@ const PASSES: usize = 3;
 const DROP: f64 = 3e-3;
 
 /// Edges shorter than this (longest side 1) are not looked at.
-const SHORT: f64 = 1e-3;
-
-/// A first guess of the distance at an edge's middle (longest side 1); only time depends on it.
-const GUESS: f64 = 0.004;
+const MIN_EDGE: f64 = 1e-3;
 
 /// A ball may move by this many distances between samples to become tangent.
-const REACH: f64 = 2.0;
+const TANGENT_REACH: f64 = 2.0;
 
 /// Splits what is off, and leaves out what then still is.
 pub fn refine(
@@ -77,7 +76,7 @@ impl Refiner<'_> {
             for edge in sides(face) {
                 if let std::collections::hash_map::Entry::Vacant(place) = self.off.entry(edge) {
                     let [a, b] = edge.map(|v| self.mesh.draft.balls[v as usize]);
-                    let short = (a.center - b.center).length() < SHORT;
+                    let short = (a.center - b.center).length() < MIN_EDGE;
                     let off = if short {
                         0.0
                     } else {
@@ -126,7 +125,7 @@ impl Refiner<'_> {
         let mut of_either = [&of_a[..], &of_b[..]].concat();
         of_either.sort_unstable();
         of_either.dedup();
-        let reach = REACH * self.spacing;
+        let reach = TANGENT_REACH * self.spacing;
         let tangent = |of: &[u32]| self.faces.tangent(start, of, reach);
         tangent(&of_both)
             .or_else(|| tangent(&of_either))
@@ -200,13 +199,4 @@ impl Faces<'_> {
 
 fn middle(a: &Ball, b: &Ball) -> Ball {
     Ball::interpolate([*a, *b, *b], [0.5, 0.5, 0.0])
-}
-
-/// The edges of a face: from its first ball to the second, the second to the third, the third to the first.
-fn sides(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]].map(sorted)
-}
-
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

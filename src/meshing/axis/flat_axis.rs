@@ -1,6 +1,6 @@
 //! The medial axis of a convex body of flat faces, read off the roof over it (`roof.rs`), and how far it may be off.
 //!
-//! Of a corner at which more than four sides meet the roof has several, near each other; those joined by short
+//! The roof has several corners, near each other, for each at which more than four sides meet; those joined by short
 //! edges become one ball again, and corners on the ground become the vertices of the source.
 //!
 //! # Proof
@@ -25,15 +25,15 @@ use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::flat_faces::FlatFaces;
 use std::f64::consts::TAU;
 
-/// Triangles of a sheet lower than this share of what makes corners one are left out.
+/// Height, in units of the distance within which corners become one, below which triangles of a sheet are left out.
 const NO_HEIGHT: f64 = 0.03;
 
-/// Sheets are left out where what they cover sticks out of the others by less than this share of it: those between
-/// faces that are nearly one.
-const BLUNT: f64 = 0.03;
+/// Length, in units of the distance within which corners become one, up to which the surface may stick out of the other
+/// sheets' balls for a sheet to be left out: those between faces that are nearly coplanar.
+const BLUNT_HEIGHT: f64 = 0.03;
 
 /// A face's polygon turns by this more or less than once around (rad), by rounding.
-const ROUND: f64 = 1e-3;
+const TURN_ROUNDING: f64 = 1e-3;
 
 /// First guess of a distance (longest side 1); only time depends on it.
 const GUESS: f64 = 1e-7;
@@ -59,7 +59,7 @@ pub struct Polygon {
 }
 
 /// A convex body and the roof over it.
-pub struct Body<'a> {
+pub struct ConvexBody<'a> {
     surface: &'a Surface,
     pub planes: Vec<Plane>,
     corners: Vec<RoofCorner>,
@@ -71,7 +71,7 @@ pub struct Body<'a> {
     ground: Vec<Point>,
 }
 
-impl<'a> Body<'a> {
+impl<'a> ConvexBody<'a> {
     /// A body of the source, with the planes and the corners of the roof over it.
     pub fn new(
         surface: &'a Surface,
@@ -245,7 +245,7 @@ impl<'a> Body<'a> {
             }
             let widest = corners.iter().map(|&v| balls[v as usize].radius);
             let widest = widest.fold(0.0, f64::max);
-            if blunt.leaves_out([a, b].map(of), &self.planes, widest, BLUNT * same) {
+            if blunt.leaves_out([a, b].map(of), &self.planes, widest, BLUNT_HEIGHT * same) {
                 continue;
             }
             for &corner in &corners {
@@ -296,7 +296,7 @@ impl<'a> Body<'a> {
         let turns: Vec<f64> = turns.collect();
         let turn: f64 = turns.iter().sum();
         let sign = turn.signum();
-        if (turn.abs() - TAU).abs() > ROUND {
+        if (turn.abs() - TAU).abs() > TURN_ROUNDING {
             return f64::INFINITY;
         }
         let mut back = 0.0;

@@ -16,15 +16,13 @@ use crate::meshing::draft::{Ball, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point};
 use crate::meshing::geometry::random::Random;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::winding::INSIDE;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::{Watch, bytes_of};
 
 /// A sample votes when the centre is seen from it within 72° of its normal or of the opposite:
 /// near the tangent plane noise decides.
 const VOTE: f64 = 0.3;
-
-/// Inside is where the surface winds more than this often: half of a closed surface.
-pub const INSIDE: f64 = 0.5;
 
 /// Random shift of each sample (longest side 1). Samples of boxes and tori are cospherical by the
 /// dozen, and exact predicates then cost twenty times more; the shift is far below any error.
@@ -69,8 +67,8 @@ pub fn inner_balls(
         if t % 1024 == 0 {
             watch.at(t as f64 / delaunay.tetrahedra.len() as f64)?;
         }
-        // Of the points that the tetrahedra are of: on a flat triangle the samples themselves lie in
-        // a plane, and their sphere would be any.
+        // The circumsphere is that of the points of the tetrahedra: samples on a flat triangle lie in a plane
+        // themselves, and their sphere would be any.
         let Some(ball) = circumsphere(corners.map(|v| points[v as usize])) else {
             continue;
         };

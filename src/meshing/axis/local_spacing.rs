@@ -10,7 +10,7 @@ use crate::math::fast_hash::FastMap;
 use crate::meshing::axis::shrinking_ball::shrink_from;
 use crate::meshing::geometry::bounds::{Point, coordinate};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::surface::creases::Creases;
+use crate::meshing::surface::creases::SharpEdges;
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
 
@@ -30,7 +30,7 @@ const MOST_SAMPLES: f64 = 2.5;
 
 /// Balls found at points of faces.
 pub struct LocalSpacing<'a> {
-    creases: &'a Creases,
+    creases: &'a SharpEdges,
     /// Distance elsewhere.
     distance: f64,
     least: f64,
@@ -43,7 +43,7 @@ impl<'a> LocalSpacing<'a> {
     /// Finds the balls at `probes`, of which each stands for as much of the surface.
     pub fn new(
         tree: &TriangleTree,
-        creases: &'a Creases,
+        creases: &'a SharpEdges,
         probes: &[Sample],
         distance: f64,
         watch: &mut Watch,

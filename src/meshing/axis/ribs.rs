@@ -16,7 +16,7 @@ const SAME_LINE: f64 = 0.02;
 
 /// A ridge from a corner of the outline is not of a plate where the corner is at most this many radii from the ball at
 /// its other end: at right angles it is 1.41.
-const STICKS_OUT: f64 = 1.6;
+const MAX_RIDGE_RATIO: f64 = 1.6;
 
 /// How ribs are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,7 +192,7 @@ impl Plates<'_> {
 
 /// Whether a ridge comes from a corner that hardly sticks out of the ball at its other end.
 fn is_short(p: Point, q: Point) -> bool {
-    p.z.min(q.z) == 0.0 && flat(p - q).length() < STICKS_OUT * p.z.max(q.z)
+    p.z.min(q.z) == 0.0 && flat(p - q).length() < MAX_RIDGE_RATIO * p.z.max(q.z)
 }
 
 fn flat(p: Point) -> Point {

@@ -24,7 +24,7 @@ use crate::meshing::geometry::random::Random;
 const PERTURBATION: f64 = 1e-11;
 
 /// Half the side of the box that is cut (longest side 1, centred).
-const FAR: f64 = 4.0;
+const HALF_BOX: f64 = 4.0;
 
 /// The ground, `r ≥ 0`, among sides.
 pub const GROUND: u32 = 0;
@@ -73,13 +73,13 @@ pub fn roof(planes: &mut [Plane], most: usize, seed: u64) -> Option<Vec<RoofCorn
 fn whole() -> Vec<RoofCorner> {
     let corner = |i: u32| {
         let bit = |k: u32| i >> k & 1;
-        let at = |k: u32| if bit(k) == 0 { -FAR } else { FAR };
+        let at = |k: u32| if bit(k) == 0 { -HALF_BOX } else { HALF_BOX };
         RoofCorner {
             sides: [0, 1, 2, 3].map(|k| 2 * k + bit(k)),
             next: [0, 1, 2, 3].map(|k| i ^ (1 << k)),
             ball: Ball {
                 center: Point::new(at(1), at(2), at(3)),
-                radius: if bit(0) == 0 { 0.0 } else { FAR },
+                radius: if bit(0) == 0 { 0.0 } else { HALF_BOX },
             },
         }
     };
@@ -104,7 +104,7 @@ fn cut(
     if kept.is_empty() {
         return None;
     }
-    // Of each two sides that the cut crosses, the first end of the new edge on them.
+    // First end of the new edge on each two sides that the cut crosses.
     let mut open: FastMap<[u32; 2], (u32, usize)> = FastMap::default();
     for i in 0..corners.len() {
         let own = index[i];

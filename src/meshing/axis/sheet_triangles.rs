@@ -6,7 +6,7 @@
 use crate::meshing::geometry::bounds::Point;
 
 /// Polygons of more corners are cut from one of them: the cost is cubic.
-const MOST: usize = 60;
+const MAX_OPTIMAL_CORNERS: usize = 60;
 
 /// Cost of a triangle without height, and more.
 const FLATTEST: f64 = 1e12;
@@ -30,8 +30,8 @@ pub fn sheet_triangles(
     };
     let mut waiting = vec![(0, n - 1)];
     // For each run of corners the cost, and the third corner of the triangle on its chord.
-    let mut best = vec![(0.0, 0); if n <= MOST { n * n } else { 0 }];
-    if n <= MOST {
+    let mut best = vec![(0.0, 0); if n <= MAX_OPTIMAL_CORNERS { n * n } else { 0 }];
+    if n <= MAX_OPTIMAL_CORNERS {
         for length in 2..n {
             for from in 0..n - length {
                 let to = from + length;
@@ -47,7 +47,7 @@ pub fn sheet_triangles(
         if to < from + 2 {
             continue;
         }
-        let third = match n <= MOST {
+        let third = match n <= MAX_OPTIMAL_CORNERS {
             true => best[from * n + to].1,
             false => to - 1,
         };

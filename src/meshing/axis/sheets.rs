@@ -17,14 +17,14 @@ pub const SHEET: f64 = 1e-3;
 
 /// Most triangles that a medial mesh of sheets starts from: ten times what any count of primitives
 /// in use needs, and a second's collapse.
-const MOST: usize = 60_000;
+const MAX_TRIANGLES: usize = 60_000;
 
 /// Winding number from which a point of a sheet counts as inside solid matter.
 const INSIDE: f64 = 0.75;
 
 /// Triangles to become slabs.
 #[derive(Default)]
-struct PrimitiveList {
+struct TriangleList {
     points: Vec<Point>,
     triangles: Vec<[u32; 3]>,
 }
@@ -36,8 +36,8 @@ pub fn open_sheets(
     tree: &TriangleTree,
     watch: &mut Watch,
 ) -> Result<(Draft, usize), BuildError> {
-    let mut soup = PrimitiveList::new(surface, |t| surface.sheet[t], watch)?;
-    if soup.triangles.len() > MOST {
+    let mut soup = TriangleList::new(surface, |t| surface.sheet[t], watch)?;
+    if soup.triangles.len() > MAX_TRIANGLES {
         soup.merge_by_cells(soup.coarsest(), watch)?;
     }
     let buried = match surface.sheet.contains(&false) {
@@ -54,12 +54,12 @@ pub fn thin_sheets(
     thickness: f64,
     watch: &mut Watch,
 ) -> Result<Draft, BuildError> {
-    let mut soup = PrimitiveList::new(surface, |t| thin[t], watch)?;
+    let mut soup = TriangleList::new(surface, |t| thin[t], watch)?;
     soup.merge_by_cells(thickness.max(soup.coarsest()), watch)?;
     soup.into_draft(watch)
 }
 
-impl PrimitiveList {
+impl TriangleList {
     fn new(
         surface: &Surface,
         wanted: impl Fn(usize) -> bool,
@@ -82,14 +82,14 @@ impl PrimitiveList {
         Ok(soup)
     }
 
-    /// Side of the cells that leave about [`MOST`] triangles: a cell of a flat sheet gives two.
+    /// Side of the cells that leave about [`MAX_TRIANGLES`] triangles: a cell of a flat sheet gives two.
     fn coarsest(&self) -> f64 {
         let area_of = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.points[v as usize]);
             0.5 * (b - a).cross(c - a).length()
         };
         let area: f64 = self.triangles.iter().map(area_of).sum();
-        (2.0 * area / MOST as f64).sqrt()
+        (2.0 * area / MAX_TRIANGLES as f64).sqrt()
     }
 
     /// Merges all points of a cell at their mean.

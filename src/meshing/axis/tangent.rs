@@ -10,10 +10,10 @@ use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::quadric::Quadric;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::creases::Creases;
+use crate::meshing::surface::creases::SharpEdges;
 
 /// Largest number of steps of Newton's method; a ball that needs more is given up.
-const STEPS: usize = 30;
+const MAX_NEWTON_STEPS: usize = 30;
 
 /// Distance between a ball and each of its planes at which Newton's method has converged (longest side 1).
 const CONVERGED: f64 = 1e-10;
@@ -40,7 +40,7 @@ const SAME_POINT: f64 = 1e-3;
 const SAME_POINT_SHARE: f64 = 0.05;
 
 /// A ball touches a face from outside where this is above the cosine of the angle between their normals.
-const AWAY: f64 = -0.5;
+const OUTSIDE_COSINE: f64 = -0.5;
 
 /// A plane that a ball touches: its outward unit normal, and a point of it.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +68,7 @@ pub struct Faces<'a> {
     /// Tree of the surface.
     pub tree: &'a TriangleTree,
     /// Smooth groups of the surface.
-    pub creases: &'a Creases,
+    pub creases: &'a SharpEdges,
 }
 
 impl Faces<'_> {
@@ -78,7 +78,7 @@ impl Faces<'_> {
         let mut ball = start;
         let mut from = triangles.to_vec();
         let mut added = 0;
-        for _ in 0..STEPS {
+        for _ in 0..MAX_NEWTON_STEPS {
             let (planes, triangles) = self.planes(&ball, &mut from);
             if planes.len() < 2 {
                 return None;
@@ -122,7 +122,7 @@ impl Faces<'_> {
     /// them in a groove.
     fn is_behind(&self, planes: &[TangentPlane], triangles: &[u32]) -> bool {
         let mut both = planes.iter().zip(triangles);
-        both.all(|(plane, &t)| plane.normal.dot(self.surface.normals[t as usize]) > AWAY)
+        both.all(|(plane, &t)| plane.normal.dot(self.surface.normals[t as usize]) > OUTSIDE_COSINE)
     }
 
     /// The planes of the faces around a ball, each once, and a triangle of each; `from` follows.

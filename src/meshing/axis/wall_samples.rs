@@ -20,7 +20,7 @@ const NEITHER: [f64; 2] = [1.15, 2.3];
 const TIMES: [usize; 3] = [1, 2, 4];
 
 /// Share of the surface that may be neither.
-const MOST: f64 = 0.25;
+const MAX_UNDECIDED: f64 = 0.25;
 
 /// The number of samples, `count` or up to four times as many: the fewest with which little of the surface is of walls
 /// in between; `count` if there is no such number.
@@ -51,6 +51,8 @@ pub fn samples_for_walls(
         let some = thicknesses.iter().filter(|t| is_neither(t, distance));
         some.count() as f64 / thicknesses.len().max(1) as f64
     };
-    let times = TIMES.into_iter().find(|times| neither(*times) <= MOST);
+    let times = TIMES
+        .into_iter()
+        .find(|times| neither(*times) <= MAX_UNDECIDED);
     Ok(count * times.unwrap_or(1))
 }

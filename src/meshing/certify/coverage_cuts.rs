@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-9;
 const EXACT: f64 = 1e-10;
 
 /// Largest number of steps in the search for that end. With fewer it may be deeper.
-const STEPS: usize = 16;
+const MAX_STEPS: usize = 16;
 
 /// Steps of the search for a covered point between two that are not; each leaves .62 of the edge.
 const SEARCH: usize = 12;
@@ -91,7 +91,7 @@ fn interval(at_0: f64, at_1: f64, f: impl Fn(f64) -> f64) -> Option<(f64, f64)> 
         (false, true) => (1.0, at_1),
         (false, false) => below_zero(&f)?,
     };
-    // What comes from deep inside ends where the primitive does, and not by the tolerance farther on.
+    // A cut that comes from deep inside ends where the primitive does, and not by the tolerance farther on.
     let spare = if inside.1 < -2.0 * TOLERANCE {
         TOLERANCE
     } else {
@@ -132,7 +132,7 @@ fn below_zero(f: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
 /// The last place, from `inside` on, where a convex function is at most 0; at `outside` it is above. The chord between
 /// the two lies above the function, so where the chord is 0 the function is not above 0.
 fn crossing(mut inside: (f64, f64), mut outside: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..STEPS {
+    for _ in 0..MAX_STEPS {
         if inside.1 >= -EXACT {
             break;
         }

@@ -15,7 +15,7 @@
 
 use crate::error::BuildError;
 use crate::meshing::certify::coverage_cuts::{Cut, cut_covered};
-use crate::meshing::certify::primitive_tree::PrimitiveTree;
+use crate::meshing::certify::primitive_tree::DraftTree;
 use crate::meshing::draft::{Draft, Signed};
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::random::Random;
@@ -103,7 +103,7 @@ fn dilate(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<(),
     let mut uncovered: Vec<Point> = points.chain(surface.needle_corners().flatten()).collect();
     for pass in 0..DILATION_PASSES {
         let mut growth = Growth::none(draft);
-        let tree = PrimitiveTree::new(draft);
+        let tree = DraftTree::new(draft);
         let mut hint = 0;
         let mut left = Vec::new();
         for (i, &p) in uncovered.iter().enumerate() {
@@ -135,7 +135,7 @@ fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<()
     let crowd = (draft.primitives().len() as f64 / FINEST_UP_TO).max(1.0);
     for pass in 0..CERTIFICATE_PASSES {
         let mut growth = Growth::none(draft);
-        let tree = PrimitiveTree::new(draft);
+        let tree = DraftTree::new(draft);
         let mut prover = Prover {
             tree: &tree,
             hint: 0,
@@ -169,7 +169,7 @@ fn certify(draft: &mut Draft, surface: &Surface, watch: &mut Watch) -> Result<()
 }
 
 struct Prover<'a> {
-    tree: &'a PrimitiveTree<'a>,
+    tree: &'a DraftTree<'a>,
     /// The primitive that held the piece before.
     hint: u32,
     /// Largest distance by which the solid failed to cover a piece.
@@ -281,7 +281,7 @@ mod tests {
             edges: vec![[0, 1]],
             faces: Vec::new(),
         };
-        let tree = PrimitiveTree::new(&draft);
+        let tree = DraftTree::new(&draft);
         let mut prover = Prover {
             tree: &tree,
             hint: 0,

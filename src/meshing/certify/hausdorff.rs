@@ -27,7 +27,7 @@ use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
 use crate::meshing::certify::inside::{Cell, Solid};
-use crate::meshing::certify::largest::{Effort, Look, Search, Side};
+use crate::meshing::certify::largest::{DividedSurface, Effort, LargestDistance, Look};
 use crate::meshing::draft::Draft;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Point, direction};
@@ -41,7 +41,7 @@ use crate::meshing::watch::Watch;
 use std::ops::ControlFlow;
 
 /// Share of its length by which a way out of the solid may be overstated.
-const WAY_OUT: f64 = 0.05;
+const EXIT_OVERESTIMATE: f64 = 0.05;
 
 /// Step off the surface that tells an enclosed part from the outside (longest side 1).
 const OFF_SURFACE: f64 = 1e-4;
@@ -49,15 +49,15 @@ const OFF_SURFACE: f64 = 1e-4;
 /// Directions along which a piece of the source is moved to get out of the solid. Faces that meet in a reflex edge
 /// are enlarged to cover rounding, and stand in each other's way: a corner of three needs two directions more than the
 /// normal.
-const WAYS: usize = 3;
+const EXIT_DIRECTIONS: usize = 3;
 
 /// How far each direction turns away from what was in the way of the one before, in units of its length.
-const TILT: f64 = 0.05;
+const EXIT_TILT: f64 = 0.05;
 
 /// Length of a second way out (longest side 1), tried where a piece is nearly on the boundary. Its direction turns as
 /// far as need be, since in a slit the other side is near. Twice the length by which bodies are enlarged to cover
 /// rounding.
-const SLIT: f64 = 5e-6;
+const SECOND_EXIT_LENGTH: f64 = 5e-6;
 
 /// Pieces that the search in either direction (source to solid, solid to source) may examine before it becomes coarser:
 /// about 0.2 s.
@@ -87,7 +87,7 @@ pub fn hausdorff(
         Some(boundary) => (&boundary.surface, &boundary.tree),
         None => (&surface, &tree),
     };
-    let measured = measure(seen, seen_tree, &tree, &draft, Effort::CLOSE, &mut watch)?;
+    let measured = measure(seen, seen_tree, &tree, &draft, Effort::FINE, &mut watch)?;
     Ok(in_unit(measured, surface.frame.scale))
 }
 
@@ -137,12 +137,12 @@ pub(crate) fn measure(
         }
     }
     let budget = PIECES + PIECES_PER_PRIMITIVE * draft.primitives().len() as f64;
-    let mut search = Search::new(&mut source, start, 0.0, effort, budget);
+    let mut search = LargestDistance::new(&mut source, start, 0.0, effort, budget);
     let triangles = surface.all_corners().zip(0..surface.triangles.len() as u32);
     let needles = surface.needle_corners().map(|corners| (corners, NEEDLE));
     search.in_depth(triangles.chain(needles), |part| watch.at(0.5 * part))?;
     let (outward, slack) = (search.best, search.slack());
-    // What one direction does not need is the other's.
+    // The other direction gets what this one did not need.
     let left = 2.0 * budget - search.examined() as f64 / effort.share;
     let mut boundary = FromBoundary {
         tree,
@@ -154,8 +154,8 @@ pub(crate) fn measure(
     if outward > effort.enough {
         effort.enough = 0.0;
     }
-    // What stays below the other direction's distance does not raise the error.
-    let mut search = Search::new(&mut boundary, 0.0, outward, effort, left.max(budget));
+    // A distance below that of the other direction does not raise the error.
+    let mut search = LargestDistance::new(&mut boundary, 0.0, outward, effort, left.max(budget));
     let mut tick = |part| watch.at(0.5 + 0.5 * part);
     let cells = search.in_breadth(vec![solid.whole()], &mut tick)?;
     search.in_depth(cells.iter().copied(), tick)?;
@@ -232,7 +232,11 @@ impl FromSource<'_> {
             } else {
                 best.min(allowed)
             };
-            Look::Distance(self.solid.nearest_exit(p, [way, enough], WAY_OUT).distance)
+            Look::Distance(
+                self.solid
+                    .nearest_exit(p, [way, enough], EXIT_OVERESTIMATE)
+                    .distance,
+            )
         }
     }
 
@@ -262,7 +266,7 @@ impl FromSource<'_> {
         }
         let gets_out = |far: f64, tilt: f64| {
             let mut way = normal;
-            (0..WAYS).any(|_| {
+            (0..EXIT_DIRECTIONS).any(|_| {
                 let moved = |p: Point| p + way * far;
                 let (corners, center) = (corners.map(moved), moved(center));
                 let inside = self.solid.exit_of_any(&corners, center, self.hint);
@@ -270,7 +274,10 @@ impl FromSource<'_> {
                 inside.is_none()
             })
         };
-        gets_out(allowed, TILT) || allowed > SLIT && to_hint(center) > -SLIT && gets_out(SLIT, 1.0)
+        gets_out(allowed, EXIT_TILT)
+            || allowed > SECOND_EXIT_LENGTH
+                && to_hint(center) > -SECOND_EXIT_LENGTH
+                && gets_out(SECOND_EXIT_LENGTH, 1.0)
     }
 
     /// Whether the surface point `p` lies inside matter that the source bounds.
@@ -279,7 +286,7 @@ impl FromSource<'_> {
     }
 }
 
-impl Side for FromSource<'_> {
+impl DividedSurface for FromSource<'_> {
     type Piece = ([Point; 3], u32);
 
     fn radius(&self, (corners, _): &Self::Piece) -> f64 {
@@ -314,7 +321,7 @@ struct FromBoundary<'a> {
     triangle: u32,
 }
 
-impl Side for FromBoundary<'_> {
+impl DividedSurface for FromBoundary<'_> {
     type Piece = Cell;
 
     fn radius(&self, cell: &Cell) -> f64 {

@@ -6,7 +6,7 @@
 //! the solid, which is what marching steps need.
 
 use crate::math::least_first::least_first;
-use crate::meshing::certify::primitive_tree::{Nearest, PrimitiveTree};
+use crate::meshing::certify::primitive_tree::{DraftTree, NearestPrimitive};
 use crate::meshing::draft::{Ball, Corners, Draft};
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use std::collections::BinaryHeap;
@@ -78,7 +78,7 @@ impl Cell {
 
 /// The union of the primitives of a draft, which must have at least one.
 pub struct Solid<'a> {
-    tree: PrimitiveTree<'a>,
+    tree: DraftTree<'a>,
     bounds: Bounds,
 }
 
@@ -90,7 +90,7 @@ impl<'a> Solid<'a> {
             .iter()
             .map(|b| Bounds::of_ball(b.center, b.radius));
         Self {
-            tree: PrimitiveTree::new(draft),
+            tree: DraftTree::new(draft),
             bounds: boxes.fold(Bounds::EMPTY, Bounds::union),
         }
     }
@@ -103,8 +103,8 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// The primitive nearest to `p`; see [`PrimitiveTree::nearest`].
-    pub fn nearest(&self, p: Point, hint: u32) -> Nearest {
+    /// The primitive nearest to `p`; see [`DraftTree::nearest`].
+    pub fn nearest(&self, p: Point, hint: u32) -> NearestPrimitive {
         self.tree.nearest(p, hint)
     }
 
@@ -114,12 +114,12 @@ impl<'a> Solid<'a> {
     }
 
     /// The ball of a primitive that is nearest to the point asked for.
-    pub fn ball(&self, near: &Nearest) -> Ball {
+    pub fn ball(&self, near: &NearestPrimitive) -> Ball {
         self.tree.ball(near)
     }
 
     /// Does the same as [`Self::nearest`], if the signed distance is at most `limit` on either side; `None` otherwise.
-    pub fn nearest_if_near(&self, p: Point, limit: f64, hint: u32) -> Option<Nearest> {
+    pub fn nearest_if_near(&self, p: Point, limit: f64, hint: u32) -> Option<NearestPrimitive> {
         let near = self.tree.nearest_between(p, -limit, limit, hint);
         (near.signed.distance.abs() <= limit).then_some(near)
     }
@@ -159,17 +159,17 @@ impl<'a> Solid<'a> {
     }
 
     /// The point of the nearest ball's surface that is nearest to `p`.
-    pub fn towards_boundary(&self, p: Point, near: &Nearest) -> Point {
+    pub fn towards_boundary(&self, p: Point, near: &NearestPrimitive) -> Point {
         p - direction(p - self.ball(near).center) * near.signed.distance
     }
 
     /// Whether a point that [`Self::towards_boundary`] gave is on the boundary; from outside it always is.
-    pub fn is_on_boundary(&self, moved: Point, near: &Nearest) -> bool {
+    pub fn is_on_boundary(&self, moved: Point, near: &NearestPrimitive) -> bool {
         near.signed.distance >= 0.0 || self.is_out(moved, near.primitive)
     }
 
     /// [`Self::towards_boundary`], if it is on the boundary.
-    pub fn onto_boundary(&self, p: Point, near: &Nearest) -> Option<Point> {
+    pub fn onto_boundary(&self, p: Point, near: &NearestPrimitive) -> Option<Point> {
         let moved = self.towards_boundary(p, near);
         self.is_on_boundary(moved, near).then_some(moved)
     }
@@ -225,11 +225,11 @@ impl<'a> Solid<'a> {
             point: None,
             cells: 0,
         };
-        let mut waiting = BinaryHeap::from([Waiting {
+        let mut waiting = BinaryHeap::from([PendingCell {
             bound: 0.0,
             cell: cube,
         }]);
-        while let Some(Waiting { bound, cell }) = waiting.pop() {
+        while let Some(PendingCell { bound, cell }) = waiting.pop() {
             let room = (share * best.distance).max(WAY_OUT_LENGTH);
             if best.distance <= enough || bound >= best.distance - room {
                 break;
@@ -247,7 +247,7 @@ impl<'a> Solid<'a> {
                 }
             }
             if cell.radius() > 0.5 * room {
-                waiting.extend(cell.children().map(|cell| Waiting {
+                waiting.extend(cell.children().map(|cell| PendingCell {
                     bound: cell.distance(p),
                     cell,
                 }));
@@ -269,12 +269,12 @@ pub struct Exit {
 }
 
 /// A cell to be searched, and its distance.
-struct Waiting {
+struct PendingCell {
     bound: f64,
     cell: Cell,
 }
 
-least_first!(Waiting, bound);
+least_first!(PendingCell, bound);
 
 #[cfg(test)]
 mod tests {

@@ -57,7 +57,7 @@ pub enum Look {
 }
 
 /// A surface in pieces, to find the largest distance over.
-pub trait Side {
+pub trait DividedSurface {
     /// A piece of it.
     type Piece: Copy;
     /// Distance from a piece's centre to its farthest point.
@@ -81,27 +81,27 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Effort for what a build returns.
-    pub const CLOSE: Self = Self {
+    /// Effort for what a build returns: a slack of a quarter of the distance.
+    pub const FINE: Self = Self {
         slack: 0.25,
         share: 1.0,
         enough: f64::INFINITY,
     };
 
-    /// Effort for what a quick build returns: twice the slack takes half of the pieces.
+    /// Effort for what a quick build returns: twice that slack, which takes half of the pieces.
     pub const COARSE: Self = Self {
         slack: 0.5,
-        ..Self::CLOSE
+        ..Self::FINE
     };
 
     /// Effort for what is known to be right also between the points measured: a quarter of the budget.
-    pub const QUICK: Self = Self {
+    pub const CHECK: Self = Self {
         share: 0.25,
-        ..Self::CLOSE
+        ..Self::FINE
     };
 
-    /// Effort for what a build reports besides: four times the slack, and half of the budget.
-    pub const ROUGH: Self = Self {
+    /// Effort for what a build reports besides its result: four times that slack, and half of the budget.
+    pub const REPORT: Self = Self {
         slack: 1.0,
         share: 0.5,
         enough: f64::INFINITY,
@@ -109,7 +109,7 @@ impl Effort {
 }
 
 /// A search for the largest distance.
-pub struct Search<'a, S: Side> {
+pub struct LargestDistance<'a, S: DividedSurface> {
     side: &'a mut S,
     /// The largest distance found.
     pub best: f64,
@@ -128,7 +128,7 @@ pub struct Search<'a, S: Side> {
     widest: f64,
 }
 
-impl<'a, S: Side> Search<'a, S> {
+impl<'a, S: DividedSurface> LargestDistance<'a, S> {
     /// A search for distances above `floor`, with the distance `start` found before, over about
     /// the effort's share of `budget` pieces.
     pub fn new(side: &'a mut S, start: f64, floor: f64, effort: Effort, budget: f64) -> Self {

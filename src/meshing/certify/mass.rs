@@ -12,7 +12,7 @@ use crate::math::Real;
 use crate::medial::mass::of_covariance;
 use crate::meshing::findings::MassSource;
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::surface::checked_surface::{Frame, Surface};
+use crate::meshing::surface::checked_surface::{BuilderFrame, Surface};
 use crate::meshing::watch::Watch;
 use nalgebra::Matrix3;
 use parry3d::mass_properties::MassProperties;
@@ -52,7 +52,7 @@ pub fn mass_properties(
 }
 
 /// Mass scales with the third power of the length, inertia with the fifth.
-fn in_user_unit(mut mass: MassProperties, frame: &Frame) -> Option<MassProperties> {
+fn in_user_unit(mut mass: MassProperties, frame: &BuilderFrame) -> Option<MassProperties> {
     let scale = frame.scale;
     mass.local_com = (Point::from_vector(mass.local_com) * scale + frame.center).to_vector();
     mass.inv_mass = (f64::from(mass.inv_mass) / scale.powi(3)) as Real;
@@ -81,7 +81,7 @@ fn exact(surface: &Surface) -> Option<MassProperties> {
 }
 
 /// Crossing of a line and a triangle.
-struct Crossing {
+struct LineCrossing {
     row: i32,
     column: i32,
     /// Place along the line.
@@ -130,7 +130,7 @@ fn along_lines(surface: &Surface, watch: &mut Watch) -> Result<Option<MassProper
     Ok(sums.mass_properties(axes))
 }
 
-fn find_stretches(line: &[Crossing], stretches: &mut Vec<[f64; 2]>) {
+fn find_stretches(line: &[LineCrossing], stretches: &mut Vec<[f64; 2]>) {
     stretches.clear();
     let (mut winding, mut start) = (0, 0.0);
     for crossing in line {
@@ -145,7 +145,7 @@ fn find_stretches(line: &[Crossing], stretches: &mut Vec<[f64; 2]>) {
 }
 
 /// Adds the crossings of a triangle, given in the lines' frame; `t` orders its corners.
-fn cross(corners: [Point; 3], t: [u32; 3], spacing: f64, crossings: &mut Vec<Crossing>) {
+fn cross(corners: [Point; 3], t: [u32; 3], spacing: f64, crossings: &mut Vec<LineCrossing>) {
     let [a, b, c] = corners;
     let normal = (b - a).cross(c - a);
     if normal.z == 0.0 {
@@ -171,7 +171,7 @@ fn cross(corners: [Point; 3], t: [u32; 3], spacing: f64, crossings: &mut Vec<Cro
         let mut column = from;
         while column < to {
             let (dx, dy) = (column * spacing - a.x, y - a.y);
-            crossings.push(Crossing {
+            crossings.push(LineCrossing {
                 row,
                 column: column as i32,
                 at: a.z - (normal.x * dx + normal.y * dy) / normal.z,

@@ -42,14 +42,14 @@ impl Node {
 
 /// The primitive nearest to a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Nearest {
+pub struct NearestPrimitive {
     /// Signed distance and weights.
     pub signed: Signed,
     /// Index of the primitive.
     pub primitive: u32,
 }
 
-impl Nearest {
+impl NearestPrimitive {
     /// Becomes the other if that is nearer, or as near with a lower index: so the order in which the tree
     /// is searched does not show.
     #[inline]
@@ -62,7 +62,7 @@ impl Nearest {
 }
 
 /// Boxes over the primitives of a draft; node 0 is the root.
-pub struct PrimitiveTree<'a> {
+pub struct DraftTree<'a> {
     draft: &'a Draft,
     primitives: Vec<Corners>,
     prepared: Vec<Prepared>,
@@ -71,7 +71,7 @@ pub struct PrimitiveTree<'a> {
     reach: f64,
 }
 
-impl<'a> PrimitiveTree<'a> {
+impl<'a> DraftTree<'a> {
     /// Builds the tree by halving twice, at the median of the longest spread of the primitives' middles.
     pub fn new(draft: &'a Draft) -> Self {
         let primitives = draft.primitives();
@@ -142,7 +142,7 @@ impl<'a> PrimitiveTree<'a> {
     }
 
     /// The ball that gives a signed distance.
-    pub fn ball(&self, nearest: &Nearest) -> Ball {
+    pub fn ball(&self, nearest: &NearestPrimitive) -> Ball {
         let corners = self.primitives[nearest.primitive as usize];
         Ball::interpolate(self.draft.balls_of(corners), nearest.signed.weights)
     }
@@ -155,11 +155,11 @@ impl<'a> PrimitiveTree<'a> {
 
     /// The primitive of smallest signed distance. `hint` is a primitive that is likely near, as the
     /// one of the point before; any index is allowed.
-    pub fn nearest(&self, p: Point, hint: u32) -> Nearest {
+    pub fn nearest(&self, p: Point, hint: u32) -> NearestPrimitive {
         let primitive = hint.min(self.primitives.len().saturating_sub(1) as u32);
         let mut best = self.hinted(primitive, p);
         self.visit(p, best, best.signed.distance, |signed, primitive| {
-            best.take_nearer(Nearest { signed, primitive });
+            best.take_nearer(NearestPrimitive { signed, primitive });
             Some(best.signed.distance)
         });
         best
@@ -167,12 +167,12 @@ impl<'a> PrimitiveTree<'a> {
 
     /// Does the same as [`Self::nearest`] if the smallest signed distance is between `least` and `most`. Otherwise it
     /// returns some primitive whose signed distance is not between them either.
-    pub fn nearest_between(&self, p: Point, least: f64, most: f64, hint: u32) -> Nearest {
+    pub fn nearest_between(&self, p: Point, least: f64, most: f64, hint: u32) -> NearestPrimitive {
         let mut best = self.hinted(hint, p);
         if best.signed.distance >= least {
             let limit = best.signed.distance.min(most);
             self.visit(p, best, limit, |signed, primitive| {
-                best.take_nearer(Nearest { signed, primitive });
+                best.take_nearer(NearestPrimitive { signed, primitive });
                 let lowest = best.signed.distance;
                 (lowest >= least).then_some(lowest.min(most))
             });
@@ -200,14 +200,14 @@ impl<'a> PrimitiveTree<'a> {
         p: Point,
         limit: f64,
         hint: u32,
-        mut keeps: impl FnMut(&Nearest) -> bool,
+        mut keeps: impl FnMut(&NearestPrimitive) -> bool,
     ) -> bool {
-        let mut keep = |near: &Nearest| near.signed.distance >= limit || keeps(near);
+        let mut keep = |near: &NearestPrimitive| near.signed.distance >= limit || keeps(near);
         let hinted = self.hinted(hint, p);
         let mut all = keep(&hinted);
         if all {
             self.visit(p, hinted, limit, |signed, primitive| {
-                all = keep(&Nearest { signed, primitive });
+                all = keep(&NearestPrimitive { signed, primitive });
                 all.then_some(limit)
             });
         }
@@ -215,8 +215,8 @@ impl<'a> PrimitiveTree<'a> {
     }
 
     /// A primitive that is likely the nearest.
-    fn hinted(&self, primitive: u32, p: Point) -> Nearest {
-        Nearest {
+    fn hinted(&self, primitive: u32, p: Point) -> NearestPrimitive {
+        NearestPrimitive {
             signed: self.distance_to(primitive, p),
             primitive,
         }
@@ -227,7 +227,7 @@ impl<'a> PrimitiveTree<'a> {
     fn visit(
         &self,
         p: Point,
-        guess: Nearest,
+        guess: NearestPrimitive,
         limit: f64,
         mut see: impl FnMut(Signed, u32) -> Option<f64>,
     ) {

@@ -33,7 +33,7 @@ pub(super) fn closes(
 
 /// A number for a place.
 fn number(p: Point) -> u64 {
-    // Of 0 and −0 the same.
+    // The same bits for 0 and −0.
     let bits = |x: f64| (x + 0.0).to_bits();
     mixed(bits(p.x) ^ mixed(bits(p.y) ^ mixed(bits(p.z))))
 }

@@ -96,7 +96,7 @@ fn cut_ears(mut around: Vec<u32>, at: impl Fn(u32) -> Point, triangles: &mut Vec
                     && twice_area(b, c, p) >= 0.0
                     && twice_area(c, a, p) >= 0.0
             };
-            // What holds other corners is no ear, but the least bad is cut where there is none.
+            // A triangle that holds other corners is no ear, but the least bad is cut where there is none.
             let shape = area / longest;
             let worst = if area > 0.0 && around.iter().any(|v| holds(&v)) {
                 -2.0

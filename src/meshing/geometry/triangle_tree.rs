@@ -21,7 +21,10 @@ pub(super) struct Node {
     pub(super) dipole: Dipole,
 }
 
-/// What a group of triangles looks like from afar: a dipole at its centroid.
+/// First guess of the distance of a ball or sample to the surface (longest side 1); only time depends on it.
+pub const GUESS: f64 = 0.004;
+
+/// A group of triangles as seen from afar: a dipole at its centroid.
 #[derive(Clone, Copy)]
 pub(super) struct Dipole {
     pub(super) center: Point,

@@ -10,6 +10,12 @@ impl Groups {
         Self((0..count as u32).collect())
     }
 
+    /// Adds an index, alone in its group, and returns it.
+    pub fn add(&mut self) -> u32 {
+        self.0.push(self.0.len() as u32);
+        self.0.len() as u32 - 1
+    }
+
     /// Index that stands for the group of another.
     pub fn find(&mut self, mut index: u32) -> u32 {
         while self.0[index as usize] != index {

@@ -9,9 +9,12 @@ use crate::meshing::geometry::bounds::{Bounds, Point};
 use crate::meshing::geometry::triangle::solid_angle_of;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 
+/// Winding number from which a point is inside matter: half of that within a closed surface.
+pub const INSIDE: f64 = 0.5;
+
 /// A group is seen as a dipole from beyond this many of its radii. The error of the winding number
 /// is then below 0.05 on the models measured, and a ball is labelled by whether it exceeds ½.
-const FAR: f64 = 2.3;
+const DIPOLE_DISTANCE: f64 = 2.3;
 
 /// Direction of rays: along no axis or diagonal, so that few meet an edge. Its coordinates are positive.
 const RAY: Point = Point {
@@ -53,7 +56,7 @@ impl TriangleTree {
             let node = &self.nodes[stack[len] as usize];
             let to = node.dipole.center - p;
             let distance_sq = to.length_sq();
-            let far = FAR * node.dipole.radius;
+            let far = DIPOLE_DISTANCE * node.dipole.radius;
             if distance_sq > far * far {
                 solid_angle += to.dot(node.dipole.moment) / (distance_sq * distance_sq.sqrt());
                 continue;
@@ -179,7 +182,7 @@ mod tests {
             }
         }
 
-        /// Its triangles, outward.
+        /// The solid's triangles, outward.
         fn triangles(self) -> Vec<[Point; 3]> {
             let (sin, cos) = self.angle.sin_cos();
             let corner = |k: usize| {

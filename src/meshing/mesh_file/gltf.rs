@@ -13,7 +13,7 @@ use nalgebra::{Matrix4, Point3};
 
 /// Largest number of vertices, and of triangles, of a scene. The size of the file is no bound, since one mesh may hang
 /// on many nodes.
-const MOST: usize = 100_000_000;
+const MAX_ELEMENTS: usize = 100_000_000;
 
 /// Reads the scene that the file opens with, or all of it where it names none.
 pub fn read(source: &Source) -> Result<Polygons, BuildError> {
@@ -137,9 +137,10 @@ fn add(
             "a triangle's vertex {beyond} (from 0) is not among the {count}"
         ));
     }
-    if first + count > MOST || polygons.corners.len() + 3 * corners.len() > 3 * MOST {
+    if first + count > MAX_ELEMENTS || polygons.corners.len() + 3 * corners.len() > 3 * MAX_ELEMENTS
+    {
         return Err(format!(
-            "the scene has more than {MOST} vertices or triangles"
+            "the scene has more than {MAX_ELEMENTS} vertices or triangles"
         ));
     }
     // A mirrored node turns its triangles inside out.

@@ -10,7 +10,7 @@ use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::{Hausdorff, Quality, Variant};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::recipe::tightened::GAIN_OF_TIGHT;
-use crate::meshing::refine::refit::Target;
+use crate::meshing::refine::refit::FitTarget;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
 
@@ -71,7 +71,7 @@ impl Source {
     fn effort(&self) -> Effort {
         match self.limits.quality {
             Quality::Fast if self.limits.max_error.is_none() => Effort::COARSE,
-            _ => Effort::CLOSE,
+            _ => Effort::FINE,
         }
     }
 
@@ -149,7 +149,7 @@ impl Source {
         &self,
         mut best: Option<Enclosed>,
         other: Draft,
-        target: Option<&Target>,
+        target: Option<&FitTarget>,
         watch: &mut Watch,
     ) -> Result<Enclosed, BuildError> {
         let (loose, before) = self.covering(other, watch)?;
@@ -190,7 +190,7 @@ impl Source {
         let mut before = None;
         if let Some(draft) = &enclosed.before {
             watch.begin("measure")?;
-            before = Some(self.error_of(draft, Effort::ROUGH, watch)?);
+            before = Some(self.error_of(draft, Effort::REPORT, watch)?);
         }
         Ok(Candidate {
             draft: enclosed.draft,

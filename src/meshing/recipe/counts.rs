@@ -7,9 +7,9 @@ use crate::meshing::options::Quality;
 use crate::meshing::recipe::candidate::{Candidate, Enclosed};
 use crate::meshing::recipe::source::{GAVE_UP, Source};
 use crate::meshing::refine::fit::{self, Collapsed};
-use crate::meshing::refine::refit::Target;
+use crate::meshing::refine::refit::FitTarget;
 use crate::meshing::refine::swaps::LARGE;
-use crate::meshing::simplify::shared_count::Parts;
+use crate::meshing::simplify::shared_count::SolidAndSheets;
 use crate::meshing::watch::Watch;
 
 /// A fit whose largest residual is below this share of the plain collapse's is better without
@@ -76,7 +76,7 @@ impl Source {
     /// Collapses a medial mesh that keeps `creases`.
     pub fn collapses(
         &self,
-        parts: Parts,
+        parts: SolidAndSheets,
         creases: Vec<[Point; 2]>,
         most: usize,
         watch: &mut Watch,
@@ -180,7 +180,7 @@ impl Source {
     }
 
     /// Target that `most` primitives are fitted to.
-    pub fn target(&self, most: usize) -> Target<'_> {
+    pub fn target(&self, most: usize) -> FitTarget<'_> {
         let (surface, tree) = self.bounds();
         let mut target = fit::target(surface, tree, most);
         if let Some(boundary) = &self.boundary
@@ -193,7 +193,7 @@ impl Source {
     }
 
     /// Target of few samples, to tell drafts that may serve from those that cannot.
-    pub fn rough_target(&self) -> Target<'_> {
+    pub fn rough_target(&self) -> FitTarget<'_> {
         self.target(1)
     }
 

@@ -10,7 +10,7 @@ use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::options::Variant;
 use crate::meshing::recipe::candidate::{Candidate, Enclosed};
-use crate::meshing::recipe::polyhedron::MOST;
+use crate::meshing::recipe::polyhedron::MAX_PRIMITIVES;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::profile::{Profile, fewer};
 use crate::meshing::watch::Watch;
@@ -27,7 +27,7 @@ const THINNEST: f64 = 1e-4;
 const STEP: f64 = 0.85;
 
 /// Half of the thickness below which parts of a profile are ribs (longest side 1). All are tried.
-const THIN: [f64; 6] = [0.015, 0.02, 0.03, 0.045, 0.065, 0.09];
+const RIB_HALVES: [f64; 6] = [0.015, 0.02, 0.03, 0.045, 0.065, 0.09];
 
 /// Thickness within which a profile without its ribs is brought to fewer edges, in units of the thickness within which
 /// the whole profile was. All are tried.
@@ -36,15 +36,16 @@ const COARSER: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 /// Largest number of edges of a profile that is tried with ribs: the time for a roof grows with the third power of it.
 const MOST_RIBBED: usize = 256;
 
-/// Ridges shorter than this share of the thickness are points. With 1 the count is hardly less.
-const SAME: f64 = 0.25;
+/// Length of the roof's ridges, in units of the thickness, below which their two ends become one. At 1 the count of
+/// slabs is hardly less.
+const MIN_RIDGE: f64 = 0.25;
 
 /// Radii are larger by this (longest side 1): what is covered needs no proof by the smallest pieces then.
 const MARGIN: f64 = 1e-5;
 
-/// Distance, in units of the thickness, by which a draft may be off at a few samples. One that is off by more does not
-/// fit the body, which then is a prism by its outline alone.
-const FAR: f64 = 4.0;
+/// Largest error at a few samples, in units of the thickness, of a draft that is not discarded: where it is more, the
+/// body is a prism by its outline alone.
+const MAX_ROUGH_ERROR: f64 = 4.0;
 
 /// Largest error (longest side 1) of a prism that is returned without a fit besides: fits of prisms by 200 primitives
 /// are off by .002 to .006.
@@ -69,10 +70,14 @@ impl Source {
         let Some(profile) = self.profile(watch)? else {
             return Ok(None);
         };
-        let most = self.limits.primitives.unwrap_or(MOST).min(MOST);
+        let most = self
+            .limits
+            .primitives
+            .unwrap_or(MAX_PRIMITIVES)
+            .min(MAX_PRIMITIVES);
         let mut best: Option<(f64, Prism)> = None;
         let rough = self.rough_target();
-        for kind in [Kind::Roof, Kind::Ribbed] {
+        for kind in [PrismKind::Roof, PrismKind::Ribbed] {
             for prism in prisms(&profile, most, kind, watch)?.into_iter().rev() {
                 let limit = best.as_ref().map_or(f64::INFINITY, |best| best.0);
                 let error = rough.largest_below(&prism.draft, limit.min(prism.far), watch)?;
@@ -100,14 +105,18 @@ impl Source {
         let Some(profile) = self.profile(watch)? else {
             return Ok(None);
         };
-        let most = self.limits.primitives.unwrap_or(MOST).min(MOST);
-        let mut all = prisms(&profile, most, Kind::Roof, watch)?;
-        all.extend(prisms(&profile, most, Kind::Ribbed, watch)?);
+        let most = self
+            .limits
+            .primitives
+            .unwrap_or(MAX_PRIMITIVES)
+            .min(MAX_PRIMITIVES);
+        let mut all = prisms(&profile, most, PrismKind::Roof, watch)?;
+        all.extend(prisms(&profile, most, PrismKind::Ribbed, watch)?);
         all.sort_by_key(|prism| prism.count);
         let rough = self.rough_target();
         let effort = Effort {
             enough: limit,
-            ..Effort::CLOSE
+            ..Effort::FINE
         };
         for prism in all {
             let far = prism.far.min(limit);
@@ -161,7 +170,7 @@ impl Source {
 
 /// Construction of prisms.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum PrismKind {
     /// Roofs alone.
     Roof,
     /// Roofs and ribs.
@@ -172,14 +181,14 @@ enum Kind {
 fn prisms(
     profile: &Profile,
     most: usize,
-    kind: Kind,
+    kind: PrismKind,
     watch: &mut Watch,
 ) -> Result<Vec<Prism>, BuildError> {
     watch.begin("samples")?;
     // Each edge has a slab at each cap or more, but those of ribs.
     let most_edges = match kind {
-        Kind::Roof => most / 2,
-        Kind::Ribbed => most.min(MOST_RIBBED),
+        PrismKind::Roof => most / 2,
+        PrismKind::Ribbed => most.min(MOST_RIBBED),
     };
     let mut prisms = Vec::new();
     let mut last = 0;
@@ -206,13 +215,16 @@ fn prisms(
                     }
                 };
                 match kind {
-                    Kind::Roof => {
-                        if let Some(draft) = prism_axis(&loops, profile.half, SAME * thickness) {
+                    PrismKind::Roof => {
+                        if let Some(draft) = prism_axis(&loops, profile.half, MIN_RIDGE * thickness)
+                        {
                             let parts = "and the roof over that is exact".to_owned();
-                            add(draft, FAR * thickness, parts);
+                            add(draft, MAX_ROUGH_ERROR * thickness, parts);
                         }
                     }
-                    Kind::Ribbed => ribbed(&loops, profile, (thickness, most), watch, &mut add)?,
+                    PrismKind::Ribbed => {
+                        ribbed(&loops, profile, (thickness, most), watch, &mut add)?
+                    }
                 }
             }
         }
@@ -235,7 +247,7 @@ fn ribbed(
     add: &mut impl FnMut(Draft, f64, String),
 ) -> Result<(), BuildError> {
     let mut seen: Vec<Vec<bool>> = Vec::new();
-    for thin in THIN {
+    for thin in RIB_HALVES {
         watch.again()?;
         let Some(opened) = Opened::new(loops, thin) else {
             continue;
@@ -266,7 +278,8 @@ fn ribbed(
                 // Each edge has a slab at each cap or more, but those of plates.
                 let least = 2 * edges + if rib == Rib::Exact { 2 * of_ribs } else { 0 };
                 if least <= most
-                    && let Some(draft) = opened.draft(&thick, profile.half, SAME * coarser, rib)
+                    && let Some(draft) =
+                        opened.draft(&thick, profile.half, MIN_RIDGE * coarser, rib)
                 {
                     add(draft, THICKEST, format!("{rest}, and ribs are {what}"));
                 }

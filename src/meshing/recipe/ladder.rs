@@ -8,22 +8,22 @@ use crate::error::BuildError;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::refine::fit::{Collapsed, fine_count, start_count};
 use crate::meshing::refine::swaps::LARGE;
-use crate::meshing::simplify::shared_count::Parts;
+use crate::meshing::simplify::shared_count::SolidAndSheets;
 use crate::meshing::watch::Watch;
 
 /// A medial mesh, and it again at falling counts.
 pub struct Ladder<'a> {
     /// The mesh with all primitives.
-    pub finest: Parts<'a>,
+    pub finest: SolidAndSheets<'a>,
     /// Convex creases that it keeps.
     pub creases: Vec<[Point; 2]>,
     /// Kept states of the collapse to few primitives, and of that to many.
-    rungs: [Vec<Parts<'a>>; 2],
+    rungs: [Vec<SolidAndSheets<'a>>; 2],
 }
 
 impl<'a> Ladder<'a> {
     /// A medial mesh that keeps `creases`.
-    pub fn new(finest: Parts<'a>, creases: Vec<[Point; 2]>) -> Self {
+    pub fn new(finest: SolidAndSheets<'a>, creases: Vec<[Point; 2]>) -> Self {
         Self {
             finest,
             creases,
@@ -32,7 +32,11 @@ impl<'a> Ladder<'a> {
     }
 
     /// The medial mesh with at most `count` primitives, or as few as it can have.
-    pub fn at(&mut self, count: usize, watch: &mut Watch) -> Result<Parts<'a>, BuildError> {
+    pub fn at(
+        &mut self,
+        count: usize,
+        watch: &mut Watch,
+    ) -> Result<SolidAndSheets<'a>, BuildError> {
         self.on_the_way(count, count > LARGE, watch)
     }
 
@@ -43,12 +47,13 @@ impl<'a> Ladder<'a> {
         count: usize,
         large: bool,
         watch: &mut Watch,
-    ) -> Result<Parts<'a>, BuildError> {
+    ) -> Result<SolidAndSheets<'a>, BuildError> {
         loop {
-            let above = |r: &&Parts| r.primitives() >= count;
+            let above = |r: &&SolidAndSheets| r.primitives() >= count;
             let rungs = &mut self.rungs[usize::from(large)];
             let last = rungs.iter().rev().find(above);
-            let is_lowest = last.map(Parts::primitives) == rungs.last().map(Parts::primitives);
+            let is_lowest = last.map(SolidAndSheets::primitives)
+                == rungs.last().map(SolidAndSheets::primitives);
             let mut parts = last.unwrap_or(&self.finest).clone();
             parts.set_measures_early(large);
             let half = parts.primitives() / 2;

@@ -3,7 +3,7 @@
 
 use crate::error::BuildError;
 use crate::math::Real;
-use crate::meshing::axis::convex_pieces::{MOST_PLANES, Piece, convex_pieces};
+use crate::meshing::axis::convex_pieces::{MOST_PLANES, SolidPiece, convex_pieces};
 use crate::meshing::certify::largest::Effort;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
@@ -11,7 +11,7 @@ use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::options::{Hausdorff, Variant};
 use crate::meshing::recipe::candidate::Candidate;
-use crate::meshing::recipe::polyhedron::{MOST, SAME_AREA, axis, faces_of, known};
+use crate::meshing::recipe::polyhedron::{MAX_PRIMITIVES, SAME_AREA, axis, faces_of, known};
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::checked_surface::{Surface, cross};
 use crate::meshing::surface::flat_faces::{
@@ -22,19 +22,19 @@ use std::borrow::Cow;
 
 /// Pieces are used if the medial mesh is off by less than so many times that. More, and bodies whose faces are not
 /// quite flat count as exact.
-const CLOSE: f64 = 20.0;
+const EXACT_FACTOR: f64 = 20.0;
 
 /// An error up to this (longest side 1) is rounding.
 const ROUNDED: f64 = 2e-5;
 
 /// A surface that holds a convex piece, and the piece's faces.
-type Part<'a> = (Cow<'a, Surface>, FlatFaces);
+type PieceSurface<'a> = (Cow<'a, Surface>, FlatFaces);
 
 impl Source {
     /// The medial axes of convex pieces of the body, if these have at most `most` primitives: of the convex parts that
     /// the source consists of, or of those that its faces make, whichever has fewer primitives.
     pub fn pieces(&self, most: usize, watch: &mut Watch) -> Result<Option<Candidate>, BuildError> {
-        let most = most.min(MOST);
+        let most = most.min(MAX_PRIMITIVES);
         if self.bounds().0.sheet.contains(&true) {
             return Ok(None);
         }
@@ -47,7 +47,7 @@ impl Source {
                 let most = best
                     .as_ref()
                     .map_or(most, |best| best.draft.faces.len() - 1);
-                let next = self.of_parts(&parts, beside, CLOSE * flat, most, watch)?;
+                let next = self.of_parts(&parts, beside, EXACT_FACTOR * flat, most, watch)?;
                 best = next.or(best);
             }
             if best.is_some() {
@@ -64,7 +64,7 @@ impl Source {
         flat: f64,
         most: usize,
         watch: &mut Watch,
-    ) -> Result<Option<(Vec<Part<'_>>, f64)>, BuildError> {
+    ) -> Result<Option<(Vec<PieceSurface<'_>>, f64)>, BuildError> {
         if self.surface.simple {
             return Ok(None);
         }
@@ -94,7 +94,7 @@ impl Source {
         &self,
         flat: f64,
         watch: &mut Watch,
-    ) -> Result<Option<(Vec<Part<'_>>, f64)>, BuildError> {
+    ) -> Result<Option<(Vec<PieceSurface<'_>>, f64)>, BuildError> {
         let on = ON * flat;
         let (surface, _) = self.bounds();
         let body = (0..surface.triangles.len()).collect();
@@ -108,7 +108,8 @@ impl Source {
         let pieces = convex_pieces(&planes, on, &self.tree, watch)?;
         // Corners this near to a plane are on it, in cells and in pieces, and source corners beside it.
         let beside = 2.0 * on + beyond;
-        let parts = |pieces: Vec<Piece>| pieces.iter().map(|p| self.surface_of(p, on)).collect();
+        let parts =
+            |pieces: Vec<SolidPiece>| pieces.iter().map(|p| self.surface_of(p, on)).collect();
         Ok(pieces.map(|pieces| (parts(pieces), beside)))
     }
 
@@ -116,7 +117,7 @@ impl Source {
     /// less than `close`; the source's corners may be `beside` them.
     fn of_parts(
         &self,
-        parts: &[Part],
+        parts: &[PieceSurface],
         beside: f64,
         close: f64,
         most: usize,
@@ -155,7 +156,7 @@ impl Source {
             false => 0.0,
         };
         draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
-        let mut enclosed = self.measured(draft, None, Effort::QUICK, watch)?;
+        let mut enclosed = self.measured(draft, None, Effort::CHECK, watch)?;
         // Triangles without area may stick out of the pieces, which are of the others alone.
         let uncovered = f64::from(enclosed.hausdorff.uncovered);
         let is_short = self.limits.enclose && uncovered > self.limits.allow_uncovered;
@@ -183,7 +184,7 @@ impl Source {
     }
 
     /// The surface of a piece, with the source's own vertices where its corners are at these.
-    fn surface_of(&self, piece: &Piece, on: f64) -> Part<'_> {
+    fn surface_of(&self, piece: &SolidPiece, on: f64) -> PieceSurface<'_> {
         let mut vertices: Vec<Point> = Vec::new();
         let mut index = |p: Point| {
             let near = |q: &Point| (p - *q).length() <= 2.0 * on;

@@ -12,13 +12,13 @@ use crate::meshing::recipe::polyhedron::polyhedra;
 use crate::meshing::recipe::smallest::Smallest;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::simplify::creased::{Creased, creased};
-use crate::meshing::simplify::shared_count::Parts;
+use crate::meshing::simplify::shared_count::SolidAndSheets;
 use crate::meshing::surface::boundary::solid_boundary;
 use crate::meshing::watch::Watch;
 
 /// Ratio of the largest residuals, at few samples, of the plain collapses of two medial meshes of a body. One that is
 /// worse than the other by more than this is not fitted.
-const HOPELESS: f64 = 2.0;
+const MAX_ROUGH_RATIO: f64 = 2.0;
 
 /// Samples for tens of primitives.
 const FEW_SAMPLES: usize = 2_000;
@@ -87,9 +87,9 @@ impl Source {
     ) -> Result<(Ladder<'_>, Option<Ladder<'_>>), BuildError> {
         watch.begin("simplify")?;
         let samples = start.samples;
-        let rounded = Parts::new(start, &self.tree, watch)?;
+        let rounded = SolidAndSheets::new(start, &self.tree, watch)?;
         let creased = self.creased(samples, watch)?;
-        let creased = creased.map(|c| Ladder::new(Parts::solid(c.simplifier), c.creases));
+        let creased = creased.map(|c| Ladder::new(SolidAndSheets::solid(c.simplifier), c.creases));
         Ok((Ladder::new(rounded, Vec::new()), creased))
     }
 
@@ -129,7 +129,7 @@ impl Source {
     ) -> Result<Candidate, BuildError> {
         watch.begin("simplify")?;
         let samples = start.samples;
-        let rounded = Parts::new(start, &self.tree, watch)?;
+        let rounded = SolidAndSheets::new(start, &self.tree, watch)?;
         let most = self.limits.primitives.unwrap_or(usize::MAX);
         let most = most.min(rounded.primitives());
         let rounded = self.collapses(rounded, Vec::new(), most, watch)?;
@@ -138,7 +138,7 @@ impl Source {
             Some(Creased {
                 simplifier,
                 creases,
-            }) => Some(self.collapses(Parts::solid(simplifier), creases, most, watch)?),
+            }) => Some(self.collapses(SolidAndSheets::solid(simplifier), creases, most, watch)?),
         };
         Ok(nearer(self.better(rounded, creased, watch)?, prism))
     }
@@ -175,7 +175,7 @@ impl Source {
         let mut is_sharp = sharp_first;
         // The other has that error to beat, and no fit gains more than so much.
         let bar = LARGEST_GAIN * best.error();
-        if second.rough_error <= bar.min(HOPELESS * first.rough_error) {
+        if second.rough_error <= bar.min(MAX_ROUGH_RATIO * first.rough_error) {
             let other = self.best_of(second, Some(best.error()), watch)?;
             if other.error() < best.error() || (sharp_first && other.error() == best.error()) {
                 (best, is_sharp) = (other, !sharp_first);

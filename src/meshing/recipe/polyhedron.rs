@@ -6,13 +6,13 @@
 
 use crate::error::BuildError;
 use crate::math::Real;
-use crate::meshing::axis::flat_axis::{Axis, Body};
+use crate::meshing::axis::flat_axis::{Axis, ConvexBody};
 use crate::meshing::axis::roof::{FIRST, GROUND, roof};
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::convex::Plane;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::options::{Hausdorff, Limits, Variant};
+use crate::meshing::options::{BuildLimits, Hausdorff, Variant};
 use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::flat_faces::{FLAT, FlatFaces, convex_faces};
@@ -25,23 +25,23 @@ pub const EXACT: f64 = 1e-6;
 const EXACT_HERE: f64 = 0.6 * EXACT;
 
 /// Corners of the roof this near are one (longest side 1): tried in order.
-const SAME: [f64; 7] = [1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-9, 0.0];
+const MERGE_DISTANCES: [f64; 7] = [1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-9, 0.0];
 
 /// Orders in which the roof is cut, should rounding spoil it.
 const SEEDS: u64 = 4;
 
 /// Corners of the roof for each primitive allowed, at most: boxes and random hulls have .5 to .7.
-const CORNERS: usize = 8;
+const CORNERS_PER_PRIMITIVE: usize = 8;
 
 /// The source's triangles and the faces have the same area but for this share, by rounding.
 pub const SAME_AREA: f64 = 1e-5;
 
 /// Primitives at most, where no fewer are asked for: faces are compared each with each.
-pub const MOST: usize = 2_000;
+pub const MAX_PRIMITIVES: usize = 2_000;
 
 impl Axis {
     /// The axis as a build returns it, grown if asked to. Its errors are bounds, not samples.
-    pub fn candidate(self, limits: &Limits) -> Candidate {
+    pub fn candidate(self, limits: &BuildLimits) -> Candidate {
         let Self {
             mut draft,
             growth,
@@ -98,7 +98,7 @@ pub fn polyhedra(
     if surface.sheet.contains(&true) {
         return Ok(None);
     }
-    let most = most.min(MOST);
+    let most = most.min(MAX_PRIMITIVES);
     let patches = surface.patch_of.iter().max();
     let mut bodies = vec![Vec::new(); patches.map_or(0, |&p| p as usize + 1)];
     for (t, &patch) in surface.patch_of.iter().enumerate() {
@@ -159,10 +159,14 @@ pub fn axis(
     for seed in 0..SEEDS {
         watch.again()?;
         let mut planes = faces.planes.clone();
-        let Some(corners) = roof(&mut planes, CORNERS.saturating_mul(most), seed) else {
+        let Some(corners) = roof(
+            &mut planes,
+            CORNERS_PER_PRIMITIVE.saturating_mul(most),
+            seed,
+        ) else {
             continue;
         };
-        let body = Body::new(surface, faces, planes, corners);
+        let body = ConvexBody::new(surface, faces, planes, corners);
         let polygons = body.polygons();
         let too_blunt = polygons.iter().any(|polygon| {
             let [a, b] = polygon.sides;
@@ -174,7 +178,7 @@ pub fn axis(
         if too_blunt {
             return Ok(None);
         }
-        for same in SAME {
+        for same in MERGE_DISTANCES {
             watch.again()?;
             let found = body.axis(&polygons, same, tree);
             let count = found.draft.faces.len();

@@ -17,18 +17,18 @@ use crate::meshing::recipe::ladder::Ladder;
 use crate::meshing::recipe::source::{GAVE_UP, Source};
 use crate::meshing::recipe::tightened::GAIN_OF_TIGHT;
 use crate::meshing::refine::fit;
-use crate::meshing::refine::refit::Target;
+use crate::meshing::refine::refit::FitTarget;
 use crate::meshing::watch::Watch;
 use std::collections::BTreeSet;
 
 /// Most primitives that are tried where the count is free.
-const MOST: usize = 10_000;
+const MAX_COUNT: usize = 10_000;
 
 /// Factor from a count that breaks the limit to the next above that is tried.
 const STEP: f64 = 1.5;
 
 /// The result's count is the least that keeps the limit within one part in this many; fits scatter more.
-const CLOSE: usize = 50;
+const COUNT_RESOLUTION: usize = 50;
 
 /// Number of primitives up to which each smaller count is tried in turn, since small counts scatter.
 const EACH: usize = 64;
@@ -37,11 +37,11 @@ const EACH: usize = 64;
 const FAILURES: usize = 3;
 
 /// Counts in ratio [`STEP`] after which the search for a sufficient count ends if together they gained less than
-/// [`GAIN`]. The error is then that of the samples that the medial mesh is made from, which no count lowers.
+/// [`STALLED_GAIN`]. The error is then that of the samples that the medial mesh is made from, which no count lowers.
 const STALLED: usize = 3;
 
 /// Share of the error that [`STALLED`] counts have to gain together.
-const GAIN: f64 = 0.1;
+const STALLED_GAIN: f64 = 0.1;
 
 /// Least count at which a stall is believed.
 const FINE: usize = 500;
@@ -50,7 +50,7 @@ const FINE: usize = 500;
 const FLAT: f64 = 1.02;
 
 /// Search over the medial meshes of one body, with what was tried of them.
-struct Search<'a, 'b> {
+struct CountSearch<'a, 'b> {
     source: &'a Source,
     ladders: Vec<&'a mut Ladder<'b>>,
     limit: f64,
@@ -60,7 +60,7 @@ struct Search<'a, 'b> {
 }
 
 /// A medial mesh that keeps the limit.
-struct Found {
+struct WithinLimit {
     enclosed: Enclosed,
     count: usize,
     kept_topology: bool,
@@ -89,8 +89,8 @@ impl Source {
             .map(|l| l.finest.primitives())
             .max()
             .unwrap_or(0);
-        let top = most.unwrap_or(MOST).min(finest).max(1);
-        let mut search = Search {
+        let top = most.unwrap_or(MAX_COUNT).min(finest).max(1);
+        let mut search = CountSearch {
             source: self,
             ladders,
             limit,
@@ -119,10 +119,14 @@ impl Source {
     }
 }
 
-impl Search<'_, '_> {
+impl CountSearch<'_, '_> {
     /// The smallest number of primitives found that keeps the limit, or else the number from which on more of them gain
     /// nothing.
-    fn run(&mut self, top: usize, watch: &mut Watch) -> Result<Result<Found, usize>, BuildError> {
+    fn run(
+        &mut self,
+        top: usize,
+        watch: &mut Watch,
+    ) -> Result<Result<WithinLimit, usize>, BuildError> {
         let Some(mut count) = self.first(top, watch)? else {
             return Ok(Err(self.flat_from(top, watch)?));
         };
@@ -136,7 +140,7 @@ impl Search<'_, '_> {
             residuals.push(self.residual);
             let stalled = residuals.len() > STALLED
                 && count >= FINE
-                && self.residual > (1.0 - GAIN) * residuals[residuals.len() - 1 - STALLED];
+                && self.residual > (1.0 - STALLED_GAIN) * residuals[residuals.len() - 1 - STALLED];
             if count >= top || stalled {
                 return Ok(Err(self.flat_from(count, watch)?));
             }
@@ -149,7 +153,7 @@ impl Search<'_, '_> {
                 None => breaks = below,
             }
         }
-        while best.count > breaks + (best.count / CLOSE).max(1) {
+        while best.count > breaks + (best.count / COUNT_RESOLUTION).max(1) {
             let middle = breaks + (best.count - breaks) / 2;
             match self.attempt(middle, watch)? {
                 Some(found) => best = found,
@@ -232,7 +236,11 @@ impl Search<'_, '_> {
     }
 
     /// A medial mesh of a count that keeps the limit, if one is found.
-    fn attempt(&mut self, count: usize, watch: &mut Watch) -> Result<Option<Found>, BuildError> {
+    fn attempt(
+        &mut self,
+        count: usize,
+        watch: &mut Watch,
+    ) -> Result<Option<WithinLimit>, BuildError> {
         watch.attempt();
         self.tried.insert(count);
         self.residual = f64::INFINITY;
@@ -264,7 +272,7 @@ impl Search<'_, '_> {
                 keeping = self.keeping(collapsed.plain, None, watch)?;
             }
             if let Some(enclosed) = keeping {
-                return Ok(Some(Found {
+                return Ok(Some(WithinLimit {
                     count: enclosed.draft.primitives().len(),
                     enclosed,
                     kept_topology,
@@ -280,13 +288,13 @@ impl Search<'_, '_> {
     fn keeping(
         &self,
         draft: Draft,
-        target: Option<&Target>,
+        target: Option<&FitTarget>,
         watch: &mut Watch,
     ) -> Result<Option<Enclosed>, BuildError> {
         let (source, limit) = (self.source, self.limit);
         let effort = Effort {
             enough: limit,
-            ..Effort::CLOSE
+            ..Effort::FINE
         };
         let keeps = |e: &Enclosed| e.error() <= limit;
         let loose = source.enclosed(draft, effort, watch)?;

@@ -1,7 +1,7 @@
 //! Source of a build: the checked surface with its tree, and the limits.
 
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::options::Limits;
+use crate::meshing::options::BuildLimits;
 use crate::meshing::surface::boundary::Boundary;
 use crate::meshing::surface::checked_surface::Surface;
 
@@ -13,14 +13,14 @@ pub const GAVE_UP: &str =
 pub struct Source {
     pub surface: Surface,
     pub tree: TriangleTree,
-    pub limits: Limits,
+    pub limits: BuildLimits,
     /// The boundary of the solid, where some of the surface is hidden inside it.
     pub boundary: Option<Boundary>,
 }
 
 impl Source {
     /// The source of a build, none of whose surface is known to be hidden yet.
-    pub fn new(surface: Surface, tree: TriangleTree, limits: Limits) -> Self {
+    pub fn new(surface: Surface, tree: TriangleTree, limits: BuildLimits) -> Self {
         Self {
             surface,
             tree,

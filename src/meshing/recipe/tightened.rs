@@ -5,16 +5,16 @@
 //! made is fitted again, to lie between the surface and an offset of it that is nearer than its error, and enclosed
 //! again, until a round gains little.
 //!
-//! What sticks out lies between the samples: ridges and corners most of all. Points at which the draft was found not to
-//! cover the surface, or to reach far beyond it, become samples, as violated constraints do in a cutting-plane method
-//! (Kelley, "The cutting-plane method for solving convex programs", 1960).
+//! The parts that stick out lie between the samples: ridges and corners most of all. Points at which the draft was
+//! found not to cover the surface, or to reach far beyond it, become samples, as violated constraints do in a
+//! cutting-plane method (Kelley, "The cutting-plane method for solving convex programs", 1960).
 
 use crate::error::BuildError;
 use crate::meshing::certify::inside::Solid;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::random::Random;
 use crate::meshing::recipe::source::Source;
-use crate::meshing::refine::refit::{Target, refit};
+use crate::meshing::refine::refit::{FitTarget, refit};
 use crate::meshing::refine::residuals::{is_far_inside, way_out};
 use crate::meshing::surface::samples::{Sample, even_samples, vertex_samples};
 use crate::meshing::watch::Watch;
@@ -27,7 +27,7 @@ pub const GAIN_OF_TIGHT: f64 = 1.5;
 const OFFSET: f64 = 0.6;
 
 /// Share of the least error so far at or above which a round's error ends the rounds: another would gain little.
-const GAIN: f64 = 0.98;
+const STALLED_RATIO: f64 = 0.98;
 
 /// Largest number of rounds.
 const ROUNDS: usize = 4;
@@ -45,11 +45,11 @@ const BUDGET: f64 = 1.0;
 const POINTS: usize = 30_000;
 
 /// Distance by which a point sticks out of the draft to become a sample, in units of the error.
-const STICKS_OUT: f64 = 0.02;
+const SAMPLED_PROTRUSION: f64 = 0.02;
 
 /// Depth of a point inside the draft at which it becomes a sample, in units of the error. It is above [`OFFSET`], the
 /// depth that the fit aims at.
-const DEEP: f64 = 0.75;
+const SAMPLED_DEPTH: f64 = 0.75;
 
 impl Source {
     /// A draft that covers the surface more closely than `loose`; `None` where none was found, or where `loose` is off
@@ -58,7 +58,7 @@ impl Source {
         &self,
         loose: &Draft,
         most: f64,
-        target: &Target,
+        target: &FitTarget,
         watch: &mut Watch,
     ) -> Result<Option<Draft>, BuildError> {
         if !self.limits.enclose || watch.ends_fit(BUDGET) {
@@ -88,7 +88,7 @@ impl Source {
             }
             draft = self.covering(draft, watch)?.0;
             let now = target.beyond + target.residuals(&draft, watch)?.largest;
-            let ends = now >= GAIN * error || watch.ends_fit(BUDGET);
+            let ends = now >= STALLED_RATIO * error || watch.ends_fit(BUDGET);
             if now < error {
                 (best, error) = (Some(draft.clone()), now);
             }
@@ -109,7 +109,7 @@ fn add_far(
     watch: &mut Watch,
 ) -> Result<(), BuildError> {
     let solid = Solid::new(draft);
-    let [out, deep] = [STICKS_OUT * error, DEEP * error];
+    let [out, deep] = [SAMPLED_PROTRUSION * error, SAMPLED_DEPTH * error];
     let mut hint = 0;
     let mut work = 0;
     for (i, sample) in points.iter().enumerate() {

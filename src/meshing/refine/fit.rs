@@ -8,11 +8,11 @@ use crate::error::BuildError;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::random::Random;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::refine::refit::{Target, refit};
+use crate::meshing::refine::refit::{FitTarget, refit};
 use crate::meshing::refine::swaps::{LARGE, Scored, Swaps, grow, remove, swap};
 use crate::meshing::simplify::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use crate::meshing::simplify::collapse::Simplifier;
-use crate::meshing::simplify::shared_count::Parts;
+use crate::meshing::simplify::shared_count::SolidAndSheets;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::samples::{even_samples, vertex_samples};
 use crate::meshing::watch::Watch;
@@ -40,7 +40,7 @@ const MOST_SAMPLES: usize = 33_000;
 pub const BUDGET: f64 = 0.5;
 
 /// The samples to fit `most` primitives to.
-pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> Target<'a> {
+pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> FitTarget<'a> {
     let (over_small, over_large) = (usize::from(most > SMALL), usize::from(most > LARGE));
     let of_primitives = SAMPLES_PER_PRIMITIVE[over_large].saturating_mul(most);
     let count = of_primitives.saturating_add(LEAST_SAMPLES);
@@ -50,7 +50,7 @@ pub fn target<'a>(surface: &Surface, tree: &'a TriangleTree, most: usize) -> Tar
     let corners = vertex_samples(surface);
     let every = corners.len().div_ceil(vertices).max(1);
     samples.extend(corners.into_iter().step_by(every));
-    Target {
+    FitTarget {
         tree,
         samples,
         spacing: ENVELOPE_SPACING[over_small + over_large],
@@ -99,7 +99,7 @@ pub const ROUND: [usize; 12] = [
 /// Collapses to `most` primitives, and to the round counts below as long as the topology stays: the
 /// drafts for each, the largest count first and by itself, and whether that one kept the topology.
 pub fn collapse(
-    mut parts: Parts,
+    mut parts: SolidAndSheets,
     most: usize,
     watch: &mut Watch,
 ) -> Result<(Collapsed, Vec<Collapsed>, bool), BuildError> {
@@ -152,7 +152,7 @@ const FLAT: f64 = 1.5;
 pub fn round_from(
     first: &Collapsed,
     smaller: &[Collapsed],
-    rough: &Target,
+    rough: &FitTarget,
     watch: &mut Watch,
 ) -> Result<Option<usize>, BuildError> {
     let few = |c: &Collapsed| c.most <= SMALL && c.most * ROUND_FROM <= first.most;
@@ -205,7 +205,7 @@ const LARGE_SWAP: Swaps = Swaps {
 /// [`crate::meshing::Quality::Balanced`].
 pub fn balanced(
     collapsed: &Collapsed,
-    target: &Target,
+    target: &FitTarget,
     watch: &mut Watch,
 ) -> Result<Scored, BuildError> {
     let most = collapsed.most;
@@ -235,7 +235,7 @@ pub fn balanced(
 pub fn more(
     balanced: Scored,
     collapsed: &Collapsed,
-    target: &Target,
+    target: &FitTarget,
     watch: &mut Watch,
 ) -> Result<Vec<Scored>, BuildError> {
     let most = collapsed.most;
@@ -251,7 +251,7 @@ pub fn more(
 /// A refit alone: for drafts that must keep their complex.
 pub fn refitted(
     mut draft: Draft,
-    target: &Target,
+    target: &FitTarget,
     watch: &mut Watch,
 ) -> Result<Scored, BuildError> {
     watch.begin("refit")?;
@@ -261,7 +261,7 @@ pub fn refitted(
 
 fn measured_start(
     fine: &Draft,
-    target: &Target,
+    target: &FitTarget,
     most: usize,
     watch: &mut Watch,
 ) -> Result<Draft, BuildError> {
@@ -272,7 +272,7 @@ fn measured_start(
 
 fn grown(
     mut draft: Draft,
-    target: &Target,
+    target: &FitTarget,
     most: usize,
     watch: &mut Watch,
 ) -> Result<Scored, BuildError> {

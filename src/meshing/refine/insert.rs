@@ -9,9 +9,9 @@ use crate::error::BuildError;
 use crate::meshing::axis::shrinking_ball::{SMALLEST_BALL, shrink};
 use crate::meshing::draft::{Ball, Corners, Draft};
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::refine::refit::Target;
-use crate::meshing::refine::residuals::{GUESS, Row};
+use crate::meshing::geometry::triangle_tree::{GUESS, TriangleTree};
+use crate::meshing::refine::refit::FitTarget;
+use crate::meshing::refine::residuals::ResidualRow;
 use crate::meshing::watch::Watch;
 
 /// Error (longest side 1) below which no primitive is inserted.
@@ -38,7 +38,7 @@ const FACES_AT_EDGE: usize = 3;
 /// Inserts up to `budget` primitives; gives the number added.
 pub fn insert(
     draft: &mut Draft,
-    target: &Target,
+    target: &FitTarget,
     budget: usize,
     watch: &mut Watch,
 ) -> Result<usize, BuildError> {
@@ -82,8 +82,8 @@ pub fn insert(
     Ok(budget - inserter.left)
 }
 
-/// Place of a sample in its primitive, and what it calls for.
-enum Place {
+/// Site of a new ball, by the place of a sample in its primitive.
+enum InsertionSite {
     /// A new ball beyond the medial mesh.
     Tip,
     /// A ball in the middle of a cone.
@@ -96,25 +96,37 @@ enum Place {
     End,
 }
 
-fn place(row: &Row, sticks_out: bool, on_surface: bool) -> Place {
+fn place(row: &ResidualRow, sticks_out: bool, on_surface: bool) -> InsertionSite {
     let [a, b, c] = row.corners;
     if a == b {
-        return if on_surface { Place::Tip } else { Place::End };
+        return if on_surface {
+            InsertionSite::Tip
+        } else {
+            InsertionSite::End
+        };
     }
     let w = row.weights;
     if b == c {
         if w[0] > MIDDLE_OF_CONE && w[1] > MIDDLE_OF_CONE {
-            return Place::Cone;
+            return InsertionSite::Cone;
         }
     } else {
         let mut small = (0..3).filter(|&k| w[k] <= MIDDLE_OF_SLAB);
         match small.clone().count() {
-            0 => return Place::Slab,
-            1 => return small.next_back().map_or(Place::Slab, Place::Edge),
+            0 => return InsertionSite::Slab,
+            1 => {
+                return small
+                    .next_back()
+                    .map_or(InsertionSite::Slab, InsertionSite::Edge);
+            }
             _ => {}
         }
     }
-    if sticks_out { Place::Tip } else { Place::End }
+    if sticks_out {
+        InsertionSite::Tip
+    } else {
+        InsertionSite::End
+    }
 }
 
 struct Inserter<'a> {
@@ -129,18 +141,18 @@ struct Inserter<'a> {
 }
 
 impl Inserter<'_> {
-    fn is_new_place(&self, row: &Row, size: f64) -> bool {
+    fn is_new_place(&self, row: &ResidualRow, size: f64) -> bool {
         let near = |(p, error): &(Point, f64)| (*p - row.point).length() < 3.0 * error.max(size);
         !self.served[row.primitive as usize] && !self.places.iter().any(near)
     }
 
     /// Inserts for one sample; `normal` is the surface's, for samples of it. Whether it did.
-    fn serve(&mut self, row: &Row, normal: Option<Point>, size: f64) -> bool {
+    fn serve(&mut self, row: &ResidualRow, normal: Option<Point>, size: f64) -> bool {
         let sticks_out = normal.is_some() && row.residual > 0.0;
         let touching = normal.map(|n| shrink(self.tree, row.point, -n));
         match place(row, sticks_out, normal.is_some()) {
-            Place::End => false,
-            Place::Tip => touching.is_some_and(|ball| self.add_tip(ball, size)),
+            InsertionSite::End => false,
+            InsertionSite::Tip => touching.is_some_and(|ball| self.add_tip(ball, size)),
             place => {
                 let corners = row.corners;
                 if corners.iter().any(|&v| self.touched[v as usize]) {
@@ -150,8 +162,8 @@ impl Inserter<'_> {
                     return false;
                 };
                 let done = match place {
-                    Place::Cone => self.split_cone(corners, ball),
-                    Place::Edge(opposite) => self.split_edge(corners, opposite, ball),
+                    InsertionSite::Cone => self.split_cone(corners, ball),
+                    InsertionSite::Edge(opposite) => self.split_edge(corners, opposite, ball),
                     _ => self.split_slab(corners, ball),
                 };
                 if done {
@@ -167,7 +179,12 @@ impl Inserter<'_> {
     /// The ball that splits a primitive: the one that touches the sample if it is near the medial mesh there, or the
     /// largest in the surface about the primitive's own. Of both the one whose new edges bulge out less: where the
     /// primitive crosses a groove, what touches its bottom belongs to another sheet.
-    fn splitting_ball(&self, row: &Row, place: &Place, touching: Option<Ball>) -> Option<Ball> {
+    fn splitting_ball(
+        &self,
+        row: &ResidualRow,
+        place: &InsertionSite,
+        touching: Option<Ball>,
+    ) -> Option<Ball> {
         let own = Ball::interpolate(self.draft.balls_of(row.corners), row.weights);
         if own.radius < ON_CREASE {
             return self.on_crease(own.center);
@@ -194,9 +211,9 @@ impl Inserter<'_> {
     }
 
     /// Balls that a ball which splits a primitive gets edges to.
-    fn ends_of_split(&self, corners: Corners, place: &Place) -> Vec<Ball> {
+    fn ends_of_split(&self, corners: Corners, place: &InsertionSite) -> Vec<Ball> {
         let mut ends = corners.to_vec();
-        if let Place::Edge(opposite) = place {
+        if let InsertionSite::Edge(opposite) = place {
             let at_edge = self.faces_at_edge(corners, *opposite);
             ends.extend(at_edge.into_iter().flat_map(|k| self.draft.faces[k]));
         }

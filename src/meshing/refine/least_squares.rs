@@ -5,7 +5,7 @@
 //! conjugate gradients need only products with `J`, and its diagonal as the preconditioner
 //! (Hestenes and Stiefel, 1952; Marquardt, 1963, for the damping `Λ`).
 
-use crate::meshing::refine::residuals::Row;
+use crate::meshing::refine::residuals::ResidualRow;
 
 /// Iterations at most; the change is limited afterwards, so the last digits do not matter.
 const ITERATIONS: usize = 25;
@@ -18,7 +18,7 @@ const CONVERGED: f64 = 1e-5;
 const SHARED: f64 = 0.02;
 
 /// The changes of all balls, four numbers each: centre and radius. `damping` is one factor a ball.
-pub fn solve(rows: &[Row], damping: &[f64]) -> Vec<[f64; 4]> {
+pub fn solve(rows: &[ResidualRow], damping: &[f64]) -> Vec<[f64; 4]> {
     let n = damping.len();
     let mut rhs = vec![[0.0; 4]; n];
     let mut diagonal = vec![[0.0; 4]; n];
@@ -80,7 +80,7 @@ pub fn solve(rows: &[Row], damping: &[f64]) -> Vec<[f64; 4]> {
 }
 
 /// `(Jᵀ W J + Λ) x`.
-fn product(rows: &[Row], lambda: &[f64], x: &[[f64; 4]]) -> Vec<[f64; 4]> {
+fn product(rows: &[ResidualRow], lambda: &[f64], x: &[[f64; 4]]) -> Vec<[f64; 4]> {
     let damped = |(x, l): (&[f64; 4], &f64)| x.map(|x| x * l);
     let mut out: Vec<[f64; 4]> = x.iter().zip(lambda).map(damped).collect();
     for row in rows {

@@ -14,8 +14,7 @@ use crate::meshing::certify::prepared_primitives::Prepared;
 use crate::meshing::draft::{Ball, Corners, Signed};
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::chunks::{VERY_COSTLY, map_each};
-use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::refine::residuals::GUESS;
+use crate::meshing::geometry::triangle_tree::{GUESS, TriangleTree};
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::simplify::merged_neighborhood::Merged;
 use crate::meshing::watch::Watch;
@@ -38,13 +37,13 @@ const BULGE: f64 = 2e-4;
 const FEW: usize = 600;
 
 /// An edge and its cost, and the versions of its balls when that was measured.
-struct Candidate {
+struct MeasuredCollapse {
     cost: f64,
     edge: [u32; 2],
     versions: [u32; 2],
 }
 
-least_first!(Candidate, cost, edge);
+least_first!(MeasuredCollapse, cost, edge);
 
 /// Collapses edges until there are at most `target` primitives, or none may collapse.
 pub fn reduce_measured(
@@ -78,7 +77,7 @@ pub fn reduce_measured(
             continue;
         };
         watch.at((start - simplifier.primitives()) as f64 / (start - target) as f64)?;
-        let Candidate {
+        let MeasuredCollapse {
             cost,
             edge,
             versions,
@@ -93,7 +92,7 @@ pub fn reduce_measured(
         }
         let (now, ball) = measure.best(simplifier, edge, accepted);
         if now > STALE * cost + 1e-6 {
-            heap.push(Candidate {
+            heap.push(MeasuredCollapse {
                 cost: now,
                 edge,
                 versions,
@@ -163,11 +162,11 @@ impl<'a> Measure<'a> {
         edges: &[[u32; 2]],
         accepted: f64,
         watch: &mut Watch,
-    ) -> Result<Vec<Candidate>, BuildError> {
+    ) -> Result<Vec<MeasuredCollapse>, BuildError> {
         map_each(VERY_COSTLY, edges, watch, |&edge| {
             let (measured, _) = self.best(s, edge, accepted);
             let (quadric, _) = s.merge(edge[0], edge[1]);
-            Candidate {
+            MeasuredCollapse {
                 cost: measured + QUADRIC * quadric.sqrt(),
                 edge,
                 versions: edge.map(|v| s.version(v)),

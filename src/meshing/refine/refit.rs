@@ -15,9 +15,9 @@ use crate::error::BuildError;
 use crate::meshing::certify::inside::Solid;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::triangle_tree::{GUESS, TriangleTree};
 use crate::meshing::refine::residuals::{
-    EnvelopeSample, GUESS, Residuals, Row, UNKNOWN, envelope_samples, residuals,
+    EnvelopeSample, ResidualRow, Residuals, UNKNOWN, envelope_samples, residuals,
 };
 use crate::meshing::surface::samples::Sample;
 use crate::meshing::watch::Watch;
@@ -42,14 +42,14 @@ const STEP: f64 = 0.9;
 const REFRESH: usize = 3;
 
 /// Short fits and insertion have envelope samples this much farther apart.
-const COARSE: f64 = 1.4;
+const COARSE_SPACING: f64 = 1.4;
 
 /// Least radius of a ball (longest side 1).
 const LEAST_RADIUS: f64 = 1e-4;
 
 /// The samples that a draft is fitted to.
 #[derive(Clone)]
-pub struct Target<'a> {
+pub struct FitTarget<'a> {
     /// The surface.
     pub tree: &'a TriangleTree,
     /// Points of it.
@@ -65,10 +65,11 @@ pub struct Target<'a> {
     pub budget: f64,
 }
 
-impl Target<'_> {
+impl FitTarget<'_> {
     /// Rows of a draft, with fresh envelope samples.
     pub fn residuals(&self, draft: &Draft, watch: &mut Watch) -> Result<Residuals, BuildError> {
-        let mut envelope = envelope_samples(&Solid::new(draft), COARSE * self.spacing, watch)?;
+        let mut envelope =
+            envelope_samples(&Solid::new(draft), COARSE_SPACING * self.spacing, watch)?;
         let mut hints = vec![UNKNOWN; self.samples.len()];
         self.examine(draft, &mut hints, &mut envelope, watch)
     }
@@ -94,7 +95,7 @@ impl Target<'_> {
                 return Ok(None);
             }
         }
-        let envelope = envelope_samples(&solid, COARSE * self.spacing, watch)?;
+        let envelope = envelope_samples(&solid, COARSE_SPACING * self.spacing, watch)?;
         for (i, sample) in envelope.iter().enumerate() {
             if i % 512 == 0 {
                 watch.again()?;
@@ -132,7 +133,7 @@ impl Target<'_> {
 /// never made worse by its score, which is returned. Ends early where the budget of fits is spent.
 pub fn refit(
     draft: &mut Draft,
-    target: &Target,
+    target: &FitTarget,
     iterations: usize,
     watch: &mut Watch,
 ) -> Result<f64, BuildError> {
@@ -144,7 +145,7 @@ pub fn refit(
     let mut envelope = Vec::new();
     let mut failures = 0;
     let short = iterations <= 2;
-    let spacing = target.spacing * if short { COARSE } else { 1.0 };
+    let spacing = target.spacing * if short { COARSE_SPACING } else { 1.0 };
     for iteration in 0..=iterations {
         // The last score of a long fit must not rest on samples that have moved far.
         let last = iteration == iterations && !short;
@@ -186,7 +187,7 @@ pub fn refit(
 }
 
 /// Energy of the samples that answer to each ball.
-fn energies(rows: &[Row], balls: usize) -> Vec<f64> {
+fn energies(rows: &[ResidualRow], balls: usize) -> Vec<f64> {
     let mut energies = vec![0.0; balls];
     for row in rows {
         let energy = row.weight * row.residual.abs().powi(3);

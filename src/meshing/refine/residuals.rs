@@ -13,7 +13,7 @@
 
 use crate::error::BuildError;
 use crate::meshing::certify::inside::{Cell, Solid};
-use crate::meshing::certify::primitive_tree::Nearest;
+use crate::meshing::certify::primitive_tree::NearestPrimitive;
 use crate::meshing::draft::{Ball, Corners, Draft};
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::chunks::{VERY_COSTLY, map_chunks, map_each};
@@ -23,17 +23,14 @@ use crate::meshing::watch::{Watch, bytes_of};
 
 /// Share of its length by which a way out of the solid may be overstated. With a third of it searches look at 1.7 to 2
 /// times as many cells for a sample, and the M16 nut and bolt of 500 primitives are off by the same to 2 %.
-const WAY_OUT: f64 = 0.15;
+const EXIT_OVERESTIMATE: f64 = 0.15;
 
 /// Nodes of a tree that take as long to look at as a cell of a search for a way out.
 const NODES_OF_CELL: u64 = 40;
 
-/// First guess of an envelope sample's distance (longest side 1); only time depends on it.
-pub const GUESS: f64 = 0.004;
-
 /// A sample, the balls that answer for it, and what is wrong there.
 #[derive(Clone, Copy)]
-pub struct Row {
+pub struct ResidualRow {
     /// Balls of its primitive.
     pub corners: Corners,
     /// Weights of the corners; sum 1.
@@ -75,7 +72,7 @@ impl EnvelopeSample {
 /// All rows of a draft: surface samples first, then envelope samples.
 pub struct Residuals {
     /// The rows.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ResidualRow>,
     /// How many of them are surface samples.
     pub surface_rows: usize,
     /// Largest residual of either kind.
@@ -144,7 +141,7 @@ pub fn residuals(
     let paired: Vec<(Sample, u32)> = samples.iter().copied().zip(hints.iter().copied()).collect();
     let counted = surface_rows(&solid, &paired, beyond, watch)?;
     let mut work = counted.iter().map(|c| c.1).sum();
-    let mut rows: Vec<Row> = counted.into_iter().map(|c| c.0).collect();
+    let mut rows: Vec<ResidualRow> = counted.into_iter().map(|c| c.0).collect();
     for (hint, row) in hints.iter_mut().zip(&rows) {
         *hint = row.primitive;
     }
@@ -159,7 +156,7 @@ pub fn residuals(
     watch.count_fit(envelope.len(), work);
     watch.hold(bytes_of(&rows) + bytes_of(&paired) + size_of_val(envelope));
     let largest = rows.iter().map(|r| r.residual.abs()).fold(0.0, f64::max);
-    let sum = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>();
+    let sum = |f: fn(&ResidualRow) -> f64| rows.iter().map(f).sum::<f64>();
     let squares = sum(|r| r.weight * r.residual * r.residual);
     let rms = (squares / sum(|r| r.weight).max(f64::MIN_POSITIVE)).sqrt();
     Ok(Residuals {
@@ -176,16 +173,17 @@ fn surface_rows(
     paired: &[(Sample, u32)],
     beyond: f64,
     watch: &mut Watch,
-) -> Result<Vec<(Row, u64)>, BuildError> {
-    let row = |point: Point, near: &Nearest, residual: f64, on_boundary: Point| Row {
-        corners: solid.primitives()[near.primitive as usize],
-        weights: near.signed.weights,
-        normal: direction(on_boundary - solid.ball(near).center),
-        residual,
-        weight: 1.0,
-        point,
-        primitive: near.primitive,
-    };
+) -> Result<Vec<(ResidualRow, u64)>, BuildError> {
+    let row =
+        |point: Point, near: &NearestPrimitive, residual: f64, on_boundary: Point| ResidualRow {
+            corners: solid.primitives()[near.primitive as usize],
+            weights: near.signed.weights,
+            normal: direction(on_boundary - solid.ball(near).center),
+            residual,
+            weight: 1.0,
+            point,
+            primitive: near.primitive,
+        };
     let found = map_chunks(paired, watch, |chunk| {
         let mut last = 0;
         let found = |&(sample, hint): &(Sample, u32)| {
@@ -237,7 +235,7 @@ fn envelope_rows(
     (envelope, share): (&[EnvelopeSample], f64),
     beyond: f64,
     watch: &mut Watch,
-) -> Result<Vec<(Row, u32, u64)>, BuildError> {
+) -> Result<Vec<(ResidualRow, u32, u64)>, BuildError> {
     map_chunks(envelope, watch, |chunk| {
         let mut hint = 0;
         let row = |sample: &EnvelopeSample| {
@@ -260,7 +258,7 @@ fn envelope_rows(
             } else {
                 1.0
             };
-            let row = Row {
+            let row = ResidualRow {
                 corners,
                 weights: sample.weights,
                 normal: sample.normal,
@@ -277,15 +275,15 @@ fn envelope_rows(
 
 /// Whether a sample is inside the solid, its way out along its normal is longer than `beyond`, and the nearest point of
 /// the primitive that is deepest there is inside other primitives.
-pub fn is_far_inside(solid: &Solid, sample: &Sample, near: &Nearest, beyond: f64) -> bool {
+pub fn is_far_inside(solid: &Solid, sample: &Sample, near: &NearestPrimitive, beyond: f64) -> bool {
     near.signed.distance < 0.0
         && !solid.is_out(sample.point + sample.normal * beyond, near.primitive)
         && solid.onto_boundary(sample.point, near).is_none()
 }
 
 /// End of a way out of the solid from a sample that [`is_far_inside`], which is longer than the shortest by at most
-/// [`WAY_OUT`] of it, or is no longer than `beyond`; `hint` is a primitive near it. Nodes that the search looked at are
-/// added to `work`.
+/// [`EXIT_OVERESTIMATE`] of it, or is no longer than `beyond`; `hint` is a primitive near it. Nodes that the search
+/// looked at are added to `work`.
 pub fn way_out(
     solid: &Solid,
     sample: &Sample,
@@ -296,7 +294,7 @@ pub fn way_out(
     let p = sample.point;
     let way = solid.exit_distance(p, sample.normal, hint);
     let straight = way.is_finite().then(|| p + sample.normal * way);
-    let nearest = solid.nearest_exit(p, [way, beyond], WAY_OUT);
+    let nearest = solid.nearest_exit(p, [way, beyond], EXIT_OVERESTIMATE);
     *work += NODES_OF_CELL * nearest.cells;
     nearest.point.or(straight)
 }

@@ -9,7 +9,7 @@ use crate::error::BuildError;
 use crate::meshing::draft::Draft;
 use crate::meshing::refine::insert::insert;
 use crate::meshing::refine::measured_collapse::reduce_measured;
-use crate::meshing::refine::refit::{Target, refit};
+use crate::meshing::refine::refit::{FitTarget, refit};
 use crate::meshing::simplify::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::watch::Watch;
@@ -18,7 +18,7 @@ use crate::meshing::watch::Watch;
 pub const LARGE: usize = 1000;
 
 /// Rounds end where two in turn leave scores above this many of the best: what they took out they cannot put back.
-const HOPELESS: f64 = 1.4;
+const MAX_SCORE_RATIO: f64 = 1.4;
 
 /// A fitted draft and its score.
 pub type Scored = (Draft, f64);
@@ -39,7 +39,7 @@ pub struct Swaps {
 /// Swaps among `most` primitives: the start, and after it each draft that is better than all before.
 pub fn swap(
     start: Scored,
-    target: &Target,
+    target: &FitTarget,
     most: usize,
     swaps: Swaps,
     watch: &mut Watch,
@@ -61,7 +61,7 @@ pub fn swap(
         grow(&mut draft, target, most, swaps.insertions, watch)?;
         watch.begin("refit")?;
         let score = refit(&mut draft, target, swaps.iterations, watch)?;
-        hopeless = if score > HOPELESS * best.1 {
+        hopeless = if score > MAX_SCORE_RATIO * best.1 {
             hopeless + 1
         } else {
             0
@@ -82,7 +82,7 @@ pub fn swap(
 pub fn remove(
     mut simplifier: Simplifier,
     most: usize,
-    target: &Target,
+    target: &FitTarget,
     watch: &mut Watch,
 ) -> Result<Draft, BuildError> {
     if most > LARGE {
@@ -98,7 +98,7 @@ pub fn remove(
 /// fits goes.
 pub fn grow(
     draft: &mut Draft,
-    target: &Target,
+    target: &FitTarget,
     most: usize,
     rounds: usize,
     watch: &mut Watch,

@@ -20,7 +20,7 @@ pub const BOUNDARY_WEIGHT_SOLID: f64 = 0.1;
 pub const BOUNDARY_WEIGHT_SHEET: f64 = 1.0;
 
 /// Radius (longest side 1) below which both balls of an edge, if no crease's, make it a sheet's.
-const THIN: f64 = 1.5e-3;
+const SHEET_RADIUS: f64 = 1.5e-3;
 
 /// Weight of the plane across the wedge or tip of a crease, at a ball of radius 0: it holds the ball against
 /// sinking into matter along the bisector. With 4 a plate's rim is off by .02, with 16 by .0003.
@@ -67,7 +67,7 @@ pub fn quadrics(
 /// Adds the planes that hold the boundary of the medial mesh in place, at an edge of one face or none.
 fn add_end(complex: &Complex, [a, b]: [u32; 2], weight: f64, quadrics: &mut [Quadric]) {
     let balls = &complex.balls;
-    let is_thin = |v: u32| (1e-9..THIN).contains(&balls[v as usize].radius);
+    let is_thin = |v: u32| (1e-9..SHEET_RADIUS).contains(&balls[v as usize].radius);
     let weight = match is_thin(a) && is_thin(b) {
         true => BOUNDARY_WEIGHT_SHEET,
         false => weight,

@@ -15,7 +15,7 @@ use crate::meshing::geometry::quadric::Quadric;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::simplify::ball_quadrics::{creased_quadrics, quadrics};
 use crate::meshing::simplify::complex::Complex;
-use crate::meshing::simplify::queue::{Candidate, Queue};
+use crate::meshing::simplify::queue::{Queue, QueuedCollapse};
 use crate::meshing::simplify::voids::open_voids;
 use crate::meshing::watch::{Watch, bytes_of};
 
@@ -39,7 +39,7 @@ pub struct Simplifier<'a> {
     /// Distance of each ball's centre, inside the solid, to the nearest triangle at least; 0 where nothing is known.
     clear: Vec<f64>,
     /// Edges that the topology rule held back.
-    blocked: Vec<Candidate>,
+    blocked: Vec<QueuedCollapse>,
     /// Whether anything was collapsed since the blocked edges were last tried.
     progressed: bool,
     keep_topology: bool,
@@ -162,7 +162,8 @@ impl<'a> Simplifier<'a> {
             }
             steps += 1;
             let (versions, queue) = (&self.versions, &mut self.queue);
-            let current = |c: &Candidate| [c.a, c.b].map(|v| versions[v as usize]) == c.versions;
+            let current =
+                |c: &QueuedCollapse| [c.a, c.b].map(|v| versions[v as usize]) == c.versions;
             match queue.pop(current) {
                 Some(candidate) => self.take(candidate),
                 None if self.retry() => {}
@@ -172,8 +173,8 @@ impl<'a> Simplifier<'a> {
         Ok(())
     }
 
-    fn take(&mut self, candidate: Candidate) {
-        let Candidate { a, b, .. } = candidate;
+    fn take(&mut self, candidate: QueuedCollapse) {
+        let QueuedCollapse { a, b, .. } = candidate;
         if !self.complex.is_alive(a) || !self.complex.is_alive(b) {
             return;
         }
@@ -189,7 +190,7 @@ impl<'a> Simplifier<'a> {
         if self.measures {
             let cost = self.measured_cost(a, b, &ball);
             if cost > STALE * candidate.cost + NO_COST {
-                self.queue.push(Candidate { cost, ..candidate });
+                self.queue.push(QueuedCollapse { cost, ..candidate });
                 return;
             }
         }
@@ -286,7 +287,7 @@ impl<'a> Simplifier<'a> {
 
     fn push(&mut self, a: u32, b: u32, cost: f64) {
         let versions = [a, b].map(|v| self.versions[v as usize]);
-        self.queue.push(Candidate {
+        self.queue.push(QueuedCollapse {
             cost,
             a,
             b,

@@ -6,7 +6,7 @@
 
 use crate::meshing::draft::Ball;
 use crate::meshing::geometry::bounds::Point;
-use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::triangle_tree::{GUESS, TriangleTree};
 use crate::meshing::simplify::complex::Complex;
 
 /// Cosine of the turn of a face beyond which it counts as turned over.
@@ -18,9 +18,6 @@ const FOLD_COST: f64 = 10.0;
 
 /// Faces smaller than this (twice their area) have no direction that counts.
 const NO_AREA: f64 = 1e-8;
-
-/// First guess of a distance (longest side 1); only time depends on it.
-const GUESS: f64 = 0.004;
 
 /// A ball that moves by less (longest side 1) stays where it is.
 const STILL: f64 = 1e-9;

@@ -9,7 +9,7 @@ use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::creases::Creases;
+use crate::meshing::surface::creases::SharpEdges;
 use crate::meshing::watch::Watch;
 
 /// A surface of which more than this share of the sharp edges end alone, within a face, is smooth, and they are
@@ -34,7 +34,7 @@ pub fn creased<'a>(
     watch: &mut Watch,
 ) -> Result<Option<Creased<'a>>, BuildError> {
     watch.begin("samples")?;
-    let creases = Creases::new(surface, angle, watch)?;
+    let creases = SharpEdges::new(surface, angle, watch)?;
     if creases.convex.is_empty()
         || creases.ends_alone() as f64 > MOST_ENDS * creases.convex.len() as f64
     {

@@ -28,12 +28,12 @@ const STABILITY_FLOOR: f64 = 0.3;
 
 /// A minimiser may lie this many edge lengths from the edge's middle: farther, the quadric is
 /// nearly singular there and says nothing.
-const REACH: f64 = 3.0;
+const MINIMISER_REACH: f64 = 3.0;
 
 /// Weight of the square of how far what is around a merged ball sticks out of the solid. Quadrics do not see it where
 /// sheets bend. With 40 a CAD part of 500 primitives is off by a fifth less and a nut by a twentieth, but a threaded
 /// rod of 200 by an eighth more.
-const STICK_OUT: f64 = 4.0;
+const PROTRUSION_WEIGHT: f64 = 4.0;
 
 /// Number of primitives below which it is measured how far merged balls stick out. From the first collapse on that
 /// would take ten seconds more, and gain nothing.
@@ -42,7 +42,7 @@ const MEASURED: usize = 10_000;
 /// Length (longest side 1) from which on a merged ball that sticks out is measured even above [`MEASURED`] primitives.
 /// Without it, of 180,000 primitives of a nut's thread one place in a hundred was off by .008 when 10,000 were left,
 /// which no fit mends.
-const FAR: f64 = 1e-3;
+const ALWAYS_MEASURED: f64 = 1e-3;
 
 impl Simplifier<'_> {
     /// Whether one of two balls lies on a crease.
@@ -58,11 +58,11 @@ impl Simplifier<'_> {
         let out = if self.primitives() < MEASURED {
             stick_out(complex, tree, [a, b], ball)
         } else if self.measures_early {
-            stick_out_beyond(FAR, complex, tree, [a, b], ball)
+            stick_out_beyond(ALWAYS_MEASURED, complex, tree, [a, b], ball)
         } else {
             0.0
         };
-        STICK_OUT * out * out
+        PROTRUSION_WEIGHT * out * out
     }
 
     pub(crate) fn flat_cost(&self) -> f64 {
@@ -79,7 +79,7 @@ impl Simplifier<'_> {
         let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
         let middle = middle(&ball_a, &ball_b);
         let length = (ball_b.center - ball_a.center).length();
-        let near = |m: &Ball| (m.center - middle.center).length() <= REACH * length;
+        let near = |m: &Ball| (m.center - middle.center).length() <= MINIMISER_REACH * length;
         let minimiser = quadric.minimiser(&middle).filter(near);
         if self.is_on_crease(a, b) {
             let snapped = minimiser

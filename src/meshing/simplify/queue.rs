@@ -11,32 +11,32 @@ use std::collections::BinaryHeap;
 
 /// Each time the heap is empty it takes the cheapest one in this many of the waiting collapses. Only speed depends on
 /// it.
-const SHARE: usize = 8;
+const REFILL_PART: usize = 8;
 
 /// Number of waiting collapses up to which the heap takes all of them. Only speed depends on it.
-const FEW: usize = 512;
+const REFILL_WHOLE: usize = 512;
 
 /// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).
 #[derive(Clone, Copy)]
-pub struct Candidate {
+pub struct QueuedCollapse {
     /// Cost of the merge.
     pub cost: f64,
-    /// Ends of the edge.
+    /// First end of the edge.
     pub a: u32,
-    /// See `a`.
+    /// Second end of the edge.
     pub b: u32,
     /// Versions of both when the cost was computed; an older one is stale.
     pub versions: [u32; 2],
 }
 
-least_first!(Candidate, cost, a, b);
+least_first!(QueuedCollapse, cost, a, b);
 
 /// Candidates, the cheapest first.
 #[derive(Clone)]
 pub struct Queue {
-    heap: BinaryHeap<Candidate>,
+    heap: BinaryHeap<QueuedCollapse>,
     /// Collapses that cost more than `limit`, in no order.
-    later: Vec<Candidate>,
+    later: Vec<QueuedCollapse>,
     limit: f64,
 }
 
@@ -53,11 +53,11 @@ impl Default for Queue {
 impl Queue {
     /// Bytes of its arrays.
     pub fn bytes(&self) -> usize {
-        self.heap.capacity() * size_of::<Candidate>() + bytes_of(&self.later)
+        self.heap.capacity() * size_of::<QueuedCollapse>() + bytes_of(&self.later)
     }
 
     /// Adds one.
-    pub fn push(&mut self, candidate: Candidate) {
+    pub fn push(&mut self, candidate: QueuedCollapse) {
         if candidate.cost <= self.limit {
             self.heap.push(candidate);
         } else {
@@ -66,7 +66,7 @@ impl Queue {
     }
 
     /// Takes out the cheapest collapse that is `current`.
-    pub fn pop(&mut self, current: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
+    pub fn pop(&mut self, current: impl Fn(&QueuedCollapse) -> bool) -> Option<QueuedCollapse> {
         loop {
             while let Some(candidate) = self.heap.pop() {
                 if current(&candidate) {
@@ -76,13 +76,13 @@ impl Queue {
             self.later.retain(&current);
             let last = match self.later.len() {
                 0 => return None,
-                n if n <= FEW => n - 1,
-                n => n / SHARE,
+                n if n <= REFILL_WHOLE => n - 1,
+                n => n / REFILL_PART,
             };
-            let by_cost = |x: &Candidate, y: &Candidate| x.cost.total_cmp(&y.cost);
+            let by_cost = |x: &QueuedCollapse, y: &QueuedCollapse| x.cost.total_cmp(&y.cost);
             self.limit = self.later.select_nth_unstable_by(last, by_cost).1.cost;
             let limit = self.limit;
-            let cheap = |c: &mut Candidate| c.cost.total_cmp(&limit).is_le();
+            let cheap = |c: &mut QueuedCollapse| c.cost.total_cmp(&limit).is_le();
             self.heap.extend(self.later.extract_if(.., cheap));
         }
     }

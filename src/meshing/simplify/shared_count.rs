@@ -13,7 +13,7 @@ use crate::meshing::watch::Watch;
 
 /// The two parts of a medial mesh on its way to fewer primitives.
 #[derive(Clone)]
-pub struct Parts<'a> {
+pub struct SolidAndSheets<'a> {
     solid: Simplifier<'a>,
     sheets: Option<Simplifier<'a>>,
     /// Share of the primitives that sheets get: that of the area.
@@ -24,7 +24,7 @@ pub struct Parts<'a> {
     gave_up_sheets: bool,
 }
 
-impl<'a> Parts<'a> {
+impl<'a> SolidAndSheets<'a> {
     /// Prepares both.
     pub fn new(
         start: Start,

@@ -8,6 +8,7 @@
 //! its neighbours cover it best. All its edges stay, for they have other faces.
 
 use crate::math::fast_hash::FastMap;
+use crate::medial::simplex::sides;
 use crate::meshing::draft::Draft;
 use crate::meshing::geometry::bounds::Point;
 
@@ -28,7 +29,7 @@ pub fn open_voids(draft: &mut Draft, is_solid: impl Fn(Point) -> bool) {
 
 /// Faces to drop, as indices, so that no closed surface is left whose middle `is_solid`.
 ///
-/// Of surfaces that enclose true cavities one each stays.
+/// One surface around each true cavity stays.
 fn superfluous(
     faces: &[[u32; 3]],
     at: impl Fn(u32) -> Point,
@@ -46,7 +47,7 @@ fn superfluous(
     let mut cavities: Vec<Chain> = Vec::new();
     let mut dropped = Vec::new();
     for (place, &f) in closed.iter().enumerate() {
-        let mut boundary: Chain = edges_of(faces[f])
+        let mut boundary: Chain = sides(&faces[f])
             .map(|edge| {
                 let new = edges.len() as u32;
                 *edges.entry(edge).or_insert(new)
@@ -82,15 +83,15 @@ fn superfluous(
 /// Faces all of whose edges have another of these faces.
 fn core(faces: &[[u32; 3]]) -> Vec<usize> {
     let mut at_edge: FastMap<[u32; 2], Vec<u32>> = FastMap::default();
-    for (f, &face) in faces.iter().enumerate() {
-        for edge in edges_of(face) {
+    for (f, face) in faces.iter().enumerate() {
+        for edge in sides(face) {
             at_edge.entry(edge).or_default().push(f as u32);
         }
     }
     let mut is_in = vec![true; faces.len()];
     let mut waiting: Vec<usize> = (0..faces.len()).collect();
     while let Some(f) = waiting.pop() {
-        let edges = edges_of(faces[f]);
+        let edges = sides(&faces[f]);
         let free = |e: &[u32; 2]| at_edge.get(e).is_none_or(|list| list.len() < 2);
         if !is_in[f] || !edges.iter().any(free) {
             continue;
@@ -105,10 +106,6 @@ fn core(faces: &[[u32; 3]]) -> Vec<usize> {
         }
     }
     (0..faces.len()).filter(|&f| is_in[f]).collect()
-}
-
-fn edges_of([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)])
 }
 
 /// The sum of two chains: what is in one only.

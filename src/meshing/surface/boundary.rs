@@ -13,7 +13,7 @@ use crate::meshing::geometry::subdivide::{halve, longest_edge_sq};
 use crate::meshing::geometry::triangle::points_inside;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::flat_boundary::{Piece, flat_pieces};
+use crate::meshing::surface::flat_boundary::{TrianglePiece, flat_pieces};
 use crate::meshing::surface::folds::Folds;
 use crate::meshing::surface::hidden::Hidden;
 use crate::meshing::watch::Watch;
@@ -125,7 +125,7 @@ fn sort_out(
     tree: &TriangleTree,
     findings: &mut Findings,
     watch: &mut Watch,
-) -> Result<Option<(Vec<Piece>, f64)>, BuildError> {
+) -> Result<Option<(Vec<TrianglePiece>, f64)>, BuildError> {
     let folds = Folds::new(surface, tree, watch)?;
     if let Some(pieces) = flat_pieces(surface, tree, &folds, watch)? {
         return Ok(Some((pieces, FINEST)));
@@ -160,7 +160,7 @@ struct Cut<'a> {
     hidden: Hidden<'a>,
     finest: f64,
     large: f64,
-    pieces: Vec<Piece>,
+    pieces: Vec<TrianglePiece>,
     waiting: Vec<[Point; 3]>,
     /// The most of both.
     most_pieces: usize,
@@ -193,7 +193,7 @@ impl<'a> Cut<'a> {
     /// Keeps what is not hidden of a triangle; `false` if the budget ends before.
     fn triangle(
         &mut self,
-        (corners, t): Piece,
+        (corners, t): TrianglePiece,
         patch: u32,
         normal: Point,
         watch: &mut Watch,

@@ -9,14 +9,14 @@ use crate::meshing::watch::bytes_of;
 
 /// Map from the user's unit and origin to the builder's, and back.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
+pub struct BuilderFrame {
     /// Middle of the source's box, in the user's unit.
     pub center: Point,
     /// Longest side of the source's box, in the user's unit.
     pub scale: f64,
 }
 
-impl Frame {
+impl BuilderFrame {
     /// Converts to the builder's frame.
     pub fn enter(&self, v: Vector) -> Point {
         (Point::from_vector(v) - self.center) * (1.0 / self.scale)
@@ -39,7 +39,7 @@ pub struct Surface {
     /// Unit normal of each triangle, outward where the surface is closed.
     pub normals: Vec<Point>,
     /// How to get back to the user's unit.
-    pub frame: Frame,
+    pub frame: BuilderFrame,
     /// Sum of the triangles' areas (longest side 1).
     pub area: f64,
     /// Whether each triangle is a sheet's, and bounds no matter.

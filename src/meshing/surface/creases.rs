@@ -7,6 +7,7 @@
 
 use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
+use crate::medial::simplex::sides;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::triangle::closest_on_triangle;
 use crate::meshing::geometry::union_find::Groups;
@@ -34,7 +35,7 @@ pub struct SharpEdge {
 }
 
 /// The sharp edges of a surface.
-pub struct Creases {
+pub struct SharpEdges {
     /// Edges at which matter is a wedge of less than 180°.
     pub convex: Vec<SharpEdge>,
     /// Edges at which it is one of more.
@@ -53,7 +54,7 @@ pub struct Creases {
     corners_of: FastMap<u32, Vec<u32>>,
 }
 
-impl Creases {
+impl SharpEdges {
     /// Edges at which normals differ by more than `angle` (rad).
     pub fn new(surface: &Surface, angle: f64, watch: &mut Watch) -> Result<Self, BuildError> {
         let adjacent = adjacent(surface, watch)?;
@@ -179,7 +180,7 @@ impl Creases {
         let (mut least, mut point) = nearest(at);
         for _ in 0..MOST_STEPS {
             let mut next = None;
-            // What is nearer by rounding only would walk in circles.
+            // A walk to triangles that are nearer by rounding only would go in circles.
             let mut limit = least * (1.0 - 1e-12);
             for &t in &self.neighbors[at as usize] {
                 let (distance_sq, q) = nearest(t);
@@ -263,9 +264,4 @@ fn adjacent(
         }
     }
     Ok(pairs)
-}
-
-/// The edges of a triangle, each with its lower vertex first.
-fn sides(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)])
 }

@@ -24,7 +24,7 @@ const MOST_PIECES: usize = 200_000;
 const OFF: f64 = 2.0;
 
 /// A piece of a triangle, and the triangle.
-pub type Piece = ([Point; 3], usize);
+pub type TrianglePiece = ([Point; 3], usize);
 
 /// The pieces of triangles that are not hidden, in the order of the triangles; `None` where faces are
 /// not flat, or too many.
@@ -33,7 +33,7 @@ pub fn flat_pieces(
     tree: &TriangleTree,
     folds: &Folds,
     watch: &mut Watch,
-) -> Result<Option<Vec<Piece>>, BuildError> {
+) -> Result<Option<Vec<TrianglePiece>>, BuildError> {
     let mut faces = None;
     let mut on = 0.0;
     for flatness in FLATNESS {

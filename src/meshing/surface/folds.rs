@@ -4,11 +4,9 @@
 use crate::error::BuildError;
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::winding::INSIDE;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::watch::Watch;
-
-/// Winding number inside matter.
-const INSIDE: f64 = 0.5;
 
 /// Folds of a surface: tells which points are inside matter, with folds counted as matter.
 pub struct Folds<'a> {

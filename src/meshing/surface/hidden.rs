@@ -5,10 +5,8 @@
 
 use crate::meshing::geometry::bounds::Point;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::winding::INSIDE;
 use crate::meshing::surface::folds::Folds;
-
-/// Winding number inside.
-const INSIDE: f64 = 0.5;
 
 /// Tells which points of a surface are hidden.
 pub struct Hidden<'a> {

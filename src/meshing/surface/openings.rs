@@ -9,6 +9,7 @@ use crate::error::BuildError;
 use crate::math::fast_hash::FastMap;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::union_find::Groups;
 use crate::meshing::surface::orient::Patches;
 use crate::meshing::watch::Watch;
 
@@ -24,7 +25,7 @@ const UNDECIDED: f64 = 0.3;
 const MOST_OPEN: f64 = 0.2;
 
 /// Largest number of points of a rim towards which a lid is probed, besides its middle, which something else may cover.
-const RIM: usize = 16;
+const RIM_PROBES: usize = 16;
 
 /// Places of these probes, as shares of the way from the lid's middle to the rim.
 const SHARES: [f64; 3] = [0.5, 0.25, 0.75];
@@ -101,18 +102,19 @@ fn all_openings(
     watch: &mut Watch,
 ) -> Result<Vec<Opening>, BuildError> {
     let mut places: FastMap<[u32; 2], u32> = FastMap::default();
-    let mut rims = Rims::default();
+    let mut rims = Groups::new(0);
     let mut edges: Vec<u32> = Vec::with_capacity(patches.rims.len());
     for (i, &([a, b], patch)) in patches.rims.iter().enumerate() {
         watch.every(i)?;
         let mut place = |v: u32| *places.entry([patch, v]).or_insert_with(|| rims.add());
         let [a, b] = [a, b].map(&mut place);
-        edges.push(rims.join(a, b));
+        rims.join(a, b);
+        edges.push(a);
     }
     let mut found: FastMap<u32, Opening> = FastMap::default();
     for (i, place) in edges.iter().enumerate() {
         watch.every(i)?;
-        let root = rims.root(*place);
+        let root = rims.find(*place);
         let ([a, b], patch) = patches.rims[i];
         let opening = found.entry(root).or_insert_with(|| Opening {
             patch,
@@ -148,7 +150,7 @@ impl Opening {
 
     /// Whether closing it would move the solid's boundary far from the surface.
     pub fn is_wide(&self, tree: &TriangleTree) -> bool {
-        let step = self.edges.len().div_ceil(RIM).max(1);
+        let step = self.edges.len().div_ceil(RIM_PROBES).max(1);
         let rim = self.edges.iter().step_by(step);
         let part_of_way = |share: f64| {
             let at = move |&[p, _]: &[Point; 2]| self.center * (1.0 - share) + p * share;
@@ -164,30 +166,4 @@ impl Opening {
 /// Whether a point of a lid is at the boundary of the solid.
 fn is_at_boundary(tree: &TriangleTree, p: Point) -> bool {
     (tree.winding(p) - 0.5).abs() < UNDECIDED
-}
-
-/// Union and find over the ends of open edges.
-#[derive(Default)]
-struct Rims(Vec<u32>);
-
-impl Rims {
-    fn add(&mut self) -> u32 {
-        self.0.push(self.0.len() as u32);
-        self.0.len() as u32 - 1
-    }
-
-    fn root(&mut self, mut at: u32) -> u32 {
-        while self.0[at as usize] != at {
-            let up = self.0[at as usize];
-            self.0[at as usize] = self.0[up as usize];
-            at = self.0[at as usize];
-        }
-        at
-    }
-
-    fn join(&mut self, a: u32, b: u32) -> u32 {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-        a.min(b)
-    }
 }

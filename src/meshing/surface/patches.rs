@@ -35,7 +35,7 @@ const BEHIND: f64 = 1e-7;
 
 /// Share of [`BEHIND`] at which the winding number is asked for again where it tells of parts that overlap: behind a
 /// point near a sharp edge there may be less matter. Smaller, and rounding would decide.
-const RIM: f64 = 1e-3;
+const EDGE_PROBE_SHARE: f64 = 1e-3;
 
 /// A patch with less than this behind it, on average, is inside out.
 const INSIDE_OUT: f64 = 0.3;
@@ -58,7 +58,7 @@ const ROUNDS: usize = 12;
 
 /// Verdict on a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum PatchKind {
     /// The patch bounds matter.
     Solid,
     /// The patch encloses nothing.
@@ -80,7 +80,7 @@ pub fn classify(
     tree: &mut TriangleTree,
     findings: &mut Findings,
     watch: &mut Watch,
-) -> Result<Vec<Kind>, BuildError> {
+) -> Result<Vec<PatchKind>, BuildError> {
     let total: f64 = patches.list.iter().map(|p| p.area).sum();
     let mut areas = vec![0.0; patches.list.len()];
     patches
@@ -148,8 +148,8 @@ pub fn classify(
     }
     findings.triangles_turned = patches.list.iter().map(|p| p.turned).sum();
     let kind = |&count: &i8| match count {
-        0 => Kind::Sheet,
-        _ => Kind::Solid,
+        0 => PatchKind::Sheet,
+        _ => PatchKind::Solid,
     };
     Ok(counts.iter().map(kind).collect())
 }
@@ -203,8 +203,8 @@ impl PatchClassifier<'_> {
             let winding = tree.winding(w.point - outward * BEHIND);
             let overlaps = |winding: f64| !(INSIDE_OUT..1.5).contains(&winding);
             // Next to a sharp edge the body may end before that point.
-            behind.overlapping |=
-                overlaps(winding) && overlaps(tree.winding(w.point - outward * (RIM * BEHIND)));
+            behind.overlapping |= overlaps(winding)
+                && overlaps(tree.winding(w.point - outward * (EDGE_PROBE_SHARE * BEHIND)));
             let Some(group) = self.group[patch] else {
                 continue;
             };
@@ -236,7 +236,7 @@ impl PatchClassifier<'_> {
             let p = opening.patch as usize;
             sheets[p] |= self.counts[p] != 0 && opening.is_wide(tree);
         }
-        // What is sewn is of one kind.
+        // Patches that are sewn together are of one kind.
         for (p, patch) in self.patches.list.iter().enumerate() {
             sheets[p] |= self.counts[p] != 0 && sheets[patch.sewn as usize];
         }

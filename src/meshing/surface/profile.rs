@@ -214,7 +214,7 @@ fn runs(points: &[Point], thickness: f64) -> Vec<usize> {
         for i in from + 1..to {
             let to = points[i] - points[from];
             let height = out.dot(to);
-            // What turns back is no run.
+            // A line that turns back is no run.
             let way = to.dot(along) / length;
             if !(0.0..=length).contains(&way) {
                 return false;

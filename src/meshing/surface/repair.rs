@@ -7,10 +7,10 @@ use crate::medial::check::LARGEST_REACH;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
-use crate::meshing::surface::checked_surface::{Frame, Surface, corners, cross};
+use crate::meshing::surface::checked_surface::{BuilderFrame, Surface, corners, cross};
 use crate::meshing::surface::openings::{lids, openings};
 use crate::meshing::surface::orient::{Patches, orient};
-use crate::meshing::surface::patches::{Kind, classify};
+use crate::meshing::surface::patches::{PatchKind, classify};
 use crate::meshing::surface::seams::seam_slivers;
 use crate::meshing::surface::shared_faces::leave_out_shared;
 use crate::meshing::surface::weld::{Welded, weld};
@@ -111,19 +111,19 @@ impl Surface {
         let mut simple = !findings.overlapping;
         for ((patch, kind), ends) in patches.list.iter().zip(&kinds).zip(ends) {
             match kind {
-                Kind::Solid => {
+                PatchKind::Solid => {
                     findings.patches_solid += 1;
                     findings.patches_mended += usize::from(ends);
                     findings.patches_cavity += usize::from(patch.closed && patch.volume < 0.0);
                     simple &= patch.closed && !patch.twisted;
                 }
-                Kind::Sheet => {
+                PatchKind::Sheet => {
                     findings.patches_sheet += 1;
                     findings.patches_flat += usize::from(patch.closed);
                 }
             }
         }
-        let closed = |p: u32| kinds[p as usize] == Kind::Solid;
+        let closed = |p: u32| kinds[p as usize] == PatchKind::Solid;
         self.lids = lids(&self.vertices, &patches, closed, tree, watch)?;
         self.simple = simple;
         // The vectors of the areas of what is closed add up to nothing.
@@ -134,7 +134,7 @@ impl Surface {
         let is_whole = |p: usize| {
             let patch = &patches.list[p];
             let is_closed = vectors[p].length() < OPEN * patch.area;
-            kinds[p] == Kind::Solid && is_closed && patch.volume > 0.0
+            kinds[p] == PatchKind::Solid && is_closed && patch.volume > 0.0
         };
         self.whole = (0..kinds.len()).map(is_whole).collect();
         for wide in openings(&self.vertices, &patches, watch)? {
@@ -143,7 +143,7 @@ impl Surface {
         self.sheet = patches
             .of
             .iter()
-            .map(|&p| kinds[p as usize] == Kind::Sheet)
+            .map(|&p| kinds[p as usize] == PatchKind::Sheet)
             .collect();
         self.patch_of = patches.of;
         self.findings = findings;
@@ -187,7 +187,7 @@ fn check(vertices: &[Vector], indices: &[[u32; 3]], watch: &mut Watch) -> Result
 
 /// The frame from the box of the vertices that triangles use: a stray vertex must not shrink the
 /// rest.
-fn frame_of(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<Frame, BuildError> {
+fn frame_of(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<BuilderFrame, BuildError> {
     let used = indices
         .iter()
         .flatten()
@@ -202,7 +202,7 @@ fn frame_of(vertices: &[Vector], indices: &[[u32; 3]]) -> Result<Frame, BuildErr
             ),
         });
     }
-    Ok(Frame {
+    Ok(BuilderFrame {
         center: bounds.center(),
         scale,
     })

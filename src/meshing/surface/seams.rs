@@ -6,6 +6,7 @@
 
 use crate::error::BuildError;
 use crate::math::fast_hash::{FastMap, FastSet};
+use crate::medial::simplex::sorted;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::surface::edges::Edges;
 use crate::meshing::watch::Watch;
@@ -22,7 +23,7 @@ pub fn seam_slivers(
     triangles: &[[u32; 3]],
     watch: &mut Watch,
 ) -> Result<Vec<[u32; 3]>, BuildError> {
-    // As their triangles use them.
+    // Open edges, in the direction in which their triangles use them.
     let mut open: Vec<[u32; 2]> = Vec::new();
     for (i, ([lo, hi], uses)) in Edges::new(vertices.len(), triangles, watch)?
         .iter()
@@ -129,8 +130,4 @@ fn chain(
         chain.push(here);
     }
     Some(chain)
-}
-
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

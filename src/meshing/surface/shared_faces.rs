@@ -10,13 +10,11 @@ use crate::meshing::findings::Findings;
 use crate::meshing::geometry::triangle::points_inside;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::geometry::union_find::Groups;
+use crate::meshing::geometry::winding::INSIDE;
 use crate::meshing::surface::checked_surface::corners;
 use crate::meshing::surface::edges::Edges;
 use crate::meshing::surface::weld::Welded;
 use crate::meshing::watch::Watch;
-
-/// Winding number from which there is matter. It is negative where all triangles face inward.
-const INSIDE: f64 = 0.5;
 
 /// How far points near a triangle's border are from it, as a share of the way to the middle.
 const INWARD: f64 = 1e-3;
@@ -44,7 +42,7 @@ pub fn leave_out_shared(
         if i % 64 == 0 {
             watch.again()?;
         }
-        // Of a sheet that leaves a solid not all are inside.
+        // A sheet that leaves a solid has points outside.
         let mut points = points_inside(&corners_of(t), INWARD).into_iter();
         is_inside[t] = points.all(|p| tree.winding(p).abs() > INSIDE);
     }

@@ -8,7 +8,7 @@ use crate::rapier::contacts::hanging;
 use crate::rapier::contacts::neighbor_speeds::{self, Neighbor};
 use crate::rapier::contacts::predicted_contacts::PredictedMotion;
 use crate::rapier::host::forced_updates::{is_hooked, kept_longer};
-use crate::rapier::host::recycling::{Place, RecyclingRecord, lowered};
+use crate::rapier::host::recycling::{PairPose, RecyclingRecord, lowered};
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
 use crate::rapier::view::overlapping_boxes::overlapping_pairs;
 use parry3d::bounding_volume::Aabb;
@@ -22,7 +22,7 @@ pub struct Candidates {
     /// The pairs of these that rapier will ask for: they have moved too much for it to keep their contacts.
     pub jobs: Vec<PairJob>,
     /// Motion of each job from the start of the step to where its contacts are computed, which brings them back.
-    pub ahead: Vec<PredictedMotion>,
+    pub predicted_motions: Vec<PredictedMotion>,
     /// All medial colliders, for pairs that rapier asks for and that are not among the jobs.
     pub colliders: MedialColliders,
     /// Colliders whose contacts rapier must be made to ask for.
@@ -48,13 +48,13 @@ pub fn find(
             && !scene.is_muted(pair, &place, muted)
     };
     let asked = scene.pairs.iter().filter(asked);
-    let (ahead, jobs) = asked.map(|pair| scene.at_the_end(pair)).unzip();
+    let (predicted_motions, jobs) = asked.map(|pair| scene.at_the_end(pair)).unzip();
     let forced = scene.medial.all.iter().zip(&scene.forced);
     let forced = forced.filter(|(_, forced)| **forced);
     Candidates {
         pairs: scene.pairs.len(),
         jobs,
-        ahead,
+        predicted_motions,
         forced: forced.map(|(collider, _)| collider.handle).collect(),
         depth: scene.depth,
         colliders: scene.medial,
@@ -129,9 +129,9 @@ impl ContactScene {
         pair.map(|k| &self.medial.all[k])
     }
 
-    fn place(&self, pair: &[usize; 2]) -> Place {
+    fn place(&self, pair: &[usize; 2]) -> PairPose {
         let [a, b] = self.of(pair);
-        Place {
+        PairPose {
             ids: [a, b].map(|c| c.mesh.instance_id()),
             pos12: a.pose().inv_mul(b.pose()),
             rotations: [a, b].map(|c| c.pose().rotation),
@@ -139,7 +139,7 @@ impl ContactScene {
         }
     }
 
-    fn is_muted(&self, pair: &[usize; 2], place: &Place, muted: &HashSet<PairKey>) -> bool {
+    fn is_muted(&self, pair: &[usize; 2], place: &PairPose, muted: &HashSet<PairKey>) -> bool {
         let [a, b] = self.of(pair);
         !muted.is_empty() && muted.contains(&PairKey::new(&a.mesh, &b.mesh, &place.pos12))
     }

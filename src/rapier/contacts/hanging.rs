@@ -20,29 +20,30 @@ use rapier3d::geometry::{ColliderSet, ContactPair};
 /// Length by which a contact that a body hangs in may have moved, or its force have swung round the centre of
 /// mass, since it was computed, in units of rapier's length unit. A chain of 20 links does not sleep at 0.001
 /// and does at 0.0005. Kept awake and damped, its last link moves by 1 mm with 0.0005, by 0.7 mm with 0.0002.
-const MOVED: Real = 0.0002;
+const MAX_STALE_TRAVEL: Real = 0.0002;
 
 /// Gap up to which a body hangs in a contact, in units of rapier's length unit.
-const TOUCHING: Real = 0.001;
+const TOUCHING_GAP: Real = 0.001;
 
 /// Cosine of the angle between a contact's force and its arm from which it pulls (45°). In a heap rings lie
 /// on each other's inner sides at all angles, and half of them would count at 90°.
-const PULLS: Real = 0.7;
+const PULL_COSINE: Real = 0.7;
 
-/// Gap of a contact, in units of what its pair can close now ([`crate::rapier::contacts::predicted_contacts`]), from
-/// which its pair has come to rest. At 1 those that move a little are computed at every step.
-const RESTS: Real = 1.25;
+/// Widest gap among a pair's contacts from which the pair counts as come to rest, in units of the gap that it can close
+/// now ([`reach()`]), and in those of the recycle distance: the solver still has contacts that cannot close. At 1 pairs
+/// that move a little are computed in every step.
+const REST_GAP_RATIO: Real = 1.25;
 
 /// Thickness (a radius) below which contacts of a body are computed anew in each step, in units of the distance by
 /// which a pair may move before. At 1 twice as many boxes of a centimetre tremble on a hull in a world of metres (21 of
 /// 24).
-const THIN: Real = 0.25;
+const THIN_RATIO: Real = 0.25;
 
 /// Finds the medial colliders whose contacts are to be computed anew (one flag each), and the depth of
 /// the deepest contact of a medial collider that takes part, a length. Known from the world alone, so that a world that
 /// was saved and loaded goes on as it would have.
 pub fn find(sets: &Sets, medial: &MedialColliders) -> (Vec<bool>, Real) {
-    let thin = THIN * medial.parameters.contact_recycle_distance();
+    let thin = THIN_RATIO * medial.parameters.contact_recycle_distance();
     let is_thin = |c: &MedialCollider| c.moving.is_some() && c.mesh.thickness() < thin;
     let mut anew: Vec<bool> = medial.all.iter().map(is_thin).collect();
     let mut depth_of_all: Real = 0.0;
@@ -95,7 +96,8 @@ pub fn hang(sets: &Sets, medial: &MedialColliders) -> Vec<bool> {
         if hangs[i] && hangs[j] {
             continue;
         }
-        let gap = medial.all[i].skin + medial.all[j].skin + TOUCHING * sets.parameters.length_unit;
+        let gap =
+            medial.all[i].skin + medial.all[j].skin + TOUCHING_GAP * sets.parameters.length_unit;
         for m in pair.manifolds() {
             for p in m.points.iter().filter(|p| p.dist < gap) {
                 let sides = [
@@ -121,18 +123,18 @@ pub fn hang(sets: &Sets, medial: &MedialColliders) -> Vec<bool> {
 /// Whether one of a pair hangs in contacts which have moved, in a world of this length unit.
 fn hanging(pair: &ContactPair, sides: [&MedialCollider; 2], skins: Real, unit: Real) -> bool {
     let centers = sides.map(|s| s.moving.map(|(_, center)| center));
-    let limit = MOVED * unit;
+    let limit = MAX_STALE_TRAVEL * unit;
     pair.manifolds().iter().any(|m| {
         // The force on each, as it was, and as it turned with it.
         let then = [-m.data.normal, m.data.normal];
         let now = [-m.local_n1, -m.local_n2];
         let points = m.points.iter();
-        let mut touching = points.filter(|p| p.dist - skins < TOUCHING * unit);
+        let mut touching = points.filter(|p| p.dist - skins < TOUCHING_GAP * unit);
         touching.any(|p| {
             let points = [*sides[0].pose() * p.local_p1, *sides[1].pose() * p.local_p2];
             let arm = |k: usize| centers[k].map(|center| points[k] - center);
             let pulled =
-                |k: usize| arm(k).is_some_and(|arm| arm.dot(then[k]) > PULLS * arm.length());
+                |k: usize| arm(k).is_some_and(|arm| arm.dot(then[k]) > PULL_COSINE * arm.length());
             let swung = |k: usize| {
                 let chord = (sides[k].pose().rotation * now[k]).distance(then[k]);
                 arm(k).is_some_and(|arm| arm.length() * chord > limit)
@@ -152,7 +154,7 @@ fn at_rest(
 ) -> bool {
     let points = pair.manifolds().iter().flat_map(|m| &m.points);
     let widest = points.map(|p| p.dist).fold(Real::MIN, Real::max) - skins;
-    // What can close is more than what a pair may move unasked.
-    widest > RESTS * parameters.contact_recycle_distance()
-        && widest > RESTS * reach(sides, parameters)
+    // A pair may close a gap of the recycle distance before it is computed again.
+    widest > REST_GAP_RATIO * parameters.contact_recycle_distance()
+        && widest > REST_GAP_RATIO * reach(sides, parameters)
 }

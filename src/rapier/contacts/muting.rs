@@ -3,7 +3,7 @@
 //! too late for them, or lie at places where the bodies never meet. The inequality is that of `continuous` in
 //! `docs/effects.md`; the dispatcher then answers "no contacts" ([`crate::parry::narrow_phase_plan`]).
 //!
-//! Where both bodies may be moved, and one belongs to a multibody that turns wildly
+//! Where both bodies may be moved, and one belongs to a multibody that is unstable
 //! ([`crate::rapier::host::multibody_energy`]), touching pairs are left to the event loop too. So are those of a body
 //! that a joint has swing far in the step: rapier keeps the normal of the step's start and a point on either body,
 //! and a point that goes along an arc falls behind what flies on before it; it is pressed back, the harder the more
@@ -14,10 +14,10 @@
 
 use crate::math::Real;
 use crate::parry::narrow_phase_plan::PairKey;
-use crate::rapier::host::multibody_energy::is_wild;
+use crate::rapier::host::multibody_energy::is_unstable;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::view::eligible_pairs::{Rules, sweep};
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 use std::collections::HashSet;
@@ -29,9 +29,9 @@ pub struct Muted {
     pub keys: HashSet<PairKey>,
     /// Whether some may bounce ([`Effects::restitution`](crate::Effects::restitution)).
     pub bouncing: bool,
-    /// Medial colliders of which rapier knows the wrong contacts with a partner with which they have restitution, and
-    /// would keep them for as long as the two hardly move: none of a pair that was muted only for a bounce, or those of
-    /// a pair that rested and is muted now.
+    /// Medial colliders whose contacts rapier must compute anew, because it may hold the wrong ones of a pair with
+    /// restitution, and would keep them for as long as the two hardly move: old contacts, of a pair that is muted now
+    /// for its bounce, or none, of a pair that may have been muted in the step before and is not now.
     pub stale: HashSet<ColliderHandle>,
 }
 
@@ -55,10 +55,10 @@ pub fn muted(
     } else {
         0.0
     };
-    // Of the whole step, of which parts before a stop may have spent some.
+    // Work of the whole step up to which pairs are looked at; its parts before a stop may have spent some.
     let most = work.spent() + policy.budget_left(work).min(policy.budget / 4);
     for pair in sweep(view, policy.dt, margin) {
-        let [p, q] = pair.map(|k| &view.parts[k]);
+        let [p, q] = pair.map(|k| &view.colliders[k]);
         let plane = p.shape.as_halfspace().or(q.shape.as_halfspace());
         let reach = prediction + p.skin + q.skin;
         let apart = |a: &parry3d::bounding_volume::Aabb, b: &parry3d::bounding_volume::Aabb| {
@@ -97,7 +97,7 @@ pub fn muted(
 enum Reason {
     Bounces,
     IsFast,
-    IsWild,
+    IsUnstable,
     Swings,
 }
 
@@ -117,7 +117,7 @@ fn reason(
     {
         return None;
     }
-    // What no force presses together does not rest, whatever its nearest points do.
+    // A pair that no force presses together does not rest, whatever its nearest points do.
     let rests = |speed: Option<Real>| speed.is_some_and(|s| s <= policy.least_bounce(view, pair));
     if may_bounce && (!view.may_be_pressed(pair) || !rests(policy.approach(view, pair, work))) {
         return Some(Reason::Bounces);
@@ -125,8 +125,8 @@ fn reason(
     if !is_fast {
         return None;
     }
-    if is_wild_pair(view, policy, pair) {
-        return Some(Reason::IsWild);
+    if is_unstable_pair(view, policy, pair) {
+        return Some(Reason::IsUnstable);
     }
     if !policy.touches(view, pair, work) {
         return Some(Reason::IsFast);
@@ -134,8 +134,9 @@ fn reason(
     policy.swings(view, pair, work).then_some(Reason::Swings)
 }
 
-/// Whether two bodies may be moved, and one is of a multibody that turns wildly.
-fn is_wild_pair(view: &StepView, policy: &CcdPolicy, pair: [usize; 2]) -> bool {
-    let bodies = pair.map(|k| &view.bodies[view.parts[k].body]);
-    bodies.iter().all(|b| b.kind == Kind::Free) && bodies.iter().any(|b| is_wild(b, policy.dt))
+/// Whether two bodies may be moved, and one is of a multibody that is unstable.
+fn is_unstable_pair(view: &StepView, policy: &CcdPolicy, pair: [usize; 2]) -> bool {
+    let bodies = pair.map(|k| &view.bodies[view.colliders[k].body]);
+    bodies.iter().all(|b| b.mobility == Mobility::Free)
+        && bodies.iter().any(|b| is_unstable(b, policy.dt))
 }

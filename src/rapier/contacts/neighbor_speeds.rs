@@ -15,7 +15,7 @@ use rapier3d::geometry::Collider;
 /// a heap shares it out.
 const MAX_HOPS: usize = 3;
 
-/// What a collider may do to its neighbours in a step.
+/// A collider's bounds on the push that it may give its neighbours in a step.
 #[derive(Clone, Copy)]
 pub struct Neighbor {
     /// Bound on the speed of its points.
@@ -102,7 +102,7 @@ mod tests {
         assert_eq!(reached, [8.0, 8.0, 8.0, 8.0, 0.0]);
         let reached = neighbor_speed_bounds(&[fast, fixed, slow, slow, slow], &near);
         assert_eq!(reached, [8.0, 0.0, 0.0, 0.0, 0.0]);
-        // What moves by itself pushes, and is not pushed.
+        // A collider that moves by itself pushes, and is not pushed.
         let mover = Neighbor {
             speed: 2.0,
             ..fixed

@@ -31,24 +31,24 @@ use rapier3d::dynamics::IntegrationParameters;
 
 /// How far ahead contacts of a body that hangs are computed, in steps. Chains of 5 to 40 links slept in 8, 12 and 14 of
 /// 14 cases with 0.5, 0.75 and 1.
-const HANGING: Real = 1.0;
+const LOOKAHEAD_HANGING: Real = 1.0;
 
 /// Time ahead, in steps, for a body that hangs in one that stands still: nothing lags behind that one. A ring that
 /// rolls in a fixed one has 0.66 of its first swing left after 20 s, and 0.33 with 1.
-const HANGING_IN_STILL: Real = 0.6;
+const LOOKAHEAD_HANGING_IN_STILL: Real = 0.6;
 
 /// Time ahead, in steps, where neither body hangs. A ring of 48 cones that rolls on a plate at 0.5 m/s has 0.45 m/s
 /// left after 5 s, and 0.46 if the plate is free; 0.58 and 0.55 with 0.25 and 0.2, 0.74 with 0.6 and 0.5.
-const STANDING: Real = 0.0;
+const LOOKAHEAD_STANDING: Real = 0.0;
 
 /// Relative travel in that time, in units of the thinner body's thickness and at most rapier's
 /// prediction distance, beyond which contacts are computed less far ahead: a fast body would already be
 /// in the other, or past it.
-const REACH: Real = 0.25;
+const MAX_LOOKAHEAD_TRAVEL: Real = 0.25;
 
 /// How far apart two contacts are that bear a load like one, in units of the thinner body's thickness: a quarter of the
 /// width of a patch, of which one contact is written (`parry/manifolds.rs`); where patches are narrow, all of it.
-const APART: Real = 0.25;
+const MERGE_DISTANCE: Real = 0.25;
 
 /// The least such distance, in units of rapier's prediction distance: half of that in which two contacts are one for
 /// rapier.
@@ -59,11 +59,11 @@ const LEAST_APART: Real = 0.125;
 /// With an upper bound of 0.24 instead of 0.39, 20 of 120 pairs of rings that lie on each other rock on for ever, with
 /// 0.39 5; with 0.48 a ring that rolls at 0.2 m/s loses more speed than rapier's own. With a lower bound of 0 heaps at
 /// rest cost a fifth more, and rock no less.
-const ROCKING: [Real; 2] = [0.03, 0.39];
+const ROCKING_SPEEDS: [Real; 2] = [0.03, 0.39];
 
 /// Travel in a step, in units of rapier's length unit, beyond which contacts are not kept: that of the upper speed at
 /// 60 steps a second.
-const KEPT: Real = 0.0065;
+const MAX_KEPT_TRAVEL: Real = 0.0065;
 
 /// Lever of a contact's normal about the joint of two neighbours in a multibody, in units of the smaller's size, below
 /// which the joint holds the contact itself. Nothing but rounding moves along such a normal, and rapier divides by it:
@@ -108,7 +108,7 @@ pub struct PredictedMotion {
     /// How far apart two contacts are that bear a load like one, a length; `None` where contacts are corners of faces,
     /// or the user may take away some.
     apart: Option<Real>,
-    /// Whether the pair moves little, but more than at rest ([`ROCKING`]).
+    /// Whether the pair moves little, but more than at rest ([`ROCKING_SPEEDS`]).
     lasting: bool,
 }
 
@@ -116,8 +116,8 @@ impl PredictedMotion {
     /// The motion of the two colliders of `job`, which is at their poses at the start of a step; with the job that
     /// computes their contacts.
     ///
-    /// Of these only those within [`reach()`] count, and of them those that no nearer one holds back: the others
-    /// of the prediction distance cost the solver as much as those that bear.
+    /// Only contacts within [`reach()`] count, and of them those that no nearer one holds back: the others within the
+    /// prediction distance cost the solver as much as those that bear.
     pub fn new(
         starts: [&MedialCollider; 2],
         parameters: &IntegrationParameters,
@@ -128,15 +128,15 @@ impl PredictedMotion {
         let motions = starts.map(|s| &s.motion);
         let [a, b] = motions;
         let speed = closing(starts);
-        let longest = prediction.min(REACH * thickness);
+        let longest = prediction.min(MAX_LOOKAHEAD_TRAVEL * thickness);
         let still = motions
             .iter()
             .any(|m| m.linvel == Vector::ZERO && m.angvel == Vector::ZERO);
         let hangs = starts.iter().any(|s| s.hangs);
         let ahead = match (hangs, still) {
-            (true, false) => HANGING,
-            (true, true) => HANGING_IN_STILL,
-            (false, _) => STANDING,
+            (true, false) => LOOKAHEAD_HANGING,
+            (true, true) => LOOKAHEAD_HANGING_IN_STILL,
+            (false, _) => LOOKAHEAD_STANDING,
         } * dt;
         let time = if speed * ahead > longest {
             longest / speed
@@ -153,9 +153,9 @@ impl PredictedMotion {
         let way = way(starts, parameters);
         let skins = job.prediction - prediction;
         let unit = parameters.length_unit;
-        let lasting =
-            speed * dt < KEPT * unit && (ROCKING[0]..ROCKING[1]).contains(&(speed / unit));
-        let width = if lasting { NARROW } else { APART };
+        let lasting = speed * dt < MAX_KEPT_TRAVEL * unit
+            && (ROCKING_SPEEDS[0]..ROCKING_SPEEDS[1]).contains(&(speed / unit));
+        let width = if lasting { NARROW } else { MERGE_DISTANCE };
         let apart = (width * thickness).max(LEAST_APART * prediction);
         let are_of_pieces = [&job.mesh1, &job.mesh2].map(|m| !m.convex_pieces().is_empty());
         let is_thinned = are_of_pieces != [true; 2] && !starts.iter().any(|s| s.is_modified());

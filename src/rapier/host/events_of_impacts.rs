@@ -29,12 +29,12 @@ pub struct ReportedStarts {
 /// may still meet in this step wait until it is known what impacts add.
 pub struct DedupEventHandler<'a> {
     events: &'a dyn EventHandler,
-    state: Mutex<State>,
+    state: Mutex<SentEvents>,
 }
 
-/// What rapier has told in this step.
+/// Events that rapier has sent in this step.
 #[derive(Default)]
-struct State {
+struct SentEvents {
     started: Vec<Pair>,
     /// Pairs as rapier had them when it told of their forces.
     forces: Vec<ContactPair>,
@@ -57,7 +57,7 @@ impl<'a> DedupEventHandler<'a> {
     /// A handler for one step of rapier.
     pub fn new(events: &'a dyn EventHandler, reported: &mut ReportedStarts) -> Self {
         let started = std::mem::take(&mut reported.started);
-        let state = State {
+        let state = SentEvents {
             started,
             forces: Vec::new(),
         };
@@ -67,7 +67,7 @@ impl<'a> DedupEventHandler<'a> {
         }
     }
 
-    fn change<T>(&self, with: impl FnOnce(&mut State) -> T) -> T {
+    fn change<T>(&self, with: impl FnOnce(&mut SentEvents) -> T) -> T {
         with(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))
     }
 

@@ -26,9 +26,9 @@ const OWN_BITS: ActiveHooks = FORCE_UPDATE_BIT.union(KEPT_LONGER_BIT);
 
 /// Colliders whose contacts rapier must compute anew in its next step.
 pub struct Forced {
-    /// Those of which they are computed anew in this step only.
+    /// Colliders whose contacts are computed anew in this step only.
     pub once: HashSet<ColliderHandle>,
-    /// Whether they are of every medial collider, because rapier goes by the user's recycle distance in this step
+    /// Whether every medial collider is one of them, because rapier goes by the user's recycle distance in this step
     /// ([`crate::rapier::contacts::outnumbered`]).
     pub all_medial: bool,
     /// Whether rapier keeps no contacts in this step, and so notes nothing.
@@ -43,7 +43,8 @@ pub fn force_updates(
     colliders: &mut ColliderSet,
 ) {
     let is_marked = |c: &Collider| kept_longer(c.active_hooks());
-    // What sleeps on a fixed collider is not computed in the step, so it takes over the mark where that ends.
+    // Contacts of bodies that sleep on a fixed collider are not computed in the step, so those take over its mark where
+    // it ends.
     let all_stay = forced.all_medial || forced.notes_nothing;
     let marked = colliders.iter().filter(|(_, c)| is_marked(c));
     let ends = marked.filter(|(_, c)| !(all_stay || is_asleep(bodies, c)));

@@ -8,7 +8,7 @@ use rapier3d::dynamics::{Multibody, MultibodyJointSet, MultibodyLink, RigidBodyS
 
 /// Pose, centre of mass in the world, linear and angular velocity of a link.
 #[derive(Clone, Copy)]
-struct State {
+struct LinkState {
     pose: Pose,
     center: Vector,
     velocity: [Vector; 2],
@@ -56,7 +56,7 @@ fn set(
         let pose = ours.map_or(*body.position(), |b| b.motion.start);
         let by_joints = place.and_then(|i| view.bodies[*i].by_joints);
         let struck = ours.filter(|_| moved.is_some_and(|(_, struck)| *struck));
-        State {
+        LinkState {
             pose,
             center: pose * body.mass_properties().local_mprops.local_com,
             velocity: match (struck, by_joints) {
@@ -68,7 +68,7 @@ fn set(
         }
     };
     let links: Vec<MultibodyLink> = multibody.links().copied().collect();
-    let states: Vec<State> = links.iter().map(state).collect();
+    let states: Vec<LinkState> = links.iter().map(state).collect();
     if states.iter().any(|s| !s.pose.is_finite()) {
         return;
     }
@@ -113,8 +113,8 @@ fn set(
 /// ones first, as rapier orders them. A free root has its world velocities.
 fn coordinates(
     link: &MultibodyLink,
-    parent: Option<State>,
-    own: &State,
+    parent: Option<LinkState>,
+    own: &LinkState,
 ) -> ([Vec<Real>; 3], Vec<Real>) {
     let joint = &link.joint;
     let data = &joint.data;
@@ -144,7 +144,7 @@ fn coordinates(
     let mut turns = free(3);
     let hinge = turns.next().filter(|_| turns.next().is_none());
     let now = LinkAngles::of(link);
-    let turns = own.turned.goes_on(&now, between.rotation, hinge);
+    let turns = own.turned.displacements_to(&now, between.rotation, hinge);
     for (way, turn) in ways.iter_mut().zip(turns) {
         way.extend(free(3).map(|i| turn[i]));
     }

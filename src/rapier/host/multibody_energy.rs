@@ -1,11 +1,11 @@
-//! Multibodies that whirl: rapier's step has them gain energy, until they leave all numbers.
+//! Multibodies that turn fast: rapier's step has them gain energy, until their velocities leave the range of floats.
 //!
 //! It integrates with the mass matrix of each sub-step's start, and solves contacts with the Jacobian of the step's
 //! start, however far links turn. So where a multibody of medial links, with what pushed it, has a tenth more energy
 //! after rapier's step than it had before and its forces gave it, its motion is taken back: joints take it through the
 //! step from its start, which gains none ([`crate::rapier::joints::jointed_bodies`]), less what damping takes. One that
-//! turns wildly rapier has at rest for its step, and what it touches is the event loop's
-//! ([`crate::rapier::contacts::muting`]).
+//! turns so fast that it is unstable ([`UNSTABLE_TURN`]) is at rest for rapier's step, and what it touches is the event
+//! loop's ([`crate::rapier::contacts::muting`]).
 //!
 //! Multibodies with motors or springs, those that other joints hold, and those that bear on what is held or pushed by
 //! others are left to rapier.
@@ -13,81 +13,82 @@
 use crate::math::{Real, Rotation, Vector};
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::inertia::Inertia;
-use crate::rapier::view::link_velocity::WHIRLS;
-use crate::rapier::view::motion::{Body, Kind};
+use crate::rapier::view::link_velocity::FAST_LINK_TURN;
+use crate::rapier::view::motion::{Body, Mobility};
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{
     Multibody, MultibodyIndex, MultibodyJointSet, MultibodyLink, RigidBody, RigidBodyHandle,
 };
 use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 
-/// The turn from which rapier's step is not asked: links that turn further may leave all numbers within one step, and
-/// then nothing is left to take back.
-const WILD: Real = 4.0;
+/// Rotation of the fastest link in a step, in radians, above which a multibody is at rest for rapier's step, and joints
+/// alone move it: the velocities of faster ones may leave the range of floats within the step, and then nothing is left
+/// to take back.
+const UNSTABLE_TURN: Real = 4.0;
 
 /// Share of its energy that a multibody may gain in rapier's step. Free ones gain and lose some hundredths by turns;
 /// taking back the gains alone would leave the losses.
-const GAIN: f64 = 0.1;
+const MAX_ENERGY_GAIN: f64 = 0.1;
 
-/// Multibodies that whirl and that nothing drives, in a step.
+/// Multibodies that turn fast in a step, and that nothing drives.
 #[derive(Default)]
-pub struct WildMultibodies(Vec<WildMultibody>);
+pub struct FastMultibodies(Vec<FastMultibody>);
 
-/// A multibody that turns far in this step.
-struct WildMultibody {
+/// A multibody whose links turn by more than [`FAST_LINK_TURN`] in this step.
+struct FastMultibody {
     handle: MultibodyIndex,
     /// Free links, in the view.
     links: Vec<usize>,
-    /// Whether rapier's step has it at rest.
-    wild: bool,
+    /// Whether it is at rest for rapier's step.
+    is_at_rest: bool,
 }
 
-/// Whether a body is a link of a multibody that turns wildly in a step of `dt` seconds.
-pub fn is_wild(body: &Body, dt: Real) -> bool {
-    body.whirl * dt > WILD
+/// Whether a body is a link of a multibody that turns by more than [`UNSTABLE_TURN`] in a step of `dt` seconds.
+pub fn is_unstable(body: &Body, dt: Real) -> bool {
+    body.link_spin * dt > UNSTABLE_TURN
 }
 
-impl WildMultibodies {
-    /// The wild multibodies of a world before rapier's step.
+impl FastMultibodies {
+    /// The fast multibodies of a world before rapier's step.
     pub fn find(view: &StepView, rules: &Rules, narrow_phase: &NarrowPhase, dt: Real) -> Self {
         let multibodies = rules.multibody_joints;
-        let mut found: Vec<WildMultibody> = Vec::new();
+        let mut found: Vec<FastMultibody> = Vec::new();
         for (b, body) in view.bodies.iter().enumerate() {
-            let link = body.handle.filter(|_| body.whirl * dt > WHIRLS);
+            let link = body.handle.filter(|_| body.link_spin * dt > FAST_LINK_TURN);
             let link = link.and_then(|h| multibodies.rigid_body_link(h));
             let Some(handle) = link.map(|l| l.multibody) else {
                 continue;
             };
-            if body.kind != Kind::Free {
+            if body.mobility != Mobility::Free {
                 continue;
             }
             match found.iter_mut().find(|w| w.handle == handle) {
-                Some(whirl) => whirl.links.push(b),
-                None => found.push(WildMultibody {
+                Some(fast) => fast.links.push(b),
+                None => found.push(FastMultibody {
                     handle,
                     links: vec![b],
-                    wild: is_wild(body, dt),
+                    is_at_rest: is_unstable(body, dt),
                 }),
             }
         }
-        found.retain(|whirl| {
+        found.retain(|fast| {
             let medial = |links: &[usize]| {
-                let mut parts = view.parts.iter();
+                let mut parts = view.colliders.iter();
                 parts.any(|p| p.medial().is_some() && links.contains(&p.body))
             };
-            let multibody = multibodies.get_multibody(whirl.handle);
-            medial(&whirl.links) && multibody.is_some_and(|m| is_left_alone(m, rules))
+            let multibody = multibodies.get_multibody(fast.handle);
+            medial(&fast.links) && multibody.is_some_and(|m| is_left_alone(m, rules))
         });
-        for whirl in &mut found {
-            whirl.wild &= partners(view, (rules, narrow_phase), &whirl.links).is_some();
+        for fast in &mut found {
+            fast.is_at_rest &= partners(view, (rules, narrow_phase), &fast.links).is_some();
         }
         Self(found)
     }
 
-    /// Sets wild multibodies at rest, so that rapier's step finds them so.
+    /// Sets the unstable ones at rest for rapier's step.
     pub fn bring_to_rest(&self, multibodies: &mut MultibodyJointSet) {
-        for whirl in self.0.iter().filter(|w| w.wild) {
-            if let Some(multibody) = multibodies.get_multibody_mut(whirl.handle) {
+        for fast in self.0.iter().filter(|w| w.is_at_rest) {
+            if let Some(multibody) = multibodies.get_multibody_mut(fast.handle) {
                 multibody.generalized_velocity_mut().fill(0.0);
             }
         }
@@ -95,7 +96,9 @@ impl WildMultibodies {
 
     /// Whether rapier's step has a body at rest.
     pub fn rests(&self, body: usize) -> bool {
-        self.0.iter().any(|w| w.wild && w.links.contains(&body))
+        self.0
+            .iter()
+            .any(|w| w.is_at_rest && w.links.contains(&body))
     }
 
     /// Takes back what rapier's step did with those that gained energy, and with what pushed them.
@@ -106,17 +109,17 @@ impl WildMultibodies {
         narrow_phase: &NarrowPhase,
         dt: Real,
     ) {
-        for whirl in self.0 {
-            let Some(multibody) = rules.multibody_joints.get_multibody(whirl.handle) else {
+        for fast in self.0 {
+            let Some(multibody) = rules.multibody_joints.get_multibody(fast.handle) else {
                 continue;
             };
-            let mut bodies = whirl.links;
-            if !whirl.wild {
+            let mut bodies = fast.links;
+            if !fast.is_at_rest {
                 let Some(partners) = partners(view, (rules, narrow_phase), &bodies) else {
                     continue;
                 };
                 bodies.extend(partners);
-                if gained(view, &bodies) <= GAIN {
+                if gained(view, &bodies) <= MAX_ENERGY_GAIN {
                     continue;
                 }
             }
@@ -157,7 +160,7 @@ fn partners(
         view.index.get(&body).copied()
     };
     let pushing = |b: usize| {
-        let parts = view.parts.iter().filter(move |p| p.body == b);
+        let parts = view.colliders.iter().filter(move |p| p.body == b);
         let pairs = parts.flat_map(|p| narrow_phase.contact_pairs_with(p.handle));
         let pairs = pairs.filter(|pair| pair.total_impulse_magnitude() > 0.0);
         pairs.flat_map(|pair| [place(pair.collider1), place(pair.collider2)])
@@ -168,7 +171,7 @@ fn partners(
     };
     let is_free = |b: usize| {
         let body = &view.bodies[b];
-        body.kind == Kind::Free && body.handle.is_some_and(is_loose)
+        body.mobility == Mobility::Free && body.handle.is_some_and(is_loose)
     };
     let mut partners = Vec::new();
     for other in links.iter().flat_map(|b| pushing(*b)) {
@@ -219,7 +222,7 @@ fn damp(view: &mut StepView, multibody: &Multibody, dt: Real) {
             }
             let axis = base * data.local_frame1.rotation * Vector::AXES[axis - 3];
             let turned = |body: &Body, torque: Vector| {
-                let inertia = if body.kind == Kind::Free {
+                let inertia = if body.mobility == Mobility::Free {
                     Inertia::of(body)
                 } else {
                     Inertia::INFINITE
@@ -237,7 +240,7 @@ fn damp(view: &mut StepView, multibody: &Multibody, dt: Real) {
                 let body = &mut view.bodies[b];
                 let change = turned(body, torque) * sign;
                 body.velocity[1] += change;
-                if body.kind == Kind::Free {
+                if body.mobility == Mobility::Free {
                     body.go(body.velocity);
                 }
             }

@@ -20,9 +20,8 @@ use rapier3d::dynamics::IntegrationParameters;
 /// A pair's contacts are computed for all places that may touch until the pair has moved this far, and in the step
 /// after. So a smaller distance means that fewer contacts are computed, but more often. The contacts of hanging bodies
 /// are computed anew much sooner, and those of dynamic medial bodies whose thickness is less than a quarter of it in
-/// each step. rapier is asked for them by bit 31 of the collider's hooks, which is set until the next step and calls no
-/// hook. Bit 30 does the same: on medial colliders while they are few, and after that on what sleeps until it wakes. So
-/// change hooks by adding to `active_hooks()` or taking from it.
+/// each step. To have rapier do so, a step sets the bits 30 and 31 of some colliders' `active_hooks()`, which call no
+/// hook. So change hooks by adding to `active_hooks()` or taking from it.
 pub const RECYCLE_DISTANCE: Real = 0.004;
 
 /// Parameters of a step with medial colliders: contacts are kept no longer than [`RECYCLE_DISTANCE`] says.
@@ -37,7 +36,7 @@ pub fn lowered(parameters: &IntegrationParameters) -> IntegrationParameters {
 const ROTATION_COSINE: Real = 0.98;
 
 /// Placement of two colliders.
-pub struct Place {
+pub struct PairPose {
     /// Instance ids of their meshes.
     pub ids: [u64; 2],
     /// Pose of the second in the first's frame.
@@ -80,9 +79,9 @@ impl RecyclingRecord {
         self.limits = [distance, distance.min(parameters.prediction_distance())];
     }
 
-    /// Whether rapier will update this pair in full, which it does in any case if it is `asked` to; if so
-    /// its account starts anew at this pose.
-    pub fn needs_update(&mut self, pair: &Place, asked: bool) -> bool {
+    /// Whether rapier will update this pair in full, which it does in any case if it is `asked` to; if so, the pair's
+    /// record is set to this pose.
+    pub fn needs_update(&mut self, pair: &PairPose, asked: bool) -> bool {
         let (limits, step) = (self.limits, self.step);
         if let Some(f) = self.frozen.get_mut(&pair.ids) {
             f.seen = step;
@@ -101,7 +100,7 @@ impl RecyclingRecord {
     }
 
     /// Whether rapier keeps the contacts of this pair, as far as is known now.
-    pub fn recycles(&self, pair: &Place) -> bool {
+    pub fn recycles(&self, pair: &PairPose) -> bool {
         let frozen = self.frozen.get(&pair.ids);
         frozen.is_some_and(|f| f.recycles(pair, self.limits))
     }
@@ -124,7 +123,7 @@ fn ids(job: &PairJob) -> [u64; 2] {
 }
 
 impl Frozen {
-    fn recycles(&self, pair: &Place, limits: [Real; 2]) -> bool {
+    fn recycles(&self, pair: &PairPose, limits: [Real; 2]) -> bool {
         let limit = limits[usize::from(!self.touching)];
         let turned = |k: usize| {
             let c = self.rotations[k].dot(pair.rotations[k]);
@@ -134,7 +133,7 @@ impl Frozen {
     }
 
     /// Bound on how far a point of either mesh moved relative to the other since.
-    fn drift(&self, pair: &Place) -> Real {
+    fn drift(&self, pair: &PairPose) -> Real {
         let (then, now) = (&self.pos12, &pair.pos12);
         let turn = then.rotation.inverse() * now.rotation;
         // The chord of a rotation by θ at distance 1 is 2 sin(θ/2) = 2 |vector part|.

@@ -22,9 +22,10 @@ struct Timer {
     needed: Real,
 }
 
-/// The bodies that impacts moved in the last step, in a world that this pipeline has not stepped before and that may
-/// have been loaded: those of the colliders that have moved. The fast ones are among them, for the sake of the slow
-/// ones that they touch. Known before the step brings colliders to where the user put their bodies.
+/// The bodies that impacts moved in the step before, found from the world alone, for a world that this pipeline has not
+/// stepped before and that may have been loaded: the bodies of all colliders whose pose alone was changed, fast ones
+/// too, since slow ones may touch them. None if no body is slow. To be called before the step moves colliders to where
+/// the user put their bodies.
 pub fn moved_before(
     bodies: &RigidBodySet,
     colliders: &ColliderSet,

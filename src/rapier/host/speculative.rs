@@ -3,13 +3,13 @@
 
 use crate::math::Real;
 use crate::rapier::effects::{Effect, EffectSettings};
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
 
 /// Distance for which contacts are predicted, in units of rapier's length unit: more than rapier lets a
 /// body travel in a step of a second.
-const FAR: Real = 1.0e3;
+const SPECULATIVE_DISTANCE: Real = 1.0e3;
 
 /// Bodies that speculate, and what they predicted before.
 pub struct Speculators(Vec<(RigidBodyHandle, Real)>);
@@ -26,18 +26,18 @@ impl Speculators {
         if !effects.any(|e| e.speculative == Effect::On) {
             return Self(own);
         }
-        for part in &view.parts {
+        for part in &view.colliders {
             let body = &view.bodies[part.body];
             let calls = effects.of([part.handle; 2]).speculative == Effect::On;
             if let Some(handle) = body.handle
                 && calls
                 && body.awake
-                && body.kind == Kind::Free
+                && body.mobility == Mobility::Free
                 && own.iter().all(|(known, _)| *known != handle)
                 && let Some(body) = bodies.get_mut(handle)
             {
                 own.push((handle, body.soft_ccd_prediction()));
-                body.set_soft_ccd_prediction(FAR * unit);
+                body.set_soft_ccd_prediction(SPECULATIVE_DISTANCE * unit);
             }
         }
         Self(own)

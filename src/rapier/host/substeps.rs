@@ -3,18 +3,18 @@
 //! of the sub-step and `r` the vector from each centre of mass to the joint. Joints of multibodies stay closed, but
 //! turn wrong instead.
 //!
-//! What hangs together with a strained joint gets none. Where a joint is wide open, as where much more mass hangs on
+//! Bodies that joints tie to a strained joint get none. Where a joint is wide open, as where much more mass hangs on
 //! light links than rapier's solver holds, many sub-steps would close it at once, and throw what it holds. Where a
 //! joint presses its two bodies into each other, the joint and the contact gain energy in each sub-step: with twelve
 //! more in a step chains of five links of rapier's own capsules get to 169 m/s instead of 16, in the mean of 20.
 
 use crate::math::Real;
 use crate::math::fast_hash::FastSet;
-use crate::rapier::host::multibody_energy::WildMultibodies;
+use crate::rapier::host::multibody_energy::FastMultibodies;
 use crate::rapier::view::all_joints::for_each_joint;
-use crate::rapier::view::groups::Groups;
+use crate::rapier::view::groups::BodyGroups;
 use crate::rapier::view::joint_opening::opening;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{
     GenericJoint, ImpulseJointSet, IntegrationParameters, MultibodyJointSet, RigidBodyHandle,
@@ -44,11 +44,11 @@ impl Substeps {
         (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
         contacts: &NarrowPhase,
         parameters: &IntegrationParameters,
-        wild: &WildMultibodies,
+        fast_multibodies: &FastMultibodies,
         bodies: &mut RigidBodySet,
     ) -> Self {
         let mut medial = vec![false; view.bodies.len()];
-        for part in &view.parts {
+        for part in &view.colliders {
             medial[part.body] |= part.medial().is_some();
         }
         let unit = parameters.length_unit;
@@ -58,13 +58,13 @@ impl Substeps {
             let [Some(&a), Some(&b)] = handles.map(|h| view.index.get(&h)) else {
                 return;
             };
-            if !(medial[a] || medial[b]) || !joint.is_enabled() || wild.rests(b) {
+            if !(medial[a] || medial[b]) || !joint.is_enabled() || fast_multibodies.rests(b) {
                 return;
             }
             let needed = needed(view, [a, b], joint, parameters);
             let added = needed.saturating_sub(parameters.num_solver_iterations);
             let added = added.min(MOST_ADDED);
-            let free = |k: &usize| view.bodies[[a, b][*k]].kind == Kind::Free;
+            let free = |k: &usize| view.bodies[[a, b][*k]].mobility == Mobility::Free;
             if let Some(k) = (0..2).find(free)
                 && let Some(body) = bodies.get_mut(handles[k])
                 && added > body.additional_solver_iterations()
@@ -91,7 +91,7 @@ impl Substeps {
 /// Bodies that hang together by joints, and which of them have a joint that is wide open, or presses its bodies into
 /// each other.
 struct Strained {
-    groups: Groups,
+    groups: BodyGroups,
     strained: FastSet<usize>,
 }
 
@@ -101,13 +101,13 @@ impl Strained {
         (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
         unit: Real,
     ) -> Self {
-        let mut groups = Groups::default();
+        let mut groups = BodyGroups::default();
         let mut strained = Vec::new();
         for_each_joint(joints, multibodies, |handles, joint| {
             let [Some(&a), Some(&b)] = handles.map(|h| view.index.get(&h)) else {
                 return;
             };
-            let is_free = |k: &usize| view.bodies[*k].kind == Kind::Free;
+            let is_free = |k: &usize| view.bodies[*k].mobility == Mobility::Free;
             if is_free(&a) && is_free(&b) {
                 groups.join([a, b]);
             }
@@ -158,6 +158,6 @@ fn needed(
         motion.angvel.cross(motion.angvel.cross(arm))
     });
     let opening = 0.5 * (a - b).length() * parameters.dt * parameters.dt;
-    // Of an opening that is no number none.
+    // An opening of NaN gives none.
     (opening / (MOST_OPENING * parameters.length_unit)).sqrt() as usize
 }

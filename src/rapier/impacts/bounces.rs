@@ -1,5 +1,5 @@
-//! Which pairs bounce within a step ([`Effects::restitution`](crate::Effects::restitution), whose inequality is in
-//! `docs/effects.md`), and what of a pair touches at its start, so that rapier's solver has it.
+//! Decides which pairs bounce within a step ([`Effects::restitution`](crate::Effects::restitution), whose inequality is
+//! in `docs/effects.md`), and which pairs touch at its start already, and are left to rapier's solver.
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
@@ -8,16 +8,17 @@ use crate::rapier::effects::Effect;
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::impulse::Material;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 use parry3d::shape::Shape;
 
 /// Turn in a step, in radians, from which a body that a joint holds may swing. Motors turn wheels by less, and its
 /// square over 6 is 0.04 of the way.
-const SWINGS: Real = 0.5;
+const SWING_TURN: Real = 0.5;
 
-/// By how much of its thickness the arc of a body's contact point ends short of its tangent before the body swings.
-const SHORT: Real = 0.5;
+/// Distance by which the arc of a contact point ends short of its tangent, in units of the pair's thickness, from which
+/// the body counts as swinging.
+const SWING_DEVIATION: Real = 0.5;
 
 impl CcdPolicy<'_> {
     /// Speed of approach, in units of length per second, up to which a pair does not bounce: twice what forces add in a
@@ -110,14 +111,14 @@ impl CcdPolicy<'_> {
     /// the normal of a pair that touches at the start of the step, and the other flies free. By a way `s` along the
     /// normal and a turn `θ` about the joint, an arc ends `s θ² / 6` short of its tangent, to first order.
     pub fn swings(&self, view: &StepView, pair: [usize; 2], work: &mut Work) -> bool {
-        let bodies = pair.map(|k| &view.bodies[view.parts[k].body]);
+        let bodies = pair.map(|k| &view.bodies[view.colliders[k].body]);
         let turns = bodies.map(|b| b.motion.angvel.length() * self.dt);
         let held = match bodies.map(|b| b.jointed) {
             [true, false] => 0,
             [false, true] => 1,
             _ => return false,
         };
-        if bodies.iter().any(|b| b.kind != Kind::Free) || turns[held] <= SWINGS {
+        if bodies.iter().any(|b| b.mobility != Mobility::Free) || turns[held] <= SWING_TURN {
             return false;
         }
         let Some(nearest) = self.nearest_at_start(view, pair, work) else {
@@ -125,7 +126,7 @@ impl CcdPolicy<'_> {
         };
         let speed = nearest.velocities[held].dot(nearest.normal);
         let way = speed.abs() * self.dt;
-        way * turns[held] * turns[held] / 6.0 > SHORT * view.thickness(pair)
+        way * turns[held] * turns[held] / 6.0 > SWING_DEVIATION * view.thickness(pair)
     }
 
     /// The nearest points of a pair that touches at the start of the step or is pressed; `None` if it is farther apart.
@@ -160,7 +161,7 @@ impl CcdPolicy<'_> {
         pair: [usize; 2],
     ) -> (Option<&'v MedialMesh>, &'v dyn Shape, Pose, bool) {
         let [start1, start2] = pair.map(|k| view.motion(k, 0.0).start);
-        let [shape1, shape2] = pair.map(|k| &*view.parts[k].shape);
+        let [shape1, shape2] = pair.map(|k| &*view.colliders[k].shape);
         match shape1.as_shape::<MedialMesh>() {
             Some(mesh) => (Some(mesh), shape2, start1.inv_mul(&start2), false),
             None => (shape2.as_shape(), shape1, start2.inv_mul(&start1), true),
@@ -183,10 +184,10 @@ impl CcdPolicy<'_> {
 
 /// Nearest points of a pair.
 struct NearestPoints {
-    /// Of the shapes, a length.
+    /// Distance of the shapes, a length.
     distance: Real,
     /// From the first to the second, in the world.
     normal: Vector,
-    /// Of both bodies there.
+    /// Velocities of both bodies at the first one's nearest point.
     velocities: [Vector; 2],
 }

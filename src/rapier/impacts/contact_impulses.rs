@@ -17,17 +17,17 @@ use crate::rapier::joints::rows::Twist;
 use crate::rapier::joints::tied_system::System;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::inertia::Inertia;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 
-/// Share of the speed that an impulse gives two bodies which joints and locked axes leave of it, below which these hold
-/// the contact itself, as between neighbours in a chain, or where a body is driven along an axis that is locked: there
-/// is nothing to push, and the impulse would have no bound.
-const HELD: Real = 0.02;
+/// Least ratio of the speed that an impulse gives two bodies in their joints to the speed that it would give them
+/// without joints. Below it the joints and locked axes hold the contact, as between neighbours in a chain or where a
+/// body is driven along a locked axis, and no impulse is given: it would have no bound.
+const HELD_RATIO: Real = 0.02;
 
 impl Response {
-    /// Gives both bodies the impulses of a contact, and what joints tie to them what they hand on; returns all of
-    /// these. `undisturbed`: as
+    /// Applies the two impulses of a contact, on velocities and on the motions of this step, to both bodies and,
+    /// through joints, to the bodies tied to them. Returns the indices of all of these. `undisturbed`: as
     /// [`ImpactHistory::undisturbed`](crate::rapier::impacts::impact_history::ImpactHistory::undisturbed) says.
     pub(super) fn push(
         &mut self,
@@ -44,14 +44,14 @@ impl Response {
             self.advance(view, b, hit.time);
         }
         let (system, moving, point) = self.at_contact(view, policy, &joints, both, hit);
-        let [c1, c2] = pair.map(|k| &rules.colliders[view.parts[k].handle]);
+        let [c1, c2] = pair.map(|k| &rules.colliders[view.colliders[k].handle]);
         let [v1, v2] = [0, 1].map(|k| point.velocity(view.bodies[both[k]].velocity, k));
         let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, Material::of(c1, c2));
         let is_driven = both.iter().any(|b| joints.hangs_on_driven(view, *b));
         let own = point.impact(&system, material, is_driven);
         let (mut moved, mut impact) = (system, own);
         let free = both.map(|b| unlocked(view, both, b));
-        if own.resistance() >= HELD * resistance_alone(free, &point, hit.normal) {
+        if own.resistance() >= HELD_RATIO * resistance_alone(free, &point, hit.normal) {
             if let Some(j) = own.impulse(approach, 0.0) {
                 let poses = pair.map(|k| view.motion(k, hit.time).start);
                 let contact = (hit.point, hit.normal, -hit.depth);
@@ -69,11 +69,12 @@ impl Response {
             let approach = -motion.dot(hit.normal);
             let fastest = point.greatest_speed(both.map(|b| view.bodies[b].velocity));
             let out = way_out(view, policy, pair, hit, approach, fastest, undisturbed);
-            let free = [0, 1].map(|k| match self.courses[both[k]].frozen {
+            let free = [0, 1].map(|k| match self.body_states[both[k]].frozen {
                 true => Inertia::INFINITE,
                 false => free[k],
             });
-            let is_held = impact.resistance() < HELD * resistance_alone(free, &point, hit.normal);
+            let is_held =
+                impact.resistance() < HELD_RATIO * resistance_alone(free, &point, hit.normal);
             if let Some(j) = impact.impulse(motion, out).filter(|_| !is_held) {
                 change_motions(view, &moved, &point, j);
                 if is_stopped {
@@ -98,7 +99,7 @@ impl Response {
 
     /// Whether nothing changes the motion of a body any more.
     fn stands(&self, view: &StepView, body: usize) -> bool {
-        self.courses[body].frozen || view.bodies[body].kind != Kind::Free
+        self.body_states[body].frozen || view.bodies[body].mobility != Mobility::Free
     }
 
     /// System that resists the impulse on the velocities and, where that differs, the one on the motions; and the point
@@ -113,11 +114,13 @@ impl Response {
     ) -> (System<'j>, Option<System<'j>>, ContactPoint) {
         let resists = |view: &StepView, b: usize| inertia(view, both, b);
         let mut system = joints.system(view, &both, hit.time, |b| resists(view, b));
-        let free = system.bodies.iter().all(|b| !self.courses[*b].frozen);
+        let free = system.bodies.iter().all(|b| !self.body_states[*b].frozen);
         let mut moving = (!free).then(|| {
-            joints.system(view, &both, hit.time, |b| match self.courses[b].frozen {
-                true => Inertia::INFINITE,
-                false => resists(view, b),
+            joints.system(view, &both, hit.time, |b| {
+                match self.body_states[b].frozen {
+                    true => Inertia::INFINITE,
+                    false => resists(view, b),
+                }
             })
         });
         settle(view, hit.time, &system, moving.as_ref(), |view| {
@@ -128,7 +131,7 @@ impl Response {
             twists
         });
         let point = ContactPoint::new(view, both, hit);
-        // What stands at its limit resists as the stop does.
+        // A joint at its limit resists as the stop does.
         for system in [Some(&mut system), moving.as_mut()].into_iter().flatten() {
             let of = |b: &usize| view.bodies[*b].velocity;
             let twists: Vec<Twist> = system.bodies.iter().map(of).collect();
@@ -150,7 +153,7 @@ impl Response {
             let body = &mut view.bodies[b];
             body.velocity[0] += dv;
             body.velocity[1] += dw;
-            self.courses[b].struck |= body.kind == Kind::Free;
+            self.body_states[b].struck |= body.mobility == Mobility::Free;
         }
     }
 }
@@ -170,7 +173,7 @@ fn is_movable(view: &StepView, both: [usize; 2], body: usize) -> bool {
     let dominance = both.map(|b| view.bodies[b].dominance);
     let [first, second] = both.map(|b| b == body);
     let is_strong = first && dominance[0] > dominance[1] || second && dominance[1] > dominance[0];
-    view.bodies[body].kind == Kind::Free && !is_strong
+    view.bodies[body].mobility == Mobility::Free && !is_strong
 }
 
 /// Inertia that resists an impulse on a body, where the two bodies of a contact are `both`.

@@ -13,24 +13,26 @@ use rapier3d::geometry::{ColliderHandle, NarrowPhase};
 /// Depth, in units of rapier's length unit, from which a pair that was put into each other may be left to the solver:
 /// twice the gap of a fast pair. Larger, and thin bodies spawned in one place are held there; smaller, and what rests
 /// on a surface without thickness may be taken for put into it.
-const SUNK: Real = 2.0e-3;
+const SUNK_DEPTH: Real = 2.0e-3;
 
-/// How deep a pair is whose contacts are deep enough that even a slow one may get to the axes.
+/// Depth of a watched pair: its contacts are so deep that even a slow one may get to the medial axes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Deep {
-    /// Whether a contact is deeper than [`SUNK`].
+    /// Whether a contact is deeper than [`SUNK_DEPTH`].
     pub is_sunk: bool,
-    /// The way, a length, from where the deepest below the floor and [`SUNK`] would not count as deep; 0 if none is.
+    /// Length by which the deepest contact exceeds the depth from which pairs are watched
+    /// ([`Tuning::guarded`](crate::rapier::tuning::Tuning::guarded)), if it is below the floor and deeper than
+    /// [`SUNK_DEPTH`]; 0 if none is.
     pub way: Real,
 }
 
 /// Pairs whose contacts in rapier are deep.
 #[derive(Default)]
 pub struct DeepPairs {
-    /// Those that are watched.
+    /// The pairs that are watched.
     pub watched: FastMap<[usize; 2], Deep>,
-    /// Those with a contact deeper than [`SUNK`], watched or not; of pairs without a medial collider only where a
-    /// watched pair is below the floor.
+    /// The pairs with a contact deeper than [`SUNK_DEPTH`], watched or not; pairs without a medial collider only where
+    /// a watched pair is below the floor.
     pub sunk: FastSet<[usize; 2]>,
 }
 
@@ -42,7 +44,7 @@ pub fn deep(
     policy: &CcdPolicy,
 ) -> DeepPairs {
     let tuning = &policy.tuning;
-    let parts = view.parts.iter().enumerate();
+    let parts = view.colliders.iter().enumerate();
     let parts: FastMap<ColliderHandle, usize> = parts.map(|(k, p)| (p.handle, k)).collect();
     let mut deep = DeepPairs::default();
     let mut others = Vec::new();
@@ -51,7 +53,7 @@ pub fn deep(
         let [Some(&i), Some(&j)] = places else {
             continue;
         };
-        if [i, j].iter().all(|k| view.parts[*k].medial().is_none()) {
+        if [i, j].iter().all(|k| view.colliders[*k].medial().is_none()) {
             others.push((found, [i, j]));
             continue;
         }
@@ -64,7 +66,7 @@ pub fn deep(
             }
             let thickness = view.thickness_at([i, j], [m.subshape1, m.subshape2]);
             let guarded = tuning.guarded() * thickness;
-            let is_sunk = depth > SUNK * policy.unit;
+            let is_sunk = depth > SUNK_DEPTH * policy.unit;
             if is_sunk {
                 deep.sunk.insert(pair);
             }
@@ -84,7 +86,7 @@ pub fn deep(
                 .manifolds()
                 .iter()
                 .map(|m| deepest(m, [&start1, &start2]));
-            depths.fold(0.0, Real::max) > SUNK * policy.unit
+            depths.fold(0.0, Real::max) > SUNK_DEPTH * policy.unit
         });
         deep.sunk
             .extend(sunk.map(|(_, pair)| in_order(view, *pair)));

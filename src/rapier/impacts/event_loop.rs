@@ -10,7 +10,7 @@
 //! step, or is carried along by what pushes it. No impact of a pair that the loop has is ever dropped, not even at the
 //! current time; so no medial axis of such a pair crosses another on the motion that is executed. Pairs that nothing
 //! could part are left to rapier's solver ([`crate::rapier::impacts::initial_overlaps`],
-//! [`crate::rapier::impacts::pinched`], [`Loop::expect`]).
+//! [`crate::rapier::impacts::pinched`], [`Loop::enqueue_hit`]).
 
 use crate::batch::{Batch, ToiJob, ToiResult};
 use crate::math::Real;
@@ -29,7 +29,7 @@ use crate::rapier::impacts::response::Response;
 use crate::rapier::impacts::swept_boxes::SweptBoxes;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::view::eligible_pairs::{Rules, in_order, is_ccd_candidate, sweep};
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::near_what_moves;
 use crate::rapier::view::participants::{Contacts, Participants};
 use crate::rapier::view::step_view::StepView;
@@ -51,7 +51,7 @@ enum Next {
 }
 
 /// Query or hit that a pair waits for.
-pub(crate) enum Awaited<'a> {
+pub(crate) enum Pending<'a> {
     Answer(LazyToiQuery<'a>),
     Hit(Hit),
 }
@@ -73,7 +73,7 @@ pub(crate) struct Loop<'a> {
     pub(crate) parts_of: Vec<Vec<usize>>,
     /// The shapes of the colliders.
     shapes: &'a [SharedShape],
-    pub(crate) queue: EventQueue<Awaited<'a>>,
+    pub(crate) queue: EventQueue<Pending<'a>>,
     pub(crate) outlines: PairCulling,
     lists: NearLists,
     jobs: usize,
@@ -92,7 +92,7 @@ pub fn resolve(
     policy: CcdPolicy,
     rules: Rules,
     contacts: Contacts,
-    placed: &mut InitialOverlaps,
+    initial_overlaps: &mut InitialOverlaps,
     batch: &mut Batch,
     work: &mut Work,
 ) -> Option<Outcome> {
@@ -111,7 +111,7 @@ pub fn resolve(
     } else {
         DeepPairs::default()
     };
-    let left = placed.leave(view, participants, &deep, &rules);
+    let left = initial_overlaps.leave(view, participants, &deep, &rules);
     let deep = deep.watched;
     let all = view.bodies.iter().enumerate();
     let taken = all.filter(|(_, body)| body.is_taken_back);
@@ -125,7 +125,7 @@ pub fn resolve(
     let mut response = Response::new(view.bodies.len());
     response.lead(view, &policy, &rules, &taken);
     let pairs = sweep(view, policy.dt, near_what_moves::MARGIN * policy.unit);
-    let shapes: Vec<_> = view.parts.iter().map(|p| p.shape.clone()).collect();
+    let shapes: Vec<_> = view.colliders.iter().map(|p| p.shape.clone()).collect();
     let mut impacts = Loop {
         view,
         policy,
@@ -190,8 +190,8 @@ impl Loop<'_> {
             }
             let (pair, first, next) = self.queue.first()?;
             let inquiry = match first {
-                Awaited::Hit(hit) => return Some(Next::Impact(pair, *hit)),
-                Awaited::Answer(inquiry) => inquiry,
+                Pending::Hit(hit) => return Some(Next::Impact(pair, *hit)),
+                Pending::Answer(inquiry) => inquiry,
             };
             let until = next
                 .into_iter()
@@ -202,7 +202,7 @@ impl Loop<'_> {
             let known = ((&mut self.outlines, &mut self.lists), &mut *work);
             match inquiry.advance_to(&self.policy, self.view, pair, meshes, until, known) {
                 QueryProgress::FreeUntil(time) => self.queue.reschedule_first(time),
-                QueryProgress::Hit(hit) => self.expect(pair, hit),
+                QueryProgress::Hit(hit) => self.enqueue_hit(pair, hit),
                 QueryProgress::Never => self.queue.remove(pair),
             }
         }
@@ -210,15 +210,15 @@ impl Loop<'_> {
 
     /// Puts a hit in the queue, where the user's rules allow it. Neighbours on a joint that overlap before they met
     /// in this step are left to rapier's solver: the joint presses them there again whatever an impact does.
-    fn expect(&mut self, pair: [usize; 2], hit: Hit) {
+    fn enqueue_hit(&mut self, pair: [usize; 2], hit: Hit) {
         self.queue.remove(pair);
         let (view, rules) = (&*self.view, self.rules);
         let allowed = self.allowed.entry(pair);
         let allowed = allowed.or_insert_with(|| rules.respond(view, pair));
-        let is_pressed = hit.depth > 0.0 && self.response.met(pair) == 0;
+        let is_pressed = hit.depth > 0.0 && self.response.impact_count(pair) == 0;
         *allowed &= !(is_pressed && rules.are_jointed(view, pair));
         if *allowed {
-            self.queue.insert(pair, hit.time, Awaited::Hit(hit));
+            self.queue.insert(pair, hit.time, Pending::Hit(hit));
         }
     }
 
@@ -257,7 +257,7 @@ impl Loop<'_> {
         {
             return;
         }
-        let met = self.response.met(pair);
+        let met = self.response.impact_count(pair);
         let (policy, deep) = (self.policy, self.is_deep(pair));
         if !self.rules.may_respond(self.view, pair) {
             self.allowed.insert(pair, false);
@@ -266,14 +266,14 @@ impl Loop<'_> {
         let Some(mut query_options) = policy.query_options(self.view, pair, time, met, deep) else {
             return;
         };
-        let medial = |k: &usize| self.view.parts[*k].medial().is_some();
+        let medial = |k: &usize| self.view.colliders[*k].medial().is_some();
         self.jobs += usize::from(self.events == 0 && pair.iter().all(medial));
         // The floor is for primitives that the search for the first contact names.
         let known = known.filter(|known| known.deepest > policy.floor_depth());
         if known.is_some() {
             let hit = policy.first_contact(self.view, pair, time, &query_options, known, work);
             if let Some(hit) = hit {
-                self.expect(pair, hit);
+                self.enqueue_hit(pair, hit);
             }
             return;
         }
@@ -281,7 +281,7 @@ impl Loop<'_> {
         let outlines = &mut self.outlines;
         if let Some((until, left)) = outlines.apart_until(self.view, pair, time, reach) {
             query_options.reachable = left;
-            let inquiry = Awaited::Answer(LazyToiQuery::new(time, query_options));
+            let inquiry = Pending::Answer(LazyToiQuery::new(time, query_options));
             self.queue.insert(pair, until, inquiry);
         }
     }
@@ -307,7 +307,7 @@ impl Loop<'_> {
 
     /// Asks from `time` on for all pairs of bodies that have another motion.
     fn ask_again(&mut self, bodies: &[usize], time: Real, work: &mut Work) {
-        let free = |b: &&usize| self.view.bodies[**b].kind == Kind::Free;
+        let free = |b: &&usize| self.view.bodies[**b].mobility == Mobility::Free;
         let parts = bodies.iter().filter(free).map(|b| &self.parts_of[*b]);
         let mut changed: Vec<usize> = parts.flatten().copied().collect();
         changed.sort_unstable();
@@ -337,18 +337,18 @@ impl Loop<'_> {
     /// applies it again; a velocity that contacts of the solver made is taken for theirs from the start of the step on.
     fn stop(mut self, time: Real, narrow_phase: &NarrowPhase) -> Outcome {
         let left = 1.0 - time / self.policy.dt;
-        let courses = &mut self.response.courses;
-        let mut pushed: Vec<bool> = courses.iter().map(|c| c.struck).collect();
-        for part in &self.view.parts {
+        let body_states = &mut self.response.body_states;
+        let mut pushed: Vec<bool> = body_states.iter().map(|c| c.struck).collect();
+        for part in &self.view.colliders {
             let mut contacts = narrow_phase.contact_pairs_with(part.handle);
             pushed[part.body] |= contacts.any(|c| c.total_impulse_magnitude() > 0.0);
         }
         for (b, body) in self.view.bodies.iter_mut().enumerate() {
-            if body.kind != Kind::Fixed && body.awake {
-                courses[b].moved = true;
-                if body.kind == Kind::Free && !pushed[b] {
+            if body.mobility != Mobility::Fixed && body.awake {
+                body_states[b].moved = true;
+                if body.mobility == Mobility::Free && !pushed[b] {
                     body.undo_forces(left);
-                    courses[b].struck = true;
+                    body_states[b].struck = true;
                 }
             }
         }
@@ -364,7 +364,7 @@ impl Loop<'_> {
             events: self.events,
             ..Outcome::default()
         };
-        for (b, course) in self.response.courses.iter().enumerate() {
+        for (b, course) in self.response.body_states.iter().enumerate() {
             if !course.moved {
                 continue;
             }
@@ -378,7 +378,7 @@ impl Loop<'_> {
             .impulses
             .iter()
             .map(|(pair, blows)| Impulse {
-                colliders: pair.map(|k| self.view.parts[k].handle),
+                colliders: pair.map(|k| self.view.colliders[k].handle),
                 blows: blows.clone(),
             })
             .collect();

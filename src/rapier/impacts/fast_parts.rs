@@ -7,19 +7,20 @@
 //! other where they touch. It is `u(x) = v1 + ω1 × (x − c1) − v2 − ω2 × (x − c2)`, with the centres `c` about which the
 //! bodies turn.
 
+use crate::math::tolerance::FEW_OPERATIONS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::tree::{Node, NodeKind};
-use crate::rapier::view::step_view::{Part, StepView};
+use crate::rapier::view::step_view::{StepCollider, StepView};
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::NonlinearRigidMotion;
 
 /// Nodes, or pairs of them, that are looked at for one pair of colliders: beyond, fast parts count as near.
 /// Larger, and pairs in a thicket of thin parts cost more than the search they may be spared; smaller,
 /// and more of them are searched for nothing.
-const MOST: usize = 256;
+const MAX_NODE_LOOKS: usize = 256;
 
-/// What counts as fast, and as near.
+/// Limits from which a part counts as fast, and up to which one counts as near.
 #[derive(Clone, Copy)]
 pub struct FastParts {
     /// Seconds in which a fast part moves by its thickness against what it meets.
@@ -58,7 +59,7 @@ impl RelativeMotion {
             between: centers[1] - centers[0],
             drift,
             turns: motions.map(|m| m.angvel.length() * seconds),
-            rounding: 16.0 * Real::EPSILON * size,
+            rounding: FEW_OPERATIONS * size,
         }
     }
 
@@ -85,11 +86,11 @@ impl FastParts {
     /// Whether there are such parts of two colliders from `time` to `end` (seconds into the step); where that is not
     /// known, it says so too.
     pub fn may_meet(&self, view: &StepView, pair: [usize; 2], [time, end]: [Real; 2]) -> bool {
-        let parts = pair.map(|k| &view.parts[k]);
+        let parts = pair.map(|k| &view.colliders[k]);
         let motion = RelativeMotion::new(pair.map(|k| view.motion(k, time)), end - time);
-        let reach = self.reach * (1.0 + 16.0 * Real::EPSILON) + motion.rounding;
+        let reach = self.reach * (1.0 + FEW_OPERATIONS) + motion.rounding;
         let wanted = Self { reach, ..*self };
-        match parts.map(Part::medial) {
+        match parts.map(StepCollider::medial) {
             [Some(a), Some(b)] => wanted.of_meshes(a, b, &motion),
             [Some(mesh), None] => wanted.of_mesh(mesh, parts[1], &motion, 0),
             [None, Some(mesh)] => wanted.of_mesh(mesh, parts[0], &motion, 1),
@@ -100,7 +101,7 @@ impl FastParts {
     /// Whether a part of this thickness, which lies in the ball of a node, may be fast.
     fn is_fast(&self, motion: &RelativeMotion, side: usize, node: &Node, thickness: Real) -> bool {
         let speed = motion.speed_near(side, node.center, node.radius + self.contact);
-        speed * self.seconds * (1.0 + 16.0 * Real::EPSILON) > thickness
+        speed * self.seconds * (1.0 + FEW_OPERATIONS) > thickness
     }
 
     fn of_meshes(&self, a: &MedialMesh, b: &MedialMesh, motion: &RelativeMotion) -> bool {
@@ -119,7 +120,7 @@ impl FastParts {
             }
             looked += 1;
             match (p.kind(), q.kind()) {
-                _ if looked > MOST => return true,
+                _ if looked > MAX_NODE_LOOKS => return true,
                 (NodeKind::Primitive(_), NodeKind::Primitive(_)) => return true,
                 (NodeKind::Nodes(c, d), NodeKind::Primitive(_)) => open.extend([(c, j), (d, j)]),
                 (NodeKind::Primitive(_), NodeKind::Nodes(c, d)) => open.extend([(i, c), (i, d)]),
@@ -136,12 +137,12 @@ impl FastParts {
     fn of_mesh(
         &self,
         mesh: &MedialMesh,
-        other: &Part,
+        other: &StepCollider,
         motion: &RelativeMotion,
         side: usize,
     ) -> bool {
         let aabb = other.shape.compute_local_aabb();
-        // Its box is the whole world.
+        // The box of a half-space is the whole world.
         let plane = other.shape.as_halfspace();
         let starts = [side, 1 - side].map(|k| &motion.motions[k].start);
         let pos21: Pose = starts[1].inv_mul(starts[0]);

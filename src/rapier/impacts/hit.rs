@@ -17,7 +17,7 @@ pub struct Hit {
     pub depth: Real,
     /// The primitives that meet; 0 of a shape that is not medial.
     pub primitives: [u32; 2],
-    /// What of them meets, where it is known.
+    /// The points or features that meet, where they are known.
     pub met: Option<Met>,
 }
 

@@ -6,7 +6,7 @@ use crate::math::fast_hash::FastMap;
 use crate::pair::met::{Met, Touch};
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::toi_query::CcdPolicy;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 
 type Pair = [usize; 2];
@@ -21,12 +21,12 @@ struct Meetings {
     /// How often they met.
     count: u32,
     /// Places, each primitive pair once, the last at the end.
-    places: Vec<Place>,
+    places: Vec<PastContact>,
 }
 
 /// A place where a pair met.
 #[derive(Clone, Copy)]
-struct Place {
+struct PastContact {
     hit: Hit,
     /// Signed distance of the spheres that met, a length. Their radii may be reduced, so it is not the hit's depth.
     distance: Option<Real>,
@@ -57,8 +57,8 @@ impl ImpactHistory {
     pub fn undisturbed(&self, view: &StepView, pair: Pair, time: Real) -> Option<Real> {
         let since = self.last_time(pair).unwrap_or(0.0);
         let own = pair.into_iter().all(|k| {
-            let body = &view.bodies[view.parts[k].body];
-            body.kind != Kind::Free || !body.jointed && body.time == since
+            let body = &view.bodies[view.colliders[k].body];
+            body.mobility != Mobility::Free || !body.jointed && body.time == since
         });
         (own && time > since).then_some(time - since)
     }
@@ -68,7 +68,7 @@ impl ImpactHistory {
         let meetings = self.of_pair.entry(pair).or_default();
         if meetings.count == 0 {
             for k in pair {
-                let body = view.parts[k].body;
+                let body = view.colliders[k].body;
                 self.of_body.entry(body).or_default().push(pair);
             }
         }
@@ -79,7 +79,7 @@ impl ImpactHistory {
             places.remove(0);
         }
         let touch = hit.met.and_then(|met| touch(view, pair, met, hit.time));
-        places.push(Place {
+        places.push(PastContact {
             hit: *hit,
             distance: touch.map(|touch| touch.distance),
         });
@@ -96,7 +96,7 @@ impl ImpactHistory {
         let mut pairs = Vec::new();
         let free = bodies
             .iter()
-            .filter(|b| view.bodies[**b].kind == Kind::Free);
+            .filter(|b| view.bodies[**b].mobility == Mobility::Free);
         for pair in free.filter_map(|b| self.of_body.get(b)).flatten() {
             if !pairs.contains(pair) {
                 pairs.push(*pair);
@@ -113,7 +113,7 @@ impl ImpactHistory {
         (pair, place): (Pair, usize),
         time: Real,
     ) -> Option<(Hit, Real)> {
-        let Place { hit, distance } = self.of_pair.get(&pair)?.places.get(place)?;
+        let PastContact { hit, distance } = self.of_pair.get(&pair)?.places.get(place)?;
         let touch = touch(view, pair, hit.met?, time)?;
         let opened = touch.distance - (*distance)?;
         let hit = Hit {
@@ -136,8 +136,8 @@ impl ImpactHistory {
         (pair, place): (Pair, usize),
         time: Real,
     ) -> Option<Hit> {
-        let bodies = pair.map(|k| view.parts[k].body);
-        let driven = |b: usize| view.bodies[b].kind == Kind::Driven;
+        let bodies = pair.map(|k| view.colliders[k].body);
+        let driven = |b: usize| view.bodies[b].mobility == Mobility::Driven;
         if bodies.into_iter().any(driven) || bodies.into_iter().all(frozen) {
             return None;
         }
@@ -153,10 +153,12 @@ impl ImpactHistory {
         };
         let [v1, v2] = bodies.map(velocity);
         let approach = (v1 - v2).dot(hit.normal) * (policy.dt - time);
-        // What touches may sink in before it is met again, above the floor by more than below.
+        // A pair that touches may sink in by this before it meets again: by more above the floor than below.
         let tuning = &policy.tuning;
         let above = tuning.floor * thickness - hit.depth;
-        let sinks = above.min(tuning.sink * thickness).max(tuning.hair * gap);
+        let sinks = above
+            .min(tuning.sink * thickness)
+            .max(tuning.min_sink * gap);
         (approach > opened.max(0.0) + sinks).then_some(hit)
     }
 }

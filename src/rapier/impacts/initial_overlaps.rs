@@ -26,7 +26,7 @@ use crate::rapier::impacts::pinched::{one_dominates, pinched, pressed_by_joints}
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
 use crate::rapier::view::participants::Participants;
-use crate::rapier::view::step_view::{Part, StepView};
+use crate::rapier::view::step_view::{StepCollider, StepView};
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, RigidBodyType};
 use rapier3d::geometry::{
     Collider, ColliderHandle, ContactManifold, InteractionGroups, NarrowPhase, SharedShape,
@@ -56,12 +56,12 @@ pub struct InitialOverlaps {
     left: FastSet<Pair>,
 }
 
-/// What a step leaves to the next about bodies that were put into each other, to be saved beside a world: where
+/// Record from one step for the next, to be saved beside a world, of bodies that were put into each other: where
 /// colliders were, and which pairs are left to rapier's solver.
 #[cfg(feature = "serde-serialize")]
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct OverlapsRecord {
-    ends: Vec<(ColliderHandle, Pose, Kind)>,
+    ends: Vec<(ColliderHandle, Pose, CollisionKind)>,
     muted: Vec<BodyPair>,
     left: Vec<Pair>,
 }
@@ -70,13 +70,13 @@ pub struct OverlapsRecord {
 struct End {
     pose: Pose,
     shape: KnownShape,
-    kind: Kind,
+    kind: CollisionKind,
 }
 
-/// What decides whether a collider collides with others: its groups, and the type of its body.
-type Kind = ([InteractionGroups; 2], Option<RigidBodyType>);
+/// Key of whether a collider collides with others: its groups, and the type of its body.
+type CollisionKind = ([InteractionGroups; 2], Option<RigidBodyType>);
 
-fn kind(collider: &Collider, bodies: &RigidBodySet) -> Kind {
+fn kind(collider: &Collider, bodies: &RigidBodySet) -> CollisionKind {
     let body = collider.parent().and_then(|h| bodies.get(h));
     let groups = [collider.collision_groups(), collider.solver_groups()];
     (groups, body.map(|b| b.body_type()))
@@ -100,7 +100,7 @@ impl KnownShape {
 
     /// Bound on how far the surface of the collider was moved by the change from this shape to that of `part`, a
     /// length; infinite if the two are not alike.
-    fn moved_to(&self, part: &Part) -> Real {
+    fn moved_to(&self, part: &StepCollider) -> Real {
         match (self, Self::of(&part.shape)) {
             (Self::Medial(old), Self::Medial(new)) => moved_spheres(old, &new),
             (Self::Other(old), Self::Other(new)) if *old == new => 0.0,
@@ -147,7 +147,7 @@ fn sorted([a, b]: Pair) -> Pair {
 
 #[cfg(feature = "serde-serialize")]
 impl InitialOverlaps {
-    /// What a world is saved with.
+    /// The record that a world is saved with.
     pub fn record(&self) -> OverlapsRecord {
         let ends = self.ends.iter().flatten();
         let mut record = OverlapsRecord {
@@ -192,7 +192,7 @@ impl InitialOverlaps {
             let end = self.end_of(*h);
             end.is_none_or(|end| kind_of(*h).is_none_or(|kind| kind != end.kind))
         };
-        let handles = view.parts.iter().map(|part| part.handle);
+        let handles = view.colliders.iter().map(|part| part.handle);
         let others: FastSet<_> = handles.filter(is_other).collect();
         self.others = others;
         if self.others.is_empty() && self.freed.is_empty() {
@@ -213,7 +213,7 @@ impl InitialOverlaps {
     /// Finds whose contacts joints turn off, and what they let go of.
     fn find_freed(&mut self, view: &StepView, rules: &Rules) {
         let muted_before = std::mem::take(&mut self.muted);
-        if view.parts.is_empty() {
+        if view.colliders.is_empty() {
             return;
         }
         for_each_joint(
@@ -236,12 +236,12 @@ impl InitialOverlaps {
         deep: &DeepPairs,
         rules: &Rules,
     ) -> Vec<[usize; 2]> {
-        let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.parts[k].handle));
+        let handles = |pair: [usize; 2]| sorted(pair.map(|k| view.colliders[k].handle));
         let was_put = |pair: [usize; 2], deep: &Deep| {
             let is_met = self.met.contains(&handles(pair));
             let is_other = pair
                 .iter()
-                .any(|k| self.others.contains(&view.parts[*k].handle));
+                .any(|k| self.others.contains(&view.colliders[*k].handle));
             match self.moved(view, pair) {
                 Some(_)
                     if (is_other || Self::among(&self.freed, view, pair))
@@ -269,7 +269,7 @@ impl InitialOverlaps {
             .iter()
             .filter(|(pair, deep)| is_left(pair, deep));
         let pairs: Vec<_> = left.map(|(pair, _)| *pair).collect();
-        // What does not take part stays as it is.
+        // A pair that does not take part stays as it is.
         let stays = |pair: &Pair| {
             let mut both = pair.iter();
             participants.is_some_and(|p| both.any(|h| p.is_bystander(*h)))
@@ -291,7 +291,7 @@ impl InitialOverlaps {
 
     /// Whether the bodies of a pair are among some.
     fn among(bodies: &FastSet<BodyPair>, view: &StepView, pair: [usize; 2]) -> bool {
-        let both = pair.map(|k| view.bodies[view.parts[k].body].handle);
+        let both = pair.map(|k| view.bodies[view.colliders[k].body].handle);
         matches!(both, [Some(a), Some(b)] if bodies.contains(&body_pair([a, b])))
     }
 
@@ -308,16 +308,16 @@ impl InitialOverlaps {
                 }
             }
         }
-        let end = |part: &Part| {
+        let end = |part: &StepCollider| {
             let collider = rules.colliders.get(part.handle)?;
             let (pose, kind) = (*collider.position(), kind(collider, rules.bodies));
             let shape = KnownShape::of(&part.shape);
             Some((part.handle, End { pose, shape, kind }))
         };
-        for (handle, end) in view.parts.iter().filter_map(end) {
+        for (handle, end) in view.colliders.iter().filter_map(end) {
             self.set_end(handle, end);
         }
-        self.seen = view.parts.iter().map(|part| part.handle).collect();
+        self.seen = view.colliders.iter().map(|part| part.handle).collect();
     }
 
     fn set_end(&mut self, handle: ColliderHandle, end: End) {
@@ -336,7 +336,7 @@ impl InitialOverlaps {
     /// Bound on how far points of two colliders were moved against each other between the last step and this one, a
     /// length; `None` if one of them is new.
     fn moved(&self, view: &StepView, pair: [usize; 2]) -> Option<Real> {
-        let [p, q] = pair.map(|k| &view.parts[k]);
+        let [p, q] = pair.map(|k| &view.colliders[k]);
         let start = |k: usize| view.start_pose(pair[k]);
         let [end1, end2] = [self.end_of(p.handle)?, self.end_of(q.handle)?];
         let before = end1.pose.inv_mul(&end2.pose);

@@ -15,21 +15,22 @@ use crate::rapier::view::step_view::StepView;
 /// The medial meshes of both, where they are.
 pub type Meshes<'m> = [Option<&'m MedialMesh>; 2];
 
-/// What earlier searches of the step left for later ones: the records of culling, and the lists of near primitives.
-pub type Known<'k> = (&'k mut PairCulling, &'k mut NearLists);
+/// Caches that earlier searches of the step left for later ones: the records of culling, and the lists of near
+/// primitives.
+pub type SearchCaches<'k> = (&'k mut PairCulling, &'k mut NearLists);
 
 /// The search for the first contact of one pair from some time on, valid while neither of the two has another motion.
 pub struct LazyToiQuery<'m> {
     /// Seconds into the step.
     from: Real,
     query_options: QueryOptions,
-    begun: Option<Begun<'m>>,
+    running: Option<RunningSearches<'m>>,
 }
 
 type MeshQuery<'m> = Query<'m, MedialMesh, MedialMesh>;
 
 /// The searches of two medial meshes once they have begun: for the first contact, and for the floor.
-struct Begun<'m> {
+struct RunningSearches<'m> {
     first: Box<MeshQuery<'m>>,
     /// The query for the floor; `None` outside before it is known whether there is one.
     floor: Option<Option<Box<MeshQuery<'m>>>>,
@@ -66,7 +67,7 @@ impl<'m> LazyToiQuery<'m> {
         Self {
             from,
             query_options,
-            begun: None,
+            running: None,
         }
     }
 
@@ -79,7 +80,7 @@ impl<'m> LazyToiQuery<'m> {
         pair: [usize; 2],
         meshes: Meshes<'m>,
         until: Real,
-        (known, work): (Known, &mut Work),
+        (known, work): (SearchCaches, &mut Work),
     ) -> QueryProgress {
         let from = self.from;
         let [Some(mesh1), Some(mesh2)] = meshes else {
@@ -110,23 +111,23 @@ impl<'m> LazyToiQuery<'m> {
             }
         };
         let query_options = &self.query_options;
-        let begun = self.begun.get_or_insert_with(|| {
+        let running = self.running.get_or_insert_with(|| {
             let (outlines, lists) = known;
             let (of, options) = ((pair, [mesh1, mesh2]), &query_options.first);
             let near = lists.list(view, outlines, of, [from, policy.dt], options, work);
-            Begun {
+            RunningSearches {
                 first: begin(options, near.as_ref().map(|near| near.pairs()), work),
                 floor: None,
             }
         });
-        let first = look_on(&mut begun.first, work);
+        let first = look_on(&mut running.first, work);
         if first.time() <= from {
             return first;
         }
         // All that touched at the start is known now.
-        let floor = begun.floor.get_or_insert_with(|| {
+        let floor = running.floor.get_or_insert_with(|| {
             let options = query_options.floor.as_ref()?;
-            let deep = begun.first.may_get_to(policy.floor_depth())?;
+            let deep = running.first.may_get_to(policy.floor_depth())?;
             Some(begin(options, Some(&deep), work))
         });
         match floor.as_mut().map(|query| look_on(query, work)) {

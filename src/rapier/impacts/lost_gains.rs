@@ -1,5 +1,5 @@
-//! Takes back what forces give a body, or would take from it, on a way that it does not go, or goes only because bodies
-//! that were stopped turn it aside.
+//! Removes the speed that gravity and the user's forces give a body along a path that a stopped body blocks or turns
+//! aside.
 //!
 //! A stopped body is in the way of the other's path as if its mass were infinite, but takes of its velocity only what
 //! its own mass can. A heavy body on light ones that are stopped would so gain speed by its weight in each step without

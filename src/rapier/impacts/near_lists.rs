@@ -13,7 +13,7 @@ use crate::rapier::view::step_view::StepView;
 use std::sync::Arc;
 
 /// Queries of a pair in a step before a list is made: a list costs as much as a query.
-const UNLISTED: u32 = 1;
+const QUERIES_BEFORE_LIST: u32 = 1;
 
 /// Margin of a list in units of what the two may travel against each other in the rest of the step. Larger, and more is
 /// listed; smaller, and a list holds for fewer impacts.
@@ -21,11 +21,11 @@ const MARGIN: f64 = 0.5;
 
 /// Lists of near primitives of each pair that was searched in this step.
 #[derive(Default)]
-pub struct NearLists(FastMap<[usize; 2], Asked>);
+pub struct NearLists(FastMap<[usize; 2], PairRecord>);
 
 /// How often a pair was searched in this step, and its list once it has one.
 #[derive(Default)]
-struct Asked {
+struct PairRecord {
     times: u32,
     near: Option<Arc<NearPairs>>,
     /// Whether too much is near.
@@ -46,13 +46,13 @@ impl NearLists {
     ) -> Option<Arc<NearPairs>> {
         let asked = self.0.entry(pair).or_default();
         asked.times += 1;
-        if asked.times <= UNLISTED || asked.is_crowded || options.paths != Paths::Exact {
+        if asked.times <= QUERIES_BEFORE_LIST || asked.is_crowded || options.paths != Paths::Exact {
             return None;
         }
         let motions = &pair.map(|k| view.motion(k, from));
         let seconds = end - from;
         let arms = [0, 1].map(|k| {
-            let bound = &view.parts[pair[k]].bound;
+            let bound = &view.colliders[pair[k]].bound;
             let arm = (bound.center() - motions[k].local_center).length() + bound.radius();
             f64::from(arm) * (1.0 + 8.0 * f64::from(Real::EPSILON))
         });

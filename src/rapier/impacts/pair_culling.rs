@@ -4,6 +4,7 @@
 use crate::math::Real;
 use crate::math::approach::first_touch;
 use crate::math::lane::Vec3;
+use crate::math::tolerance::FEW_OPERATIONS;
 use crate::medial::proxy_hull::ProxyHull;
 use crate::pair::outline::{ActivePrimitives, Outline, apart_until};
 use crate::rapier::view::step_view::StepView;
@@ -16,14 +17,14 @@ const UNBOUNDED: Real = 1.0e12;
 
 /// Outlines of the colliders on their bodies' motions, each made when first wanted.
 pub struct PairCulling {
-    made: Vec<Option<Made>>,
+    made: Vec<Option<CachedOutline>>,
     proxies: Vec<Option<Arc<ProxyHull>>>,
     /// End of the step in seconds.
     end: Real,
 }
 
 /// `None` for what is not bounded.
-type Made = Option<Outline>;
+type CachedOutline = Option<Outline>;
 
 impl PairCulling {
     /// A record in which no outline is made yet.
@@ -66,8 +67,8 @@ impl PairCulling {
 
     /// The outline of a collider from its body's last impact on: of a mesh its own, of other shapes that of
     /// their box.
-    fn outline(&mut self, view: &StepView, part: usize) -> Made {
-        let p = &view.parts[part];
+    fn outline(&mut self, view: &StepView, part: usize) -> CachedOutline {
+        let p = &view.colliders[part];
         if self.proxies[part].is_none() {
             let proxy = match p.medial() {
                 Some(mesh) => Arc::clone(mesh.proxy_hull()),
@@ -98,12 +99,12 @@ fn spheres_apart_until(
     let centers = motions.each_ref().map(center);
     let mut radius = reach;
     for (k, motion) in pair.into_iter().zip(&motions) {
-        let bound = &view.parts[k].bound;
+        let bound = &view.colliders[k].bound;
         radius += (bound.center() - motion.local_center).length() + bound.radius();
     }
     // Rounding of the positions: a few ulps of all that they are sums of.
     let terms = |m: &NonlinearRigidMotion| m.start.translation.length() + m.local_center.length();
-    radius += 16.0 * Real::EPSILON * (motions.iter().map(terms).sum::<Real>() + radius);
+    radius += FEW_OPERATIONS * (motions.iter().map(terms).sum::<Real>() + radius);
     let y = Vec3::<f64>::from_vector(centers[1]) - Vec3::from_vector(centers[0]);
     let rate = Vec3::<f64>::from_vector(motions[1].linvel) - Vec3::from_vector(motions[0].linvel);
     if y.length() > f64::from(radius) {

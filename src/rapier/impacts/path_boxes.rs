@@ -15,16 +15,16 @@ impl Loop<'_> {
 
     /// A box grown by as far as first contacts are looked for.
     pub fn grown(&self, part: usize, aabb: Aabb) -> Aabb {
-        aabb.loosened(self.view.parts[part].skin + MARGIN * self.policy.unit)
+        aabb.loosened(self.view.colliders[part].skin + MARGIN * self.policy.unit)
     }
 
     /// Finds the boxes of all colliders, before the first impact changes any.
     pub fn find_boxes(&mut self) {
         if self.boxes.is_empty() {
-            let parts = 0..self.view.parts.len();
+            let parts = 0..self.view.colliders.len();
             self.boxes = SweptBoxes::new(parts.map(|k| self.swept_box(k, 0.0)).collect());
             self.parts_of = vec![Vec::new(); self.view.bodies.len()];
-            for (k, part) in self.view.parts.iter().enumerate() {
+            for (k, part) in self.view.colliders.iter().enumerate() {
                 self.parts_of[part.body].push(k);
             }
         }

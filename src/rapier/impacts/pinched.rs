@@ -11,16 +11,16 @@ use crate::math::fast_hash::FastMap;
 use crate::rapier::impacts::deep_pairs::{Deep, DeepPairs};
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::eligible_pairs::Rules;
-use crate::rapier::view::groups::Groups;
+use crate::rapier::view::groups::BodyGroups;
 use crate::rapier::view::joint_opening::opening;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 
 /// The one of two bodies that gives way to the other, and the other: a free one to one that is not, or to one of a
 /// higher dominance group of rapier; `None` if each gives way.
 fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
     let [a, b] = bodies;
-    let [free1, free2] = bodies.map(|k| view.bodies[k].kind == Kind::Free);
+    let [free1, free2] = bodies.map(|k| view.bodies[k].mobility == Mobility::Free);
     let [first, second] = bodies.map(|k| view.bodies[k].dominance);
     match (free1, free2) {
         (true, true) if first == second => None,
@@ -33,8 +33,8 @@ fn yielding(view: &StepView, bodies: [usize; 2]) -> Option<[usize; 2]> {
 /// Whether dominance groups keep one of a pair from being pushed back: two free bodies of different groups, or a free
 /// body of a higher group than one that nothing stops.
 pub fn one_dominates(view: &StepView, pair: [usize; 2]) -> bool {
-    let [first, second] = pair.map(|k| &view.bodies[view.parts[k].body]);
-    match [first, second].map(|body| body.kind == Kind::Free) {
+    let [first, second] = pair.map(|k| &view.bodies[view.colliders[k].body]);
+    match [first, second].map(|body| body.mobility == Mobility::Free) {
         [true, true] => first.dominance != second.dominance,
         [true, false] => first.dominance > second.dominance,
         [false, true] => second.dominance > first.dominance,
@@ -46,14 +46,14 @@ pub fn one_dominates(view: &StepView, pair: [usize; 2]) -> bool {
 /// them. One of these two moves, and with one of them a medial collider is below the floor; in the other the bodies
 /// need not be as deep as to be watched.
 pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
-    let free = |b: &usize| view.bodies[*b].kind == Kind::Free;
+    let free = |b: &usize| view.bodies[*b].mobility == Mobility::Free;
     let is_below = |pair: &[usize; 2]| deep.watched.get(pair).is_some_and(|deep| deep.way > 0.0);
     let sunk = deep.sunk.iter();
-    let sunk = sunk.map(|pair| (*pair, pair.map(|k| view.parts[k].body), is_below(pair)));
+    let sunk = sunk.map(|pair| (*pair, pair.map(|k| view.colliders[k].body), is_below(pair)));
     let sunk: Vec<_> = sunk
         .filter(|(_, bodies, _)| bodies.iter().any(free))
         .collect();
-    let mut groups = Groups::default();
+    let mut groups = BodyGroups::default();
     for (_, bodies, _) in &sunk {
         if yielding(view, *bodies).is_none() {
             groups.join(*bodies);
@@ -64,7 +64,7 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
         if let Some([body, jaw]) = yielding(view, *bodies) {
             let held = held.entry(groups.of(body)).or_default();
             held.is_below |= is_below;
-            held.moves |= view.bodies[jaw].kind != Kind::Fixed;
+            held.moves |= view.bodies[jaw].mobility != Mobility::Fixed;
             held.is_pinched |= held.jaw.is_some_and(|other| other != jaw);
             held.jaw = Some(jaw);
         }
@@ -78,11 +78,11 @@ pub fn pinched(view: &StepView, deep: &DeepPairs) -> Vec<[usize; 2]> {
     pairs.map(|(pair, ..)| *pair).collect()
 }
 
-/// Watched pairs below the floor that joints press together as jaws do, because one of the two bodies hangs by joints
-/// on a third that moves and does not give way, as on a hand: those of which the other body does not give way, and
-/// those of which it is in something that does not. These only where the hand's joint is open by as much as the pair
-/// would have to part: a hand that holds a chain of rings over the ground presses nothing. Ropes and springs, which
-/// lock no axis, do not count.
+/// Watched pairs below the floor that joints press together as jaws do: one of the two bodies hangs by joints on a
+/// hand, a third body that moves and does not give way. Either the other body does not give way; or it is itself deep
+/// in one that does not, and the hand's joint is open by at least as much as the pair would have to part
+/// ([`Deep::way`]): a hand that holds a chain of rings over the ground presses nothing. Ropes and springs, which lock
+/// no axis, do not count.
 pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Vec<[usize; 2]> {
     let is_below = |(_, deep): &(&[usize; 2], &Deep)| deep.way > 0.0;
     let below: Vec<_> = deep.watched.iter().filter(is_below).collect();
@@ -90,7 +90,7 @@ pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Ve
         return Vec::new();
     }
     let hands = Hands::find(view, rules);
-    let bodies = |pair: &[usize; 2]| pair.map(|k| view.parts[k].body);
+    let bodies = |pair: &[usize; 2]| pair.map(|k| view.colliders[k].body);
     let sunk = deep.sunk.iter();
     let stuck: Vec<_> = sunk
         .filter_map(|pair| yielding(view, bodies(pair)))
@@ -110,17 +110,17 @@ pub fn pressed_by_joints(view: &StepView, deep: &DeepPairs, rules: &Rules) -> Ve
     pressed.map(|(pair, _)| *pair).collect()
 }
 
-/// What hangs by joints on bodies that move and do not give way.
+/// Bodies that hang by joints on hands: bodies that move and do not give way.
 struct Hands {
     /// Free bodies that joints hold together.
-    groups: Groups,
+    groups: BodyGroups,
     /// A body that hangs on a hand, the hand, and the length by which their joint is open.
     held: Vec<([usize; 2], Real)>,
 }
 
 impl Hands {
     fn find(view: &StepView, rules: &Rules) -> Self {
-        let mut groups = Groups::default();
+        let mut groups = BodyGroups::default();
         let mut held = Vec::new();
         let joints = (rules.impulse_joints, rules.multibody_joints);
         for_each_joint(joints.0, joints.1, |handles, joint| {
@@ -130,10 +130,14 @@ impl Hands {
             if !joint.is_enabled() || joint.locked_axes.is_empty() {
                 return;
             }
-            match [a, b].map(|k| view.bodies[k].kind) {
-                [Kind::Free, Kind::Free] => groups.join([a, b]),
-                [Kind::Free, Kind::Driven] => held.push(([a, b], opening(view, [a, b], joint))),
-                [Kind::Driven, Kind::Free] => held.push(([b, a], opening(view, [a, b], joint))),
+            match [a, b].map(|k| view.bodies[k].mobility) {
+                [Mobility::Free, Mobility::Free] => groups.join([a, b]),
+                [Mobility::Free, Mobility::Driven] => {
+                    held.push(([a, b], opening(view, [a, b], joint)))
+                }
+                [Mobility::Driven, Mobility::Free] => {
+                    held.push(([b, a], opening(view, [a, b], joint)))
+                }
                 _ => {}
             }
         });
@@ -149,7 +153,7 @@ impl Hands {
     }
 }
 
-/// What holds a group of bodies.
+/// The bodies that hold a group of bodies and do not give way to it.
 #[derive(Default)]
 struct Held {
     /// One of the bodies that do not give way.

@@ -16,9 +16,9 @@ use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::impact_history::ImpactHistory;
 use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::joints::jointed_bodies::Joints;
-use crate::rapier::joints::pieces::Pieces;
+use crate::rapier::joints::pieces::MotionPieces;
 use crate::rapier::view::eligible_pairs::Rules;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 use std::collections::BTreeMap;
 
@@ -32,42 +32,42 @@ const ROUNDS: usize = 64;
 /// Record of what the impacts of a step did so far.
 pub struct Response {
     /// State of each body.
-    pub courses: Vec<BodyImpactState>,
+    pub body_states: Vec<BodyImpactState>,
     /// Between two colliders, those of one normal summed.
     pub impulses: BTreeMap<Pair, Vec<ReportedImpulse>>,
-    met: ImpactHistory,
+    history: ImpactHistory,
     /// Joints, once something was struck.
     pub(crate) joints: Option<Joints>,
-    pub(crate) pieces: Pieces,
+    pub(crate) pieces: MotionPieces,
 }
 
 /// The bodies of two colliders.
 pub(crate) fn bodies(view: &StepView, pair: Pair) -> [usize; 2] {
-    pair.map(|k| view.parts[k].body)
+    pair.map(|k| view.colliders[k].body)
 }
 
 impl Response {
     /// Nothing has happened to so many bodies.
     pub fn new(bodies: usize) -> Self {
         Self {
-            courses: vec![BodyImpactState::default(); bodies],
+            body_states: vec![BodyImpactState::default(); bodies],
             impulses: BTreeMap::new(),
-            met: ImpactHistory::default(),
+            history: ImpactHistory::default(),
             joints: None,
-            pieces: Pieces::default(),
+            pieces: MotionPieces::default(),
         }
     }
 
     /// How often a pair met.
-    pub fn met(&self, pair: Pair) -> u32 {
-        self.met.count(pair)
+    pub fn impact_count(&self, pair: Pair) -> u32 {
+        self.history.count(pair)
     }
 
     /// Whether an impact could still change the motion of either.
     pub fn is_movable(&self, view: &StepView, policy: &CcdPolicy, pair: Pair) -> bool {
         bodies(view, pair).iter().any(|&b| {
-            view.bodies[b].kind == Kind::Free
-                && self.courses[b].events <= policy.tuning.max_carried()
+            view.bodies[b].mobility == Mobility::Free
+                && self.body_states[b].events <= policy.tuning.max_carried()
         })
     }
 
@@ -81,18 +81,18 @@ impl Response {
         hit: Hit,
     ) -> Vec<usize> {
         let bodies = bodies(view, pair);
-        let undisturbed = self.met.undisturbed(view, pair, hit.time);
-        self.met.add(view, pair, &hit);
+        let undisturbed = self.history.undisturbed(view, pair, hit.time);
+        self.history.add(view, pair, &hit);
         let leads = [bodies, [bodies[1], bodies[0]]].map(|both| self.leads(view, policy, both));
         for (b, leads) in bodies.into_iter().zip(leads) {
             if self.advance(view, b, hit.time) && !leads {
-                self.courses[b].events += 1;
+                self.body_states[b].events += 1;
             }
         }
         let mut changed = bodies.to_vec();
         if hit.normal == Vector::ZERO {
             for b in bodies {
-                let events = &mut self.courses[b].events;
+                let events = &mut self.body_states[b].events;
                 *events = (*events).max(policy.tuning.max_events + 1);
             }
         } else {
@@ -130,8 +130,8 @@ impl Response {
             rules.multibody_joints,
         ));
         for &b in bodies {
-            self.courses[b].moved = true;
-            self.courses[b].struck = true;
+            self.body_states[b].moved = true;
+            self.body_states[b].struck = true;
         }
         self.close_joints(view, policy, 0.0, bodies, true);
     }
@@ -157,18 +157,19 @@ impl Response {
 
     /// Moves a free body to where it is at `time`; returns whether it is one.
     pub(crate) fn advance(&mut self, view: &mut StepView, body: usize, time: Real) -> bool {
-        let free = view.bodies[body].kind == Kind::Free;
+        let free = view.bodies[body].mobility == Mobility::Free;
         if free {
             view.bodies[body].advance(time);
             view.bodies[body].awake = true;
-            self.courses[body].moved = true;
+            self.body_states[body].moved = true;
         }
         free
     }
 
     /// Passes an impact of a pair at `time` on through the contacts of `changed`, to which it adds the bodies whose
-    /// motion it changes. `undisturbed`: of the pair that was struck, whose other contacts are thrown back as its
-    /// impact was, once; otherwise they would take back what it gave.
+    /// motion it changes. `undisturbed`: as [`ImpactHistory::undisturbed`] says, of the pair that was struck. Its other
+    /// contacts are pushed apart by the same rule as the impact, and in the first round only: else they would cancel
+    /// its impulse.
     fn propagate_impulses(
         &mut self,
         view: &mut StepView,
@@ -181,20 +182,22 @@ impl Response {
         let mut last = changed.clone();
         for round in 0..ROUNDS {
             let mut next = Vec::new();
-            let pairs = self.met.of(view, &last).into_iter();
-            let all = pairs.flat_map(|pair| (0..self.met.places(pair)).map(move |k| (pair, k)));
+            let pairs = self.history.of(view, &last).into_iter();
+            let all = pairs.flat_map(|pair| (0..self.history.places(pair)).map(move |k| (pair, k)));
             for (pair, place) in all.collect::<Vec<_>>() {
                 let own = undisturbed.filter(|_| pair == struck);
                 if own.is_some() && round > 0 {
                     continue;
                 }
-                let frozen = |b: usize| self.courses[b].frozen;
-                let closing = self.met.closing(view, policy, frozen, (pair, place), time);
+                let frozen = |b: usize| self.body_states[b].frozen;
+                let closing = self
+                    .history
+                    .closing(view, policy, frozen, (pair, place), time);
                 let Some(hit) = closing else {
                     continue;
                 };
                 for b in self.push(view, policy, rules, pair, &hit, own) {
-                    if self.courses[b].frozen {
+                    if self.body_states[b].frozen {
                         continue;
                     }
                     for list in [&mut next, &mut *changed] {
@@ -219,32 +222,33 @@ impl Response {
         policy: &CcdPolicy,
         time: Real,
         from: &[usize],
-        goes_on: bool,
+        is_next_piece: bool,
     ) -> Vec<usize> {
         let Some(joints) = self.joints.take() else {
             return Vec::new();
         };
-        let courses = &self.courses;
-        let frozen = |b: usize| courses[b].frozen;
+        let body_states = &self.body_states;
+        let frozen = |b: usize| body_states[b].frozen;
         let mut moved: Vec<usize> = Vec::new();
         for &body in from {
             if moved.contains(&body) {
                 continue;
             }
-            let piece = joints.close(view, body, [time, policy.dt], goes_on, frozen);
+            let piece = joints.close(view, body, [time, policy.dt], is_next_piece, frozen);
             moved.extend(&piece.moved);
             self.pieces.begin(piece);
         }
         for &b in &moved {
-            self.courses[b].moved = true;
+            self.body_states[b].moved = true;
             view.bodies[b].awake = true;
         }
-        // What joints give one of theirs they take from others: of a system all velocities are told, or none.
+        // Joints take from some bodies what they give to others: the velocities of all bodies of a system are written
+        // back, or of none.
         for &body in from {
             let tied = joints.tied_to(view, &[body]);
-            if tied.iter().any(|b| self.courses[*b].struck) {
+            if tied.iter().any(|b| self.body_states[*b].struck) {
                 for b in tied {
-                    self.courses[b].struck |= view.bodies[b].kind == Kind::Free;
+                    self.body_states[b].struck |= view.bodies[b].mobility == Mobility::Free;
                 }
             }
         }
@@ -252,11 +256,13 @@ impl Response {
         moved
     }
 
-    /// Whether a body that a driven one carries goes on whatever it meets here: what is not carried yet will be, after
-    /// as many impacts as a body may have.
+    /// Whether `body`, which a driven body carries along, keeps its motion at this contact, and counts no impact: where
+    /// the other body is free, not carried yet, and has had no more than
+    /// [`Tuning::max_carried`](crate::rapier::tuning::Tuning::max_carried) impacts. It will be carried too, once it has
+    /// had more than `max_events`.
     fn leads(&self, view: &StepView, policy: &CcdPolicy, [body, other]: [usize; 2]) -> bool {
-        let [leader, led] = [self.courses[body], self.courses[other]];
-        let free = view.bodies[other].kind == Kind::Free;
+        let [leader, led] = [self.body_states[body], self.body_states[other]];
+        let free = view.bodies[other].mobility == Mobility::Free;
         leader.driven && free && !led.driven && led.events <= policy.tuning.max_carried()
     }
 
@@ -268,22 +274,22 @@ impl Response {
         [body, other]: [usize; 2],
         time: Real,
     ) {
-        let (tuning, course) = (&policy.tuning, self.courses[body]);
-        if course.events <= tuning.max_events || view.bodies[body].kind != Kind::Free {
+        let (tuning, state) = (&policy.tuning, self.body_states[body]);
+        if state.events <= tuning.max_events || view.bodies[body].mobility != Mobility::Free {
             return;
         }
         let carrier = &view.bodies[other];
-        let carries = carrier.kind == Kind::Driven || self.courses[other].driven;
-        let carried = carries && course.events <= tuning.max_carried();
+        let carries = carrier.mobility == Mobility::Driven || self.body_states[other].driven;
+        let carried = carries && state.events <= tuning.max_carried();
         let carrying = carrier.motion_from(time);
-        self.courses[body].frozen = true;
-        self.courses[body].driven = carried;
+        self.body_states[body].frozen = true;
+        self.body_states[body].driven = carried;
         let held = &mut view.bodies[body];
         if carried {
             held.follow(&carrying);
         } else {
             held.hold(1.0 - time / policy.dt);
-            self.courses[body].struck = true;
+            self.body_states[body].struck = true;
         }
     }
 }

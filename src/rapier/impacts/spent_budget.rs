@@ -11,7 +11,7 @@ use crate::rapier::impacts::response::Response;
 use crate::rapier::impacts::toi_query::{CcdPolicy, Work};
 use crate::rapier::joints::jointed_bodies::Joints;
 use crate::rapier::view::eligible_pairs::{Rules, in_order, is_ccd_candidate};
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 
 impl Loop<'_> {
@@ -30,14 +30,15 @@ impl Loop<'_> {
         };
         self.find_boxes();
         let (policy, rules) = (self.policy, self.rules);
-        let is_driven =
-            |view: &StepView, part: usize| view.bodies[view.parts[part].body].kind == Kind::Driven;
+        let is_driven = |view: &StepView, part: usize| {
+            view.bodies[view.colliders[part].body].mobility == Mobility::Driven
+        };
         let mut next: Vec<usize> = self.queue.pairs().flatten().collect();
         let pairs = std::mem::take(&mut self.queue);
         let driven = |pair: &[usize; 2]| pair.iter().any(|k| is_driven(self.view, *k));
         let mut driven: Vec<[usize; 2]> = pairs.pairs().filter(driven).collect();
         while let Some(part) = next.pop() {
-            let body = self.view.parts[part].body;
+            let body = self.view.colliders[part].body;
             for b in self.response.wait(self.view, &policy, &rules, body, time) {
                 for k in self.parts_of[b].clone() {
                     self.outlines.forget(k);
@@ -74,17 +75,18 @@ impl Response {
     ) -> Vec<usize> {
         let motion = &view.bodies[body].motion;
         let stands = motion.linvel == Vector::ZERO && motion.angvel == Vector::ZERO;
-        if view.bodies[body].kind != Kind::Free || stands {
+        if view.bodies[body].mobility != Mobility::Free || stands {
             return Vec::new();
         }
         let joints = self.joints(view, rules);
         let mut stopped = joints.tied_to(view, &[body]);
         self.joints = Some(joints);
-        stopped.retain(|b| view.bodies[*b].kind == Kind::Free && !self.courses[*b].waits);
+        stopped
+            .retain(|b| view.bodies[*b].mobility == Mobility::Free && !self.body_states[*b].waits);
         self.pieces.end(&stopped);
         for &b in &stopped {
             self.advance(view, b, time);
-            let course = &mut self.courses[b];
+            let course = &mut self.body_states[b];
             (course.frozen, course.waits, course.struck) = (true, true, true);
             course.driven = false;
             course.events = course.events.max(policy.tuning.max_events + 1);

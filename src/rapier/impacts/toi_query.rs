@@ -17,7 +17,7 @@ use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::ActivePrimitives;
 use crate::parry::cast::Cast;
 use crate::parry::initial_contacts::AtStart;
-use crate::parry::sliding::Sinks;
+use crate::parry::sliding::SinkLimits;
 use crate::rapier::effects::{Effect, EffectSettings, Effects};
 use crate::rapier::impacts::fast_parts::FastParts;
 use crate::rapier::impacts::hit::Hit;
@@ -43,7 +43,7 @@ counters! {
 }
 
 impl Work {
-    /// What was spent of [`CcdPolicy::budget`].
+    /// Work spent so far, to be compared with [`CcdPolicy::budget`].
     pub fn spent(&self) -> u64 {
         self.counts.work()
     }
@@ -64,8 +64,8 @@ pub struct QueryOptions {
     pub floor: Option<ToiOptions>,
     /// All of both that may come as near as is asked, where that is known.
     pub reachable: Option<[ActivePrimitives; 2]>,
-    /// Of a body that slides over flat faces.
-    pub sinks: Sinks,
+    /// Depths up to which flat faces over which a body slides are no obstacles.
+    pub sinks: SinkLimits,
 }
 
 /// Asks for first contacts in a step of `dt` seconds.
@@ -113,7 +113,7 @@ impl CcdPolicy<'_> {
     }
 
     pub(super) fn effects_of(&self, view: &StepView, pair: [usize; 2]) -> Effects {
-        self.effects.of(pair.map(|k| view.parts[k].handle))
+        self.effects.of(pair.map(|k| view.colliders[k].handle))
     }
 
     /// Whether the pair as a whole is fast on its motion from `time` on: by default, when it would travel more than
@@ -147,12 +147,12 @@ impl CcdPolicy<'_> {
             Effect::Off => return false,
             Effect::Auto => {}
         }
-        let least = pair.map(|k| view.parts[k].least);
+        let least = pair.map(|k| view.colliders[k].least);
         let travel = view.travel(pair, self.dt);
         if travel <= self.tuning.fast * least[0].min(least[1]) {
             return false;
         }
-        let skins: Real = pair.iter().map(|k| view.parts[*k].skin).sum();
+        let skins: Real = pair.iter().map(|k| view.colliders[*k].skin).sum();
         let contact = skins + 2.0 * self.gap(view.thickness(pair));
         let fast = FastParts {
             seconds: self.dt / self.tuning.fast,
@@ -207,7 +207,7 @@ impl CcdPolicy<'_> {
         let tuning = &self.tuning;
         let thickness = view.thickness(pair);
         let gap = self.gap(thickness);
-        let skin = view.parts[pair[0]].skin + view.parts[pair[1]].skin;
+        let skin = view.colliders[pair[0]].skin + view.colliders[pair[1]].skin;
         let paths = match effects.exact_rotation {
             Effect::Off => Paths::Straight,
             Effect::On | Effect::Auto => Paths::Exact,
@@ -225,10 +225,10 @@ impl CcdPolicy<'_> {
             }),
             ..ToiOptions::default()
         };
-        let hair = tuning.hair * gap;
+        let min_sink = tuning.min_sink * gap;
         let pressed = match view.are_of_pieces(pair) {
-            true => (tuning.press * thickness).max(hair),
-            false => hair,
+            true => (tuning.flat_sink * thickness).max(min_sink),
+            false => min_sink,
         };
         let floor = options(0.5 * self.least_gap(), pressed, tuning.floor);
         // Where a meeting was, the gap is that of the target to within the tolerance: a larger target
@@ -238,10 +238,10 @@ impl CcdPolicy<'_> {
         } else {
             gap * (1.0 + 2.0 * tuning.tolerance * met as Real)
         };
-        // What bounces does so where it touches; the solver does not keep it from sinking.
+        // A pair that bounces does so where it touches; the solver does not keep it from sinking.
         let by = match self.may_bounce(view, pair) {
-            true => hair,
-            false => (tuning.sink * thickness).max(hair),
+            true => min_sink,
+            false => (tuning.sink * thickness).max(min_sink),
         };
         let sinks = self.sinks(view, pair, by);
         Some(if fast {
@@ -262,20 +262,20 @@ impl CcdPolicy<'_> {
     }
 
     /// How deep a pair may lie on flat faces, where it may sink in `by` deeper elsewhere.
-    fn sinks(&self, view: &StepView, pair: [usize; 2], by: Real) -> Sinks {
-        let least = pair.map(|k| view.parts[k].least);
+    fn sinks(&self, view: &StepView, pair: [usize; 2], by: Real) -> SinkLimits {
+        let least = pair.map(|k| view.colliders[k].least);
         let least = least[0].min(least[1]);
-        Sinks {
-            lies: least.min(self.tuning.lies * self.unit + self.sag),
-            to: self.tuning.floor * least,
-            by: by.min(self.tuning.sink * least),
+        SinkLimits {
+            at_start: least.min(self.tuning.flat_depth * self.unit + self.sag),
+            at_most: self.tuning.floor * least,
+            change: by.min(self.tuning.sink * least),
         }
     }
 
     /// The first query of a pair of medial meshes at the start of the step, as a job of a batch; `None`
     /// for other pairs, and where nothing is to be asked.
     pub fn job(&self, view: &StepView, pair: [usize; 2], deep: bool) -> Option<ToiJob> {
-        let [Some(mesh1), Some(mesh2)] = pair.map(|k| view.parts[k].medial()) else {
+        let [Some(mesh1), Some(mesh2)] = pair.map(|k| view.colliders[k].medial()) else {
             return None;
         };
         let query_options = self.query_options(view, pair, 0.0, 0, deep)?;
@@ -311,8 +311,8 @@ impl CcdPolicy<'_> {
             Some((hit, found.deepest))
         };
         let (hit, deepest) = query(&query_options.first, known)?;
-        let goes_on = hit.is_none_or(|h| h.time > time);
-        let deep = goes_on && deepest <= self.floor_depth();
+        let meets_later = hit.is_none_or(|h| h.time > time);
+        let deep = meets_later && deepest <= self.floor_depth();
         let floor = query_options.floor.as_ref().filter(|_| deep);
         match (hit, floor.and_then(|options| query(options, None)?.0)) {
             (Some(a), Some(b)) if a.time <= b.time => Some(a),
@@ -322,7 +322,7 @@ impl CcdPolicy<'_> {
 
     /// Distance between two shapes, a length, up to which their surfaces count as `distance` apart, skins included.
     pub fn reach(&self, view: &StepView, [i, j]: [usize; 2], distance: Real) -> Real {
-        let skins = view.parts[i].skin + view.parts[j].skin;
+        let skins = view.colliders[i].skin + view.colliders[j].skin;
         distance + skins + TOUCHING_MORE * self.unit
     }
 
@@ -344,7 +344,7 @@ fn ask(
         reachable, sinks, ..
     }: &QueryOptions,
 ) -> Option<ToiResult> {
-    let [p, q] = pair.map(|k| &view.parts[k]);
+    let [p, q] = pair.map(|k| &view.colliders[k]);
     if let (Some(a), Some(b)) = (p.medial(), q.medial()) {
         let active = reachable.clone();
         let query = Query::new(motions.each_ref(), (a, b), seconds, options, active);

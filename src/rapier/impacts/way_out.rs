@@ -34,5 +34,5 @@ pub fn way_out(
         let back = 2.0 * below(tuning.floor) * approach / seconds;
         back.sqrt().min(2.0 * approach).min(fastest)
     });
-    thrown.max(tuning.push * below(tuning.push_from) / policy.dt)
+    thrown.max(tuning.push * below(tuning.push_depth) / policy.dt)
 }

@@ -49,10 +49,10 @@ pub struct MedialDebugRender {
     /// Whether to draw the spheres that touch where two medial colliders are in contact: a circle of each around the
     /// contact normal, and the normal. Off by default.
     pub sphere_pairs: bool,
-    outlines: HashMap<usize, Outline>,
+    outlines: HashMap<usize, MeshLines>,
 }
 
-struct Outline {
+struct MeshLines {
     /// Keeps the data alive, whose address is the key.
     mesh: MedialMesh,
     vertices: Vec<Vector>,
@@ -131,7 +131,7 @@ impl MedialDebugRender {
     }
 }
 
-fn outline_of(mesh: &MedialMesh) -> Outline {
+fn outline_of(mesh: &MedialMesh) -> MeshLines {
     let size = mesh.aabb().extents().max_element();
     let (vertices, triangles) = mesh.envelope(size / STEPS);
     let mut edges: Vec<[u32; 2]> = triangles
@@ -141,7 +141,7 @@ fn outline_of(mesh: &MedialMesh) -> Outline {
         .collect();
     edges.sort_unstable();
     edges.dedup();
-    Outline {
+    MeshLines {
         mesh: mesh.clone(),
         vertices,
         edges,

@@ -100,17 +100,16 @@ impl MedialPipeline {
         self.state.reported.started = starts;
     }
 
-    /// What the next step has to know of bodies that were put into each other (spawned, teleported) and have not come
-    /// apart. It is not part of the world: if your game puts bodies into each other, save it beside
-    /// the world.
+    /// Record for the next step of bodies that were put into each other (spawned, teleported) and have not come apart.
+    /// It is not part of the world: if your game puts bodies into each other, save it beside the world.
     pub fn overlaps(&self) -> OverlapsRecord {
-        self.state.placed.record()
+        self.state.initial_overlaps.record()
     }
 
     /// Restores what [`Self::overlaps`] was when the world was saved, so that bodies that were put into each other come
     /// apart as they would have.
     pub fn resume_overlaps(&mut self, record: OverlapsRecord, world: &PhysicsWorld) {
-        self.state.placed.resume(record, &world.colliders);
+        self.state.initial_overlaps.resume(record, &world.colliders);
     }
 }
 
@@ -145,7 +144,7 @@ impl SavedWorld {
             Changes::Moved(modified)
         } else {
             let moved: Vec<ColliderHandle> = modified.into_iter().filter(moved).collect();
-            // What is left in this list are then the colliders that get a ball, and no others.
+            // This list then holds the colliders that get a ball, and no others.
             colliders.take_modified();
             for &h in &moved {
                 if let (Some(collider), Some(unmarked)) = (colliders.get_mut(h), unmarked.get(h)) {

@@ -12,7 +12,7 @@ use crate::rapier::joints::limits::Limit;
 use crate::rapier::joints::rows::{Joint, Twist};
 use crate::rapier::joints::tied_system::System;
 use crate::rapier::view::inertia::Inertia;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::{MOST_JOINTS, StepView};
 use rapier3d::dynamics::{
     GenericJoint, ImpulseJointSet, JointEnabled, MultibodyJointSet, RigidBodyHandle,
@@ -32,7 +32,7 @@ const UNCLOSED: f64 = 1.0e-2;
 
 /// Result of closing joints: the bodies moved, and until when.
 #[derive(Default)]
-pub struct Piece {
+pub struct MotionPiece {
     /// Bodies whose motion it changed.
     pub moved: Vec<usize>,
     /// Seconds into the step at which their motion ends, if before the step.
@@ -105,7 +105,7 @@ impl Joints {
         while next < bodies.len() {
             let body = bodies[next];
             next += 1;
-            if view.bodies[body].kind != Kind::Free {
+            if view.bodies[body].mobility != Mobility::Free {
                 continue;
             }
             for &j in self.of_body.get(&body).into_iter().flatten() {
@@ -140,27 +140,28 @@ impl Joints {
     /// Whether a body hangs by joints on one that is driven.
     pub fn hangs_on_driven(&self, view: &StepView, body: usize) -> bool {
         let mut tied = self.tied(view, &[body]).0.into_iter().skip(1);
-        tied.any(|b| view.bodies[b].kind == Kind::Driven)
+        tied.any(|b| view.bodies[b].mobility == Mobility::Driven)
     }
 
-    /// Gives a body and what joints tie to it the motions from `time` on that joints let them make, and lets their
-    /// velocities follow, which together gain no energy. At the end of the step, `dt`, joints are to be as open as
-    /// rapier's step left them. `frozen`: of a body, whether it stays on its path; it takes what joints give it for the
-    /// next step. `goes_on`: nothing was struck; a piece of their motion has ended.
+    /// Moves a body and all bodies that joints tie to it along paths on which the joints stay as closed as they are,
+    /// from `time` (seconds into the step) on, and changes their velocities to match, without a gain of energy of all
+    /// together. At the end of the step, `dt`, joints are to be as open as rapier's step left them. `frozen`: whether a
+    /// body keeps its path; the joints then change its velocity for the next step only. `is_next_piece`: a piece of the
+    /// motion has ended, and nothing was struck. Moves nothing where the joints cannot be closed to [`UNCLOSED`].
     pub fn close(
         &self,
         view: &mut StepView,
         from: usize,
         [time, dt]: [Real; 2],
-        goes_on: bool,
+        is_next_piece: bool,
         frozen: impl Fn(usize) -> bool,
-    ) -> Piece {
+    ) -> MotionPiece {
         if !self.of_body.contains_key(&from) || time >= dt {
-            return Piece::default();
+            return MotionPiece::default();
         }
         let inertia = |view: &StepView, b: usize| {
             let body = &view.bodies[b];
-            if body.kind == Kind::Free && !frozen(b) {
+            if body.mobility == Mobility::Free && !frozen(b) {
                 Inertia::of(body)
             } else {
                 Inertia::INFINITE
@@ -168,14 +169,14 @@ impl Joints {
         };
         let mut system = self.system(view, &[from], time, |b| inertia(view, b));
         for &b in &system.bodies {
-            if view.bodies[b].kind == Kind::Free {
+            if view.bodies[b].mobility == Mobility::Free {
                 view.bodies[b].advance(time);
             }
         }
         let twist = |b: &usize| view.bodies[*b].twist(time);
         let mut before: Vec<Twist> = system.bodies.iter().map(twist).collect();
-        if goes_on {
-            // What was executed is a chord; from here on it is the next one's tangent.
+        if is_next_piece {
+            // The velocities so far are along a chord; those along the tangent start the next one.
             system.hold(&mut before);
         }
         let rest = dt - time;
@@ -202,7 +203,7 @@ impl Joints {
             targets = locked;
         }
         if system.left_open(&targets).1 > UNCLOSED {
-            return Piece::default();
+            return MotionPiece::default();
         }
         let own: Vec<Twist> = system
             .bodies
@@ -219,16 +220,16 @@ impl Joints {
             if !system.is_infinite(k) {
                 view.bodies[b].aim(system.moved(k), [before[k], gained], seconds);
                 moved.push(b);
-            } else if view.bodies[b].kind == Kind::Free {
+            } else if view.bodies[b].mobility == Mobility::Free {
                 view.bodies[b].gain(gained, seconds);
             }
         }
-        Piece { moved, until }
+        MotionPiece { moved, until }
     }
 
-    /// Velocities that the joints allow the bodies tied to `from`, when a frozen body blocks the path of `moved`. They
-    /// are taken where `moved` has the bodies and with the inertia of the next step, so that both bodies of a joint
-    /// agree in it.
+    /// Velocities at the end of a piece of the bodies tied to `from`, where one of them is frozen and so blocks the
+    /// path of `moved`: their own, less what joints forbid at the end poses of `moved`. A frozen body has its own
+    /// inertia here, as in the next step, so that both bodies of a joint go by the same velocities.
     fn without_path(
         &self,
         view: &StepView,
@@ -237,9 +238,9 @@ impl Joints {
         moved: &System,
         own: &[Twist],
     ) -> Vec<Twist> {
-        let inertia = |b: usize| match view.bodies[b].kind {
-            Kind::Free => Inertia::of(&view.bodies[b]),
-            Kind::Fixed | Kind::Driven => Inertia::INFINITE,
+        let inertia = |b: usize| match view.bodies[b].mobility {
+            Mobility::Free => Inertia::of(&view.bodies[b]),
+            Mobility::Fixed | Mobility::Driven => Inertia::INFINITE,
         };
         let whole = self.system(view, &[from], time, inertia).moved_as(moved);
         let mut end = own.to_vec();
@@ -249,9 +250,9 @@ impl Joints {
     }
 }
 
-/// Gives bodies, where they are at `time`, the velocities and motions that their joints let them have: what was
-/// executed of a path is a chord, and an impact needs its tangent. `moving`: the system of the motions, where bodies
-/// keep theirs; `last`: that of the velocities at the end of the step.
+/// Replaces the velocities and motions of the bodies of a system at `time` by the nearest that their joints allow.
+/// Until then a motion is the chord of a bent path, and an impact needs the tangent. `moving`: the system for the
+/// motions, where some bodies keep theirs; `last`: the velocities that joints allow at the end of rapier's step.
 pub fn settle(
     view: &mut StepView,
     time: Real,

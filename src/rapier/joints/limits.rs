@@ -29,7 +29,7 @@ pub struct Limit {
 }
 
 /// Position of a joint along a limited axis.
-pub struct Place {
+pub struct AxisPosition {
     /// A length or an angle.
     pub at: Real,
     /// Axis by which it changes with the velocity of the second body along it, or by its turning velocity, world frame.
@@ -93,7 +93,7 @@ impl Limit {
     }
 
     /// Position of a joint whose two frames these are.
-    pub fn place(&self, frames: [Pose; 2]) -> Place {
+    pub fn place(&self, frames: [Pose; 2]) -> AxisPosition {
         let axis = |i: usize| frames[0].rotation * Vector::AXES[i];
         let i = self.axes.trailing_zeros() as usize;
         if i < 3 {
@@ -105,7 +105,7 @@ impl Limit {
                 let way: Vector = limited.map(|i| axis(i) * way.dot(axis(i))).sum();
                 (way.length(), way.normalize_or_zero())
             };
-            return Place {
+            return AxisPosition {
                 at,
                 axis,
                 is_angle: false,
@@ -117,7 +117,7 @@ impl Limit {
         } else {
             twist(shortest(turn), i - 3)
         };
-        Place {
+        AxisPosition {
             at,
             axis: frames[0].rotation * axis,
             is_angle: true,

@@ -2,13 +2,13 @@
 //! each piece moves.
 
 use crate::math::Real;
-use crate::rapier::joints::jointed_bodies::Piece;
+use crate::rapier::joints::jointed_bodies::MotionPiece;
 
 /// Pieces of a step that have not ended.
 #[derive(Default)]
-pub struct Pieces(Vec<(Real, Vec<usize>)>);
+pub struct MotionPieces(Vec<(Real, Vec<usize>)>);
 
-impl Pieces {
+impl MotionPieces {
     /// Seconds into the step at which the first ends.
     pub fn first_end(&self) -> Option<Real> {
         self.0
@@ -25,14 +25,14 @@ impl Pieces {
 
     /// Bodies leave those in which they are.
     pub fn end(&mut self, bodies: &[usize]) {
-        self.begin(Piece {
+        self.begin(MotionPiece {
             until: None,
             moved: bodies.to_vec(),
         });
     }
 
     /// Bodies begin one, and leave those in which they are.
-    pub fn begin(&mut self, piece: Piece) {
+    pub fn begin(&mut self, piece: MotionPiece) {
         for (_, bodies) in &mut self.0 {
             bodies.retain(|b| !piece.moved.contains(b));
         }

@@ -2,7 +2,7 @@
 //! limit at which a joint stops.
 
 use crate::math::{Pose, Real, Rotation, Vector};
-use crate::rapier::joints::limits::{Limit, Place};
+use crate::rapier::joints::limits::{AxisPosition, Limit};
 
 /// Linear and angular velocity, or force and torque, at a body's centre of mass.
 pub type Twist = [Vector; 2];
@@ -20,7 +20,7 @@ pub struct Joint {
 }
 
 /// The opening of a joint along or about an axis, and its change by the twists of both bodies.
-pub struct Row {
+pub struct JointRow {
     /// Places of the bodies in what is tied together.
     pub bodies: [usize; 2],
     /// Rows for each body.
@@ -31,7 +31,7 @@ pub struct Row {
     pub is_angle: bool,
 }
 
-impl Row {
+impl JointRow {
     /// Change of the opening in a second.
     pub fn along(&self, twists: &[Twist]) -> f64 {
         let of = |k: usize| dot(self.jacobian[k], twists[self.bodies[k]]);
@@ -41,7 +41,7 @@ impl Row {
 
 /// Ends of a joint, world frame.
 #[derive(Clone, Copy)]
-pub struct Ends {
+pub struct JointEnds {
     /// Places of the bodies in what is tied together.
     pub bodies: [usize; 2],
     /// Frames of the joint.
@@ -50,9 +50,9 @@ pub struct Ends {
     pub centers: [Vector; 2],
 }
 
-impl Ends {
+impl JointEnds {
     /// Rows of the locked ones of six axes.
-    pub fn locked(self, axes: u8) -> impl Iterator<Item = Row> {
+    pub fn locked(self, axes: u8) -> impl Iterator<Item = JointRow> {
         let [first, second] = self.frames;
         let way = second.translation - first.translation;
         let turned = match axes >> 3 {
@@ -70,8 +70,8 @@ impl Ends {
     }
 
     /// The row of a limit.
-    pub fn limited(&self, limit: &Limit) -> Row {
-        let Place { at, axis, is_angle } = limit.place(self.frames);
+    pub fn limited(&self, limit: &Limit) -> JointRow {
+        let AxisPosition { at, axis, is_angle } = limit.place(self.frames);
         if is_angle {
             self.turn(axis, at)
         } else {
@@ -80,9 +80,9 @@ impl Ends {
     }
 
     /// Moves the second body along an axis, against the first.
-    fn slide(&self, n: Vector, opening: Real) -> Row {
+    fn slide(&self, n: Vector, opening: Real) -> JointRow {
         let arms = self.centers.map(|c| self.frames[1].translation - c);
-        Row {
+        JointRow {
             bodies: self.bodies,
             jacobian: [[-n, -arms[0].cross(n)], [n, arms[1].cross(n)]],
             opening,
@@ -91,8 +91,8 @@ impl Ends {
     }
 
     /// Turns the second body about an axis, against the first.
-    fn turn(&self, n: Vector, opening: Real) -> Row {
-        Row {
+    fn turn(&self, n: Vector, opening: Real) -> JointRow {
+        JointRow {
             bodies: self.bodies,
             jacobian: [[Vector::ZERO, -n], [Vector::ZERO, n]],
             opening,

@@ -2,7 +2,7 @@
 
 use crate::math::{Pose, Real};
 use crate::rapier::joints::limits::Limit;
-use crate::rapier::joints::rows::{Row, Twist};
+use crate::rapier::joints::rows::{JointRow, Twist};
 use crate::rapier::joints::tied_system::System;
 
 /// Times that joints are asked whether they pass a limit, as a stop of one may have another pass.
@@ -14,7 +14,8 @@ impl System<'_> {
     pub fn stand_at_limits(&mut self, twists: &[Twist], push: impl Fn(&Self) -> Vec<Twist>) {
         let limits = self.limits(&self.poses);
         let unit = self.unit;
-        let stands = |(_, limit, row): &(usize, Limit, Row)| limit.is_reached(row.opening, unit);
+        let stands =
+            |(_, limit, row): &(usize, Limit, JointRow)| limit.is_reached(row.opening, unit);
         let mut standing: Vec<_> = limits.filter(stands).collect();
         for _ in 0..STOPPING_ROUNDS {
             if standing.is_empty() {
@@ -38,7 +39,10 @@ impl System<'_> {
     }
 
     /// Limits of joints that may move, with the places of these joints, and their rows at some poses.
-    fn limits<'b>(&'b self, poses: &'b [Pose]) -> impl Iterator<Item = (usize, Limit, Row)> + 'b {
+    fn limits<'b>(
+        &'b self,
+        poses: &'b [Pose],
+    ) -> impl Iterator<Item = (usize, Limit, JointRow)> + 'b {
         let joints = self.joints.iter().enumerate();
         let limited = joints.filter(|(_, (joint, bodies))| {
             !joint.limits.is_empty() && !bodies.iter().all(|k| self.is_infinite(*k))

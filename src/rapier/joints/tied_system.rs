@@ -11,7 +11,7 @@
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::rapier::joints::limits::Limit;
-use crate::rapier::joints::rows::{Ends, Joint, Row, Twist, dot};
+use crate::rapier::joints::rows::{Joint, JointEnds, JointRow, Twist, dot};
 use crate::rapier::joints::skyline::{Skyline, ranks};
 use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::link_angles::shortest;
@@ -56,7 +56,7 @@ pub struct System<'a> {
     /// Limits at which joints stop in a piece of the motion, and places of these joints.
     pub(super) stops: Vec<(usize, Limit)>,
     /// Rows of `G`, and of `G W`.
-    rows: Vec<Row>,
+    rows: Vec<JointRow>,
     weighted: Vec<[Twist; 2]>,
     /// Factor of `G W Gᵀ`, and the order of its rows: those of branches before those of their stem, branch by branch.
     factor: Option<Skyline>,
@@ -165,7 +165,7 @@ impl<'a> System<'a> {
     pub(super) fn factor(&mut self) {
         self.rows = self.rows_now();
         let inertias = &self.inertias;
-        let weighted = |r: &Row| [0, 1].map(|k| inertias[r.bodies[k]].apply(r.jacobian[k]));
+        let weighted = |r: &JointRow| [0, 1].map(|k| inertias[r.bodies[k]].apply(r.jacobian[k]));
         self.weighted = self.rows.iter().map(weighted).collect();
         self.order = (0..self.rows.len()).collect();
         let rank = |i: &usize| self.rows[*i].bodies.iter().map(|k| self.ranks[*k]).min();
@@ -197,7 +197,7 @@ impl<'a> System<'a> {
     }
 
     /// The rows of all joints that hold what moves at the poses now, those of stops last.
-    fn rows_now(&self) -> Vec<Row> {
+    fn rows_now(&self) -> Vec<JointRow> {
         let locked = (0..self.joints.len())
             .flat_map(|j| self.ends(j, &self.poses).locked(self.joints[j].0.locked));
         let stops = self.stops.iter();
@@ -207,9 +207,9 @@ impl<'a> System<'a> {
     }
 
     /// Ends of a joint at some poses.
-    pub(super) fn ends(&self, joint: usize, poses: &[Pose]) -> Ends {
+    pub(super) fn ends(&self, joint: usize, poses: &[Pose]) -> JointEnds {
         let (joint, bodies) = self.joints[joint];
-        Ends {
+        JointEnds {
             bodies,
             frames: [0, 1].map(|k| poses[bodies[k]] * joint.frames[k]),
             centers: bodies.map(|k| poses[k] * self.centers[k]),
@@ -267,7 +267,7 @@ impl<'a> System<'a> {
         for (row, target) in self.rows_now().iter().zip(targets) {
             let off = f64::from(row.opening) - target;
             let unit = if row.is_angle { 1.0 } else { self.unit.into() };
-            // What is no number is not closed.
+            // A joint whose opening is NaN is not closed.
             let size = off.abs() / unit;
             most = f64::max(most, if size.is_nan() { f64::INFINITY } else { size });
             left.push(off);
@@ -308,7 +308,7 @@ impl<'a> System<'a> {
             .map(|poses| (0..own.len()).map(|k| frame(poses, k)).collect());
         let energy = |twists: &[Twist], poses: &[Pose], frame: &[Twist]| -> f64 {
             let of = |(k, inertia): (usize, &Inertia)| {
-                // Its inertia is that of the start.
+                // The inertia is that of the start.
                 let back = self.start[k].rotation * poses[k].rotation.inverse();
                 let [slide, turn] = [0, 1].map(|i| twists[k][i] - frame[k][i]);
                 inertia.energy([slide, back * turn])
@@ -336,7 +336,7 @@ impl<'a> System<'a> {
         momentum / masses.max(Vector::splat(Real::MIN_POSITIVE))
     }
 
-    fn is_movable(&self, row: &Row) -> bool {
+    fn is_movable(&self, row: &JointRow) -> bool {
         row.bodies.iter().any(|k| !self.is_infinite(*k))
     }
 

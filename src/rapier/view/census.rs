@@ -34,7 +34,8 @@ impl Census {
         (joints, multibodies): (&ImpulseJointSet, &MultibodyJointSet),
         soft: &SoftBodySet,
     ) -> Self {
-        // What sleeps with a speed, or one that is no number, is rapier's to wake or to disable.
+        // A sleeping or fixed body with a speed, or with one that is NaN, counts as moving: rapier wakes or disables
+        // it.
         let has_speed =
             |body: &RigidBody| body.linvel() != Vector::ZERO || body.angvel() != Vector::ZERO;
         let moves = |body: &RigidBody| {

@@ -4,15 +4,16 @@
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Vector};
 use crate::rapier::view::motion::Body;
-use crate::rapier::view::step_view::{Part, StepView};
+use crate::rapier::view::step_view::{StepCollider, StepView};
 use crate::rapier::view::still_colliders::StillColliders;
 use parry3d::query::NonlinearRigidMotion;
 use rapier3d::dynamics::{IntegrationParameters, MultibodyJointSet, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{ColliderHandle, ColliderSet};
 
 impl StepView {
-    /// Goes on with all bodies and colliders: those of this view in their motions, and of `whole`, taken after rapier's
-    /// step, those that did not take part, which were `still` before it.
+    /// Extends this view to the whole world. Bodies and colliders that took part keep their motions; the bystanders are
+    /// those of `whole`, a view made after rapier's step, with sleeping bodies put back to the poses before it, which
+    /// `still` has.
     pub fn complete(
         &mut self,
         mut whole: Self,
@@ -26,7 +27,7 @@ impl StepView {
                 sleep_at(body, pose);
             }
         }
-        for part in &mut whole.parts {
+        for part in &mut whole.colliders {
             let pose = whole.bodies[part.body].start * part.offset;
             part.aabb = part.shape.compute_aabb(&pose);
         }
@@ -37,9 +38,9 @@ impl StepView {
                 body.clone_from(&self.bodies[k]);
             }
         }
-        let parts = self.parts.iter().map(|part| (part.handle, part));
-        let parts: FastMap<ColliderHandle, &Part> = parts.collect();
-        for part in &mut whole.parts {
+        let parts = self.colliders.iter().map(|part| (part.handle, part));
+        let parts: FastMap<ColliderHandle, &StepCollider> = parts.collect();
+        for part in &mut whole.colliders {
             if let Some(known) = parts.get(&part.handle) {
                 let body = part.body;
                 part.clone_from(known);

@@ -3,7 +3,7 @@
 
 use crate::math::Real;
 use crate::rapier::view::filter_answers::FilterAnswers;
-use crate::rapier::view::motion::{Body, Kind};
+use crate::rapier::view::motion::{Body, Mobility};
 use crate::rapier::view::overlapping_boxes::overlapping_pairs;
 use crate::rapier::view::step_view::StepView;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -23,7 +23,7 @@ pub struct Rules<'a> {
     /// Multibodies, likewise.
     pub multibody_joints: &'a MultibodyJointSet,
     /// Filters of the user.
-    pub verdicts: &'a FilterAnswers<'a>,
+    pub filter_answers: &'a FilterAnswers<'a>,
 }
 
 impl Rules<'_> {
@@ -35,7 +35,7 @@ impl Rules<'_> {
 
     /// Whether they push each other if the user's filters, which are not asked, let them.
     pub fn may_respond(&self, view: &StepView, pair: [usize; 2]) -> bool {
-        let [h1, h2] = pair.map(|k| view.parts[k].handle);
+        let [h1, h2] = pair.map(|k| view.colliders[k].handle);
         let (Some(c1), Some(c2)) = (self.colliders.get(h1), self.colliders.get(h2)) else {
             return false;
         };
@@ -69,7 +69,7 @@ impl Rules<'_> {
 
     /// Whether a joint holds their bodies together.
     pub fn are_jointed(&self, view: &StepView, pair: [usize; 2]) -> bool {
-        let [first, second] = pair.map(|k| view.bodies[view.parts[k].body].handle);
+        let [first, second] = pair.map(|k| view.bodies[view.colliders[k].body].handle);
         let (Some(first), Some(second)) = (first, second) else {
             return false;
         };
@@ -79,14 +79,14 @@ impl Rules<'_> {
 
     /// Whether the user's filters, if any, let them push each other.
     fn filters_let(&self, view: &StepView, pair: [usize; 2]) -> bool {
-        let handles = pair.map(|k| view.parts[k].handle);
+        let handles = pair.map(|k| view.colliders[k].handle);
         let hooks = handles.map(|h| self.colliders.get(h).map(|c| c.active_hooks()));
         let mut hooks = hooks.into_iter().flatten();
         if !hooks.any(|h| h.contains(ActiveHooks::FILTER_CONTACT_PAIRS)) {
             return true;
         }
         let world = (self.bodies, self.colliders);
-        let flags = self.verdicts.of_pair(view, world, handles);
+        let flags = self.filter_answers.of_pair(view, world, handles);
         flags.is_some_and(|f| f.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
     }
 }
@@ -94,9 +94,9 @@ impl Rules<'_> {
 /// Whether an impact between two colliders is for the event loop to find: one of them medial, one of
 /// them free, and one awake.
 pub fn is_ccd_candidate(view: &StepView, [i, j]: [usize; 2]) -> bool {
-    let (p, q) = (&view.parts[i], &view.parts[j]);
+    let (p, q) = (&view.colliders[i], &view.colliders[j]);
     let (a, b) = (&view.bodies[p.body], &view.bodies[q.body]);
-    let free = |body: &Body| body.kind == Kind::Free;
+    let free = |body: &Body| body.mobility == Mobility::Free;
     p.body != q.body
         && (free(a) || free(b))
         && (a.awake || b.awake)
@@ -109,12 +109,12 @@ pub fn is_ccd_candidate(view: &StepView, [i, j]: [usize; 2]) -> bool {
 pub fn sweep(view: &StepView, dt: Real, margin: Real) -> Vec<[usize; 2]> {
     let swept = |k: usize| {
         let aabb = view.swept_aabb(k, 0.0, dt);
-        (k, aabb.loosened(margin + view.parts[k].skin))
+        (k, aabb.loosened(margin + view.colliders[k].skin))
     };
-    let mut parts: Vec<(usize, Aabb)> = (0..view.parts.len()).map(swept).collect();
-    keep_near(&mut parts, |k| view.parts[k].medial().is_some());
+    let mut parts: Vec<(usize, Aabb)> = (0..view.colliders.len()).map(swept).collect();
+    keep_near(&mut parts, |k| view.colliders[k].medial().is_some());
     keep_near(&mut parts, |k| {
-        view.bodies[view.parts[k].body].kind != Kind::Fixed
+        view.bodies[view.colliders[k].body].mobility != Mobility::Fixed
     });
     let (parts, boxes): (Vec<usize>, Vec<Aabb>) = parts.into_iter().unzip();
     let met = overlapping_pairs(&boxes)
@@ -137,7 +137,7 @@ fn keep_near(parts: &mut Vec<(usize, Aabb)>, is_wanted: impl Fn(usize) -> bool) 
 
 /// The two in the narrow phase's order.
 pub fn in_order(view: &StepView, [i, j]: [usize; 2]) -> [usize; 2] {
-    let index = |k: usize| view.parts[k].handle.into_raw_parts().0;
+    let index = |k: usize| view.colliders[k].handle.into_raw_parts().0;
     if index(i) <= index(j) { [i, j] } else { [j, i] }
 }
 

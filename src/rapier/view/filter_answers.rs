@@ -128,7 +128,7 @@ impl PhysicsHooks for FilterAnswers<'_> {
         if flags.is_some_and(|f| !solved(f))
             && let Some(keys) = self.keys(context.colliders, pair)
         {
-            self.exchange.let_pass(&keys, true);
+            self.exchange.note_contacts_off(&keys, true);
         }
         let [a, b] = pair;
         locked(&self.filtered).insert(sorted(a, b), flags);
@@ -149,7 +149,8 @@ impl PhysicsHooks for FilterAnswers<'_> {
         if before > 0
             && let Some(keys) = self.keys(context.colliders, [context.collider1, context.collider2])
         {
-            self.exchange.let_pass(&keys, contacts(context) == 0);
+            self.exchange
+                .note_contacts_off(&keys, contacts(context) == 0);
         }
     }
 }

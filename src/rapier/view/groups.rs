@@ -4,11 +4,11 @@ use crate::math::fast_hash::FastMap;
 
 /// Groups of bodies, by one of each that stands for all.
 #[derive(Default)]
-pub struct Groups {
+pub struct BodyGroups {
     next: FastMap<usize, usize>,
 }
 
-impl Groups {
+impl BodyGroups {
     /// The body that stands for the group of another.
     pub fn of(&self, mut body: usize) -> usize {
         while let Some(next) = self.next.get(&body) {

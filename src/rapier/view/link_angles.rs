@@ -34,7 +34,12 @@ impl LinkAngles {
     /// Displacements that take a link from what rapier has, `of`, to a rotation, of which the last is the shortest turn
     /// there, and the others whole turns: so its angles go on from these. Angles that are lost are set to zero first;
     /// then those of a hinge, whose axis is `hinge`, are the sum they should be, others those of the shortest turn.
-    pub fn goes_on(&self, of: &Self, rotation: Rotation, hinge: Option<usize>) -> [Vector; 3] {
+    pub fn displacements_to(
+        &self,
+        of: &Self,
+        rotation: Rotation,
+        hinge: Option<usize>,
+    ) -> [Vector; 3] {
         let turn = |from: Rotation| shortest(rotation * from.inverse()).to_scaled_axis();
         let made = (of.angles - self.angles).abs().max_element();
         if made.is_finite() && made > LOST {
@@ -107,7 +112,7 @@ mod tests {
                 rotation: Rotation::from_scaled_axis(Vector::new(2.0, 0.1, -0.9)),
                 angles: Vector::new(0.13, -0.41, 1.0) * size,
             };
-            let displacements = before.goes_on(&now, target, None);
+            let displacements = before.displacements_to(&now, target, None);
             let end = turned_by_rapier(now.rotation, displacements);
             let off = shortest(end * target.inverse()).to_scaled_axis().length();
             assert!(off < 1.0e-3, "{off} rad off from angles of {size} rad");
@@ -122,7 +127,7 @@ mod tests {
         };
         for (from, to) in [(6.1, 6.4), (31.0, 29.5), (2.0e4, 2.0e4 + 0.25)] {
             for now in [from + 1.0, from - 9.0, 3.0e6, -1.0e12, 3.0e16].map(hinge) {
-                let turns = hinge(from).goes_on(&now, hinge(to).rotation, Some(0));
+                let turns = hinge(from).displacements_to(&now, hinge(to).rotation, Some(0));
                 let end = turns.iter().fold(now.angles.x, |sum, turn| sum + turn.x);
                 assert!(
                     (end - to).abs() < 0.01,

@@ -2,15 +2,15 @@
 //! the joints only: those of the links' bodies are from before it, until the next step begins.
 //!
 //! Where the two differ by no more than gravity changes a velocity in a step, links keep those of their bodies: limbs
-//! that lie still come to rest sooner with these. Links that whirl keep them, too: with those of the joints, steps of a
-//! rope of 30 links that touch, struck at 20 m/s, gained up to .11 of the energy.
+//! that lie still come to rest sooner with these. Links that turn fast keep them, too: with those of the joints, steps
+//! of a rope of 30 links that touch, struck at 20 m/s, gained up to .11 of the energy.
 
 use crate::math::{Real, Vector};
 use crate::rapier::view::step_view::StepView;
 use rapier3d::dynamics::{Multibody, MultibodyJointSet, RigidBodySet};
 
-/// Turn of the fastest link in a step, in radians, from which a multibody whirls.
-pub const WHIRLS: Real = 0.1;
+/// Turn of the fastest link in a step, in radians, from which a multibody counts as turning fast.
+pub const FAST_LINK_TURN: Real = 0.1;
 
 impl StepView {
     /// Finds the velocities of links by their joints, of multibodies of which those of the bodies are far from them.
@@ -32,7 +32,9 @@ impl StepView {
                 let own = &self.bodies[*place];
                 let turn = (*angular - body.angvel()).length();
                 let off = (*linear - body.linvel()).length() + turn * own.reach;
-                own.whirl * dt <= WHIRLS && !body.is_sleeping() && off > own.pull().length()
+                own.link_spin * dt <= FAST_LINK_TURN
+                    && !body.is_sleeping()
+                    && off > own.pull().length()
             });
             for (place, _, velocity) in links {
                 self.bodies[place].by_joints = is_far.then_some(velocity);

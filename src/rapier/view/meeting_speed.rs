@@ -1,6 +1,7 @@
 //! How fast two colliders move against each other where they may meet: what decides whether rapier's solver gets them.
 //! Parts of medial meshes are looked at one by one in [`crate::rapier::impacts::fast_parts`].
 
+use crate::math::tolerance::FEW_OPERATIONS;
 use crate::math::{Real, Vector};
 use crate::rapier::view::step_view::StepView;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -17,11 +18,11 @@ impl StepView {
     pub fn meeting_speed(&self, pair: [usize; 2], [time, end]: [Real; 2], margin: Real) -> Real {
         let swept = |k: usize| {
             let aabb = self.swept_aabb(k, time, end);
-            aabb.loosened(margin + self.parts[k].skin)
+            aabb.loosened(margin + self.colliders[k].skin)
         };
         let common = swept(pair[0]).intersection(&swept(pair[1]));
         let below = |common: Option<Aabb>, (k, other): (usize, usize)| {
-            self.below_plane(k, common?, margin + self.parts[other].skin)
+            self.below_plane(k, common?, margin + self.colliders[other].skin)
         };
         let orders = [(pair[0], pair[1]), (pair[1], pair[0])];
         let Some(common) = orders.into_iter().fold(common, below) else {
@@ -42,14 +43,14 @@ impl StepView {
             moments.map(|[a, b]| (at(a) - at(b)).length())
         });
         // Rounding: a few ulps.
-        speeds.fold(0.0, Real::max) * (1.0 + 16.0 * Real::EPSILON)
+        speeds.fold(0.0, Real::max) * (1.0 + FEW_OPERATIONS)
     }
 
     /// Box of the part of a box that is below a half-space's plane or within `margin` of it; all of the box if the
     /// collider is no half-space, or moves. The box of a half-space is the whole world, in which a wheel's top would
     /// count as meeting it.
     fn below_plane(&self, part: usize, aabb: Aabb, margin: Real) -> Option<Aabb> {
-        let p = &self.parts[part];
+        let p = &self.colliders[part];
         let motion = &self.bodies[p.body].motion;
         let still = motion.linvel == Vector::ZERO && motion.angvel == Vector::ZERO;
         let Some(plane) = p.shape.as_halfspace().filter(|_| still) else {
@@ -58,7 +59,7 @@ impl StepView {
         let pose = self.motion(part, 0.0).start;
         let normal = pose.rotation * plane.normal;
         let size = aabb.mins.abs().max(aabb.maxs.abs()) + pose.translation.abs();
-        let rounding = 16.0 * Real::EPSILON * size.element_sum();
+        let rounding = FEW_OPERATIONS * size.element_sum();
         let height = normal.dot(pose.translation) + margin + p.skin + rounding;
         box_below(aabb, normal, height)
     }
@@ -69,7 +70,7 @@ fn box_below(aabb: Aabb, normal: Vector, height: Real) -> Option<Aabb> {
     let lowest = (normal * aabb.mins).min(normal * aabb.maxs);
     let (mut mins, mut maxs) = (aabb.mins, aabb.maxs);
     for axis in 0..3 {
-        // What is left for this coordinate where the two others add least.
+        // The height that is left for this coordinate where the two others add least.
         let room = height - (lowest.element_sum() - lowest[axis]);
         if normal[axis] > 0.0 {
             maxs[axis] = maxs[axis].min(room / normal[axis]);

@@ -13,11 +13,11 @@ use rapier3d::dynamics::{
 
 /// Turn in a step, in radians, from which the path of a body about a pivot is taken as an arc: an eighth of its square
 /// is the share of the radius by which its chord misses it.
-const TURNS: Real = 0.1;
+const ARC_TURN: Real = 0.1;
 
 /// Whether an impact may move a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum Mobility {
     /// Never moves.
     Fixed,
     /// Moves, and nothing stops it: kinematic bodies, and links of multibodies of which a joint is kinematic or
@@ -34,7 +34,8 @@ struct Bend {
     rate: [Vector; 2],
     /// Seconds into the step until which they do.
     until: Real,
-    /// Excess of its velocities over the tangent of the path; `None` of a body that they leave on its path.
+    /// Linear and angular velocity less the tangent of the path; `None` where joints change the velocities only, and
+    /// not the path.
     excess: Option<[Vector; 2]>,
 }
 
@@ -44,7 +45,7 @@ pub struct Body {
     /// Body of rapier; `None` for the implicit static body.
     pub handle: Option<RigidBodyHandle>,
     /// Whether an impact may move it.
-    pub kind: Kind,
+    pub mobility: Mobility,
     /// Took part in rapier's step.
     pub awake: bool,
     /// Motion from [`Self::time`] on, world frame, per second.
@@ -78,8 +79,8 @@ pub struct Body {
     pub locked: LockedAxes,
     /// rapier's dominance group.
     pub dominance: i16,
-    /// Radians per second of the fastest link of its multibody before rapier's step; 0 of a body of none.
-    pub whirl: Real,
+    /// Angular speed of the fastest link of its multibody before rapier's step, rad/s; 0 of a body of none.
+    pub link_spin: Real,
     /// Linear and angular velocity after rapier's step by the joints of its multibody, where they hold and not those of
     /// rapier's body.
     pub by_joints: Option<[Vector; 2]>,
@@ -96,16 +97,16 @@ pub struct Body {
 impl Body {
     /// A body at the start of a step; `is_free`: where it is dynamic, an impact may move it.
     pub fn new(handle: RigidBodyHandle, body: &RigidBody, is_free: bool) -> Self {
-        let kind = match (body.is_fixed(), body.is_dynamic() && is_free) {
-            (true, _) => Kind::Fixed,
-            (false, true) => Kind::Free,
-            (false, false) => Kind::Driven,
+        let mobility = match (body.is_fixed(), body.is_dynamic() && is_free) {
+            (true, _) => Mobility::Fixed,
+            (false, true) => Mobility::Free,
+            (false, false) => Mobility::Driven,
         };
         let properties = body.mass_properties();
         Self {
             handle: Some(handle),
-            kind,
-            awake: kind != Kind::Fixed && !body.is_sleeping(),
+            mobility,
+            awake: mobility != Mobility::Fixed && !body.is_sleeping(),
             motion: NonlinearRigidMotion {
                 local_center: properties.local_mprops.local_com,
                 ..NonlinearRigidMotion::constant_position(*body.position())
@@ -124,7 +125,7 @@ impl Body {
             inverse_mass: properties.effective_inv_mass,
             locked: properties.flags,
             dominance: body.effective_dominance_group(),
-            whirl: 0.0,
+            link_spin: 0.0,
             by_joints: None,
             jointed: false,
             pivot: None,
@@ -146,7 +147,7 @@ impl Body {
     pub fn ground() -> Self {
         Self {
             handle: None,
-            kind: Kind::Fixed,
+            mobility: Mobility::Fixed,
             awake: false,
             motion: NonlinearRigidMotion::identity(),
             time: 0.0,
@@ -163,7 +164,7 @@ impl Body {
             inverse_mass: Vector::ZERO,
             locked: LockedAxes::empty(),
             dominance: i16::from(i8::MAX) + 1,
-            whirl: 0.0,
+            link_spin: 0.0,
             by_joints: None,
             jointed: false,
             pivot: None,
@@ -174,7 +175,7 @@ impl Body {
 
     /// Velocity with which the solver starts, before contacts: gravity and forces of the user.
     pub fn predict(&mut self, body: &RigidBody, gravity: Vector, dt: Real) {
-        if self.kind == Kind::Fixed || !self.awake {
+        if self.mobility == Mobility::Fixed || !self.awake {
             return;
         }
         [self.motion.linvel, self.motion.angvel] = velocities(body, dt);
@@ -202,7 +203,8 @@ impl Body {
         let turn = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
         let turn = unwrapped(turn, angular * dt, iterations.max(1) as Real);
         // The path of a centre that goes round a pivot is an arc, of which rapier's step tells the chord.
-        let center = self.pivot.filter(|_| turn.length() > TURNS).unwrap_or(com);
+        let is_arc = turn.length() > ARC_TURN;
+        let center = self.pivot.filter(|_| is_arc).unwrap_or(com);
         self.reach += (center - com).length();
         self.motion.local_center = center;
         self.motion.linvel = (end * center - start * center) / dt;
@@ -244,8 +246,8 @@ impl Body {
         self.taken_back -= linear;
     }
 
-    /// Stops it for the last `share` of the step: it gains no speed by forces in a time in which it gets nowhere.
-    /// What contacts took of that already is not taken twice.
+    /// Stops it for the last `share` of the step: it gains no speed by forces in a time in which it gets nowhere. The
+    /// part that contacts took already is not taken twice.
     pub fn hold(&mut self, share: Real) {
         let along = self.pull.normalize_or_zero();
         let length = self.gains(share).dot(along).max(0.0);
@@ -292,8 +294,8 @@ impl Body {
         [m.linvel + m.angvel.cross(arm), m.angvel]
     }
 
-    /// Gives it the motion that moves its centre of mass by a way and turns it, in some seconds, with the whole turns
-    /// that it makes; by then its velocities have gained so much.
+    /// Sets the motion that takes its centre of mass by `way` and turns it by `turn`, and whole turns as before, in
+    /// `seconds`. `tangent`: velocities of its path now; `gained`: change of its velocities by joints until then.
     pub fn aim(
         &mut self,
         (way, turn): (Vector, Rotation),
@@ -314,7 +316,7 @@ impl Body {
         self.is_rapiers = false;
     }
 
-    /// Lets it stay on its path, while joints add so much to its velocities in some seconds.
+    /// Keeps its path, while joints change its velocities by `gained` in `seconds`.
     pub fn gain(&mut self, gained: [Vector; 2], seconds: Real) {
         self.bend = Some(Bend {
             rate: gained.map(|gained| gained / seconds),
@@ -363,8 +365,7 @@ impl Body {
         if !self.motion.start.is_finite() {
             return;
         }
-        // One that is awake keeps the time for which it has been slow, as with rapier's own contacts: pressed bodies
-        // that are struck in each step fall asleep.
+        // An awake body keeps its time of being slow, so that pressed bodies that are struck in each step fall asleep.
         let wakes = struck && body.is_sleeping();
         let end = *body.position();
         body.set_position(self.motion.start, wakes);

@@ -6,7 +6,7 @@
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
 use crate::rapier::view::medial_colliders::Sets;
-use crate::rapier::view::motion::Kind;
+use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::participants::Participants;
 use crate::rapier::view::step_view::StepView;
 use crate::rapier::view::still_colliders::StillRecord;
@@ -45,15 +45,15 @@ fn add_near(participants: &mut Participants, sets: Sets, islands: &IslandManager
     };
     let view = StepView::take(moving);
     let dt = sets.parameters.dt;
-    let moves = |k: &usize| view.bodies[view.parts[*k].body].kind != Kind::Fixed;
-    // What rapier may wake in the step, and what is beside it then.
+    let moves = |k: &usize| view.bodies[view.colliders[*k].body].mobility != Mobility::Fixed;
+    // Colliders that rapier may wake in the step, and those beside them then.
     let mut woken: Vec<ColliderHandle> = participants.still().everywhere().collect();
     let mut beside = Vec::new();
-    for k in (0..view.parts.len()).filter(moves) {
+    for k in (0..view.colliders.len()).filter(moves) {
         let aabb = view.swept_aabb(k, 0.0, dt);
-        let aabb = aabb.loosened(margin + view.parts[k].skin);
+        let aabb = aabb.loosened(margin + view.colliders[k].skin);
         woken.extend(participants.bystanders_in(&aabb));
-        woken.extend(touching(sets, view.parts[k].handle));
+        woken.extend(touching(sets, view.colliders[k].handle));
     }
     let mut sleeping = None;
     while let Some(handle) = woken.pop() {
@@ -93,12 +93,12 @@ fn add_near(participants: &mut Participants, sets: Sets, islands: &IslandManager
 /// gave it.
 pub fn leaves(view: &StepView, participants: &Participants, (dt, unit): (Real, Real)) -> bool {
     let moves = |k: &usize| {
-        let body = &view.bodies[view.parts[*k].body];
-        body.kind != Kind::Fixed && body.awake
+        let body = &view.bodies[view.colliders[*k].body];
+        body.mobility != Mobility::Fixed && body.awake
     };
-    let mut moving = (0..view.parts.len()).filter(moves);
+    let mut moving = (0..view.colliders.len()).filter(moves);
     moving.any(|k| {
-        let grown = view.parts[k].skin + MARGIN * unit;
+        let grown = view.colliders[k].skin + MARGIN * unit;
         let aabb = view.swept_aabb(k, 0.0, dt).loosened(grown);
         participants.bystanders_in(&aabb).next().is_some()
     })
@@ -119,7 +119,7 @@ impl SleepingIslands {
         Self(all)
     }
 
-    /// Those of an island, the first time they are asked for.
+    /// Takes the colliders of an island; none if they were taken before.
     fn take(&mut self, island: Option<u32>) -> Vec<ColliderHandle> {
         island
             .and_then(|island| self.0.remove(&island))

@@ -19,7 +19,7 @@ pub struct Participants {
 }
 
 impl Participants {
-    /// Those that move, and so far no still ones.
+    /// Participants are the colliders that move, and so far no still ones.
     pub fn new(moving: Vec<ColliderHandle>, still: Arc<StillColliders>) -> Self {
         Self {
             handles: moving,
@@ -115,7 +115,7 @@ pub fn contact_pairs<'a>(
     let handles = participants.handles().iter();
     Box::new(handles.flat_map(|handle| {
         let pairs = narrow_phase.contact_pairs_with(*handle);
-        // Of two that take part the first names the pair.
+        // A pair of two that take part is counted at its first.
         pairs.filter(|pair| pair.collider1 == *handle || participants.is_bystander(pair.collider1))
     }))
 }

@@ -8,7 +8,7 @@ use crate::parry::swept_sphere_parts;
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::link_angles::LinkAngles;
 use crate::rapier::view::medial_colliders::Sets;
-use crate::rapier::view::motion::{Body, Kind};
+use crate::rapier::view::motion::{Body, Mobility};
 use crate::rapier::view::participants::enabled;
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
@@ -25,9 +25,9 @@ pub const MOST_JOINTS: usize = 128;
 /// Turn in a step, in radians, up to which the boxes at both ends, grown by the sagitta, bound it.
 const SMALL_TURN: Real = 0.5;
 
-/// A collider as a step sees it: its shape, place, box and thickness. A body has one part for each of its colliders.
+/// A collider as a step sees it: its shape, place, box and thickness.
 #[derive(Clone)]
-pub struct Part {
+pub struct StepCollider {
     /// Handle of the collider.
     pub handle: ColliderHandle,
     /// Index of its body.
@@ -51,7 +51,7 @@ pub struct Part {
     restitution: (Real, CoefficientCombineRule),
 }
 
-impl Part {
+impl StepCollider {
     /// The medial mesh, if it is one.
     pub fn medial(&self) -> Option<&MedialMesh> {
         self.shape.as_shape::<MedialMesh>()
@@ -64,7 +64,7 @@ pub struct StepView {
     /// Bodies; the first stands for no body.
     pub bodies: Vec<Body>,
     /// Colliders that are solid and enabled.
-    pub parts: Vec<Part>,
+    pub colliders: Vec<StepCollider>,
     /// rapier's length unit.
     pub unit: Real,
     /// Whether the motions are those that rapier's step made.
@@ -82,7 +82,7 @@ impl StepView {
             (sets.bodies, sets.impulse_joints, sets.multibody_joints);
         let mut view = Self {
             bodies: vec![Body::ground()],
-            parts: Vec::new(),
+            colliders: Vec::new(),
             unit: sets.parameters.length_unit.max(Real::MIN_POSITIVE),
             followed: false,
             index: FastMap::default(),
@@ -125,7 +125,7 @@ impl StepView {
             let turns = links.iter().map(turn);
             let fastest = turns.fold(0.0, Real::max);
             for b in links {
-                view.bodies[b].whirl = fastest;
+                view.bodies[b].link_spin = fastest;
             }
         }
         view.find_pivots(joints, multibodies);
@@ -138,9 +138,9 @@ impl StepView {
             let [Some(&a), Some(&b)] = handles.map(|h| self.index.get(&h)) else {
                 return;
             };
-            let held = match [a, b].map(|k| self.bodies[k].kind) {
-                [Kind::Free, Kind::Fixed | Kind::Driven] => (a, joint.local_frame1),
-                [Kind::Fixed | Kind::Driven, Kind::Free] => (b, joint.local_frame2),
+            let held = match [a, b].map(|k| self.bodies[k].mobility) {
+                [Mobility::Free, Mobility::Fixed | Mobility::Driven] => (a, joint.local_frame1),
+                [Mobility::Fixed | Mobility::Driven, Mobility::Free] => (b, joint.local_frame2),
                 _ => return,
             };
             if joint.is_enabled() && joint.locked_axes.contains(JointAxesMask::LIN_AXES) {
@@ -168,7 +168,7 @@ impl StepView {
             Some(mesh) => [mesh.thickness(), mesh.thicknesses().least()],
             None => [swept_sphere_parts::thickness(&*shape); 2],
         };
-        self.parts.push(Part {
+        self.colliders.push(StepCollider {
             handle,
             body: index,
             offset,
@@ -190,12 +190,12 @@ impl StepView {
         multibodies: &MultibodyJointSet,
     ) {
         self.followed = true;
-        let enabled = |p: &Part| colliders.get(p.handle).is_some_and(Collider::is_enabled);
-        self.parts.retain(enabled);
+        let enabled = |p: &StepCollider| colliders.get(p.handle).is_some_and(Collider::is_enabled);
+        self.colliders.retain(enabled);
         self.find_velocities_by_joints(parameters.dt, bodies, multibodies);
         for body in &mut self.bodies {
             if let Some(b) = body.handle.and_then(|h| bodies.get(h))
-                && body.kind != Kind::Fixed
+                && body.mobility != Mobility::Fixed
             {
                 body.moved(b, parameters.num_solver_iterations, parameters.dt);
             }
@@ -216,7 +216,7 @@ impl StepView {
                 b.set_angvel(body.velocity_before[1], false);
             }
         }
-        for part in &self.parts {
+        for part in &self.colliders {
             if let Some(collider) = colliders.get_mut(part.handle)
                 && part.body != 0
             {
@@ -228,7 +228,7 @@ impl StepView {
 
     /// Motion of a collider from `time` on.
     pub fn motion(&self, part: usize, time: Real) -> NonlinearRigidMotion {
-        let part = &self.parts[part];
+        let part = &self.colliders[part];
         let motion = self.bodies[part.body].motion_from(time);
         NonlinearRigidMotion {
             start: motion.start * part.offset,
@@ -239,19 +239,19 @@ impl StepView {
 
     /// Pose of a collider at the start of the step.
     pub fn start_pose(&self, part: usize) -> Pose {
-        let part = &self.parts[part];
+        let part = &self.colliders[part];
         self.bodies[part.body].start * part.offset
     }
 
     /// How thin the thinner of two colliders is as a whole, a length; surfaces do not count.
     pub fn thickness(&self, [i, j]: [usize; 2]) -> Real {
-        self.parts[i].thickness.min(self.parts[j].thickness)
+        self.colliders[i].thickness.min(self.colliders[j].thickness)
     }
 
     /// How thin the thinner of two colliders is where these primitives of theirs are.
     pub fn thickness_at(&self, pair: [usize; 2], primitives: [u32; 2]) -> Real {
         let of = |k: usize| {
-            let part = &self.parts[pair[k]];
+            let part = &self.colliders[pair[k]];
             let local = part.medial().map(|mesh| &mesh.thicknesses().primitives);
             let local = local.and_then(|all| all.get(primitives[k] as usize));
             local.copied().unwrap_or(part.thickness)
@@ -262,14 +262,14 @@ impl StepView {
     /// How thick the thinner of two colliders is that is not medial, a length; infinite where there is
     /// none.
     pub fn foreign_thickness(&self, pair: [usize; 2]) -> Real {
-        let parts = pair.map(|k| &self.parts[k]);
+        let parts = pair.map(|k| &self.colliders[k]);
         let foreign = parts.into_iter().filter(|p| p.medial().is_none());
         foreign.map(|p| p.thickness).fold(Real::INFINITY, Real::min)
     }
 
     /// Whether both are medial meshes of convex pieces (`medial/convex_pieces.rs`), as bodies with flat faces are.
     pub fn are_of_pieces(&self, pair: [usize; 2]) -> bool {
-        let medial = pair.map(|k| self.parts[k].medial());
+        let medial = pair.map(|k| self.colliders[k].medial());
         medial
             .iter()
             .all(|mesh| mesh.is_some_and(|mesh| !mesh.convex_pieces().is_empty()))
@@ -277,7 +277,7 @@ impl StepView {
 
     /// How thin the thinnest collider is as a whole, a length; surfaces do not count.
     pub fn least_thickness(&self) -> Real {
-        self.parts
+        self.colliders
             .iter()
             .map(|p| p.thickness)
             .fold(Real::INFINITY, Real::min)
@@ -285,7 +285,7 @@ impl StepView {
 
     /// How thin the thinnest part of any collider is, a length.
     pub fn thinnest_part(&self) -> Real {
-        self.parts
+        self.colliders
             .iter()
             .map(|p| p.least)
             .fold(Real::INFINITY, Real::min)
@@ -299,38 +299,38 @@ impl StepView {
 
     /// Whether a collider of the world has restitution.
     pub fn any_restitution(&self) -> bool {
-        self.others_bounce || self.parts.iter().any(|p| p.restitution.0 > 0.0)
+        self.others_bounce || self.colliders.iter().any(|p| p.restitution.0 > 0.0)
     }
 
     /// Coefficient of restitution of two colliders, by rapier's combine rules.
     pub fn restitution(&self, pair: [usize; 2]) -> Real {
-        let [(a, rule1), (b, rule2)] = pair.map(|k| self.parts[k].restitution);
+        let [(a, rule1), (b, rule2)] = pair.map(|k| self.colliders[k].restitution);
         CoefficientCombineRule::combine(a, b, rule1, rule2)
     }
 
     /// Relative velocity, of the second body of a pair against the first, that gravity and forces of the user add in
     /// the whole step.
     pub fn relative_pull(&self, pair: [usize; 2]) -> Vector {
-        let [a, b] = pair.map(|k| self.bodies[self.parts[k].body].pull());
+        let [a, b] = pair.map(|k| self.bodies[self.colliders[k].body].pull());
         b - a
     }
 
     /// The most that gravity and forces of the user add in the whole step to the speed of a body of the pair.
     pub fn most_pull(&self, pair: [usize; 2]) -> Real {
-        let [a, b] = pair.map(|k| self.bodies[self.parts[k].body].pull().length());
+        let [a, b] = pair.map(|k| self.bodies[self.colliders[k].body].pull().length());
         a.max(b)
     }
 
     /// Whether something other than contacts may press a pair together: gravity, forces of the user, or a joint, whose
     /// motor or spring acts in the solver only.
     pub fn may_be_pressed(&self, pair: [usize; 2]) -> bool {
-        let jointed = pair.map(|k| self.bodies[self.parts[k].body].jointed);
+        let jointed = pair.map(|k| self.bodies[self.colliders[k].body].jointed);
         self.most_pull(pair) > 0.0 || jointed.contains(&true)
     }
 
     /// Bound on how far a point of one collider moves relative to the other in `seconds`.
     pub fn travel(&self, [i, j]: [usize; 2], seconds: Real) -> Real {
-        let [a, b] = [i, j].map(|k| &self.bodies[self.parts[k].body]);
+        let [a, b] = [i, j].map(|k| &self.bodies[self.colliders[k].body]);
         let slide = (a.motion.linvel - b.motion.linvel).length();
         let swing = |body: &Body| body.motion.angvel.length() * body.reach;
         (slide + swing(a) + swing(b)) * seconds
@@ -338,7 +338,7 @@ impl StepView {
 
     /// Box that holds a collider from `time` to `end` seconds.
     pub fn swept_aabb(&self, part: usize, time: Real, end: Real) -> Aabb {
-        let p = &self.parts[part];
+        let p = &self.colliders[part];
         let body = &self.bodies[p.body];
         let still = body.motion.linvel == Vector::ZERO && body.motion.angvel == Vector::ZERO;
         if still && body.time == 0.0 {

@@ -12,19 +12,20 @@ use rapier3d::geometry::{Collider, ColliderHandle, ColliderSet};
 use std::hash::Hasher;
 use std::sync::Arc;
 
-/// Largest side of a box that the tree holds: round a larger one, as of a half-space, sums are no longer exact.
-const LARGEST: Real = 1.0e6;
+/// Bound of the coordinates of boxes that the tree holds: with larger ones, as of a half-space, sums are no longer
+/// exact.
+const MAX_COORDINATE: Real = 1.0e6;
 
 /// Steps in turn with the same still colliders after which the tree is built: where bodies wake and fall asleep all the
 /// time it would be built in vain.
-const STEPS: u32 = 3;
+const SETTLING_STEPS: u32 = 3;
 
 /// Still colliders, with a tree of their boxes.
 pub struct StillColliders {
     handles: Vec<ColliderHandle>,
     boxes: Vec<Aabb>,
     tree: Bvh,
-    /// Those without a box that the tree could hold.
+    /// Places of colliders whose boxes the tree cannot hold ([`MAX_COORDINATE`]).
     everywhere: Vec<u32>,
     /// Place of each among all, by the index in its handle.
     places: Vec<u32>,
@@ -50,7 +51,8 @@ impl StillColliders {
                 let grown = margin + collider.contact_skin();
                 collider.compute_aabb().loosened(grown)
             });
-            let held = aabb.filter(|b| b.mins.abs().max(b.maxs.abs()).max_element() < LARGEST);
+            let held =
+                aabb.filter(|b| b.mins.abs().max(b.maxs.abs()).max_element() < MAX_COORDINATE);
             if held.is_none() {
                 everywhere.push(place as u32);
             }
@@ -88,7 +90,7 @@ impl StillColliders {
         (*self.handles.get(place as usize)? == collider).then_some(place)
     }
 
-    /// Those without a box.
+    /// The colliders whose boxes the tree cannot hold.
     pub fn everywhere(&self) -> impl Iterator<Item = ColliderHandle> + '_ {
         self.everywhere.iter().map(|place| self.handle(*place))
     }
@@ -119,7 +121,7 @@ impl StillColliders {
     }
 }
 
-/// What is known from step to step about the still colliders of a world.
+/// Record, from step to step, of the still colliders of a world.
 #[derive(Default)]
 pub struct StillRecord {
     /// Hash of who is where.
@@ -132,9 +134,11 @@ pub struct StillRecord {
 }
 
 impl StillRecord {
-    /// The colliders that move, in the order of the set, and the still ones. `None` if these changed in the last steps,
-    /// or are fewer than `least`, or than so many times those that move; and where a collider that moved is gone or
-    /// collides with others than before, for rapier may then wake what rested on it. Boxes are grown by `margin`.
+    /// Splits the enabled colliders into the moving ones, in the order of the set, and the still ones. `None` if the
+    /// still ones have not been the same for [`SETTLING_STEPS`] steps, if there are fewer than `least` of them or fewer
+    /// than `times` for each moving one, and for [`SETTLING_STEPS`] steps after a moving collider was removed or came
+    /// to collide with others than before, since rapier may then wake what rested on it. The boxes in the tree are
+    /// grown by `margin`, a length.
     pub fn look(
         &mut self,
         (bodies, colliders): (&RigidBodySet, &ColliderSet),
@@ -165,7 +169,7 @@ impl StillRecord {
         self.moving = moving;
         self.steps = if is_same { self.steps + 1 } else { 0 };
         let enough = still.len() >= least.max(times * self.moving.len());
-        if self.steps < STEPS || !enough {
+        if self.steps < SETTLING_STEPS || !enough {
             self.known = None;
             return None;
         }
