@@ -20,8 +20,8 @@
 //!   cylinders and cones; their casts `axisymmetric_toi.rs` and `conservative_advancement.rs`). What touches at the
 //!   start: `inside.rs` and `initial_contacts.rs`. Only what is in `swept_region.rs` is looked at; of a compound, the
 //!   children that `compound_children.rs` finds there.
-//! - Flat ground: its faces `shape_faces.rs`, a body that slides over them `sliding.rs`, normals at the folds between
-//!   them `folds.rs`.
+//! - Flat ground: its faces `shape_faces.rs`, a body that slides over them `sliding.rs` (of it the part that is near,
+//!   `clipped_part.rs`), normals at the folds between them `folds.rs`.
 //! - What a pipeline tells the dispatcher for a step, muted pairs among it: `narrow_phase_plan.rs`.
 
 pub(crate) mod axisymmetric;
@@ -29,6 +29,7 @@ pub(crate) mod axisymmetric_toi;
 mod by_parry;
 pub mod cast;
 mod cast_answer;
+mod clipped_part;
 mod compound_children;
 pub(crate) mod conservative_advancement;
 mod contact_manifolds;

@@ -13,13 +13,16 @@
 //! most. A point that turns with the mesh by `ω₁` at `r`, seen from a ground that turns by `ω₂`, `d` from its axis, has
 //! up to `ω₁² r + ω₂² d + 2 ω₂ v`.
 
+use super::clipped_part::{clipped, is_beside, within};
 use super::shape_faces::{Face, has_flat_faces};
 use crate::math::lane::Vec3;
 use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
 use parry3d::shape::Shape;
+use std::borrow::Cow;
 
 /// How deep a mesh may be in the plane that it slides along, lengths.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +40,8 @@ pub struct SinkLimits {
 #[derive(Clone, Debug)]
 pub struct Sliding<'a> {
     mesh: &'a MedialMesh,
+    /// Spheres whose hulls hold all of the mesh that can get to the ground.
+    spheres: Cow<'a, [MedialSphere]>,
     poses: [PlacedFrame; 2],
     /// A ball that holds the mesh at the start.
     bound: (Vec3<f64>, f64),
@@ -69,6 +74,12 @@ impl PlacedFrame {
             columns: columns.map(|axis| Vec3::from_vector(pose.rotation * axis)),
             origin: Vec3::from_vector(pose.translation),
         }
+    }
+
+    /// Where a point of the mesh's frame is.
+    fn place(&self, p: Vector) -> Vec3<f64> {
+        let ([x, y, z], p) = (self.columns, Vec3::<f64>::from_vector(p));
+        x * p.x + y * p.y + z * p.z + self.origin
     }
 
     /// Height of points of the mesh's frame over a place of the ground's, along `n`.
@@ -134,11 +145,34 @@ impl<'a> Sliding<'a> {
             pose2.inverse() * pose1
         });
         let ball = mesh.compute_local_bounding_sphere();
-        let farthest = |pose: &Pose, from| (pose * ball.center).distance(from) + ball.radius;
-        let arm = farthest(&Pose::IDENTITY, motion1.local_center);
+        let farthest = |pose: &Pose, from, spheres: &[MedialSphere]| {
+            let far = spheres
+                .iter()
+                .map(|s| (pose * s.center).distance(from) + s.radius);
+            far.fold(0.0, Real::max)
+        };
+        let whole = [MedialSphere::new(ball.center, ball.radius)];
         let [w1, w2] = [motion1, motion2].map(|m| m.angvel.length());
-        let v = (motion1.linvel - motion2.linvel).length() + w1 * arm;
-        let from_axis = farthest(&poses[0], motion2.local_center) + v * seconds;
+        let travel = |spheres: &[MedialSphere]| {
+            let arm = farthest(&Pose::IDENTITY, motion1.local_center, spheres);
+            let v = (motion1.linvel - motion2.linvel).length() + w1 * arm;
+            let from_axis = farthest(&poses[0], motion2.local_center, spheres) + v * seconds;
+            [arm, v, from_axis]
+        };
+        let [_, v, from_axis] = travel(&whole);
+        let margin = target + (v + w2 * from_axis) * seconds;
+        let aabb = ground.compute_local_aabb().loosened(margin);
+        let spheres = match aabb.contains(&Aabb::from_half_extents(
+            poses[0] * ball.center,
+            Vector::splat(ball.radius),
+        )) {
+            true => Cow::Borrowed(mesh.spheres()),
+            false => Cow::Owned(within(mesh, &poses[0], &aabb)),
+        };
+        let [arm, v, from_axis] = match spheres {
+            Cow::Borrowed(_) => travel(&whole),
+            Cow::Owned(_) => travel(&spheres),
+        };
         let acceleration = w1 * w1 * arm + w2 * w2 * from_axis + 2.0 * w2 * v;
         let sizes = poses.map(|p| p.translation.abs().max_element());
         let rounding = REAL_ROUNDING * (sizes[0] + sizes[1] + arm);
@@ -148,6 +182,7 @@ impl<'a> Sliding<'a> {
         );
         Some(Self {
             mesh,
+            spheres,
             poses: poses.map(|pose| PlacedFrame::new(&pose)),
             bound,
             bend: (0.125 * acceleration * seconds * seconds + rounding).into(),
@@ -193,6 +228,7 @@ impl<'a> Sliding<'a> {
     /// from a ground up a slope, and its nearest point is on the fold between the two, straight ahead.
     pub fn comes_to_lie(&self, face: Face, pose: &Pose) -> Option<Vector> {
         let there = Self {
+            spheres: self.spheres.clone(),
             poses: [PlacedFrame::new(pose); 2],
             bound: (self.bound.0, f64::MAX),
             bend: self.rounding,
@@ -243,11 +279,12 @@ impl<'a> Sliding<'a> {
         let n = across * side;
         let a = corner(0) + n * f64::from(face.border);
         // The lowest point of the mesh, unless one is below `least`; of most triangles one of the first spheres is.
-        let spheres = self.mesh.spheres();
+        let spheres = self.spheres.iter();
         let height = self.poses.map(|pose| pose.heights(n, a));
         let lowest = |k: usize, least: f64| {
-            let heights = spheres.iter();
-            let mut heights = heights.map(|s| height[k](s.center) - f64::from(s.radius));
+            let mut heights = spheres
+                .clone()
+                .map(|s| height[k](s.center) - f64::from(s.radius));
             heights.try_fold(f64::MAX, |low, h| (h >= least).then_some(low.min(h)))
         };
         let [lies, to, by] =
@@ -266,14 +303,25 @@ impl<'a> Sliding<'a> {
             (inward, along.length())
         });
         let sides: Vec<_> = sides.collect();
-        let is_over = spheres.iter().any(|s| {
+        let above = |s: &MedialSphere| height[0](s.center) - f64::from(s.radius) - self.target;
+        let is_within = |s: &MedialSphere| {
             let radius = f64::from(s.radius);
-            let is_near = height[0](s.center) - radius <= self.target;
-            is_near
-                && sides
-                    .iter()
-                    .all(|(inward, l)| inward(s.center) >= -radius * l)
-        });
+            let mut sides = sides.iter();
+            sides.all(|(inward, l)| inward(s.center) >= -radius * l)
+        };
+        let is_over = spheres.clone().any(|s| above(s) <= 0.0 && is_within(s))
+            || self.mesh.primitives().any(|primitive| {
+                let low = clipped(primitive.spheres(), above);
+                let mut sides = sides.iter();
+                let places = || low.iter().map(|s| self.poses[0].place(s.center));
+                !low.is_empty()
+                    && sides.all(|(inward, _)| low.iter().any(|s| inward(s.center) >= 0.0))
+                    && !is_beside(
+                        &places().collect::<Vec<_>>(),
+                        &(0..corners.len()).map(corner).collect::<Vec<_>>(),
+                        n,
+                    )
+            });
         let coordinates = corners.iter().map(|p| p.abs().max_element());
         Some(Lying {
             normal: n,

@@ -1,0 +1,63 @@
+//! The part of a primitive on one side of a plane, or of several. Over a primitive the centre and the radius of its
+//! spheres are linear, so a height above a plane is too, and the part is a convex polygon of spheres (Sutherland and
+//! Hodgman, "Reentrant polygon clipping", 1974).
+
+use crate::math::lane::Vec3;
+use crate::math::{Pose, Real};
+use crate::medial::{MedialMesh, MedialSphere};
+use parry3d::bounding_volume::Aabb;
+
+/// The part of a polygon of spheres where a linear function of them is at most 0.
+pub fn clipped(
+    polygon: &[MedialSphere],
+    height: impl Fn(&MedialSphere) -> f64,
+) -> Vec<MedialSphere> {
+    let mut part = Vec::new();
+    for (k, a) in polygon.iter().enumerate() {
+        let b = &polygon[(k + 1) % polygon.len()];
+        let [at_a, at_b] = [a, b].map(&height);
+        if at_a <= 0.0 {
+            part.push(*a);
+        }
+        if (at_a <= 0.0) != (at_b <= 0.0) {
+            let share = (at_a / (at_a - at_b)) as Real;
+            let radius = a.radius + (b.radius - a.radius) * share;
+            part.push(MedialSphere::new(a.center.lerp(b.center, share), radius));
+        }
+    }
+    part
+}
+
+/// Spheres, in the mesh's frame, whose convex hulls hold all of the mesh that is in a box. `pose` is that of the mesh
+/// in the box's frame.
+pub fn within(mesh: &MedialMesh, pose: &Pose, aabb: &Aabb) -> Vec<MedialSphere> {
+    let around = aabb.transform_by(&pose.inverse());
+    let near = mesh.bvh().intersect_aabb(&around);
+    let within = |primitive: u32| {
+        let mut part = mesh.primitive(primitive as usize).spheres().to_vec();
+        for axis in 0..3 {
+            let [low, high] = [aabb.mins[axis], aabb.maxs[axis]];
+            let place = |s: &MedialSphere| (pose * s.center)[axis];
+            part = clipped(&part, |s| f64::from(place(s) - s.radius - high));
+            part = clipped(&part, |s| f64::from(low - place(s) - s.radius));
+        }
+        part
+    };
+    near.flat_map(within).collect()
+}
+
+/// Whether a line through two spheres of a polygon, seen along `n`, has all of these corners on one side, and the
+/// polygon on the other.
+pub fn is_beside(polygon: &[Vec3<f64>], corners: &[Vec3<f64>], n: Vec3<f64>) -> bool {
+    let range = |places: &[Vec3<f64>], axis: Vec3<f64>| {
+        let along = places.iter().map(|p| axis.dot(*p));
+        along.fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x), b.max(x)])
+    };
+    let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let mut axes = ends.map(|(p, q)| n.cross(*q - *p));
+    axes.any(|axis| {
+        let [a, b] = range(polygon, axis);
+        let [c, d] = range(corners, axis);
+        b < c || d < a
+    })
+}
