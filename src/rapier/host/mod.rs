@@ -7,8 +7,10 @@
 //!   they sleep (`sleep_timers.rs`), speculative contacts (`speculative.rs`).
 //! - Multibodies: those that gain energy (`multibody_energy.rs`), how impacts are written back to them
 //!   (`multibody_coordinates.rs`), and bodies that a new joint moves (`new_links.rs`).
+//! - What was changed in a collider: `change_marks.rs`.
 //! - Events of impacts: `events_of_impacts.rs`, with their impulses `reported_impulse.rs`.
 
+pub(crate) mod change_marks;
 pub(crate) mod contact_depth;
 pub(crate) mod events_of_impacts;
 pub(crate) mod forced_updates;

@@ -7,6 +7,7 @@
 //! have a speed all the same, with which it goes on in the next step: it has to have none.
 
 use crate::math::Real;
+use crate::rapier::host::change_marks::{SlightChange, slight_change};
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{Collider, ColliderSet, NarrowPhase};
 
@@ -37,7 +38,7 @@ pub fn moved_before(
     }
     let modified = colliders.clone().take_modified();
     let moved = modified.iter().filter_map(|h| colliders.get(*h));
-    let moved = moved.filter(|c| only_moved(c));
+    let moved = moved.filter(|c| slight_change(c) == Some(SlightChange::Pose));
     moved.filter_map(Collider::parent).collect()
 }
 
@@ -107,10 +108,4 @@ fn has_no_speed(body: &RigidBody, length_unit: Real) -> bool {
     let extent = body.mass_properties().max_extent();
     let speed = body.linvel().length() + body.angvel().length() * extent;
     0.5 * speed < body.activation().normalized_linear_threshold * length_unit
-}
-
-/// Whether nothing but its pose was changed since the last step. rapier keeps the marks to itself, but
-/// prints them.
-pub fn only_moved(collider: &Collider) -> bool {
-    format!("{collider:?}").contains("changes: ColliderChanges(IN_MODIFIED_SET | POSITION)")
 }

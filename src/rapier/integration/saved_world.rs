@@ -8,7 +8,7 @@
 
 use crate::medial::MedialMesh;
 use crate::medial::asset::checksum;
-use crate::rapier::host::sleep_timers::only_moved;
+use crate::rapier::host::change_marks::{SlightChange, slight_change};
 use crate::rapier::impacts::initial_overlaps::OverlapsRecord;
 use crate::rapier::{MedialPipeline, MedialSharedShape};
 use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase, SharedShape};
@@ -20,7 +20,7 @@ use std::collections::HashMap;
 pub const MAGIC: [u8; 8] = *b"\x89worlds\n";
 
 /// Version of the format that is written and read. It stands for the layout of this crate and of rapier 0.36.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// Bytes before the content: magic, version, checksum of the content.
 const HEADER: usize = 20;
@@ -116,16 +116,18 @@ impl MedialPipeline {
 /// Which colliders the next step has to look at anew.
 #[derive(Serialize, Deserialize)]
 enum Changes {
-    /// These colliders have moved, as a first contact within a step leaves them; none was changed otherwise.
-    Moved(Vec<ColliderHandle>),
-    /// Some were changed by hand. Their own marks say how; those of medial colliders say besides that
-    /// the shape is new, for which rapier begins their contacts afresh. These others have only moved.
-    Marked(Vec<ColliderHandle>),
+    /// These colliders were changed slightly, as a first contact within a step changes their poses; none was changed
+    /// otherwise.
+    Slight(Vec<(ColliderHandle, SlightChange)>),
+    /// Some were changed otherwise. Their own marks say how; those of medial colliders say besides that the shape is
+    /// new, for which rapier begins their contacts afresh. These others were changed slightly.
+    Marked(Vec<(ColliderHandle, SlightChange)>),
 }
 
 impl SavedWorld {
-    /// Takes a copy of the world, between steps. Colliders that you have added or changed since the last step (other
-    /// groups, for instance) lose their contacts, if they had any, and get new ones in the first step after loading.
+    /// Takes a copy of the world, between steps. If you have changed the shape, mass, groups, type or parent of a
+    /// medial collider since the last step, or enabled or disabled it, it loses its contacts and gets new ones in the
+    /// first step after loading.
     ///
     /// # Errors
     /// [`SavedWorldError::Removed`] if colliders were removed since the last step.
@@ -136,22 +138,23 @@ impl SavedWorld {
             return Err(SavedWorldError::Removed(removed));
         }
         let modified: Vec<ColliderHandle> = colliders.clone().take_modified().to_vec();
-        let moved = |h: &ColliderHandle| colliders.get(*h).is_some_and(only_moved);
+        let slight = modified.iter();
+        let slight = slight.filter_map(|h| Some((*h, slight_change(colliders.get(*h)?)?)));
+        let slight: Vec<(ColliderHandle, SlightChange)> = slight.collect();
         let mut unmarked = colliders.clone();
         forget_changes(world, &mut unmarked);
-        let changes = if modified.iter().all(moved) {
+        let changes = if slight.len() == modified.len() {
             colliders = unmarked;
-            Changes::Moved(modified)
+            Changes::Slight(slight)
         } else {
-            let moved: Vec<ColliderHandle> = modified.into_iter().filter(moved).collect();
             // This list then holds the colliders that get a ball, and no others.
             colliders.take_modified();
-            for &h in &moved {
+            for &(h, _) in &slight {
                 if let (Some(collider), Some(unmarked)) = (colliders.get_mut(h), unmarked.get(h)) {
                     *collider = unmarked.clone();
                 }
             }
-            Changes::Marked(moved)
+            Changes::Marked(slight)
         };
         let mut meshes: Vec<MedialMesh> = Vec::new();
         let mut known: HashMap<usize, u32> = HashMap::new();
@@ -218,17 +221,19 @@ impl SavedWorld {
         }
         let mut colliders = std::mem::take(&mut world.colliders);
         forget_changes(&world, &mut colliders);
-        let moved = match changes {
-            Changes::Moved(moved) => moved,
+        let slight = match changes {
+            Changes::Slight(slight) => slight,
             // Lists all colliders as possibly changed; each one's own marks say whether it is.
-            Changes::Marked(moved) => {
+            Changes::Marked(slight) => {
                 colliders.iter_mut().for_each(drop);
-                moved
+                slight
             }
         };
-        // Setting where it is already marks it as moved.
-        for h in moved {
-            if let Some(collider) = colliders.get_mut(h) {
+        for (h, change) in slight {
+            // To borrow it already marks it as changed.
+            if let Some(collider) = colliders.get_mut(h)
+                && change == SlightChange::Pose
+            {
                 collider.set_position(*collider.position());
             }
         }
