@@ -9,8 +9,9 @@
 //! Slabs need not be level. Where the next one rises at a slight fold, its rim is inside the one that the body lies on
 //! all the same, and the body is to meet its face: the contact gets the face's normal.
 //!
-//! This is for first contacts only. At the floor ([`crate::elementary::Cores`]), where a body has to stop, no contact
-//! is shielded: one may be deep for a thin primitive and not for the thick one that shields it.
+//! At the floor ([`crate::elementary::Cores`]), where a body has to stop, a contact may be deep for a thin primitive
+//! and not for a thick one beside it. There a part is shielded only by one that holds the place of the contact: no axis
+//! of the other body gets into that.
 
 use super::contact_list::ContactList;
 use super::first_contact::{Counts, Query};
@@ -155,11 +156,12 @@ fn size(spheres: &[MedialSphere], pose: &Pose) -> Real {
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
     /// The contact that shields the one of an answer, if there is any: its normal is in the first body's frame, each
-    /// point in its own body's. Only parts that touched at the start may shield others.
+    /// point in its own body's. Only parts that touched at the start may shield others, at the floor only those that
+    /// hold the place.
     pub(super) fn shielding_contact(&self, toi: &Toi) -> Option<SpherePair> {
         let search = self.search.as_ref()?;
         let is_floor = search.cores.is_some_and(|cores| cores.share > 0.0);
-        if toi.status != ToiStatus::Contact || is_floor {
+        if toi.status != ToiStatus::Contact {
             return None;
         }
         let bodies = (search.sides.0.body, search.sides.1.body);
@@ -174,9 +176,18 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
         let poses = [0, 1].map(|side| self.pose_at(side, toi.lower));
         let pos12 = poses[0].inv_mul(&poses[1]);
         let gap = (toi.points[1] - toi.points[0]).dot(toi.normal);
-        let touching = search.touching.iter();
-        let contacts = touching.filter_map(|(nodes, _)| {
-            let parts = parts_of(*nodes)?;
+        let near: Vec<[u32; 2]> = if is_floor {
+            let places = [0, 1].map(|side| poses[side].inverse_transform_point(toi.points[side]));
+            let seconds = nodes_that_hold(bodies.1, places[1]);
+            let firsts = nodes_that_hold(bodies.0, places[0]).into_iter();
+            firsts
+                .flat_map(|i| seconds.iter().map(move |j| [i, *j]))
+                .collect()
+        } else {
+            search.touching.iter().map(|(nodes, _)| *nodes).collect()
+        };
+        let contacts = near.into_iter().filter_map(|nodes| {
+            let parts = parts_of(nodes)?;
             let side = match [
                 parts[0].is(bodies.0, hidden[0]),
                 parts[1].is(bodies.1, hidden[1]),
@@ -190,7 +201,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
                     PieceOrPrimitive::Primitive(p),
                     PieceOrPrimitive::Primitive(q),
                 ] => of_primitives(bodies, [p, q], &pos12, gap),
-                _ => of_pieces(bodies, *nodes, &pos12, gap),
+                _ => of_pieces(bodies, nodes, &pos12, gap),
             }?;
             let shield = (parts[side], &contact);
             let normal = match side {
@@ -218,6 +229,25 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
             ..toi
         }
     }
+}
+
+/// The nodes whose parts hold a point of the body's frame, rounding apart.
+fn nodes_that_hold(body: &impl PrimitiveTree, point: Vector) -> Vec<u32> {
+    let mut left: Vec<u32> = (0..body.roots()).collect();
+    let mut found = Vec::new();
+    while let Some(node) = left.pop() {
+        let (center, radius) = body.bound(node);
+        let slack = HEIGHT_ROUNDING * (center.abs().max_element() + radius);
+        if center.distance(point) > radius + slack {
+            continue;
+        }
+        match (PieceOrPrimitive::of_node(body, node), body.kind(node)) {
+            (Some(part), _) => found.extend((part.depth(body, point) >= -slack).then_some(node)),
+            (None, NodeKind::Nodes(a, b)) => left.extend([b, a]),
+            (None, NodeKind::Primitive(_)) => {}
+        }
+    }
+    found
 }
 
 /// The deepest contact of two primitives that are no farther apart than `gap` (a length) or overlap; the second body is

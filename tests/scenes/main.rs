@@ -1,6 +1,7 @@
 //! The tests of `docs/rapier.md`, feature by feature: medial colliders beside rapier's own in whole scenes.
 
 mod after_blows;
+mod bent_grounds;
 #[allow(dead_code)]
 #[path = "../common/blocks.rs"]
 mod blocks;
