@@ -381,7 +381,7 @@ impl MedialMesh {
         }
     }
 
-    /// A clone of which parry tells contacts with any normal, also into a convex piece (`parry/outward_normals.rs`).
+    /// A clone whose contacts in parry have any normal (see `parry/corrections/outward_normals.rs`).
     pub(crate) fn with_any_normals(&self) -> Self {
         Self {
             takes_any_normals: true,

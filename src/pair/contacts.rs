@@ -1,5 +1,5 @@
 //! Contacts of two bodies at fixed poses: pairs of near spheres, from which contact manifolds are made
-//! (`parry/manifolds.rs`). A walk down both trees finds them. Parts that a few directions keep apart
+//! (`parry/contacts/manifolds.rs`). A walk down both trees finds them. Parts that a few directions keep apart
 //! ([`super::outline`]) are not searched. Two convex pieces, which the builder makes of blocks, are settled as a
 //! whole (`face_contacts.rs`), and so is a convex piece that is deep in a primitive (`hulls.rs`); of all other bodies
 //! primitives are taken pair by pair (`primitive_pair.rs`).

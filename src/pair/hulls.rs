@@ -22,8 +22,8 @@ use crate::medial::tree::NodeKind;
 
 /// Depth of a convex piece in its partner, in units of the thickness of the thinner, from which its contacts are
 /// filtered: with a primitive or a piece of a medial mesh, those that point into it are left out; with another shape,
-/// those that do not push it the shortest way out (`parry/deep_pieces.rs`). Larger, and a body may stay where such
-/// contacts hold it; smaller, and more pairs are computed without the tree.
+/// those that do not push it the shortest way out (`parry/corrections/deep_pieces.rs`). Larger, and a body may stay
+/// where such contacts hold it; smaller, and more pairs are computed without the tree.
 pub(crate) const FILTER_DEPTH: f64 = 0.25;
 
 /// How much deeper two hulls may be along a contact's normal than along the best direction. At 1 a capsule that lies on

@@ -1,11 +1,11 @@
 //! Manifolds of a medial mesh and another shape that parry computes, between their convex parts. It is parry's way
 //! from bodies to parts; two parts come back to [`MedialDispatcher`], which asks parry about them at a scale at which
-//! its tolerances are small ([`super::scaled_contact`]).
+//! its tolerances are small ([`crate::parry::contacts::scaled_contact`]).
 
 use super::dispatcher::MedialDispatcher;
-use super::scaled_contact;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
+use crate::parry::contacts::scaled_contact;
 use parry3d::query::details::{
     NormalConstraints, contact_manifolds_composite_shape_composite_shape,
     contact_manifolds_composite_shape_shape, contact_manifolds_heightfield_composite_shape,

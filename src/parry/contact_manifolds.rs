@@ -3,22 +3,24 @@
 //! (`flat_face.rs`), and leaves a mesh and any other shape to parry. A muted pair has none.
 
 use super::by_parry;
-use super::contact_reduction::{self, Load};
-use super::convex_parts::{ConvexPart, child_reach, part_number, slack, slack_of, slack_of_parts};
-use super::deep_pieces;
 use super::dispatcher::{MedialDispatcher, medial};
-use super::false_contacts;
-use super::flat_face;
-use super::inward_contacts;
-use super::manifold_points;
-use super::manifolds::{self, ensure_workspace, write_one_point};
-use super::previous_contacts::{self, PreviousContact};
-use super::touching_normals;
-use super::voxel_normals;
 use crate::batch::PairJob;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::ghost_contacts::{PartContact, ghosts};
+use crate::parry::contacts::contact_reduction::{self, Load};
+use crate::parry::contacts::convex_parts::{
+    ConvexPart, child_reach, part_number, slack, slack_of, slack_of_parts,
+};
+use crate::parry::contacts::flat_face;
+use crate::parry::contacts::manifold_points;
+use crate::parry::contacts::manifolds::{self, ensure_workspace, write_one_point};
+use crate::parry::contacts::previous_contacts::{self, PreviousContact};
+use crate::parry::corrections::deep_pieces;
+use crate::parry::corrections::false_contacts;
+use crate::parry::corrections::inward_contacts;
+use crate::parry::corrections::touching_normals;
+use crate::parry::corrections::voxel_normals;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,

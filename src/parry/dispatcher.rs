@@ -1,16 +1,16 @@
 //! [`MedialDispatcher`]: the entry through which parry and rapier ask this crate about medial meshes. What it does not
 //! answer falls through to parry's default dispatcher, which treats a medial mesh as a compound of convex parts.
 
-use super::cast::Cast;
-use super::deep_contact;
-use super::distance;
-use super::initial_contacts::AtStart;
 use super::narrow_phase_plan::{PlanExchange, Sweeps};
 use crate::batch::{PairJob, PairResult};
 use crate::math::tolerance::FEW_OPERATIONS;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::SpherePair;
+use crate::parry::contacts::deep_contact;
+use crate::parry::queries::cast::Cast;
+use crate::parry::queries::distance;
+use crate::parry::queries::initial_contacts::AtStart;
 use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{
     ClosestPoints, Contact, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeDistance,

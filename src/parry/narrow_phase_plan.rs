@@ -9,7 +9,7 @@ use crate::math::counters::counters;
 use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::pair::first_contact::Counts;
-use crate::parry::contact_reduction::Turn;
+use crate::parry::contacts::contact_reduction::Turn;
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
 use std::collections::{HashMap, HashSet};

@@ -5,10 +5,10 @@
 //! its convex parts itself instead of asking this crate's dispatcher, whose answers are certified.
 
 use super::medial_part::MedialPart;
-use super::outward_normals::OutwardNormals;
 use super::rays;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialPrimitive};
+use crate::parry::corrections::outward_normals::OutwardNormals;
 use parry3d::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d::mass_properties::MassProperties;
 use parry3d::partitioning::Bvh;

@@ -4,8 +4,8 @@
 use rapier3d::parry::query::{ContactManifold, TrackedContact};
 use rapier3d::parry::shape::PackedFeatureId;
 use rapier3d_medial::math::{Pose, Real, Vector};
-use rapier3d_medial::parry::contact_reduction::{Load, Turn, choose};
-use rapier3d_medial::parry::previous_contacts::previous;
+use rapier3d_medial::parry::contacts::contact_reduction::{Load, Turn, choose};
+use rapier3d_medial::parry::contacts::previous_contacts::previous;
 
 type Manifold = ContactManifold<(), ()>;
 

@@ -11,8 +11,8 @@ use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{NonlinearRigidMotion, QueryDispatcher};
 use parry3d::shape::{Cuboid, SharedShape};
 use rapier3d_medial::parry::MedialDispatcher;
-use rapier3d_medial::parry::cast::Cast;
-use rapier3d_medial::parry::initial_contacts::AtStart;
+use rapier3d_medial::parry::queries::cast::Cast;
+use rapier3d_medial::parry::queries::initial_contacts::AtStart;
 use rapier3d_medial::{MedialMesh, MedialSphere, ToiOptions, ToiStatus};
 
 const CASES: usize = 12_000;

@@ -6,8 +6,8 @@ use parry3d::query::NonlinearRigidMotion;
 use parry3d::shape::SharedShape;
 use rapier3d_medial::elementary::{Toi, ToiStatus};
 use rapier3d_medial::pair::first_contact::Counts;
-use rapier3d_medial::parry::cast::Cast;
-use rapier3d_medial::parry::initial_contacts::AtStart;
+use rapier3d_medial::parry::queries::cast::Cast;
+use rapier3d_medial::parry::queries::initial_contacts::AtStart;
 use rapier3d_medial::{MedialMesh, MedialSphere, ToiOptions};
 
 const HALF_LENGTH: f64 = 0.75;

@@ -22,7 +22,7 @@ use crate::math::{Pose, Real, Rotation, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::thinned::thin;
 use crate::pair::{RelativeMotionBound, SpherePair};
-use crate::parry::manifolds::NARROW;
+use crate::parry::contacts::manifolds::NARROW;
 use crate::parry::narrow_phase_plan::PairKey;
 use crate::rapier::contacts::reach::{closing, reach, way};
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders};
@@ -47,7 +47,8 @@ const LOOKAHEAD_STANDING: Real = 0.0;
 const MAX_LOOKAHEAD_TRAVEL: Real = 0.25;
 
 /// How far apart two contacts are that bear a load like one, in units of the thinner body's thickness: a quarter of the
-/// width of a patch, of which one contact is written (`parry/manifolds.rs`); where patches are narrow, all of it.
+/// width of a patch, of which one contact is written (`parry/contacts/manifolds.rs`); where patches are narrow, all of
+/// it.
 const MERGE_DISTANCE: Real = 0.25;
 
 /// The least such distance, in units of rapier's prediction distance: half of that in which two contacts are one for

@@ -3,7 +3,7 @@
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::parry::distance::{is_within, nearest};
+use crate::parry::queries::distance::{is_within, nearest};
 use crate::rapier::effects::Effect;
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::impulse::Material;

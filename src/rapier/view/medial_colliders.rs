@@ -3,7 +3,7 @@
 
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::parry::contact_reduction::Turn;
+use crate::parry::contacts::contact_reduction::Turn;
 use crate::rapier::view::motion::{forces_per_mass, velocities};
 use crate::rapier::view::participants::{Participants, enabled};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};

@@ -4,7 +4,7 @@
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
-use crate::parry::swept_sphere_parts;
+use crate::parry::queries::swept_sphere_parts;
 use crate::rapier::view::all_joints::for_each_joint;
 use crate::rapier::view::link_angles::LinkAngles;
 use crate::rapier::view::medial_colliders::Sets;

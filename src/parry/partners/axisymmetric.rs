@@ -35,7 +35,7 @@ const ROUNDS: u32 = 48;
 const FLAT: f64 = 1.0e-15;
 
 /// Difference of a distance and its bound that counts as 0, in units of the lengths in play. Few ulps of `f64`, and an
-/// eighth of the slack that [`super::conservative_advancement`] allows for.
+/// eighth of the slack that [`crate::parry::queries::conservative_advancement`] allows for.
 const SHARP: f64 = 8.0 * f64::EPSILON;
 
 /// A cylinder or cone, about an axis through its centre.

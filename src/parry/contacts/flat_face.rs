@@ -3,13 +3,13 @@
 //! contacts are those of the spheres themselves, all with one normal. parry would run its iterative GJK algorithm for
 //! each primitive.
 
-use super::shape_faces::flat_sides;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::tree::NodeKind;
 use crate::pair::PrimitiveTree;
+use crate::parry::partners::shape_faces::flat_sides;
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{ConvexPolyhedron, PackedFeatureId, Shape, TypedShape};

@@ -3,11 +3,11 @@
 //! [`follow`] advances them as it does primitives, only less exactly.
 //!
 //! # Guarantee
-//! It is that of [`crate::elementary`], where `D(t)` is the signed distance of [`super::axisymmetric`], which sees
-//! bodies inside the cylinder or cone as overlapping, and never falls below minus the largest radius. For a contact,
-//! `upper = lower`, and `D` there is at most the tolerance. All is computed in double precision.
+//! It is that of [`crate::elementary`], where `D(t)` is the signed distance of
+//! [`crate::parry::partners::axisymmetric`], which sees bodies inside the cylinder or cone as overlapping, and never
+//! falls below minus the largest radius. For a contact, `upper = lower`, and `D` there is at most the tolerance. All is
+//! computed in double precision.
 
-use super::axisymmetric::{AxisFrame, Axisymmetric, NearBall, unit};
 use super::conservative_advancement::{Advance, CHASE_TOLERANCE_PER_SLACK, ChaseLimits, follow};
 use crate::elementary::first_contact::motion_is_finite;
 use crate::elementary::{InitialContact, Toi, ToiOptions, ToiStatus};
@@ -21,6 +21,7 @@ use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::PrimitiveTree;
 use crate::pair::deepening::Threshold;
 use crate::pair::first_contact::{Counts, ToiResult};
+use crate::parry::partners::axisymmetric::{AxisFrame, Axisymmetric, NearBall, unit};
 use parry3d::query::NonlinearRigidMotion;
 use std::collections::BinaryHeap;
 

@@ -5,12 +5,12 @@
 //! some of its slabs are out sooner above the floor and others below it: these pull the box to and fro, and in the end
 //! throw it. parry's EPA algorithm, asked for the piece as a whole, finds the way out of all of it.
 
-use super::convex_parts::child_of;
-use super::scaled_contact;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::{FILTER_DEPTH, Support};
+use crate::parry::contacts::convex_parts::child_of;
+use crate::parry::contacts::scaled_contact;
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::ContactManifold;
 use parry3d::shape::{Shape, SupportMap};

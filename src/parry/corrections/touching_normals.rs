@@ -7,12 +7,12 @@
 //! ([`GAP_TOLERANCE`]), it is turned to that. The points turn along: what rolls touches the face below its axis, and
 //! not ahead of it, where it comes down.
 
-use super::convex_parts::{ConvexPart, child_of, part_number, slack};
-use super::manifold_points::places;
-use super::shape_faces::flat_sides;
 use crate::math::fast_hash::FastMap;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
+use crate::parry::contacts::convex_parts::{ConvexPart, child_of, part_number, slack};
+use crate::parry::contacts::manifold_points::places;
+use crate::parry::partners::shape_faces::flat_sides;
 use parry3d::query::ContactManifold;
 use parry3d::shape::{Shape, TypedShape};
 

@@ -6,7 +6,6 @@
 //! part has its middle above the surface and its normal is right, but for what the part has sunk in: only within a flat
 //! surface is it corrected.
 
-use super::shape_faces::Face;
 use super::sliding::ALIKE;
 use super::swept_sphere_parts::SweptParts;
 use crate::elementary::ToiStatus;
@@ -14,6 +13,7 @@ use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
 use crate::pair::PrimitiveTree;
 use crate::pair::first_contact::ToiResult;
+use crate::parry::partners::shape_faces::Face;
 use parry3d::query::NonlinearRigidMotion;
 
 /// Distance of the corners of a side from the line of an edge within which the side is along it, in units of the edge's

@@ -6,12 +6,12 @@
 //! of the box behind it. The box as a whole has no contact there; other contacts hold it up. And where a primitive just
 //! touches the border of a triangle, parry's EPA algorithm may find it far below.
 
-use super::manifold_points::places;
 use crate::math::fast_hash::FastSet;
 use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::medial::convex_pieces::ConvexPiece;
+use crate::parry::contacts::manifold_points::places;
 use parry3d::query::ContactManifold;
 use parry3d::shape::{Shape, TrianglePseudoNormals, TypedShape};
 

@@ -1,18 +1,21 @@
 //! Turns parry's other shapes into swept spheres, so that one certified query serves all of them: a ball is a sphere,
 //! a capsule a cone, a flat face a slab of radius 0, a rounded face a slab of its border radius. A new shape of
-//! rapier is added here ([`add_surface`]), and in [`super::inside`] if it is closed.
+//! rapier is added here ([`add_surface`]), and in [`crate::parry::partners::inside`] if it is closed.
 //!
-//! A closed body is represented by its surface only, so [`super::inside`] has to find out whether the other body starts
-//! inside it. Cylinders and cones have no flat faces; they are collected separately, for [`super::axisymmetric_toi`].
+//! A closed body is represented by its surface only, so [`crate::parry::partners::inside`] has to find out whether the
+//! other body starts inside it. Cylinders and cones have no flat faces; they are collected separately, for
+//! [`super::axisymmetric_toi`].
 
-use super::axisymmetric::Axisymmetric;
-use super::compound_children::children_in;
-use super::shape_faces::{Face, all_faces, face_corners, for_each_triangle, free_faces, seen_from};
 use super::sliding::{Lying, Sliding};
 use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
 use crate::pair::PrimitiveList;
+use crate::parry::partners::axisymmetric::Axisymmetric;
+use crate::parry::partners::compound_children::children_in;
+use crate::parry::partners::shape_faces::{
+    Face, all_faces, face_corners, for_each_triangle, free_faces, seen_from,
+};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, Shape, TypedShape};
 
@@ -342,4 +345,23 @@ fn add_plane(primitives: &mut PrimitiveList, plane: &HalfSpace, pose: &Pose, reg
     let v = n.cross(u);
     let at = |[x, y]: [Real; 2]| MedialSphere::new(pose * (foot + u * x + v * y), 0.0);
     primitives.push(&[[0.0, 2.0], [-1.75, -1.0], [1.75, -1.0]].map(at));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parry3d::shape::{Compound, SharedShape};
+
+    /// 40 by 40 balls, a metre apart, in a plane, beside a box of a tenth of that in the middle of one.
+    #[test]
+    fn of_many_balls_only_those_near_a_body_become_parts() {
+        let at = |k: usize| Vector::new((k % 40) as Real, 0.0, (k / 40) as Real);
+        let balls = (0..1600).map(|k| (Pose::from_translation(at(k)), SharedShape::ball(0.5)));
+        let ground = Compound::new(balls.collect());
+        let place = Vector::new(17.0, 0.5, 23.0);
+        let region = Aabb::from_half_extents(place, Vector::splat(0.05));
+        let mut parts = SweptParts::default();
+        assert!(add_shape(&mut parts, &ground, &region));
+        assert_eq!(parts.primitives.len(), 1);
+    }
 }

@@ -14,11 +14,11 @@
 //! up to `ω₁² r + ω₂² d + 2 ω₂ v`.
 
 use super::clipped_part::{clipped, is_beside, within};
-use super::shape_faces::{Face, has_flat_faces};
 use crate::math::lane::Vec3;
 use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::{MedialMesh, MedialSphere};
+use crate::parry::partners::shape_faces::{Face, has_flat_faces};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::query::NonlinearRigidMotion;
 use parry3d::shape::Shape;

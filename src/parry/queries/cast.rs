@@ -6,8 +6,6 @@ use super::cast_answer::{hit, moved_to};
 use super::distance;
 use super::folds;
 use super::initial_contacts::{AtStart, Touching, approach_of_rounding};
-use super::inside;
-use super::shape_faces::for_each_flat_face;
 use super::sliding::{SinkLimits, Sliding};
 use super::swept_region::{started, swept_region};
 use super::swept_sphere_parts::{self, SweptParts, Unsweepable};
@@ -19,6 +17,8 @@ use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::first_contact::{Counts, Query, ToiResult};
 use crate::pair::outline::ActivePrimitives;
 use crate::pair::{PrimitiveTree, nearest_spheres};
+use crate::parry::partners::inside;
+use crate::parry::partners::shape_faces::for_each_flat_face;
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit};
 use parry3d::shape::Shape;
 

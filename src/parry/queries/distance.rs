@@ -1,14 +1,13 @@
 //! Distance of a medial mesh to one of parry's shapes at fixed poses, and the contact that attains it.
 //!
 //! The other shape is its surface as swept spheres ([`super::swept_sphere_parts`]), so the closed forms for two medial
-//! meshes serve here too. Cylinders and cones have closed forms of their own ([`super::axisymmetric`]). A centre inside
-//! a closed body counts as deep as its shortest way out is long ([`super::inside`]).
+//! meshes serve here too. Cylinders and cones have closed forms of their own
+//! ([`crate::parry::partners::axisymmetric`]). A centre inside a closed body counts as deep as its shortest way out is
+//! long ([`crate::parry::partners::inside`]).
 //!
 //! parry's own answers come from its iterative GJK algorithm: they are off by up to 1e-3 of the distance at times, are
 //! missing for height fields and voxels, and are in the wrong frame for contacts of compounds with half-spaces.
 
-use super::axisymmetric::{AxisFrame, Axisymmetric, NearBall, unit};
-use super::inside;
 use super::swept_sphere_parts::{self, SweptParts, Unsweepable};
 use crate::math::lane::Vec3;
 use crate::math::least_first::least_first;
@@ -20,6 +19,8 @@ use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::distance::{Wanted, near_spheres};
 use crate::pair::first_contact::Counts;
 use crate::pair::{PrimitiveTree, SpherePair};
+use crate::parry::partners::axisymmetric::{AxisFrame, Axisymmetric, NearBall, unit};
+use crate::parry::partners::inside;
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
 use std::collections::BinaryHeap;

@@ -8,9 +8,9 @@
 //! away. (parry asks for none where balls meet balls, and capsules capsules.) Our dispatcher looks at all contacts of a
 //! mesh together, and needs those too (`ghost_contacts.rs`, `touching_normals.rs`).
 
-use super::convex_parts::ConvexPart;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
+use crate::parry::contacts::convex_parts::ConvexPart;
 use parry3d::query::details::NormalConstraints;
 
 /// How much further than the primitive the piece may reach, in units of the longest side of the mesh's box: parry's

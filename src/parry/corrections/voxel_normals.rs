@@ -3,10 +3,10 @@
 //! then has contacts to its sides. What touches a face can be pushed along its normal only, and at the border of
 //! several along one between theirs. Of rounded parts GJK sees what is within their surface, which does not touch.
 
-use super::manifold_points::places;
-use super::shape_faces::free_faces;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
+use crate::parry::contacts::manifold_points::places;
+use crate::parry::partners::shape_faces::free_faces;
 use parry3d::bounding_volume::Aabb;
 use parry3d::query::ContactManifold;
 use parry3d::shape::Voxels;

@@ -1,6 +1,6 @@
 //! How long one primitive (1 to 3 interpolated spheres) is certainly apart from a cylinder or cone in exact rigid
 //! motion, step by step until they touch. Source: conservative advancement (Mirtich 1996), with the bound of
-//! [`super::axisymmetric`] in place of a computed distance.
+//! [`crate::parry::partners::axisymmetric`] in place of a computed distance.
 //!
 //! # Step
 //! At time `t` the nearest sphere gives a direction `m`, which is then held fixed in the frame of the
@@ -26,10 +26,10 @@
 //! play, so that `ULPS` ulps of it cover the bound. A tolerance below [`CHASE_TOLERANCE_PER_SLACK`] times
 //! that slack is raised to it.
 
-use super::axisymmetric::{AxisFrame, Axisymmetric, NearBall, unit};
 use crate::math::lane::Vec3;
 use crate::math::motion::{PointPath, RigidMotion};
 use crate::math::sphere::Ball;
+use crate::parry::partners::axisymmetric::{AxisFrame, Axisymmetric, NearBall, unit};
 
 /// Rounding slack in units of `f64::EPSILON × scale` (no unit); derived in the header, with a margin
 /// of 4.

@@ -9,12 +9,12 @@
 //! A translation along any direction that separates two parts bounds their depth from above. Ways out that are found
 //! bound those of the other parts, so that few are looked at.
 
-use super::compound_children::children_in;
 use super::scaled_contact;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::convex_pieces::ConvexPiece;
 use crate::medial::{MedialMesh, MedialSphere};
 use crate::pair::{SpherePair, Support};
+use crate::parry::partners::compound_children::children_in;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::shape::{Shape, SupportMap, TypedShape};
 
