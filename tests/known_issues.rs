@@ -1,7 +1,7 @@
 //! What is known to be wrong today. Each test asserts the wrong result, so it fails when the fault is
 //! mended; then it becomes a test of the right result elsewhere.
 
-#[allow(dead_code)] // Shared with the other tests.
+#[allow(dead_code)] // Shared with `tests/scenes` and `tests/hard_scenes`.
 mod scenes {
     #[path = "../common/bodies.rs"]
     pub mod bodies;

@@ -19,9 +19,10 @@
 //! last 8       checksum of all before
 //! ```
 //!
-//! # Trust Counts are compared with the length of the bytes before anything is allocated. The checksum finds every
-//! changed byte. A file forged with a good checksum is checked so far that no query on it panics. It is not checked
-//! that its tree bounds its primitives, that its mass is that of its solid, nor that its parts are convex.
+//! # Trust
+//! Counts are compared with the length of the bytes before anything is allocated. The checksum finds every changed
+//! byte. A file forged with a good checksum is checked so far that no query on it panics. It is not checked that its
+//! tree bounds its primitives, that its mass is that of its solid, nor that its parts are convex.
 
 use super::check::{check, check_primitives};
 use super::files::{self, file_error};

@@ -37,7 +37,8 @@ impl MedialMesh {
 
     /// Reads the text of a `.ma` file from a reader; errors call it `name`.
     ///
-    /// # Errors The same as of [`MedialMesh::load_ma`].
+    /// # Errors
+    /// The same as of [`MedialMesh::load_ma`].
     ///
     /// ```
     /// use rapier3d_medial::MedialMesh;
@@ -69,7 +70,8 @@ impl MedialMesh {
 
     /// Writes the text of a `.ma` file to a writer. Numbers have as few digits as give the same `f32` when read.
     ///
-    /// # Errors Any error of the writer.
+    /// # Errors
+    /// Any error of the writer.
     pub fn write_ma(&self, writer: impl Write) -> io::Result<()> {
         let mut out = BufWriter::new(writer);
         let (spheres, edges, faces) = (self.spheres(), self.edges(), self.faces());

@@ -15,7 +15,8 @@ impl MedialMesh {
     /// Versions are told apart by the version number in this crate's `Cargo.toml`: if you depend on
     /// a clone of the repository, delete the folder to get what a newer state of it builds.
     ///
-    /// # Errors The same as of [`MedialMesh::from_trimesh`], and [`MeshError::File`] within [`BuildError::Mesh`] if the
+    /// # Errors
+    /// The same as of [`MedialMesh::from_trimesh`], and [`MeshError::File`] within [`BuildError::Mesh`] if the
     /// folder or file cannot be written.
     ///
     /// ```

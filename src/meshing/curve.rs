@@ -31,7 +31,8 @@ pub struct ErrorAt {
 /// fitting, covering and measuring are done for each number. `progress` is called as in
 /// [`crate::MedialMesh::from_trimesh_with_progress`].
 ///
-/// # Errors The same as of [`crate::MedialMesh::from_trimesh_with_progress`]; a number of 0 primitives is refused.
+/// # Errors
+/// The same as of [`crate::MedialMesh::from_trimesh_with_progress`]; a number of 0 primitives is refused.
 ///
 /// ```no_run
 /// use rapier3d::prelude::*;

@@ -82,7 +82,8 @@ impl MedialMesh {
     /// Does the same as [`MedialMesh::from_trimesh`], and calls `progress` several times a second to tell how far
     /// the build is. If `progress` returns `Break`, the build stops.
     ///
-    /// # Errors The same as of [`MedialMesh::from_trimesh`], and [`BuildError::Cancelled`] if `progress` returned
+    /// # Errors
+    /// The same as of [`MedialMesh::from_trimesh`], and [`BuildError::Cancelled`] if `progress` returned
     /// `Break`.
     ///
     /// ```

@@ -10,8 +10,8 @@
 //! all the same, and the body is to meet its face: the contact gets the face's normal.
 //!
 //! At the floor ([`crate::elementary::Cores`]), where a body has to stop, a contact may be deep for a thin primitive
-//! and not for a thick one beside it. There a part is shielded only by one that holds the place of the contact: no axis
-//! of the other body gets into that.
+//! and not for a thick one beside it. There a part is shielded only by one that holds the place of the contact, and
+//! has a floor of its own.
 
 use super::contact_list::ContactList;
 use super::first_contact::{Counts, Query};
@@ -156,8 +156,8 @@ fn size(spheres: &[MedialSphere], pose: &Pose) -> Real {
 
 impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
     /// The contact that shields the one of an answer, if there is any: its normal is in the first body's frame, each
-    /// point in its own body's. Only parts that touched at the start may shield others, at the floor only those that
-    /// hold the place.
+    /// point in its own body's. Parts that touched at the start may shield others; at the floor instead those that hold
+    /// the place of the contact, whether they touched or not.
     pub(super) fn shielding_contact(&self, toi: &Toi) -> Option<SpherePair> {
         let search = self.search.as_ref()?;
         let is_floor = search.cores.is_some_and(|cores| cores.share > 0.0);

@@ -1,5 +1,5 @@
 //! The medial mesh as a shape of parry, rapier's geometry library (layer 5): queries, contact manifolds and shape
-//! casts, against medial meshes and all of parry's shapes. A room uses those before it.
+//! casts, against medial meshes and all of parry's shapes. Each folder (a room) uses only those listed before it.
 //!
 //! # Files
 //! - `partners/`: the other shapes.

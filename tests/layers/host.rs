@@ -1,5 +1,5 @@
-//! The checklist for an upgrade of rapier (docs/host.md) is whole: the files and tests that it names are there, and it
-//! names every file of `src/rapier/host/` and every test of `tests/host/`.
+//! The checklist for an upgrade of rapier (docs/host.md) is whole: the files that it names are there, it names every
+//! file of `src/rapier/host/`, and its names that begin with `host::` are the tests of `tests/host/`.
 
 use std::collections::BTreeSet;
 use std::fs;

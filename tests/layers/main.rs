@@ -212,7 +212,16 @@ fn rooms_import_from_rooms_before_them_only() {
         for (place, room) in rooms.iter().enumerate() {
             for path in files_of(&src.join(layer), room) {
                 for line in code_lines(&path) {
-                    let named = line.split(&prefix).skip(1).filter_map(|rest| {
+                    let beside = if path.parent() == Some(&src.join(layer)) {
+                        "use super::"
+                    } else {
+                        &prefix
+                    };
+                    let named = line
+                        .split(&prefix)
+                        .skip(1)
+                        .chain(line.split(beside).skip(1));
+                    let named = named.filter_map(|rest| {
                         let name = rest.split(|c: char| !(c.is_alphanumeric() || c == '_'));
                         let name = name.into_iter().next()?;
                         rooms.iter().position(|r| *r == name)

@@ -328,8 +328,8 @@ fn a_sliding_ball_gets_no_deeper_into_a_medial_wall_than_into_rapiers() {
 
 /// Characters that are moved down by 3 cm with each step of 5 cm walk 5 m over a flat floor whose collider is turned by
 /// a quarter about any axis, by half a radian, or not, where the floor or the character is medial. On rapier's own
-/// floors they lose some of it (`tests/host.rs`), because rapier's controller takes a normal that is shorter than 1 by
-/// rounding for that of a slope.
+/// floors they lose some of it (`tests/host/main.rs`), because rapier's controller takes a normal that is shorter than
+/// 1 by rounding for that of a slope.
 #[test]
 fn flat_floors_turned_by_a_quarter_are_walked_on() {
     let quarter = std::f32::consts::FRAC_PI_2;

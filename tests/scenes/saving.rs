@@ -102,10 +102,11 @@ fn heap_of_boxes() -> PhysicsWorld {
 /// step, went on with other bits. Cause: the collider counted as one with a new shape.
 #[test]
 fn a_loaded_world_in_which_a_property_was_changed_goes_on_bit_by_bit() {
-    let changes: [fn(&mut Collider); 3] = [
+    let changes: [fn(&mut Collider); 4] = [
         |c| c.set_friction(0.1),
         |c| c.set_restitution(0.5),
         |c| c.set_active_events(ActiveEvents::COLLISION_EVENTS),
+        |c| c.set_active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS),
     ];
     for (k, change) in changes.iter().enumerate() {
         for changed in [0, 2, 5, 7] {

@@ -1,5 +1,5 @@
-//! Bodies that slide off the edge of a table of rapier's shapes. Its sides are met from inside then, and are no
-//! obstacle: rapier's own shapes keep their speed there.
+//! Bodies that slide over the edge of a table, off it and in from it. Off it they meet the table's sides from inside,
+//! which are no obstacle: rapier's own shapes keep their speed there. Tables are rapier's shapes and a medial cuboid.
 
 use crate::blocks::l_shape;
 use crate::bodies::{attached, octagon};

@@ -1,6 +1,6 @@
 //! The medial axis of a convex body of flat faces, read off the roof over it (`roof.rs`), and how far it may be off.
 //!
-//! The roof has several corners, near each other, for each at which more than four sides meet; those joined by short
+//! Where more than four sides meet in one corner, the roof has several corners near each other; those joined by short
 //! edges become one ball again, and corners on the ground become the vertices of the source.
 //!
 //! # Proof

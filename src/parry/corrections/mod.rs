@@ -1,4 +1,4 @@
-//! Contacts of parry that are wrong, one file for each way (`docs/host.md`).
+//! Corrections of contacts that parry gets wrong, one file for each kind of error (`docs/host.md`).
 //!
 //! - With triangles: those without a normal or too deep, `false_contacts.rs`, and those that point into a convex piece,
 //!   `inward_contacts.rs`.

@@ -8,7 +8,7 @@ use crate::medial::{MedialMesh, MedialSphere};
 use parry3d::bounding_volume::Aabb;
 
 /// The part of a polygon of spheres where a linear function of them is at most 0.
-pub fn clipped(
+pub fn part_below(
     polygon: &[MedialSphere],
     height: impl Fn(&MedialSphere) -> f64,
 ) -> Vec<MedialSphere> {
@@ -38,16 +38,16 @@ pub fn within(mesh: &MedialMesh, pose: &Pose, aabb: &Aabb) -> Vec<MedialSphere> 
         for axis in 0..3 {
             let [low, high] = [aabb.mins[axis], aabb.maxs[axis]];
             let place = |s: &MedialSphere| (pose * s.center)[axis];
-            part = clipped(&part, |s| f64::from(place(s) - s.radius - high));
-            part = clipped(&part, |s| f64::from(low - place(s) - s.radius));
+            part = part_below(&part, |s| f64::from(place(s) - s.radius - high));
+            part = part_below(&part, |s| f64::from(low - place(s) - s.radius));
         }
         part
     };
     near.flat_map(within).collect()
 }
 
-/// Whether a line through two spheres of a polygon, seen along `n`, has all of these corners on one side, and the
-/// polygon on the other.
+/// Whether a convex polygon and a face, seen along `n`, are on different sides of a line along one of the polygon's
+/// edges. `corners` are those of the face.
 pub fn is_beside(polygon: &[Vec3<f64>], corners: &[Vec3<f64>], n: Vec3<f64>) -> bool {
     let range = |places: &[Vec3<f64>], axis: Vec3<f64>| {
         let along = places.iter().map(|p| axis.dot(*p));

@@ -2,9 +2,9 @@
 //!
 //! - Casts: `cast.rs`, and the answer in parry's form `cast_answer.rs`. The other shape becomes swept spheres
 //!   (`swept_sphere_parts.rs`, the place for a new shape), or is a cylinder or a cone (`axisymmetric_toi.rs` with
-//!   `conservative_advancement.rs`). Only what is in `swept_region.rs` is looked at. What touches at the start:
-//!   `initial_contacts.rs`.
-//! - Flat ground: a body that slides over its faces, `sliding.rs` (of it the part that is near, `clipped_part.rs`), and
+//!   `conservative_advancement.rs`). Only what is in the box of `swept_region.rs` is looked at. What touches at the
+//!   start: `initial_contacts.rs`.
+//! - Flat ground: a body that slides over its faces, `sliding.rs` (`clipped_part.rs`: the part of it that is near), and
 //!   normals at the folds between them, `folds.rs`.
 //! - Distance: `distance.rs`.
 

@@ -13,7 +13,7 @@
 //! most. A point that turns with the mesh by `ω₁` at `r`, seen from a ground that turns by `ω₂`, `d` from its axis, has
 //! up to `ω₁² r + ω₂² d + 2 ω₂ v`.
 
-use super::clipped_part::{clipped, is_beside, within};
+use super::clipped_part::{is_beside, part_below, within};
 use crate::math::lane::Vec3;
 use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
@@ -82,6 +82,13 @@ impl PlacedFrame {
         x * p.x + y * p.y + z * p.z + self.origin
     }
 
+    /// A place of the ground's frame in the mesh's.
+    fn local(&self, place: Vec3<f64>) -> Vector {
+        let way = place - self.origin;
+        let [x, y, z] = self.columns.map(|column| column.dot(way) as Real);
+        Vector::new(x, y, z)
+    }
+
     /// Height of points of the mesh's frame over a place of the ground's, along `n`.
     fn heights(&self, n: Vec3<f64>, place: Vec3<f64>) -> impl Fn(Vector) -> f64 + use<> {
         let [x, y, z] = self.columns.map(|column| column.dot(n));
@@ -101,8 +108,6 @@ pub struct Lying {
     rounding: f64,
     /// Whether what is in the plane or below it is no obstacle; of a solid what is below.
     pub slides: bool,
-    /// Whether the mesh is near the plane over the face itself, not only beside it.
-    is_over: bool,
 }
 
 /// Rounding error of the heights of corners over a face, in units of their coordinates: eight ulps. More, and a fin may
@@ -122,6 +127,14 @@ impl Lying {
         let way = Vec3::from_vector(center) - self.place;
         self.normal.dot(way) + f64::from(radius) <= self.rounding
     }
+}
+
+/// The unit normal of a face about which its corners turn to the left; `None` of a face without area.
+fn unit_normal(face: Face) -> Option<Vec3<f64>> {
+    let corner = |k: usize| Vec3::<f64>::from_vector(face.corners[k]);
+    let across = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    let length = across.length();
+    (length > 0.0).then(|| across * (1.0 / length))
 }
 
 /// Cosine from which two faces face about the same way (60°).
@@ -199,7 +212,7 @@ impl<'a> Sliding<'a> {
         self.is_over_solids &= face.is_of_solid;
         if self.ground_above(face).is_none() {
             self.grounds
-                .extend(self.lies_on(face).filter(|l| l.is_over));
+                .extend(self.lies_on(face).filter(|l| self.is_over(face, l)));
         }
     }
 
@@ -255,13 +268,7 @@ impl<'a> Sliding<'a> {
 
     /// How the mesh lies on the plane of a face, if it does. The face is convex.
     fn lies_on(&self, face: Face) -> Option<Lying> {
-        let corner = |k: usize| Vec3::<f64>::from_vector(face.corners[k]);
-        let across = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-        let length = across.length();
-        if length <= 0.0 {
-            return None;
-        }
-        let across = across * (1.0 / length);
+        let across = unit_normal(face)?;
         let sides = if face.is_of_solid {
             &[1.0][..]
         } else {
@@ -275,9 +282,8 @@ impl<'a> Sliding<'a> {
     /// the left, or the other (-1).
     fn lies_on_side(&self, face: Face, across: Vec3<f64>, side: f64) -> Option<Lying> {
         let corners = face.corners;
-        let corner = |k: usize| Vec3::<f64>::from_vector(corners[k % corners.len()]);
         let n = across * side;
-        let a = corner(0) + n * f64::from(face.border);
+        let a = Vec3::from_vector(corners[0]) + n * f64::from(face.border);
         // The lowest point of the mesh, unless one is below `least`; of most triangles one of the first spheres is.
         let spheres = self.spheres.iter();
         let height = self.poses.map(|pose| pose.heights(n, a));
@@ -297,38 +303,52 @@ impl<'a> Sliding<'a> {
         // A solid's own face stays an obstacle, so that how far the mesh sinks in does not matter for what is below.
         let by = if face.is_of_solid { to } else { by };
         let least = (start.min(0.0) - by).max(-to) + self.bend;
-        let sides = (0..corners.len()).map(|k| {
-            let along = corner(k + 1) - corner(k);
-            let inward = self.poses[0].heights(across.cross(along), corner(k));
-            (inward, along.length())
-        });
-        let sides: Vec<_> = sides.collect();
-        let above = |s: &MedialSphere| height[0](s.center) - f64::from(s.radius) - self.target;
-        let is_within = |s: &MedialSphere| {
-            let radius = f64::from(s.radius);
-            let mut sides = sides.iter();
-            sides.all(|(inward, l)| inward(s.center) >= -radius * l)
-        };
-        let is_over = spheres.clone().any(|s| above(s) <= 0.0 && is_within(s))
-            || self.mesh.primitives().any(|primitive| {
-                let low = clipped(primitive.spheres(), above);
-                let mut sides = sides.iter();
-                let places = || low.iter().map(|s| self.poses[0].place(s.center));
-                !low.is_empty()
-                    && sides.all(|(inward, _)| low.iter().any(|s| inward(s.center) >= 0.0))
-                    && !is_beside(
-                        &places().collect::<Vec<_>>(),
-                        &(0..corners.len()).map(corner).collect::<Vec<_>>(),
-                        n,
-                    )
-            });
         let coordinates = corners.iter().map(|p| p.abs().max_element());
         Some(Lying {
             normal: n,
             place: a,
             rounding: f64::from(CORNER_ROUNDING * coordinates.fold(0.0, Real::max)),
             slides: start >= least && lowest(1, least).is_some(),
-            is_over,
+        })
+    }
+
+    /// Whether the mesh, which lies on the plane of a face, is near the plane over the face itself, not only beside it.
+    fn is_over(&self, face: Face, lying: &Lying) -> bool {
+        let Some(across) = unit_normal(face) else {
+            return false;
+        };
+        let pose = &self.poses[0];
+        let corners: Vec<Vec3<f64>> = face.corners.iter().map(|p| Vec3::from_vector(*p)).collect();
+        let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+        let sides: Vec<_> = sides
+            .map(|(a, b)| {
+                let along = *b - *a;
+                (pose.heights(across.cross(along), *a), along.length())
+            })
+            .collect();
+        let height = pose.heights(lying.normal, lying.place);
+        let above = |s: &MedialSphere| height(s.center) - f64::from(s.radius) - self.target;
+        let is_within = |s: &MedialSphere| {
+            let radius = f64::from(s.radius);
+            let mut sides = sides.iter();
+            sides.all(|(inward, l)| inward(s.center) >= -radius * l)
+        };
+        let mut spheres = self.spheres.iter();
+        if spheres.any(|s| above(s) <= 0.0 && is_within(s)) {
+            return true;
+        }
+        let local = corners.iter().map(|p| pose.local(*p)).collect::<Vec<_>>();
+        let margin = self.target as Real + self.sinks.at_start + face.border;
+        let around = Aabb::from_points(local).loosened(margin);
+        let mut near = self.mesh.bvh().intersect_aabb(&around);
+        near.any(|primitive| {
+            let primitive = self.mesh.primitive(primitive as usize);
+            let low = part_below(primitive.spheres(), above);
+            let mut sides = sides.iter();
+            let places = low.iter().map(|s| pose.place(s.center));
+            !low.is_empty()
+                && sides.all(|(inward, _)| low.iter().any(|s| inward(s.center) >= 0.0))
+                && !is_beside(&places.collect::<Vec<_>>(), &corners, lying.normal)
         })
     }
 }

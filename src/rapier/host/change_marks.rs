@@ -9,7 +9,8 @@ use rapier3d::geometry::Collider;
     derive(serde::Serialize, serde::Deserialize)
 )]
 pub enum SlightChange {
-    /// Its friction, restitution, events or hooks: what rapier reads anew in each step.
+    /// A setting for which rapier sets no mark of its own: friction, restitution, how these are combined, contact skin,
+    /// active events, hooks and collision types, the threshold of force events.
     Property,
     /// Its pose, and perhaps a property.
     Pose,

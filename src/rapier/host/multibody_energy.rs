@@ -34,7 +34,7 @@ const MAX_ENERGY_GAIN: f64 = 0.1;
 #[derive(Default)]
 pub struct FastMultibodies(Vec<FastMultibody>);
 
-/// A multibody whose links turn by more than [`FAST_LINK_TURN`] in this step.
+/// A multibody whose fastest link turns by more than [`FAST_LINK_TURN`] in this step.
 struct FastMultibody {
     handle: MultibodyIndex,
     /// Free links, in the view.
@@ -43,7 +43,7 @@ struct FastMultibody {
     is_at_rest: bool,
 }
 
-/// Whether a body is a link of a multibody that turns by more than [`UNSTABLE_TURN`] in a step of `dt` seconds.
+/// Whether a body is of a multibody whose fastest link turns by more than [`UNSTABLE_TURN`] in a step of `dt` seconds.
 pub fn is_unstable(body: &Body, dt: Real) -> bool {
     body.link_spin * dt > UNSTABLE_TURN
 }

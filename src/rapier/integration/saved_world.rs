@@ -125,9 +125,9 @@ enum Changes {
 }
 
 impl SavedWorld {
-    /// Takes a copy of the world, between steps. If you have changed the shape, mass, groups, type or parent of a
-    /// medial collider since the last step, or enabled or disabled it, it loses its contacts and gets new ones in the
-    /// first step after loading.
+    /// Takes a copy of the world, between steps. If you have changed the shape, mass, groups or parent of a medial
+    /// collider since the last step, its place on the parent, whether it is a sensor or whether it is enabled, it loses
+    /// its contacts and gets new ones in the first step after loading.
     ///
     /// # Errors
     /// [`SavedWorldError::Removed`] if colliders were removed since the last step.
