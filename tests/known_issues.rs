@@ -12,6 +12,7 @@ mod scenes {
     #[path = "../common/linking.rs"]
     pub mod linking;
     pub mod oneway;
+    pub mod posts;
     #[path = "../common/random.rs"]
     pub mod random;
     pub mod wheels;

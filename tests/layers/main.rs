@@ -55,6 +55,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
             "dispatcher",
             "by_parry",
             "contact_manifolds",
+            "touching_points",
         ],
     ),
     (

@@ -67,6 +67,7 @@ mod oracle;
 mod outnumbered;
 mod partners;
 mod pinched;
+mod posts;
 mod put_in_place;
 #[path = "../common/random.rs"]
 mod random;

@@ -8,6 +8,10 @@
 //! its hook would else hand the load's momentum to and fro, and be frozen. Driven bodies do not: the rounds between two
 //! of them would not end, and their friction would hold what they press out. No contact is taken for granted
 //! afterwards: all pairs of the bodies that changed are searched again.
+//!
+//! What slides over a floor into a wall that is one shape with the floor is kept by both at once: the other places
+//! where a pair touches as it first meets take part, if one of the two does not give way. rapier's solver has no
+//! contacts of that pair in this step.
 
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;
@@ -83,6 +87,11 @@ impl Response {
         let bodies = bodies(view, pair);
         let undisturbed = self.history.undisturbed(view, pair, hit.time);
         self.history.add(view, pair, &hit);
+        let is_free = |b: usize| view.bodies[b].mobility == Mobility::Free;
+        if !bodies.into_iter().all(is_free) {
+            let reach = policy.gap(view.thickness(pair));
+            self.history.add_resting(view, pair, &hit, reach);
+        }
         let leads = [bodies, [bodies[1], bodies[0]]].map(|both| self.leads(view, policy, both));
         for (b, leads) in bodies.into_iter().zip(leads) {
             if self.advance(view, b, hit.time) && !leads {
@@ -185,7 +194,8 @@ impl Response {
             let pairs = self.history.of(view, &last).into_iter();
             let all = pairs.flat_map(|pair| (0..self.history.places(pair)).map(move |k| (pair, k)));
             for (pair, place) in all.collect::<Vec<_>>() {
-                let own = undisturbed.filter(|_| pair == struck);
+                let rests = self.history.rests((pair, place));
+                let own = undisturbed.filter(|_| pair == struck && !rests);
                 if own.is_some() && round > 0 {
                     continue;
                 }
