@@ -10,8 +10,8 @@
 //! afterwards: all pairs of the bodies that changed are searched again.
 //!
 //! What slides over a floor into a wall that is one shape with the floor is kept by both at once: the other places
-//! where a pair touches as it first meets take part, if one of the two does not give way. rapier's solver has no
-//! contacts of that pair in this step.
+//! where a pair touches as it first meets take part, if one of the two does not give way and is not convex. rapier's
+//! solver has no contacts of that pair in this step.
 
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;
@@ -87,8 +87,13 @@ impl Response {
         let bodies = bodies(view, pair);
         let undisturbed = self.history.undisturbed(view, pair, hit.time);
         self.history.add(view, pair, &hit);
-        let is_free = |b: usize| view.bodies[b].mobility == Mobility::Free;
-        if !bodies.into_iter().all(is_free) {
+        // A convex body is no floor and wall in one.
+        let is_both = |k: usize| {
+            let collider = &view.colliders[k];
+            let mobility = view.bodies[collider.body].mobility;
+            mobility != Mobility::Free && !collider.shape.is_convex()
+        };
+        if pair.into_iter().any(is_both) {
             let reach = policy.gap(view.thickness(pair));
             self.history.add_resting(view, pair, &hit, reach);
         }
