@@ -79,6 +79,8 @@ mod rng;
 mod rolling;
 mod ropes;
 #[cfg(feature = "serde-serialize")]
+mod saved_changes;
+#[cfg(feature = "serde-serialize")]
 mod saved_impacts;
 #[cfg(feature = "serde-serialize")]
 mod saving;
