@@ -9,6 +9,7 @@ mod rapier;
 
 use rapier3d::control::KinematicCharacterController;
 use rapier3d::prelude::*;
+#[cfg(any(feature = "serde-serialize", feature = "debug-render"))]
 use rapier3d_medial::prelude::*;
 
 /// A ball that slides over a plate without friction by a millimetre a step. How many of `steps` steps
