@@ -2,7 +2,8 @@
 //!
 //! # Files
 //! - Closed forms: `nearest.rs` (spheres nearest to each other at a fixed time, paper Eq. 2), `approach.rs` (when two
-//!   spheres on straight paths meet, Eq. 4), `motion.rs` (rigid motion, and how far its points leave straight paths).
+//!   spheres on straight paths meet, Eq. 4), `motion.rs` (rigid motion, and how far its points leave straight paths),
+//!   `clipping.rs` (the part of a polygon on one side of a plane).
 //! - Types: `sphere.rs` (a centre and a radius), `lane.rs` (one trait over `f32`, `f64` and eight lanes), `lane_avx.rs`
 //!   (eight lanes in an AVX register).
 //! - Helpers: `counters.rs` (structs of counters), `least_first.rs` (the order of a heap from which the least key
@@ -11,6 +12,7 @@
 //! - Constants: `tolerance.rs`.
 
 pub(crate) mod approach;
+pub(crate) mod clipping;
 pub(crate) mod counters;
 pub(crate) mod fast_hash;
 pub mod lane;

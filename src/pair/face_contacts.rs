@@ -1,12 +1,13 @@
 //! Contacts of two convex pieces at fixed poses: where a flat face of one lies about flat on the other, the corners of
-//! the polygon in which the two faces overlap, as in other engines (Sutherland and Hodgman, "Reentrant polygon
-//! clipping", 1974); else their nearest points. Each contact is a pair of spheres, as those of two primitives are.
+//! the polygon in which the two faces overlap, as in other engines; else their nearest points. Each contact is a pair of
+//! spheres, as those of two primitives are.
 
 use super::hull_gap::{HullGap, PlacedHull, hull_gap, nearest_points};
 use super::placement::Placement;
 use super::sphere_pair::SpherePair;
 use crate::elementary::distance::Ball;
 use crate::math::Real;
+use crate::math::clipping::part_below;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
 
@@ -182,21 +183,15 @@ fn clipped(polygon: Vec<Corner>, outline: &[Corner], normal: Vec3<f64>) -> Vec<C
     let mut polygon = polygon;
     for (k, (from, _)) in outline.iter().enumerate() {
         let edge = outline[(k + 1) % outline.len()].0 - *from;
-        let inward = normal.cross(edge);
-        let inside = |c: &Corner| inward.dot(c.0 - *from);
-        let mut kept = Vec::with_capacity(polygon.len() + 1);
-        for (i, p) in polygon.iter().enumerate() {
-            let q = &polygon[(i + 1) % polygon.len()];
-            let (a, b) = (inside(p), inside(q));
-            if a >= 0.0 {
-                kept.push(*p);
-            }
-            if (a >= 0.0) != (b >= 0.0) {
+        let outward = edge.cross(normal);
+        polygon = part_below(
+            &polygon,
+            |c| outward.dot(c.0 - *from),
+            |i, p, q, share| {
                 let number = NUMBERED * (1 + k % NUMBERED) + i.min(NUMBERED - 1);
-                kept.push((p.0 + (q.0 - p.0) * (a / (a - b)), number as u32));
-            }
-        }
-        polygon = kept;
+                (p.0 + (q.0 - p.0) * share, number as u32)
+            },
+        );
     }
     polygon
 }

@@ -1,31 +1,22 @@
 //! The part of a primitive on one side of a plane, or of several. Over a primitive the centre and the radius of its
-//! spheres are linear, so a height above a plane is too, and the part is a convex polygon of spheres (Sutherland and
-//! Hodgman, "Reentrant polygon clipping", 1974).
+//! spheres are linear, so a height above a plane is too, and the part is a convex polygon of spheres.
 
+use crate::math::clipping::part_below;
 use crate::math::lane::Vec3;
 use crate::math::{Pose, Real};
 use crate::medial::{MedialMesh, MedialSphere};
 use parry3d::bounding_volume::Aabb;
 
 /// The part of a polygon of spheres where a linear function of them is at most 0.
-pub fn part_below(
+pub fn spheres_below(
     polygon: &[MedialSphere],
     height: impl Fn(&MedialSphere) -> f64,
 ) -> Vec<MedialSphere> {
-    let mut part = Vec::new();
-    for (k, a) in polygon.iter().enumerate() {
-        let b = &polygon[(k + 1) % polygon.len()];
-        let [at_a, at_b] = [a, b].map(&height);
-        if at_a <= 0.0 {
-            part.push(*a);
-        }
-        if (at_a <= 0.0) != (at_b <= 0.0) {
-            let share = (at_a / (at_a - at_b)) as Real;
-            let radius = a.radius + (b.radius - a.radius) * share;
-            part.push(MedialSphere::new(a.center.lerp(b.center, share), radius));
-        }
-    }
-    part
+    part_below(polygon, height, |_, a, b, share| {
+        let share = share as Real;
+        let radius = a.radius + (b.radius - a.radius) * share;
+        MedialSphere::new(a.center.lerp(b.center, share), radius)
+    })
 }
 
 /// Spheres, in the mesh's frame, whose convex hulls hold all of the mesh that is in a box. `pose` is that of the mesh
@@ -38,8 +29,8 @@ pub fn within(mesh: &MedialMesh, pose: &Pose, aabb: &Aabb) -> Vec<MedialSphere> 
         for axis in 0..3 {
             let [low, high] = [aabb.mins[axis], aabb.maxs[axis]];
             let place = |s: &MedialSphere| (pose * s.center)[axis];
-            part = part_below(&part, |s| f64::from(place(s) - s.radius - high));
-            part = part_below(&part, |s| f64::from(low - place(s) - s.radius));
+            part = spheres_below(&part, |s| f64::from(place(s) - s.radius - high));
+            part = spheres_below(&part, |s| f64::from(low - place(s) - s.radius));
         }
         part
     };

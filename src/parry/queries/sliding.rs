@@ -13,7 +13,7 @@
 //! most. A point that turns with the mesh by `ω₁` at `r`, seen from a ground that turns by `ω₂`, `d` from its axis, has
 //! up to `ω₁² r + ω₂² d + 2 ω₂ v`.
 
-use super::clipped_part::{is_beside, part_below, within};
+use super::clipped_part::{is_beside, spheres_below, within};
 use crate::math::lane::Vec3;
 use crate::math::tolerance::REAL_ROUNDING;
 use crate::math::{Pose, Real, Vector};
@@ -343,7 +343,7 @@ impl<'a> Sliding<'a> {
         let mut near = self.mesh.bvh().intersect_aabb(&around);
         near.any(|primitive| {
             let primitive = self.mesh.primitive(primitive as usize);
-            let low = part_below(primitive.spheres(), above);
+            let low = spheres_below(primitive.spheres(), above);
             let mut sides = sides.iter();
             let places = low.iter().map(|s| pose.place(s.center));
             !low.is_empty()
