@@ -12,7 +12,6 @@ mod scenes {
     #[path = "../common/linking.rs"]
     pub mod linking;
     pub mod oneway;
-    pub mod posts;
     #[path = "../common/random.rs"]
     pub mod random;
     pub mod wheels;

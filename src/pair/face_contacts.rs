@@ -1,15 +1,15 @@
 //! Contacts of two convex pieces at fixed poses: where a flat face of one lies about flat on the other, the corners of
-//! the polygon in which the two faces overlap, as in other engines; else their nearest points. Each contact is a pair of
-//! spheres, as those of two primitives are.
+//! the polygon in which the two faces overlap, as in other engines; else their nearest points. Each contact is a pair
+//! of spheres, as those of two primitives are.
 
 use super::hull_gap::{HullGap, PlacedHull, hull_gap, nearest_points};
 use super::placement::Placement;
 use super::sphere_pair::SpherePair;
-use crate::elementary::distance::Ball;
 use crate::math::Real;
 use crate::math::clipping::part_below;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
+use std::borrow::Cow;
 
 /// How much better, in cosines, the face of the second has to lie to be the one that contacts are measured from. At 0
 /// rounding decides, and contacts change from step to step.
@@ -84,12 +84,17 @@ pub(super) fn facing_faces(
     margin: f64,
 ) -> Option<FacingFaces> {
     let best = [(hulls[0], direction), (hulls[1], -direction)].map(|(hull, n)| flattest(hull, n));
-    let cosines = best.map(|face| face.map_or(-1.0, |(_, cosine)| cosine));
+    let cosines = best
+        .each_ref()
+        .map(|face| face.as_ref().map_or(-1.0, |face| face.cosine));
     let of = usize::from(cosines[1] > cosines[0] + FACE_PREFERENCE);
-    let (face, _) = best[of].filter(|_| cosines[of] >= ONE_DIRECTION)?;
+    let [first, second] = best;
+    let face = if of == 0 { first } else { second };
+    let FlatFace {
+        normal, corners, ..
+    } = face.filter(|face| face.cosine >= ONE_DIRECTION)?;
     let (reference, other) = (hulls[of], hulls[1 - of]);
-    let normal = reference.normals[face];
-    let outline = polygon(reference, face, normal);
+    let outline = polygon(reference, &corners, normal);
     let (base, _) = *outline.first()?;
     let near = |(corner, number): Corner| {
         let height = normal.dot(corner - base);
@@ -149,31 +154,56 @@ fn least_missed([a, b]: [&PlacedHull; 2], gap: f64) -> f64 {
     MISSED * gap.abs() + ROUNDING_ULPS * f64::from(Real::EPSILON) * (a.size() + b.size())
 }
 
-/// The face whose normal is nearest to a direction, and the cosine of the angle between them.
-fn flattest(hull: &PlacedHull, n: Vec3<f64>) -> Option<(usize, f64)> {
+/// A face of a hull that looks along a direction.
+struct FlatFace<'a> {
+    /// Its unit normal, outward.
+    normal: Vec3<f64>,
+    /// Cosine of the angle between its normal and the direction.
+    cosine: f64,
+    /// Its corners, numbers of spheres, counterclockwise around the normal.
+    corners: Cow<'a, [u32]>,
+}
+
+/// The face whose normal is nearest to a direction. A lone triangle, of corners of one radius, has two faces.
+fn flattest<'a>(hull: &PlacedHull<'a>, n: Vec3<f64>) -> Option<FlatFace<'a>> {
+    if let Some(across) = hull.triangle().filter(|across| across.length() > 0.0)
+        && hull.has_edges()
+    {
+        let normal = across * (1.0 / across.length());
+        let (normal, corners) = match normal.dot(n) >= 0.0 {
+            true => (normal, vec![0, 1, 2]),
+            false => (-normal, vec![0, 2, 1]),
+        };
+        return Some(FlatFace {
+            normal,
+            cosine: normal.dot(n),
+            corners: corners.into(),
+        });
+    }
     let cosines = hull.normals.iter().map(|normal| normal.dot(n)).enumerate();
-    cosines.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
+    let best = cosines.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+    best.map(|(face, cosine)| FlatFace {
+        normal: hull.normals[face],
+        cosine,
+        corners: hull.faces[face].corners.as_slice().into(),
+    })
 }
 
 /// The corners of a face where its spheres end along a direction.
-fn polygon(hull: &PlacedHull, face: usize, n: Vec3<f64>) -> Vec<Corner> {
-    let corners = hull.faces[face].corners.iter();
+fn polygon(hull: &PlacedHull, corners: &[u32], n: Vec3<f64>) -> Vec<Corner> {
     let end = |k: &u32| {
         let (center, radius) = hull.spheres[*k as usize];
         (center + n * radius, *k)
     };
-    corners.map(end).collect()
+    corners.iter().map(end).collect()
 }
 
 /// The polygon of a hull that looks along a direction: of its flattest face, or of all corners of a hull that has no
 /// more than one face could have.
 fn facing(hull: &PlacedHull, n: Vec3<f64>) -> Vec<Corner> {
     match flattest(hull, n) {
-        Some((face, _)) => polygon(hull, face, n),
-        None if hull.spheres.len() <= 3 => {
-            let end = |(k, s): (usize, &Ball<f64>)| (s.0 + n * s.1, k as u32);
-            hull.spheres.iter().enumerate().map(end).collect()
-        }
+        Some(face) => polygon(hull, &face.corners, n),
+        None if hull.spheres.len() <= 3 => polygon(hull, &[0, 1, 2][..hull.spheres.len()], n),
         None => Vec::new(),
     }
 }

@@ -65,8 +65,13 @@ impl<'a> PlacedHull<'a> {
             .map(|(ends, radius)| (ends.iter().map(way), radius))
     }
 
+    /// Whether it is a polyhedron but for the radius of its corners.
+    pub(super) fn has_edges(&self) -> bool {
+        self.edges.is_some()
+    }
+
     /// The direction across a lone triangle, of which no face is known.
-    fn triangle(&self) -> Option<Vec3<f64>> {
+    pub(super) fn triangle(&self) -> Option<Vec3<f64>> {
         match self.spheres[..] {
             [a, b, c] if self.faces.is_empty() => Some((b.0 - a.0).cross(c.0 - a.0)),
             _ => None,

@@ -44,7 +44,7 @@ impl Met {
 
     /// Faces that lie on each other: nearest points of both, each in its body's frame, and the normal from the first to
     /// the second, in the frame of the body `of`.
-    pub(crate) fn faces(points: [Vec3<f64>; 2], normal: Vec3<f64>, of: usize) -> Self {
+    pub(super) fn faces(points: [Vec3<f64>; 2], normal: Vec3<f64>, of: usize) -> Self {
         Self(Features::Faces(points, normal, of))
     }
 

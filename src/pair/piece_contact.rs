@@ -56,7 +56,7 @@ impl PiecesMet {
         (primitives, distance, found): ([u32; 2], f64, &HullGap),
         tolerance: f64,
     ) -> Self {
-        let (patch, of) = patch(hulls, found.direction, found.gap, tolerance);
+        let (patch, of) = patch(hulls, found.direction, found.gap, [tolerance; 2]);
         Self {
             nodes,
             primitives,
@@ -94,17 +94,17 @@ pub(super) fn placed<'a>(
     PlacedHull::of_node(body, node, point, direction)
 }
 
-/// Patch in which faces of two hulls lie on each other along a direction, at the depth that `gap` says, and the hull (0
-/// or 1) with the flattest face.
+/// Patch in which faces of two hulls lie on each other along a direction, at the depth that `gap` says and up to
+/// `margin` (a length) above it, and the hull (0 or 1) with the flattest face.
 pub(super) fn patch(
     hulls: [&PlacedHull; 2],
     n: Vec3<f64>,
     gap: f64,
-    tolerance: f64,
+    [tolerance, margin]: [f64; 2],
 ) -> (Option<Patch>, usize) {
     // Far apart along a direction that is not quite across the faces, the nearest points are not opposite each other.
     let is_opposite = |f: &FacingFaces| gap * n.cross(f.normal).length() <= tolerance;
-    let faces = facing_faces(hulls, n, gap + tolerance).filter(is_opposite);
+    let faces = facing_faces(hulls, n, gap + margin).filter(is_opposite);
     let Some(faces) = faces else {
         return (None, 0);
     };

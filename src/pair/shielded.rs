@@ -286,7 +286,7 @@ fn of_pieces(
         return None;
     }
     let n = found.direction;
-    let points = match patch(hulls, n, found.gap, gap) {
+    let points = match patch(hulls, n, found.gap, [gap; 2]) {
         (Some(patch), _) => {
             let half = n * (0.5 * found.gap);
             [patch.middle() - half, patch.middle() + half]

@@ -9,7 +9,7 @@
 //! - What a pipeline tells the dispatcher for a step, muted pairs among it: `narrow_phase_plan.rs`.
 //! - The entry: `dispatcher.rs`. Its manifolds: `contact_manifolds.rs` is what parry calls; those of other shapes that
 //!   parry computes are asked for by `by_parry.rs`. Contacts of primitives that their neighbours hide are left out
-//!   (`pair/ghost_contacts.rs`). Where two shapes touch, for impacts: `touching_points.rs`.
+//!   (`pair/ghost_contacts.rs`).
 
 mod by_parry;
 mod contact_manifolds;
@@ -22,7 +22,6 @@ mod partners;
 pub mod queries;
 pub(crate) mod rays;
 pub(crate) mod shape;
-pub(crate) mod touching_points;
 
 pub use dispatcher::MedialDispatcher;
 pub use queries::swept_sphere_parts::Unsweepable;

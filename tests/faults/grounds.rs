@@ -1,6 +1,5 @@
 //! What is known to be wrong of bodies on the ground.
 
-use super::scenes::posts::{HALF, sunk};
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
@@ -37,21 +36,4 @@ fn boxes_of_a_centimetre_in_metres_sink() {
     assert_eq!([count(&own, 1.0), count(&medial, 0.01)], [0, 0]);
     let medial = count(&medial, 1.0);
     assert!(medial > 2, "{medial} of 24: mended?");
-}
-
-/// A box that slides flat over a floor into the edge of a post, off its middle, is turned by the post alone where floor
-/// and post are two colliders: the floor is left to rapier's solver, which has it in the next step. A corner sinks into
-/// the floor by a thirtieth of the box's height, and the box comes out tilted. rapier's own stays flat.
-#[test]
-fn boxes_tilt_where_they_slide_into_posts_beside_the_floor() {
-    let medial = SharedShape::medial_mesh(MedialMesh::cuboid(HALF).expect("a box"));
-    let own = SharedShape::cuboid(HALF.x, HALF.y, HALF.z);
-    for k in [2, 4, 7, 8] {
-        let [medial, own] = [&medial, &own].map(|shape| sunk(shape, false, k));
-        println!("{k}: {medial} m, rapier's {own}");
-        assert!(
-            own < 0.001 && medial > 0.005,
-            "{k}: {medial}, {own}: mended?"
-        );
-    }
 }

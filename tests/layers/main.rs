@@ -55,7 +55,6 @@ const ROOMS: [(&str, &[&str]); 3] = [
             "dispatcher",
             "by_parry",
             "contact_manifolds",
-            "touching_points",
         ],
     ),
     (

@@ -4,8 +4,8 @@
 
 use crate::math::Real;
 use crate::medial::MedialMesh;
+use crate::rapier::view::body_velocity::velocities;
 use crate::rapier::view::medial_colliders::{MedialCollider, Sets};
-use crate::rapier::view::motion::velocities;
 use crate::rapier::view::participants::enabled;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::dynamics::RigidBodyHandle;

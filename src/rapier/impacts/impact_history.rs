@@ -3,9 +3,7 @@
 
 use crate::math::Real;
 use crate::math::fast_hash::FastMap;
-use crate::math::lane::Vec3;
 use crate::pair::met::{Met, Touch};
-use crate::parry::touching_points::touching_points;
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::view::motion::Mobility;
@@ -16,9 +14,6 @@ type Pair = [usize; 2];
 /// Places of one pair that are remembered. Bodies that are wedged in each other touch in several; with one alone, 16
 /// heaps of 12 creatures freeze 25 bodies each in 240 steps, with eight 1.6.
 const PLACES: usize = 8;
-
-/// Cosine with an impact's normal from which another contact of the pair counts as the impact's own (26°).
-const SAME_WAY: Real = 0.9;
 
 /// The meetings of a pair.
 #[derive(Default)]
@@ -35,8 +30,6 @@ struct PastContact {
     hit: Hit,
     /// Signed distance of the spheres that met, a length. Their radii may be reduced, so it is not the hit's depth.
     distance: Option<Real>,
-    /// Whether the pair did not meet there, but touched when it first met elsewhere.
-    rests: bool,
 }
 
 /// All meetings of a step.
@@ -82,58 +75,14 @@ impl ImpactHistory {
         meetings.count += 1;
         let places = &mut meetings.places;
         places.retain(|place| place.hit.primitives != hit.primitives);
-        let met = |place: &PastContact| !place.rests;
-        if places.iter().filter(|place| met(place)).count() == PLACES
-            && let Some(first) = places.iter().position(met)
-        {
-            places.remove(first);
+        if places.len() == PLACES {
+            places.remove(0);
         }
         let touch = hit.met.and_then(|met| touch(view, pair, met, hit.time));
         places.push(PastContact {
             hit: *hit,
             distance: touch.map(|touch| touch.distance),
-            rests: false,
         });
-    }
-
-    /// Adds the places where a pair, which has just met for the first time, touches besides: what slides over a floor
-    /// into a wall of the same shape stands on that floor. They are no farther apart there than `reach`, a length.
-    pub fn add_resting(&mut self, view: &StepView, pair: Pair, hit: &Hit, reach: Real) {
-        let Some(meetings) = self.of_pair.get_mut(&pair).filter(|m| m.count == 1) else {
-            return;
-        };
-        let poses = pair.map(|k| view.motion(k, hit.time).start);
-        let shapes = pair.map(|k| &*view.colliders[k].shape);
-        let points = touching_points(shapes, &poses[0].inv_mul(&poses[1]), reach);
-        for (point, k) in points.into_iter().zip(0..) {
-            let normal = poses[0].rotation * point.normal;
-            if normal.dot(hit.normal) > SAME_WAY {
-                continue;
-            }
-            let wide = Vec3::from_vector;
-            let met = Met::faces(point.places.map(wide), wide(point.normal), 0);
-            let hit = Hit {
-                time: hit.time,
-                normal,
-                point: poses[0] * point.places[0],
-                depth: -point.distance,
-                primitives: [u32::MAX, k],
-                met: Some(met),
-            };
-            let resting = PastContact {
-                hit,
-                distance: Some(point.distance),
-                rests: true,
-            };
-            meetings.places.insert(0, resting);
-        }
-    }
-
-    /// Whether the pair rests at one of its places, and did not meet there.
-    pub fn rests(&self, (pair, place): (Pair, usize)) -> bool {
-        let places = self.of_pair.get(&pair).map(|m| &m.places);
-        let place = places.and_then(|places| places.get(place));
-        place.is_some_and(|place| place.rests)
     }
 
     /// Number of places of a pair that are remembered.
@@ -164,7 +113,7 @@ impl ImpactHistory {
         (pair, place): (Pair, usize),
         time: Real,
     ) -> Option<(Hit, Real)> {
-        let PastContact { hit, distance, .. } = self.of_pair.get(&pair)?.places.get(place)?;
+        let PastContact { hit, distance } = self.of_pair.get(&pair)?.places.get(place)?;
         let touch = touch(view, pair, hit.met?, time)?;
         let opened = touch.distance - (*distance)?;
         let hit = Hit {
@@ -204,13 +153,9 @@ impl ImpactHistory {
         };
         let [v1, v2] = bodies.map(velocity);
         let approach = (v1 - v2).dot(hit.normal) * (policy.dt - time);
-        // A pair that touches may sink in by this before it meets again: by more above the floor than below, and not
-        // where it rests.
+        // A pair that touches may sink in by this before it meets again: by more above the floor than below.
         let tuning = &policy.tuning;
-        let above = match self.rests((pair, place)) {
-            true => 0.0,
-            false => tuning.floor * thickness - hit.depth,
-        };
+        let above = tuning.floor * thickness - hit.depth;
         let sinks = above
             .min(tuning.sink * thickness)
             .max(tuning.min_sink * gap);

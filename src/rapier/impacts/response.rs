@@ -8,10 +8,6 @@
 //! its hook would else hand the load's momentum to and fro, and be frozen. Driven bodies do not: the rounds between two
 //! of them would not end, and their friction would hold what they press out. No contact is taken for granted
 //! afterwards: all pairs of the bodies that changed are searched again.
-//!
-//! What slides over a floor into a wall that is one shape with the floor is kept by both at once: the other places
-//! where a pair touches as it first meets take part, if one of the two does not give way and is not convex. rapier's
-//! solver has no contacts of that pair in this step.
 
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;
@@ -87,16 +83,6 @@ impl Response {
         let bodies = bodies(view, pair);
         let undisturbed = self.history.undisturbed(view, pair, hit.time);
         self.history.add(view, pair, &hit);
-        // A convex body is no floor and wall in one.
-        let is_both = |k: usize| {
-            let collider = &view.colliders[k];
-            let mobility = view.bodies[collider.body].mobility;
-            mobility != Mobility::Free && !collider.shape.is_convex()
-        };
-        if pair.into_iter().any(is_both) {
-            let reach = policy.gap(view.thickness(pair));
-            self.history.add_resting(view, pair, &hit, reach);
-        }
         let leads = [bodies, [bodies[1], bodies[0]]].map(|both| self.leads(view, policy, both));
         for (b, leads) in bodies.into_iter().zip(leads) {
             if self.advance(view, b, hit.time) && !leads {
@@ -199,8 +185,7 @@ impl Response {
             let pairs = self.history.of(view, &last).into_iter();
             let all = pairs.flat_map(|pair| (0..self.history.places(pair)).map(move |k| (pair, k)));
             for (pair, place) in all.collect::<Vec<_>>() {
-                let rests = self.history.rests((pair, place));
-                let own = undisturbed.filter(|_| pair == struck && !rests);
+                let own = undisturbed.filter(|_| pair == struck);
                 if own.is_some() && round > 0 {
                     continue;
                 }

@@ -4,7 +4,7 @@
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialMesh;
 use crate::parry::contacts::contact_reduction::Turn;
-use crate::rapier::view::motion::{forces_per_mass, velocities};
+use crate::rapier::view::body_velocity::{forces_per_mass, velocities};
 use crate::rapier::view::participants::{Participants, enabled};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::AngularInertia;

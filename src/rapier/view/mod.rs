@@ -1,9 +1,9 @@
 //! View of the world that a step is taken with, made before rapier's step: bodies and their motions, colliders, who may
 //! meet whom.
 //!
-//! - The view itself: `step_view.rs`, of bodies (`motion.rs`), links of multibodies (`link_angles.rs`,
-//!   `link_velocity.rs`), colliders and joints (`all_joints.rs`, `joint_opening.rs`, `groups.rs`); medial ones:
-//!   `medial_colliders.rs`.
+//! - The view itself: `step_view.rs`, of bodies (`motion.rs`, `body_velocity.rs`), links of multibodies
+//!   (`link_angles.rs`, `link_velocity.rs`), colliders and joints (`all_joints.rs`, `joint_opening.rs`, `groups.rs`);
+//!   medial ones: `medial_colliders.rs`.
 //! - Who may meet whom: `eligible_pairs.rs`, `filter_answers.rs` (hooks of the user), `enabled.rs`,
 //!   `overlapping_boxes.rs`. Who is too far from all that moves: `participants.rs`, found by `near_what_moves.rs` among
 //!   `still_colliders.rs`; what if something gets to them after all: `completed.rs`.
@@ -11,6 +11,7 @@
 //!   `census.rs`.
 
 pub(crate) mod all_joints;
+pub(crate) mod body_velocity;
 pub(crate) mod census;
 mod completed;
 pub(crate) mod eligible_pairs;

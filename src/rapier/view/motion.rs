@@ -4,6 +4,7 @@
 //! poses before and after, and from the number of full turns in between.
 
 use crate::math::{Pose, Real, Rotation, Vector};
+use crate::rapier::view::body_velocity::{forces_per_mass, velocities, velocity};
 use crate::rapier::view::link_angles::{LinkAngles, shortest, unwrapped};
 use parry3d::mass_properties::MassProperties;
 use parry3d::query::NonlinearRigidMotion;
@@ -103,6 +104,7 @@ impl Body {
             (false, false) => Mobility::Driven,
         };
         let properties = body.mass_properties();
+        let velocity = velocity(body);
         Self {
             handle: Some(handle),
             mobility,
@@ -114,10 +116,10 @@ impl Body {
             time: 0.0,
             start: *body.position(),
             end: *body.position(),
-            velocity: [body.linvel(), body.angvel()],
+            velocity,
             bend: None,
             is_rapiers: true,
-            velocity_before: [body.linvel(), body.angvel()],
+            velocity_before: velocity,
             pull: Vector::ZERO,
             taken_back: Vector::ZERO,
             reach: 0.0,
@@ -187,7 +189,7 @@ impl Body {
 
     /// The motion that took it to where it is after rapier's step.
     pub fn moved(&mut self, body: &RigidBody, iterations: usize, dt: Real) {
-        let [linear, angular] = self.by_joints.unwrap_or([body.linvel(), body.angvel()]);
+        let [linear, angular] = self.by_joints.unwrap_or_else(|| velocity(body));
         // rapier computes the mass of a body that is new in this step only now.
         let properties = body.mass_properties();
         let com = properties.local_mprops.local_com;
@@ -378,23 +380,4 @@ impl Body {
             body.set_angvel(self.velocity[1], wakes);
         }
     }
-}
-
-/// Acceleration of a dynamic body by gravity and the user's forces: none along axes that are locked.
-pub fn forces_per_mass(body: &RigidBody, gravity: Vector) -> Vector {
-    let inverse_mass = body.mass_properties().effective_inv_mass;
-    let free = inverse_mass.map(|inverse| if inverse > 0.0 { 1.0 } else { 0.0 });
-    gravity * free * body.gravity_scale() + body.user_force() * inverse_mass
-}
-
-/// Linear and angular velocity with which a body starts into a step of `dt` seconds. Of a body that is
-/// driven by its position rapier computes them only in its step.
-pub fn velocities(body: &RigidBody, dt: Real) -> [Vector; 2] {
-    if body.body_type() != RigidBodyType::KinematicPositionBased {
-        return [body.linvel(), body.angvel()];
-    }
-    let (start, end) = (body.position(), body.next_position());
-    let com = body.mass_properties().local_mprops.local_com;
-    let turn = shortest(end.rotation * start.rotation.inverse());
-    [*end * com - *start * com, turn.to_scaled_axis()].map(|moved| moved / dt)
 }
