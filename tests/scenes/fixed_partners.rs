@@ -173,3 +173,36 @@ fn bodies_on_one_ground_that_never_touch_do_not_disturb_each_other() {
         assert_eq!(first_of(rods), alone, "among {rods}");
     }
 }
+
+/// rapier leaves a fixed body where it is, though it was built with a velocity: what meets it leaves it as rapier's own
+/// does. Medial bodies were struck as by a wall that moves.
+#[test]
+fn fixed_bodies_with_a_velocity_stand() {
+    let ball = MedialMesh::ball(0.2).expect("a ball");
+    let after = |collider: ColliderBuilder, speed: Real| {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let wall = RigidBodyBuilder::fixed()
+            .linvel(Vector::NEG_X * 10.0)
+            .angvel(Vector::Z * 20.0);
+        world.insert(
+            wall,
+            ColliderBuilder::cuboid(0.5, 1.0, 1.0).restitution(1.0),
+        );
+        let body = RigidBodyBuilder::dynamic()
+            .translation(Vector::NEG_X)
+            .linvel(Vector::X * speed);
+        let (body, _) = world.insert(body, collider.restitution(1.0));
+        let mut pipeline = attached(&mut world);
+        for _ in 0..60 {
+            pipeline.step(&mut world);
+        }
+        [world.bodies[body].linvel(), world.bodies[body].angvel()]
+    };
+    for speed in [2.0, 30.0] {
+        let medial = after(ColliderBuilder::medial_mesh(ball.clone()), speed);
+        let own = after(ColliderBuilder::ball(0.2), speed);
+        let off = (medial[0] - own[0]).length() + (medial[1] - own[1]).length();
+        assert!(off < 0.02 * speed, "{speed}: {medial:?}, rapier's {own:?}");
+    }
+}

@@ -84,6 +84,7 @@ mod saved_changes;
 mod saved_impacts;
 #[cfg(feature = "serde-serialize")]
 mod saving;
+mod seams;
 mod sliding;
 mod small_bodies;
 mod spawned;

@@ -1,7 +1,9 @@
 //! Chooses the pairs that are muted, that is kept from rapier's solver and left to the event loop: those that move by
 //! more than their thickness in the step and do not touch yet. Contacts computed at the start of the step would come
-//! too late for them, or lie at places where the bodies never meet. The inequality is that of `continuous` in
-//! `docs/effects.md`; the dispatcher then answers "no contacts" ([`crate::parry::narrow_phase_plan`]).
+//! too late for them, or lie at places where the bodies never meet: what falls beside a seam of the floor would be
+//! thrown aside by the half that it passes within rapier's prediction distance, since the half that it meets is muted.
+//! The inequality is that of `continuous` in `docs/effects.md`; the dispatcher then answers "no contacts"
+//! ([`crate::parry::narrow_phase_plan`]).
 //!
 //! Where both bodies may be moved, and one belongs to a multibody that is unstable
 //! ([`crate::rapier::host::multibody_energy`]), touching pairs are left to the event loop too. So are those of a body
@@ -49,15 +51,9 @@ pub fn muted(
     {
         return muted;
     }
-    // rapier's solver lets contacts bounce that are only within its prediction distance.
-    let margin = if view.any_restitution() {
-        prediction
-    } else {
-        0.0
-    };
     // Work of the whole step up to which pairs are looked at; its parts before a stop may have spent some.
     let most = work.spent() + policy.budget_left(work).min(policy.budget / 4);
-    for pair in sweep(view, policy.dt, margin) {
+    for pair in sweep(view, policy.dt, prediction) {
         let [p, q] = pair.map(|k| &view.colliders[k]);
         let plane = p.shape.as_halfspace().or(q.shape.as_halfspace());
         let reach = prediction + p.skin + q.skin;
@@ -69,7 +65,7 @@ pub fn muted(
         }
         let known = narrow_phase.contact_pair(p.handle, q.handle);
         let medial = if p.medial().is_some() { p } else { q };
-        match reason(view, policy, rules, (pair, most), work) {
+        match reason(view, policy, rules, (pair, prediction, most), work) {
             Some(reason) => {
                 let [m1, m2] = pair.map(|k| view.motion(k, 0.0).start);
                 let key = PairKey::new(&*p.shape, &*q.shape, &m1.inv_mul(&m2));
@@ -105,11 +101,11 @@ fn reason(
     view: &StepView,
     policy: &CcdPolicy,
     rules: &Rules,
-    (pair, most): ([usize; 2], u64),
+    (pair, prediction, most): ([usize; 2], Real, u64),
     work: &mut Work,
 ) -> Option<Reason> {
     let may_bounce = policy.may_bounce(view, pair);
-    let is_fast = policy.is_fast(view, pair, 0.0, policy.tuning.muted);
+    let is_fast = policy.is_fast(view, pair, prediction);
     if !(may_bounce || is_fast)
         || policy.speculates(view, pair)
         || work.spent() >= most

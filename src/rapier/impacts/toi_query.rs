@@ -116,24 +116,18 @@ impl CcdPolicy<'_> {
         self.effects.of(pair.map(|k| view.colliders[k].handle))
     }
 
-    /// Whether the pair as a whole is fast on its motion from `time` on: by default, when it would travel more than
-    /// `share` of its thickness in a whole step where it may meet.
-    pub fn is_fast(&self, view: &StepView, pair: [usize; 2], time: Real, share: Real) -> bool {
+    /// Whether the pair as a whole is fast: by default, when it would travel more than [`Tuning::muted`] of its thickness
+    /// in the step where it may come within `margin` (a length).
+    pub fn is_fast(&self, view: &StepView, pair: [usize; 2], margin: Real) -> bool {
         match self.effects_of(view, pair).continuous {
             Effect::On => true,
             Effect::Off => false,
             Effect::Auto => {
-                let way = share * view.thickness(pair);
-                view.travel(pair, self.dt) > way && self.meeting_travel(view, pair, time) > way
+                let way = self.tuning.muted * view.thickness(pair);
+                view.travel(pair, self.dt) > way
+                    && view.meeting_speed(pair, [0.0, self.dt], margin) * self.dt > way
             }
         }
-    }
-
-    /// Bound on how far the surfaces of a pair would travel against each other in a whole step where they may meet from
-    /// `time` on, a length.
-    fn meeting_travel(&self, view: &StepView, pair: [usize; 2], time: Real) -> Real {
-        let margin = self.gap(view.thickness(pair));
-        view.meeting_speed(pair, [time, self.dt], margin) * self.dt
     }
 
     /// Whether first contacts of the pair are wanted from `time` on: by default, of a pair with parts that may meet and
