@@ -116,8 +116,8 @@ impl CcdPolicy<'_> {
         self.effects.of(pair.map(|k| view.colliders[k].handle))
     }
 
-    /// Whether the pair as a whole is fast: by default, when it would travel more than [`Tuning::muted`] of its thickness
-    /// in the step where it may come within `margin` (a length).
+    /// Whether the pair as a whole is fast: by default, when it would travel more than [`Tuning::muted`] of its
+    /// thickness in the step where it may come within `margin` (a length).
     pub fn is_fast(&self, view: &StepView, pair: [usize; 2], margin: Real) -> bool {
         match self.effects_of(view, pair).continuous {
             Effect::On => true,
