@@ -77,7 +77,7 @@ fn fault(source: &Source, error: ParseError, byte: Option<usize>) -> BuildError 
     let printable = words
         .join(" ")
         .chars()
-        .flat_map(char::escape_debug)
+        .filter(|c| !c.is_control())
         .take(MESSAGE)
         .collect::<String>();
     match (byte, error.line()) {
