@@ -9,7 +9,6 @@ use crate::math::Real;
 use crate::math::clipping::part_below;
 use crate::math::lane::Vec3;
 use crate::math::tolerance::{ONE_DIRECTION, ROUNDING_ULPS};
-use std::borrow::Cow;
 
 /// How much better, in cosines, the face of the second has to lie to be the one that contacts are measured from. At 0
 /// rounding decides, and contacts change from step to step.
@@ -84,17 +83,12 @@ pub(super) fn facing_faces(
     margin: f64,
 ) -> Option<FacingFaces> {
     let best = [(hulls[0], direction), (hulls[1], -direction)].map(|(hull, n)| flattest(hull, n));
-    let cosines = best
-        .each_ref()
-        .map(|face| face.as_ref().map_or(-1.0, |face| face.cosine));
+    let cosines = best.map(|face| face.map_or(-1.0, |face| face.cosine));
     let of = usize::from(cosines[1] > cosines[0] + FACE_PREFERENCE);
-    let [first, second] = best;
-    let face = if of == 0 { first } else { second };
-    let FlatFace {
-        normal, corners, ..
-    } = face.filter(|face| face.cosine >= ONE_DIRECTION)?;
+    let face = best[of].filter(|face| face.cosine >= ONE_DIRECTION)?;
+    let normal = face.normal;
     let (reference, other) = (hulls[of], hulls[1 - of]);
-    let outline = polygon(reference, &corners, normal);
+    let outline = polygon(reference, face.corners, normal);
     let (base, _) = *outline.first()?;
     let near = |(corner, number): Corner| {
         let height = normal.dot(corner - base);
@@ -155,13 +149,14 @@ fn least_missed([a, b]: [&PlacedHull; 2], gap: f64) -> f64 {
 }
 
 /// A face of a hull that looks along a direction.
+#[derive(Clone, Copy)]
 struct FlatFace<'a> {
     /// Its unit normal, outward.
     normal: Vec3<f64>,
     /// Cosine of the angle between its normal and the direction.
     cosine: f64,
     /// Its corners, numbers of spheres, counterclockwise around the normal.
-    corners: Cow<'a, [u32]>,
+    corners: &'a [u32],
 }
 
 /// The face whose normal is nearest to a direction. A lone triangle, of corners of one radius, has two faces.
@@ -170,14 +165,15 @@ fn flattest<'a>(hull: &PlacedHull<'a>, n: Vec3<f64>) -> Option<FlatFace<'a>> {
         && hull.has_edges()
     {
         let normal = across * (1.0 / across.length());
-        let (normal, corners) = match normal.dot(n) >= 0.0 {
-            true => (normal, vec![0, 1, 2]),
-            false => (-normal, vec![0, 2, 1]),
+        let (normal, corners): (_, &[u32]) = match normal.dot(n) >= 0.0 {
+            true => (normal, &[0, 1, 2]),
+            false => (-normal, &[0, 2, 1]),
         };
+        let cosine = normal.dot(n);
         return Some(FlatFace {
             normal,
-            cosine: normal.dot(n),
-            corners: corners.into(),
+            cosine,
+            corners,
         });
     }
     let cosines = hull.normals.iter().map(|normal| normal.dot(n)).enumerate();
@@ -185,7 +181,7 @@ fn flattest<'a>(hull: &PlacedHull<'a>, n: Vec3<f64>) -> Option<FlatFace<'a>> {
     best.map(|(face, cosine)| FlatFace {
         normal: hull.normals[face],
         cosine,
-        corners: hull.faces[face].corners.as_slice().into(),
+        corners: &hull.faces[face].corners,
     })
 }
 
@@ -202,7 +198,7 @@ fn polygon(hull: &PlacedHull, corners: &[u32], n: Vec3<f64>) -> Vec<Corner> {
 /// more than one face could have.
 fn facing(hull: &PlacedHull, n: Vec3<f64>) -> Vec<Corner> {
     match flattest(hull, n) {
-        Some(face) => polygon(hull, &face.corners, n),
+        Some(face) => polygon(hull, face.corners, n),
         None if hull.spheres.len() <= 3 => polygon(hull, &[0, 1, 2][..hull.spheres.len()], n),
         None => Vec::new(),
     }
