@@ -53,3 +53,48 @@ fn bodies_fall_straight_beside_a_seam() {
         }
     }
 }
+
+/// How deep a finger that hangs on a carrier by a slider sinks into a floor, a length: its motor presses it down with
+/// 100 N, from `gap` above the floor, while the carrier goes along at 3 m/s.
+fn pressed(collider: &ColliderBuilder, half: Real, gap: Real) -> Real {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let floor = ColliderBuilder::cuboid(20.0, 0.2, 1.0);
+    world.insert_collider(floor.translation(Vector::NEG_Y * 0.2), None);
+    let along = Vector::X * 3.0;
+    let carrier = RigidBodyBuilder::kinematic_velocity_based().translation(Vector::Y * 0.4);
+    let carrier = world.insert_body(carrier.linvel(along));
+    let finger = RigidBodyBuilder::dynamic().translation(Vector::Y * (half + gap));
+    let finger = finger.linvel(along).can_sleep(false);
+    let (finger, _) = world.insert(finger, collider.clone().friction(0.2));
+    let slider = PrismaticJointBuilder::new(Vector::NEG_Y)
+        .local_anchor1(Vector::Y * (half + gap - 0.4))
+        .motor_velocity(1.0, 100.0)
+        .motor_max_force(100.0);
+    world.insert_impulse_joint(carrier, finger, slider);
+    let mut pipeline = attached(&mut world);
+    let mut sunk: Real = 0.0;
+    for _ in 0..120 {
+        pipeline.step(&mut world);
+        sunk = sunk.max(half - world.bodies[finger].translation().y);
+    }
+    sunk
+}
+
+/// What a joint presses onto a floor that it passes within rapier's prediction distance is held by rapier's solver, as
+/// rapier's own: where the joint takes it is not known before rapier's step.
+#[test]
+fn fingers_pressed_onto_a_floor_sink_no_deeper_than_rapiers() {
+    let half = 0.05;
+    let mesh = MedialMesh::cuboid(Vector::splat(half)).expect("a cube");
+    let medial = ColliderBuilder::medial_mesh(mesh);
+    let own = ColliderBuilder::cuboid(half, half, half);
+    for k in 0..10u8 {
+        let gap = 0.0002 + 0.001 * Real::from(k);
+        let [medial, own] = [&medial, &own].map(|collider| pressed(collider, half, gap));
+        assert!(
+            medial < own + 0.0005,
+            "{gap} m above: {medial} m, rapier's {own}"
+        );
+    }
+}

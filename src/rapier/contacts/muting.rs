@@ -105,7 +105,14 @@ fn reason(
     work: &mut Work,
 ) -> Option<Reason> {
     let may_bounce = policy.may_bounce(view, pair);
-    let is_fast = policy.is_fast(view, pair, prediction);
+    // Where a joint takes a body is not known yet: what is beside its path stays with rapier's solver.
+    let jointed = pair.map(|k| view.bodies[view.colliders[k].body].jointed);
+    let margin = if jointed.contains(&true) {
+        0.0
+    } else {
+        prediction
+    };
+    let is_fast = policy.is_fast(view, pair, margin);
     if !(may_bounce || is_fast)
         || policy.speculates(view, pair)
         || work.spent() >= most
