@@ -48,6 +48,8 @@ fn slide(shape: &SharedShape, as_one: bool, number: u8) -> [Real; 2] {
         sunk = sunk.max(down - pose.translation.y);
         up = up.max(body.linvel().y / speed);
     }
+    let left = -world.bodies[body].linvel().x / speed;
+    assert!(left < 0.95, "{left} of its speed is left: it met no post");
     [sunk, up]
 }
 

@@ -25,7 +25,10 @@ fn sideways(
     (0..8).for_each(|_| {
         pipeline.step(&mut world);
     });
-    world.bodies[body].linvel().x.abs() / speed
+    let body = &world.bodies[body];
+    let above = body.translation().y - size;
+    assert!(above > -0.1 * size, "{above} m above the floor");
+    body.linvel().x.abs() / speed
 }
 
 /// Symptom: of such falls a fifth to a third threw the body aside, by up to .37 of its speed. Cause: the half that it
