@@ -2,16 +2,17 @@
 //! as swept spheres. The paper (§4.1) tests each primitive against each; here a best-first search over two trees of
 //! bounding spheres visits the few that can come first.
 
-use super::met::Met;
+use super::met::{FacesOn, Met};
 use super::outline::ActivePrimitives;
 use super::pair_list::PairList;
-use super::patch::Patch;
+use super::patch::{EXTREMES, FaceCorner, Patch};
 use super::piece_contact::PiecesMet;
 use super::primitive_tree::PrimitiveTree;
 use super::search::{FirstContactSearch, LOOK};
 use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
 use crate::elementary::{Paths, Toi, ToiOptions};
 use crate::math::counters::counters;
+use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
@@ -98,8 +99,8 @@ pub struct ToiResult {
     pub deepest: f64,
     /// The primitives or faces that met ([`Query::met`]).
     pub met: Option<Met>,
-    /// Where an impact acts ([`Query::middle`]).
-    pub middle: Option<Vector>,
+    /// How far faces lie on each other ([`Query::corners`]).
+    pub corners: Option<[FaceCorner; EXTREMES]>,
 }
 
 impl ToiResult {
@@ -110,7 +111,7 @@ impl ToiResult {
             counts,
             deepest,
             met: None,
-            middle: None,
+            corners: None,
         }
     }
 }
@@ -192,7 +193,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         self.search(1.0);
         let toi = self.toi();
         ToiResult {
-            middle: self.middle(&toi),
+            corners: self.corners(&toi),
             toi,
             counts: self.counts(),
             deepest: self.deepest(),
@@ -276,14 +277,19 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         first.start.translation + second.linvel * (toi.lower * self.seconds)
     }
 
-    /// Middle of all faces that lie on each other in a contact of convex pieces, in the world frame, once the query is
-    /// settled: an impact acts there. It may be off both bodies, as between the legs of a table; `None` where no faces
-    /// lie on each other.
-    pub fn middle(&self, toi: &Toi) -> Option<Vector> {
+    /// Corners, in the world frame, of all faces that lie on each other in a contact of convex pieces, once the query is
+    /// settled: those farthest in eight directions, some more than once. An impact acts in their hull, which may be off
+    /// both bodies, as between the legs of a table. `None` where no faces lie on each other.
+    pub fn corners(&self, toi: &Toi) -> Option<[FaceCorner; EXTREMES]> {
         let search = self.search.as_ref()?;
         let met = search.met.as_ref()?;
         let joined = search.joined.or(met.patch)?;
-        Some(self.origin(toi) + joined.middle().to_vector())
+        let origin = self.origin(toi);
+        let normal = met.normal.to_vector();
+        let corner = |[p, q]: [Vec3<f64>; 2]| {
+            FaceCorner::of(origin + p.to_vector(), origin + q.to_vector(), normal)
+        };
+        Some(joined.extremes().map(corner))
     }
 
     /// The primitives or faces that met, or the primitives that shield those, once the query is settled and has found a
@@ -303,12 +309,15 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         {
             let frames = [0, 1].map(|k| search.motions[k].frame(found.lower));
             let (middle, half) = (patch.middle(), met.normal * (0.5 * met.gap));
-            let points = [
-                frames[0].local(middle - half),
-                frames[1].local(middle + half),
-            ];
+            let on = |k: usize, middle: Vec3<f64>| FacesOn {
+                middle: frames[k].local(middle),
+                extremes: patch
+                    .extremes()
+                    .map(|pair| frames[k].local(pair[k]).to_vector()),
+            };
+            let faces = [on(0, middle - half), on(1, middle + half)];
             let normal = frames[met.of].local_direction(met.normal);
-            return Some(Met::faces(points, normal, met.of));
+            return Some(Met::faces(faces, normal, met.of));
         }
         let whole = [a.primitive(primitives[0]), b.primitive(primitives[1])];
         let counted = |side: usize| {

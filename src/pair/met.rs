@@ -1,6 +1,7 @@
 //! Primitives or faces that met in the first contact of two bodies. With them the contact is computed again where the
 //! bodies have moved and turned a little since.
 
+use super::patch::{EXTREMES, FaceCorner};
 use super::placement::Placement;
 use crate::elementary::distance::nearest_in_test;
 use crate::elementary::first_contact::corner_weights;
@@ -20,9 +21,18 @@ enum Features {
     /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]), and how many there
     /// are.
     Primitives([[MedialSphere; 3]; 2], [usize; 2]),
-    /// The middle of where faces lie on each other, in each body's frame, and the normal from the first to the second
-    /// in the frame of the body that it is of.
-    Faces([Vec3<f64>; 2], Vec3<f64>, usize),
+    /// The middle of where faces lie on each other, and how far they do so, in each body's frame, and the normal from
+    /// the first to the second in the frame of the body that it is of.
+    Faces([FacesOn; 2], Vec3<f64>, usize),
+}
+
+/// Where faces of two bodies lie on each other, on one of the bodies, in its frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FacesOn {
+    /// The middle.
+    pub(super) middle: Vec3<f64>,
+    /// The corners that tell how far they do so ([`Patch`](super::patch::Patch)).
+    pub(super) extremes: [Vector; EXTREMES],
 }
 
 /// The contact of what met ([`Met`]), computed again at other poses.
@@ -34,6 +44,9 @@ pub struct Touch {
     pub normal: Vector,
     /// Middle of the nearest points, world frame.
     pub point: Vector,
+    /// Corners of faces that lie on each other, as
+    /// [`ToiResult::corners`](super::first_contact::ToiResult::corners) has them.
+    pub corners: Option<[FaceCorner; EXTREMES]>,
 }
 
 impl Met {
@@ -42,10 +55,10 @@ impl Met {
         Self(Features::Primitives(spheres, counts))
     }
 
-    /// Faces that lie on each other: nearest points of both, each in its body's frame, and the normal from the first to
-    /// the second, in the frame of the body `of`.
-    pub(super) fn faces(points: [Vec3<f64>; 2], normal: Vec3<f64>, of: usize) -> Self {
-        Self(Features::Faces(points, normal, of))
+    /// Faces that lie on each other, on both bodies, and the normal from the first to the second, in the frame of the
+    /// body `of`.
+    pub(super) fn faces(faces: [FacesOn; 2], normal: Vec3<f64>, of: usize) -> Self {
+        Self(Features::Faces(faces, normal, of))
     }
 
     /// The same contact with the second body as the first.
@@ -59,22 +72,30 @@ impl Met {
     /// Contact of the two at two poses; `None` where the nearest two spheres have one centre, which leaves no normal.
     pub fn touch(&self, poses: [&Pose; 2]) -> Option<Touch> {
         let place = Placement::new(&poses[0].inv_mul(poses[1]));
-        let (distance, normal, middle) = match self.0 {
-            Features::Primitives(spheres, counts) => of_primitives(spheres, counts, &place)?,
+        let (distance, normal, middle) = match &self.0 {
+            Features::Primitives(spheres, counts) => of_primitives(*spheres, *counts, &place)?,
             Features::Faces([p, q], normal, of) => {
-                let normal = if of == 0 {
-                    normal
-                } else {
-                    place.turned(normal)
+                let normal = match of {
+                    0 => *normal,
+                    _ => place.turned(*normal),
                 };
-                let q = place.placed(q);
-                (normal.dot(q - p), normal, (p + q) * 0.5)
+                let q = place.placed(q.middle);
+                (normal.dot(q - p.middle), normal, (p.middle + q) * 0.5)
             }
+        };
+        let normal = poses[0].rotation * normal.to_vector();
+        let corners = match &self.0 {
+            Features::Primitives(..) => None,
+            Features::Faces([first, second], ..) => Some([0, 1, 2, 3, 4, 5, 6, 7].map(|k| {
+                let [p, q] = [poses[0] * first.extremes[k], poses[1] * second.extremes[k]];
+                FaceCorner::of(p, q, normal)
+            })),
         };
         Some(Touch {
             distance: distance as Real,
-            normal: poses[0].rotation * normal.to_vector(),
+            normal,
             point: poses[0] * middle.to_vector(),
+            corners,
         })
     }
 }

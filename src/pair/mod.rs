@@ -45,7 +45,7 @@ pub(crate) mod met;
 pub mod near_pairs;
 pub mod outline;
 pub mod pair_list;
-mod patch;
+pub(crate) mod patch;
 mod path_ends;
 mod piece_contact;
 mod placement;

@@ -1,20 +1,63 @@
 //! Where flat faces of two bodies lie on each other: one polygon for each pair of pieces, of which a plane of several
-//! triangles, or a body of several blocks, has many. An impact there acts at the middle of all of them, so that a plate
-//! that falls flat on one of two triangles and half on the other is struck as on one.
+//! triangles, or a body of several blocks, has many. An impact there acts on all of them together, so that a plate that
+//! falls flat on one of two triangles and half on the other is struck as on one.
 
 use crate::math::lane::Vec3;
+use crate::math::{Real, Vector};
+
+/// Number of points that tell how far a patch reaches.
+pub const EXTREMES: usize = 8;
+
+/// Directions in the plane of a patch, in units of two axes there, in which it is known how far it reaches.
+const DIRECTIONS: [[f64; 2]; EXTREMES] = [
+    [5.0, 2.0],
+    [2.0, 5.0],
+    [-2.0, 5.0],
+    [-5.0, 2.0],
+    [-5.0, -2.0],
+    [-2.0, -5.0],
+    [2.0, -5.0],
+    [5.0, -2.0],
+];
+
+/// A corner of faces that lie on each other, world frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceCorner {
+    /// Middle of where it is on both bodies.
+    pub point: Vector,
+    /// Distance of the faces there, a length.
+    pub distance: Real,
+}
+
+impl FaceCorner {
+    /// A corner on both bodies; the normal is from the first to the second.
+    pub(super) fn of(on_first: Vector, on_second: Vector, normal: Vector) -> Self {
+        Self {
+            point: (on_first + on_second) * 0.5,
+            distance: (on_second - on_first).dot(normal),
+        }
+    }
+}
 
 /// Polygons, edges and corners that lie on each other, with their moments.
 #[derive(Clone, Copy)]
 pub(super) struct Patch {
+    /// Two unit vectors across its normal and each other.
+    axes: [Vec3<f64>; 2],
+    /// The corners that lie farthest in [`DIRECTIONS`], each on both bodies.
+    extremes: [[Vec3<f64>; 2]; EXTREMES],
     /// Number of corners, length of edges, and area, and the integral of the position over each.
     measures: [(f64, Vec3<f64>); 3],
 }
 
 impl Patch {
-    /// One polygon; two corners are an edge, one is itself. `None` where there are none.
-    pub(super) fn of(corners: &[Vec3<f64>]) -> Option<Self> {
+    /// One polygon across a unit normal, each corner of it on both bodies; two corners are an edge, one is itself.
+    /// `None` where there are none.
+    pub(super) fn of(pairs: &[[Vec3<f64>; 2]], normal: Vec3<f64>) -> Option<Self> {
+        let corners: Vec<Vec3<f64>> = pairs.iter().map(middle).collect();
         let first = *corners.first()?;
+        let (u, v) = normal.to_vector().any_orthonormal_pair();
+        let axes = [u, v].map(Vec3::from_vector);
         let mut measures = [(0.0, Vec3::zero()); 3];
         let mut add = |k: usize, measure: f64, middle: Vec3<f64>| {
             measures[k].0 += measure;
@@ -27,10 +70,30 @@ impl Patch {
             let area = 0.5 * (*p - first).cross(next - first).length();
             add(2, area, (first + *p + next) * (1.0 / 3.0));
         }
-        Some(Self { measures })
+        let lone = Self {
+            axes,
+            extremes: [pairs[0]; EXTREMES],
+            measures,
+        };
+        Some(
+            pairs
+                .iter()
+                .fold(lone, |patch, p| patch.reaching(&[*p; EXTREMES])),
+        )
     }
 
-    /// The two patches as one.
+    /// The patch, if it reaches as far as these corners in [`DIRECTIONS`].
+    fn reaching(mut self, corners: &[[Vec3<f64>; 2]; EXTREMES]) -> Self {
+        for ((farthest, p), [x, y]) in self.extremes.iter_mut().zip(corners).zip(DIRECTIONS) {
+            let along = self.axes[0] * x + self.axes[1] * y;
+            if along.dot(middle(p) - middle(farthest)) > 0.0 {
+                *farthest = *p;
+            }
+        }
+        self
+    }
+
+    /// The two patches as one. Both are across the same normal.
     pub(super) fn and(&self, other: &Self) -> Self {
         let both = |k: usize| {
             let ((m, a), (n, b)) = (self.measures[k], other.measures[k]);
@@ -38,7 +101,13 @@ impl Patch {
         };
         Self {
             measures: [both(0), both(1), both(2)],
+            ..self.reaching(&other.extremes)
         }
+    }
+
+    /// Corners, each on both bodies, of which the hull is about that of the patch; some of them more than once.
+    pub(super) fn extremes(&self) -> [[Vec3<f64>; 2]; EXTREMES] {
+        self.extremes
     }
 
     /// The middle of the polygons, or of the edges where there are no polygons, or of the corners.
@@ -51,4 +120,8 @@ impl Patch {
         };
         moment * (1.0 / measure)
     }
+}
+
+fn middle([p, q]: &[Vec3<f64>; 2]) -> Vec3<f64> {
+    (*p + *q) * 0.5
 }

@@ -1,7 +1,7 @@
 //! Where two convex pieces meet, as the search for a first contact finds it ([`super::convex_pieces`]): at the middle
 //! of where faces of them lie on each other, so that what falls flat is struck evenly, or else at their nearest points.
 
-use super::face_contacts::{FacingCorner, FacingFaces, facing_faces};
+use super::face_contacts::{FacingFaces, facing_faces};
 use super::hull_gap::{HullGap, PlacedHull, nearest_points};
 use super::patch::Patch;
 use super::primitive_tree::PrimitiveTree;
@@ -108,9 +108,8 @@ pub(super) fn patch(
     let Some(faces) = faces else {
         return (None, 0);
     };
-    let middle = |c: &FacingCorner| (c.points[0] + c.points[1]) * 0.5;
-    let middles: Vec<Vec3<f64>> = faces.corners.iter().map(middle).collect();
-    (Patch::of(&middles), faces.of)
+    let corners: Vec<[Vec3<f64>; 2]> = faces.corners.iter().map(|c| c.points).collect();
+    (Patch::of(&corners, n), faces.of)
 }
 
 /// How near two pieces are at a time.

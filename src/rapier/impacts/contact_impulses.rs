@@ -5,6 +5,7 @@
 
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;
+use crate::rapier::impacts::center_of_pressure::center_of_pressure;
 use crate::rapier::impacts::contact_point::ContactPoint;
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::impulse::Material;
@@ -54,7 +55,7 @@ impl Response {
         if own.resistance() >= HELD_RATIO * resistance_alone(free, &point, hit.normal) {
             if let Some(j) = own.impulse(approach, 0.0) {
                 let poses = pair.map(|k| view.motion(k, hit.time).start);
-                let contact = (hit.point, hit.normal, -hit.depth);
+                let contact = (point.position, hit.normal, -hit.depth);
                 let blow = ReportedImpulse::new(poses, contact, j.dot(hit.normal));
                 blow.add_to(self.impulses.entry(pair).or_default());
                 self.change_velocities(view, &moved, &point, j);
@@ -130,7 +131,11 @@ impl Response {
             end.hold(&mut twists);
             twists
         });
-        let point = ContactPoint::new(view, both, hit);
+        let hit = Hit {
+            point: center_of_pressure(view, both, (hit, policy.dt), &system),
+            ..*hit
+        };
+        let point = ContactPoint::new(view, both, &hit);
         // A joint at its limit resists as the stop does.
         for system in [Some(&mut system), moving.as_mut()].into_iter().flatten() {
             let of = |b: &usize| view.bodies[*b].velocity;

@@ -10,6 +10,8 @@ use crate::rapier::view::step_view::StepView;
 /// A contact of two bodies at its time, in the world frame.
 pub struct ContactPoint {
     bodies: [usize; 2],
+    /// Where it is, world frame.
+    pub position: Vector,
     /// Unit normal from the first body to the second.
     normal: Vector,
     /// Arms from the bodies' centres of mass to the point.
@@ -25,6 +27,7 @@ impl ContactPoint {
         let centers = [0, 1].map(|k| now[k].start * view.bodies[bodies[k]].mass.local_com);
         let mut point = Self {
             bodies,
+            position: hit.point,
             normal: hit.normal,
             arms: centers.map(|c| hit.point - c),
             motions: [Vector::ZERO; 2],

@@ -3,6 +3,7 @@
 use crate::elementary::{Toi, ToiStatus};
 use crate::math::{Real, Vector};
 use crate::pair::met::Met;
+use crate::pair::patch::{EXTREMES, FaceCorner};
 
 /// First contact of two colliders.
 #[derive(Clone, Copy, Debug)]
@@ -11,8 +12,11 @@ pub struct Hit {
     pub time: Real,
     /// Unit normal from the first to the second, zero where unknown.
     pub normal: Vector,
-    /// Where it acts, world frame: the middle of the nearest points, or of all faces that lie on each other.
+    /// Where it acts, world frame: the middle of the nearest points.
     pub point: Vector,
+    /// Corners, in the world frame, of faces that lie on each other, if it acts in their hull
+    /// ([`crate::rapier::impacts::center_of_pressure`]).
+    pub corners: Option<[FaceCorner; EXTREMES]>,
     /// Depth below the surfaces, a length; < 0 above them.
     pub depth: Real,
     /// The primitives that meet; 0 of a shape that is not medial.
@@ -22,18 +26,19 @@ pub struct Hit {
 }
 
 impl Hit {
-    /// The hit of a query over `seconds` from `time` on, with what met and where an impact acts, where these are known;
-    /// `None` if it found none.
+    /// The hit of a query over `seconds` from `time` on, with what met and the corners of faces that lie on each other,
+    /// where these are known; `None` if it found none.
     pub fn of(
         toi: &Toi,
-        (met, middle): (Option<Met>, Option<Vector>),
+        (met, corners): (Option<Met>, Option<[FaceCorner; EXTREMES]>),
         time: Real,
         seconds: Real,
     ) -> Option<Self> {
         (toi.status != ToiStatus::Separated).then(|| Self {
             time: time + toi.lower * seconds,
             normal: toi.normal,
-            point: middle.unwrap_or((toi.points[0] + toi.points[1]) * 0.5),
+            point: (toi.points[0] + toi.points[1]) * 0.5,
+            corners,
             depth: (toi.points[0] - toi.points[1]).dot(toi.normal),
             primitives: toi.primitives,
             met,

@@ -1,8 +1,8 @@
 //! Places at which pairs of colliders met in the impacts of this step. Most of them still touch there when one of the
 //! two is struck again. The spheres that met tell where and how far that contact has opened since.
 
-use crate::math::Real;
 use crate::math::fast_hash::FastMap;
+use crate::math::{Real, Vector};
 use crate::pair::met::{Met, Touch};
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::toi_query::CcdPolicy;
@@ -120,6 +120,7 @@ impl ImpactHistory {
             time,
             normal: touch.normal,
             point: touch.point,
+            corners: touch.corners,
             depth: hit.depth - opened,
             ..*hit
         };
@@ -147,12 +148,14 @@ impl ImpactHistory {
         if opened > gap {
             return None;
         }
-        let velocity = |b: usize| {
-            let m = view.bodies[b].motion_from(time);
-            m.linvel + m.angvel.cross(hit.point - m.start * m.local_center)
+        let motions = bodies.map(|b| view.bodies[b].motion_from(time));
+        let speed = |point: Vector| {
+            let [v1, v2] = (motions.each_ref())
+                .map(|m| m.linvel + m.angvel.cross(point - m.start * m.local_center));
+            (v1 - v2).dot(hit.normal)
         };
-        let [v1, v2] = bodies.map(velocity);
-        let approach = (v1 - v2).dot(hit.normal) * (policy.dt - time);
+        let corners = hit.corners.iter().flatten().map(|c| speed(c.point));
+        let approach = corners.fold(speed(hit.point), Real::max) * (policy.dt - time);
         // A pair that touches may sink in by this before it meets again: by more above the floor than below.
         let tuning = &policy.tuning;
         let above = tuning.floor * thickness - hit.depth;

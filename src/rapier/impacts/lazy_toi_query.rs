@@ -105,7 +105,7 @@ impl<'m> LazyToiQuery<'m> {
                 Some(share) => QueryProgress::FreeUntil(from + share * seconds),
                 None => {
                     let toi = query.toi();
-                    let what = (query.met(), query.middle(&toi));
+                    let what = (query.met(), query.corners(&toi));
                     Hit::of(&toi, what, from, seconds).into()
                 }
             }

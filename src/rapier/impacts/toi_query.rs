@@ -301,7 +301,7 @@ impl CcdPolicy<'_> {
             let found = known.or_else(asked)?;
             work.begin(&motions, options);
             work.counts += found.counts;
-            let hit = Hit::of(&found.toi, (found.met, found.middle), time, seconds);
+            let hit = Hit::of(&found.toi, (found.met, found.corners), time, seconds);
             Some((hit, found.deepest))
         };
         let (hit, deepest) = query(&query_options.first, known)?;

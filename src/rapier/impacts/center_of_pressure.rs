@@ -1,0 +1,112 @@
+//! Where the impulse of an impact acts when flat faces lie on each other: at the centre of pressure of the impulses at
+//! their corners that together leave none of these approaching. They take out as much energy as impulses there can
+//! (maximum dissipation), so that what falls flat, but aside of the middle of the faces, is stopped below its centre of
+//! mass and does not turn.
+
+use crate::math::{Real, Vector};
+use crate::pair::patch::FaceCorner;
+use crate::rapier::impacts::contact_point::ContactPoint;
+use crate::rapier::impacts::hit::Hit;
+use crate::rapier::joints::rows::Twist;
+use crate::rapier::joints::skyline::Skyline;
+use crate::rapier::joints::tied_system::System;
+use crate::rapier::view::step_view::StepView;
+
+/// Relative addition to what impulses at a corner do there. The matrix is singular where locked axes keep a body from
+/// turning: above the rounding of its entries in single precision.
+const REGULAR: f64 = 1.0e-6;
+
+/// The point at which an impulse acts on two bodies that a hit stops in a step of `dt` seconds, world frame. `system`
+/// resists it. Corners that are above the others may come down in a step.
+pub fn center_of_pressure(
+    view: &StepView,
+    both: [usize; 2],
+    (hit, dt): (&Hit, Real),
+    system: &System,
+) -> Vector {
+    let mut corners: Vec<FaceCorner> = Vec::new();
+    for corner in hit.corners.into_iter().flatten() {
+        if !corners.contains(&corner) {
+            corners.push(corner);
+        }
+    }
+    let lowest = corners
+        .iter()
+        .map(|c| c.distance)
+        .fold(Real::MAX, Real::min);
+    let may_approach = corners.iter().map(|c| (c.distance - lowest) / dt);
+    let may_approach: Vec<Real> = may_approach.collect();
+    let at = |corner: &FaceCorner| {
+        let hit = Hit {
+            point: corner.point,
+            ..*hit
+        };
+        ContactPoint::new(view, both, &hit)
+    };
+    let points: Vec<ContactPoint> = corners.iter().map(at).collect();
+    let opening = |p: &ContactPoint, twists: [Twist; 2]| {
+        (p.velocity(twists[1], 1) - p.velocity(twists[0], 0)).dot(hit.normal)
+    };
+    let velocities = both.map(|b| view.bodies[b].velocity);
+    let approach = |speed: &dyn Fn(&ContactPoint) -> Real| -> Vec<f64> {
+        let speeds = points.iter().map(speed).zip(&may_approach);
+        speeds.map(|(speed, may)| f64::from(speed - may)).collect()
+    };
+    let mut approach_speeds = approach(&|p| -opening(p, velocities));
+    if approach_speeds.iter().all(|speed| *speed <= 0.0) {
+        approach_speeds = approach(&|p| -p.relative_motion().dot(hit.normal));
+    }
+    let response = |p: &ContactPoint| {
+        let change = system.change(&p.wrenches(hit.normal));
+        let all = points
+            .iter()
+            .map(|q| f64::from(opening(q, [change[0], change[1]])));
+        all.collect()
+    };
+    let response: Vec<Vec<f64>> = points.iter().map(response).collect();
+    let Some(impulses) = strongest(&response, &approach_speeds) else {
+        return hit.point;
+    };
+    let sum: f64 = impulses.iter().map(|(_, impulse)| impulse).sum();
+    let share = |(k, impulse): &(usize, f64)| corners[*k].point * (impulse / sum) as Real;
+    impulses.iter().map(share).fold(Vector::ZERO, |a, b| a + b)
+}
+
+/// The impulses at up to three corners that stop what approaches there and take out the most energy, with the numbers
+/// of the corners: more are never needed, since a rigid body's corners in a plane move in three ways. `None` where
+/// nothing approaches, or nothing can be moved.
+fn strongest(response: &[Vec<f64>], approach: &[f64]) -> Option<Vec<(usize, f64)>> {
+    let count = approach.len();
+    let mut best: Option<(f64, Vec<(usize, f64)>)> = None;
+    for i in 0..count {
+        for j in i..count {
+            for k in j..count {
+                let mut at = vec![i, j, k];
+                at.dedup();
+                let Some(impulses) = stopping(response, approach, &at) else {
+                    continue;
+                };
+                let energy: f64 = impulses.iter().map(|(k, j)| j * approach[*k]).sum();
+                if energy > best.as_ref().map_or(0.0, |best| best.0) {
+                    best = Some((energy, impulses));
+                }
+            }
+        }
+    }
+    best.map(|(_, impulses)| impulses)
+}
+
+/// The impulses at some corners that leave these at rest, if all of them press.
+fn stopping(response: &[Vec<f64>], approach: &[f64], at: &[usize]) -> Option<Vec<(usize, f64)>> {
+    let mut matrix = Skyline::default();
+    for (row, &i) in at.iter().enumerate() {
+        for (entry, &j) in matrix.push_row(0).iter_mut().zip(&at[..=row]) {
+            let regular = if i == j { 1.0 + REGULAR } else { 1.0 };
+            *entry = 0.5 * (response[i][j] + response[j][i]) * regular;
+        }
+    }
+    let mut impulses: Vec<f64> = at.iter().map(|k| approach[*k]).collect();
+    matrix.factor()?.solve(&mut impulses);
+    let presses = impulses.iter().all(|j| j.is_finite() && *j >= 0.0);
+    presses.then(|| at.iter().copied().zip(impulses).collect())
+}
