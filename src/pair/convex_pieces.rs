@@ -44,12 +44,13 @@ const MAX_PIECE_DEPTH_IN_SURFACE: f64 = 0.75;
 /// would be the target distance itself, and pieces that come no nearer than that would not be found free.
 const AIM_BELOW: f64 = 0.99;
 
-/// How much farther apart than where pieces meet their faces may be, in units of the tolerance, to lie on each other.
-/// Bodies at rest are tilted by this much, because rapier's solver lets them sink into what they lie on. At 1, a box
-/// that slides over a floor into a post is struck at one end of its edge alone, and tips into the floor; at 10, cards
-/// that fall almost flat are struck in the middle and rattle: in one heap of them bodies are held 93 times, with 3
-/// fewer than 60.
-const LEVEL: f64 = 3.0;
+/// How much farther apart than where pieces meet their faces may be, in units of the tolerance, to lie on each other:
+/// of pieces that touched at the start, and of others. Bodies at rest are tilted by the first, because rapier's solver
+/// lets them sink into what they lie on: at 1, a box that slides over a floor into a post is struck at one end of its
+/// edge alone, and tips into the floor; at 300, twice as many bricks are frozen in walls of very unlike ones. What falls
+/// from outside may be tilted by more: at 3, bricks turn four times as fast after an almost flat fall as at 300, from
+/// where on nothing changes.
+const LEVEL: [f64; 2] = [3.0, 300.0];
 
 impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
     /// Looks at two nodes, proven free until a time, as convex pieces.
@@ -277,7 +278,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
     /// Notes that two pieces meet; returns whether an earlier contact is still possible.
     pub(super) fn take_pieces(&mut self, met: PiecesMet, time: f64) -> bool {
         let nodes = met.nodes;
-        let touched = (self.convex.get(&nodes)).is_some_and(|p| p.is_some_and(|p| p.touched));
+        let touched = self.touched(nodes);
         let approaches = matches!(self.initial_contact, InitialContact::Approach { .. });
         let (met, time) = match touched && approaches {
             true => {
@@ -326,6 +327,12 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
         continues
     }
 
+    /// Whether two pieces touched at the start.
+    fn touched(&self, nodes: [u32; 2]) -> bool {
+        let pieces = self.convex.get(&nodes).copied().flatten();
+        pieces.is_some_and(|pieces| pieces.touched)
+    }
+
     /// Finds where all pieces lie on each other in the plane in which two met: triangles of one ground, blocks of one
     /// body.
     pub(super) fn join_pieces(&mut self) {
@@ -338,13 +345,18 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
         // In an order that does not depend on how they were found.
         all.sort_unstable();
         let tolerance = self.earliest.limits.tolerance;
-        let margin = LEVEL * tolerance;
+        let [level, farther] = LEVEL.map(|level| level * tolerance);
+        let margin = match self.touched(met.nodes) {
+            true => level,
+            false => farther,
+        };
         for nodes in all {
             let placed = self.placed(nodes, found.lower);
             let hulls = placed.each_ref();
             let [a, b] = hulls.map(|hull| &hull.spheres[..]);
             // Deeper ones do not lie in this plane: a floor reaches far behind the face of the wall on it.
-            if (gap_along(a, b, met.normal) - met.gap).abs() > margin {
+            let above = gap_along(a, b, met.normal) - met.gap;
+            if above < -level || above > margin {
                 continue;
             }
             if let (Some(patch), _) = patch(hulls, met.normal, met.gap, [tolerance, margin]) {

@@ -2,7 +2,7 @@
 //! as swept spheres. The paper (§4.1) tests each primitive against each; here a best-first search over two trees of
 //! bounding spheres visits the few that can come first.
 
-use super::met::{FacesOn, Met};
+use super::met::Met;
 use super::outline::ActivePrimitives;
 use super::pair_list::PairList;
 use super::patch::{EXTREMES, FaceCorner, Patch};
@@ -261,7 +261,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
     /// The answer with what is known of two convex pieces that met.
     fn of_pieces(&self, toi: Toi, met: &PiecesMet) -> Toi {
         let nearest = (toi.points[0] + toi.points[1]) * 0.5;
-        let on_faces = |patch: Patch| self.origin(&toi) + patch.middle().to_vector();
+        let on_faces = |patch: Patch| self.origin(&toi) + patch.middle.to_vector();
         let middle = met.patch.map_or(nearest, on_faces);
         let half = (met.normal * (0.5 * met.gap)).to_vector();
         Toi {
@@ -308,16 +308,10 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
             && self.options.paths == Paths::Exact
         {
             let frames = [0, 1].map(|k| search.motions[k].frame(found.lower));
-            let (middle, half) = (patch.middle(), met.normal * (0.5 * met.gap));
-            let on = |k: usize, middle: Vec3<f64>| FacesOn {
-                middle: frames[k].local(middle),
-                extremes: patch
-                    .extremes()
-                    .map(|pair| frames[k].local(pair[k]).to_vector()),
-            };
-            let faces = [on(0, middle - half), on(1, middle + half)];
+            let corners =
+                [0, 1].map(|k| (patch.extremes()).map(|pair| frames[k].local(pair[k]).to_vector()));
             let normal = frames[met.of].local_direction(met.normal);
-            return Some(Met::faces(faces, normal, met.of));
+            return Some(Met::faces(corners, normal, met.of));
         }
         let whole = [a.primitive(primitives[0]), b.primitive(primitives[1])];
         let counted = |side: usize| {

@@ -21,24 +21,15 @@ enum Features {
     /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]), and how many there
     /// are.
     Primitives([[MedialSphere; 3]; 2], [usize; 2]),
-    /// The middle of where faces lie on each other, and how far they do so, in each body's frame, and the normal from
-    /// the first to the second in the frame of the body that it is of.
-    Faces([FacesOn; 2], Vec3<f64>, usize),
-}
-
-/// Where faces of two bodies lie on each other, on one of the bodies, in its frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FacesOn {
-    /// The middle.
-    pub(super) middle: Vec3<f64>,
-    /// The corners that tell how far they do so ([`Patch`](super::patch::Patch)).
-    pub(super) extremes: [Vector; EXTREMES],
+    /// Corners of where faces lie on each other ([`Patch`](super::patch::Patch)), in each body's frame, and the normal
+    /// from the first to the second in the frame of the body that it is of.
+    Faces([[Vector; EXTREMES]; 2], Vec3<f64>, usize),
 }
 
 /// The contact of what met ([`Met`]), computed again at other poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// Signed distance, a length.
+    /// Signed distance, a length: of faces where they are nearest.
     pub distance: Real,
     /// Unit normal from the first body to the second, world frame.
     pub normal: Vector,
@@ -55,10 +46,10 @@ impl Met {
         Self(Features::Primitives(spheres, counts))
     }
 
-    /// Faces that lie on each other, on both bodies, and the normal from the first to the second, in the frame of the
-    /// body `of`.
-    pub(super) fn faces(faces: [FacesOn; 2], normal: Vec3<f64>, of: usize) -> Self {
-        Self(Features::Faces(faces, normal, of))
+    /// Faces that lie on each other: their corners on both bodies, in the frames of these, and the normal from the first
+    /// to the second, in the frame of the body `of`.
+    pub(super) fn faces(corners: [[Vector; EXTREMES]; 2], normal: Vec3<f64>, of: usize) -> Self {
+        Self(Features::Faces(corners, normal, of))
     }
 
     /// The same contact with the second body as the first.
@@ -72,31 +63,36 @@ impl Met {
     /// Contact of the two at two poses; `None` where the nearest two spheres have one centre, which leaves no normal.
     pub fn touch(&self, poses: [&Pose; 2]) -> Option<Touch> {
         let place = Placement::new(&poses[0].inv_mul(poses[1]));
-        let (distance, normal, middle) = match &self.0 {
-            Features::Primitives(spheres, counts) => of_primitives(*spheres, *counts, &place)?,
-            Features::Faces([p, q], normal, of) => {
-                let normal = match of {
+        let turn = |normal: Vec3<f64>| poses[0].rotation * normal.to_vector();
+        match &self.0 {
+            Features::Primitives(spheres, counts) => {
+                let (distance, normal, middle) = of_primitives(*spheres, *counts, &place)?;
+                Some(Touch {
+                    distance: distance as Real,
+                    normal: turn(normal),
+                    point: poses[0] * middle.to_vector(),
+                    corners: None,
+                })
+            }
+            Features::Faces([first, second], normal, of) => {
+                let normal = turn(match of {
                     0 => *normal,
                     _ => place.turned(*normal),
-                };
-                let q = place.placed(q.middle);
-                (normal.dot(q - p.middle), normal, (p.middle + q) * 0.5)
+                });
+                let corner =
+                    |k: usize| FaceCorner::of(poses[0] * first[k], poses[1] * second[k], normal);
+                let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(corner);
+                let lowest = corners
+                    .iter()
+                    .min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+                Some(Touch {
+                    distance: lowest.distance,
+                    normal,
+                    point: lowest.point,
+                    corners: Some(corners),
+                })
             }
-        };
-        let normal = poses[0].rotation * normal.to_vector();
-        let corners = match &self.0 {
-            Features::Primitives(..) => None,
-            Features::Faces([first, second], ..) => Some([0, 1, 2, 3, 4, 5, 6, 7].map(|k| {
-                let [p, q] = [poses[0] * first.extremes[k], poses[1] * second.extremes[k]];
-                FaceCorner::of(p, q, normal)
-            })),
-        };
-        Some(Touch {
-            distance: distance as Real,
-            normal,
-            point: poses[0] * middle.to_vector(),
-            corners,
-        })
+        }
     }
 }
 

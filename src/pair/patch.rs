@@ -20,6 +20,10 @@ const DIRECTIONS: [[f64; 2]; EXTREMES] = [
     [5.0, -2.0],
 ];
 
+/// How much less far a corner counts to lie, in units of how far apart the faces are there: more than faces differ that
+/// are as little tilted as those that lie on each other may be. Else a corner would be hidden by one right above it.
+const STEEPNESS: f64 = 5.0;
+
 /// A corner of faces that lie on each other, world frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceCorner {
@@ -42,84 +46,82 @@ impl FaceCorner {
 /// Polygons, edges and corners that lie on each other, with their moments.
 #[derive(Clone, Copy)]
 pub(super) struct Patch {
+    normal: Vec3<f64>,
     /// Two unit vectors across its normal and each other.
     axes: [Vec3<f64>; 2],
     /// The corners that lie farthest in [`DIRECTIONS`], each on both bodies.
     extremes: [[Vec3<f64>; 2]; EXTREMES],
-    /// Number of corners, length of edges, and area, and the integral of the position over each.
-    measures: [(f64, Vec3<f64>); 3],
+    /// Middle of the first polygon, or of the edge or the corner that it is.
+    pub(super) middle: Vec3<f64>,
 }
 
 impl Patch {
     /// One polygon across a unit normal, each corner of it on both bodies; two corners are an edge, one is itself.
     /// `None` where there are none.
     pub(super) fn of(pairs: &[[Vec3<f64>; 2]], normal: Vec3<f64>) -> Option<Self> {
-        let corners: Vec<Vec3<f64>> = pairs.iter().map(middle).collect();
-        let first = *corners.first()?;
-        let (u, v) = normal.to_vector().any_orthonormal_pair();
-        let axes = [u, v].map(Vec3::from_vector);
-        let mut measures = [(0.0, Vec3::zero()); 3];
-        let mut add = |k: usize, measure: f64, middle: Vec3<f64>| {
-            measures[k].0 += measure;
-            measures[k].1 = measures[k].1 + middle * measure;
-        };
-        for (k, p) in corners.iter().enumerate() {
-            let next = corners[(k + 1) % corners.len()];
-            add(0, 1.0, *p);
-            add(1, (next - *p).length(), (*p + next) * 0.5);
-            let area = 0.5 * (*p - first).cross(next - first).length();
-            add(2, area, (first + *p + next) * (1.0 / 3.0));
-        }
         let lone = Self {
-            axes,
-            extremes: [pairs[0]; EXTREMES],
-            measures,
+            normal,
+            axes: across(normal),
+            extremes: [*pairs.first()?; EXTREMES],
+            middle: middle_of(pairs)?,
         };
-        Some(
-            pairs
-                .iter()
-                .fold(lone, |patch, p| patch.reaching(&[*p; EXTREMES])),
-        )
+        let all = pairs.iter();
+        Some(all.fold(lone, |patch, p| patch.reaching(&[*p; EXTREMES])))
     }
 
     /// The patch, if it reaches as far as these corners in [`DIRECTIONS`].
     fn reaching(mut self, corners: &[[Vec3<f64>; 2]; EXTREMES]) -> Self {
-        for ((farthest, p), [x, y]) in self.extremes.iter_mut().zip(corners).zip(DIRECTIONS) {
-            let along = self.axes[0] * x + self.axes[1] * y;
-            if along.dot(middle(p) - middle(farthest)) > 0.0 {
-                *farthest = *p;
+        for ((farthest, corner), [x, y]) in self.extremes.iter_mut().zip(corners).zip(DIRECTIONS) {
+            let direction = self.axes[0] * x + self.axes[1] * y;
+            let lower = self.normal * (STEEPNESS * direction.length());
+            let reach =
+                |[p, q]: &[Vec3<f64>; 2]| middle(&[*p, *q]).dot(direction) - (*q - *p).dot(lower);
+            if reach(corner) > reach(farthest) {
+                *farthest = *corner;
             }
         }
         self
     }
 
     /// The two patches as one. Both are across the same normal.
-    pub(super) fn and(&self, other: &Self) -> Self {
-        let both = |k: usize| {
-            let ((m, a), (n, b)) = (self.measures[k], other.measures[k]);
-            (m + n, a + b)
-        };
-        Self {
-            measures: [both(0), both(1), both(2)],
-            ..self.reaching(&other.extremes)
-        }
+    pub(super) fn and(self, other: &Self) -> Self {
+        self.reaching(&other.extremes)
     }
 
     /// Corners, each on both bodies, of which the hull is about that of the patch; some of them more than once.
     pub(super) fn extremes(&self) -> [[Vec3<f64>; 2]; EXTREMES] {
         self.extremes
     }
+}
 
-    /// The middle of the polygons, or of the edges where there are no polygons, or of the corners.
-    pub(super) fn middle(&self) -> Vec3<f64> {
-        let [corners, edges, areas] = self.measures;
-        let (measure, moment) = match (areas.0 > 0.0, edges.0 > 0.0) {
-            (true, _) => areas,
-            (false, true) => edges,
-            (false, false) => corners,
-        };
-        moment * (1.0 / measure)
+/// Middle of a polygon, or of the edge or the corner that it is.
+fn middle_of(pairs: &[[Vec3<f64>; 2]]) -> Option<Vec3<f64>> {
+    let corners: Vec<Vec3<f64>> = pairs.iter().map(middle).collect();
+    let first = *corners.first()?;
+    // Number of corners, length of edges, and area, and the integral of the position over each.
+    let mut measures = [(0.0, Vec3::zero()); 3];
+    let mut add = |k: usize, measure: f64, middle: Vec3<f64>| {
+        measures[k].0 += measure;
+        measures[k].1 = measures[k].1 + middle * measure;
+    };
+    for (k, p) in corners.iter().enumerate() {
+        let next = corners[(k + 1) % corners.len()];
+        add(0, 1.0, *p);
+        add(1, (next - *p).length(), (*p + next) * 0.5);
+        let area = 0.5 * (*p - first).cross(next - first).length();
+        add(2, area, (first + *p + next) * (1.0 / 3.0));
     }
+    let (measure, moment) = measures
+        .into_iter()
+        .rev()
+        .find(|(measure, _)| *measure > 0.0)?;
+    Some(moment * (1.0 / measure))
+}
+
+/// Two unit vectors across a unit vector and each other.
+fn across(n: Vec3<f64>) -> [Vec3<f64>; 2] {
+    let (u, v) = n.to_vector().any_orthonormal_pair();
+    [u, v].map(Vec3::from_vector)
 }
 
 fn middle([p, q]: &[Vec3<f64>; 2]) -> Vec3<f64> {

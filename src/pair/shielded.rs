@@ -289,7 +289,7 @@ fn of_pieces(
     let points = match patch(hulls, n, found.gap, [gap; 2]) {
         (Some(patch), _) => {
             let half = n * (0.5 * found.gap);
-            [patch.middle() - half, patch.middle() + half]
+            [patch.middle - half, patch.middle + half]
         }
         (None, _) => nearest_points(hulls, found).nearest?,
     };

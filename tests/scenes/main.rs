@@ -31,6 +31,7 @@ mod features;
 mod feet;
 mod filters;
 mod fixed_partners;
+mod flat_falls;
 mod folds;
 mod force_events;
 mod found;

@@ -16,6 +16,9 @@ use crate::rapier::view::step_view::StepView;
 /// turning: above the rounding of its entries in single precision.
 const REGULAR: f64 = 1.0e-6;
 
+/// Share of the speed of approach that impulses at the corners may leave.
+const LEFT: f64 = 1.0e-2;
+
 /// The point at which an impulse acts on two bodies that a hit stops in a step of `dt` seconds, world frame. `system`
 /// resists it. Corners that are above the others may come down in a step.
 pub fn center_of_pressure(
@@ -24,19 +27,8 @@ pub fn center_of_pressure(
     (hit, dt): (&Hit, Real),
     system: &System,
 ) -> Vector {
-    let mut corners: Vec<FaceCorner> = Vec::new();
-    for corner in hit.corners.into_iter().flatten() {
-        if !corners.contains(&corner) {
-            corners.push(corner);
-        }
-    }
-    let lowest = corners
-        .iter()
-        .map(|c| c.distance)
-        .fold(Real::MAX, Real::min);
-    let may_approach = corners.iter().map(|c| (c.distance - lowest) / dt);
-    let may_approach: Vec<Real> = may_approach.collect();
-    let at = |corner: &FaceCorner| {
+    let corners = hit.corners_with_room(dt);
+    let at = |(corner, _): &(FaceCorner, Real)| {
         let hit = Hit {
             point: corner.point,
             ..*hit
@@ -48,33 +40,37 @@ pub fn center_of_pressure(
         (p.velocity(twists[1], 1) - p.velocity(twists[0], 0)).dot(hit.normal)
     };
     let velocities = both.map(|b| view.bodies[b].velocity);
-    let approach = |speed: &dyn Fn(&ContactPoint) -> Real| -> Vec<f64> {
-        let speeds = points.iter().map(speed).zip(&may_approach);
-        speeds.map(|(speed, may)| f64::from(speed - may)).collect()
+    let of_velocities = |p: &ContactPoint| -opening(p, velocities);
+    let of_motions = |p: &ContactPoint| -p.relative_motion().dot(hit.normal);
+    let approaching = |speed: &dyn Fn(&ContactPoint) -> Real| -> Option<Vec<f64>> {
+        let speeds = points.iter().zip(&corners);
+        let speeds = speeds.map(|(p, (_, room))| f64::from(speed(p) - room));
+        let speeds: Vec<f64> = speeds.collect();
+        speeds.iter().any(|speed| *speed > 0.0).then_some(speeds)
     };
-    let mut approach_speeds = approach(&|p| -opening(p, velocities));
-    if approach_speeds.iter().all(|speed| *speed <= 0.0) {
-        approach_speeds = approach(&|p| -p.relative_motion().dot(hit.normal));
-    }
-    let response = |p: &ContactPoint| {
+    let Some(approach) = approaching(&of_velocities).or_else(|| approaching(&of_motions)) else {
+        return hit.point;
+    };
+    let response = |p: &ContactPoint| -> Vec<f64> {
         let change = system.change(&p.wrenches(hit.normal));
-        let all = points
+        let twists = [change[0], change[1]];
+        points
             .iter()
-            .map(|q| f64::from(opening(q, [change[0], change[1]])));
-        all.collect()
+            .map(|q| f64::from(opening(q, twists)))
+            .collect()
     };
     let response: Vec<Vec<f64>> = points.iter().map(response).collect();
-    let Some(impulses) = strongest(&response, &approach_speeds) else {
+    let Some(impulses) = strongest(&response, &approach) else {
         return hit.point;
     };
     let sum: f64 = impulses.iter().map(|(_, impulse)| impulse).sum();
-    let share = |(k, impulse): &(usize, f64)| corners[*k].point * (impulse / sum) as Real;
+    let share = |(k, impulse): &(usize, f64)| corners[*k].0.point * (impulse / sum) as Real;
     impulses.iter().map(share).fold(Vector::ZERO, |a, b| a + b)
 }
 
 /// The impulses at up to three corners that stop what approaches there and take out the most energy, with the numbers
-/// of the corners: more are never needed, since a rigid body's corners in a plane move in three ways. `None` where
-/// nothing approaches, or nothing can be moved.
+/// of the corners: more are never needed, since a rigid body's corners in a plane move in three ways. `None` where some
+/// corner cannot be stopped, as of a body that moves along a locked axis.
 fn strongest(response: &[Vec<f64>], approach: &[f64]) -> Option<Vec<(usize, f64)>> {
     let count = approach.len();
     let mut best: Option<(f64, Vec<(usize, f64)>)> = None;
@@ -93,7 +89,13 @@ fn strongest(response: &[Vec<f64>], approach: &[f64]) -> Option<Vec<(usize, f64)
             }
         }
     }
-    best.map(|(_, impulses)| impulses)
+    let (_, impulses) = best?;
+    let fastest = approach.iter().copied().fold(0.0, f64::max);
+    let is_stopped = (0..count).all(|k| {
+        let stopped: f64 = impulses.iter().map(|(i, j)| j * response[*i][k]).sum();
+        approach[k] - stopped <= LEFT * fastest
+    });
+    is_stopped.then_some(impulses)
 }
 
 /// The impulses at some corners that leave these at rest, if all of them press.

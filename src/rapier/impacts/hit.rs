@@ -26,6 +26,21 @@ pub struct Hit {
 }
 
 impl Hit {
+    /// Corners of faces that lie on each other, each once, with the speed of approach that is left to it where the step
+    /// takes `dt` seconds: those above the lowest may come down to where it is.
+    pub fn corners_with_room(&self, dt: Real) -> Vec<(FaceCorner, Real)> {
+        let mut corners: Vec<FaceCorner> = Vec::new();
+        for corner in self.corners.into_iter().flatten() {
+            if !corners.contains(&corner) {
+                corners.push(corner);
+            }
+        }
+        let distances = corners.iter().map(|c| c.distance);
+        let lowest = distances.fold(Real::MAX, Real::min);
+        let with_room = |c: FaceCorner| (c, (c.distance - lowest) / dt);
+        corners.into_iter().map(with_room).collect()
+    }
+
     /// The hit of a query over `seconds` from `time` on, with what met and the corners of faces that lie on each other,
     /// where these are known; `None` if it found none.
     pub fn of(

@@ -154,8 +154,9 @@ impl ImpactHistory {
                 .map(|m| m.linvel + m.angvel.cross(point - m.start * m.local_center));
             (v1 - v2).dot(hit.normal)
         };
-        let corners = hit.corners.iter().flatten().map(|c| speed(c.point));
-        let approach = corners.fold(speed(hit.point), Real::max) * (policy.dt - time);
+        let corners = hit.corners_with_room(policy.dt).into_iter();
+        let speeds = corners.map(|(corner, may)| speed(corner.point) - may);
+        let approach = speeds.fold(speed(hit.point), Real::max) * (policy.dt - time);
         // A pair that touches may sink in by this before it meets again: by more above the floor than below.
         let tuning = &policy.tuning;
         let above = tuning.floor * thickness - hit.depth;
