@@ -4,7 +4,7 @@
 //! mass and does not turn.
 
 use crate::math::{Real, Vector};
-use crate::pair::patch::FaceCorner;
+use crate::pair::patch::{EXTREMES, FaceCorner};
 use crate::rapier::impacts::contact_point::ContactPoint;
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::joints::rows::Twist;
@@ -17,7 +17,10 @@ use crate::rapier::view::step_view::StepView;
 const REGULAR: f64 = 1.0e-6;
 
 /// Share of the speed of approach that impulses at the corners may leave.
-const LEFT: f64 = 1.0e-2;
+const LEFT: f64 = 1.0e-3;
+
+/// Most corners that join those at which impulses act, one after the other, some of them more than once.
+const MOST_CHANGES: usize = 3 * EXTREMES;
 
 /// The point at which an impulse acts on two bodies that a hit stops in a step of `dt` seconds, world frame. `system`
 /// resists it. Corners that are above the others may come down in a step.
@@ -68,47 +71,55 @@ pub fn center_of_pressure(
     impulses.iter().map(share).fold(Vector::ZERO, |a, b| a + b)
 }
 
-/// The impulses at up to three corners that stop what approaches there and take out the most energy, with the numbers
-/// of the corners: more are never needed, since a rigid body's corners in a plane move in three ways. `None` where some
-/// corner cannot be stopped, as of a body that moves along a locked axis.
+/// The impulses at corners that stop what approaches there, none of which pulls, each with the number of its corner:
+/// those that take out the most energy, found by the active set method (Lawson and Hanson, Solving Least Squares
+/// Problems, 1974, ch. 23). `None` where some corner cannot be stopped, as of a body that moves along a locked axis.
 fn strongest(response: &[Vec<f64>], approach: &[f64]) -> Option<Vec<(usize, f64)>> {
-    let count = approach.len();
-    let mut best: Option<(f64, Vec<(usize, f64)>)> = None;
-    for i in 0..count {
-        for j in i..count {
-            for k in j..count {
-                let mut at = vec![i, j, k];
-                at.dedup();
-                let Some(impulses) = stopping(response, approach, &at) else {
-                    continue;
-                };
-                let energy: f64 = impulses.iter().map(|(k, j)| j * approach[*k]).sum();
-                if energy > best.as_ref().map_or(0.0, |best| best.0) {
-                    best = Some((energy, impulses));
-                }
+    let fastest = approach.iter().copied().fold(0.0, f64::max);
+    let mut impulses: Vec<(usize, f64)> = Vec::new();
+    for _ in 0..MOST_CHANGES {
+        let left = |k: &usize| {
+            let stopped = impulses.iter().map(|(i, j)| j * response[*i][*k]);
+            approach[*k] - stopped.sum::<f64>()
+        };
+        let all = (0..approach.len()).map(|k| (k, left(&k)));
+        let (worst, speed) = all.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        if speed <= LEFT * fastest {
+            return Some(impulses);
+        }
+        if impulses.iter().any(|(i, _)| *i == worst) {
+            return None;
+        }
+        impulses.push((worst, 0.0));
+        loop {
+            let after = stopping(response, approach, &impulses)?;
+            let both = impulses.iter().zip(&after).enumerate();
+            let pulling = both.filter(|(_, (_, after))| **after <= 0.0);
+            let shares = pulling.map(|(at, ((_, now), after))| (at, now / (now - after)));
+            let first = shares.min_by(|a, b| a.1.total_cmp(&b.1));
+            let share = first.map_or(1.0, |(_, share)| share);
+            for ((_, now), after) in impulses.iter_mut().zip(&after) {
+                *now += share * (after - *now);
             }
+            match first {
+                Some((at, _)) => impulses.remove(at),
+                None => break,
+            };
         }
     }
-    let (_, impulses) = best?;
-    let fastest = approach.iter().copied().fold(0.0, f64::max);
-    let is_stopped = (0..count).all(|k| {
-        let stopped: f64 = impulses.iter().map(|(i, j)| j * response[*i][k]).sum();
-        approach[k] - stopped <= LEFT * fastest
-    });
-    is_stopped.then_some(impulses)
+    None
 }
 
-/// The impulses at some corners that leave these at rest, if all of them press.
-fn stopping(response: &[Vec<f64>], approach: &[f64], at: &[usize]) -> Option<Vec<(usize, f64)>> {
+/// The impulses at some corners that leave these at rest.
+fn stopping(response: &[Vec<f64>], approach: &[f64], at: &[(usize, f64)]) -> Option<Vec<f64>> {
     let mut matrix = Skyline::default();
-    for (row, &i) in at.iter().enumerate() {
-        for (entry, &j) in matrix.push_row(0).iter_mut().zip(&at[..=row]) {
+    for (row, (i, _)) in at.iter().enumerate() {
+        for (entry, (j, _)) in matrix.push_row(0).iter_mut().zip(&at[..=row]) {
             let regular = if i == j { 1.0 + REGULAR } else { 1.0 };
-            *entry = 0.5 * (response[i][j] + response[j][i]) * regular;
+            *entry = 0.5 * (response[*i][*j] + response[*j][*i]) * regular;
         }
     }
-    let mut impulses: Vec<f64> = at.iter().map(|k| approach[*k]).collect();
+    let mut impulses: Vec<f64> = at.iter().map(|(k, _)| approach[*k]).collect();
     matrix.factor()?.solve(&mut impulses);
-    let presses = impulses.iter().all(|j| j.is_finite() && *j >= 0.0);
-    presses.then(|| at.iter().copied().zip(impulses).collect())
+    impulses.iter().all(|j| j.is_finite()).then_some(impulses)
 }
