@@ -47,9 +47,9 @@ const AIM_BELOW: f64 = 0.99;
 /// How much farther apart than where pieces meet their faces may be, in units of the tolerance, to lie on each other:
 /// of pieces that touched at the start, and of others. Bodies at rest are tilted by the first, because rapier's solver
 /// lets them sink into what they lie on: at 1, a box that slides over a floor into a post is struck at one end of its
-/// edge alone, and tips into the floor; at 300, twice as many bricks are frozen in walls of very unlike ones. What falls
-/// from outside may be tilted by more: at 3, bricks turn four times as fast after an almost flat fall as at 300, from
-/// where on nothing changes.
+/// edge, and tips into the floor; at 300, twice as many bricks are frozen in walls of very unlike ones. What falls from
+/// outside may be tilted by more: at 3, bricks turn four times as fast after an almost flat fall as at 300, from where
+/// on nothing changes.
 const LEVEL: [f64; 2] = [3.0, 300.0];
 
 impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
@@ -203,12 +203,12 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
                 // How deep they are, hulls say; how far apart, primitives.
                 let is_sure = pieces.contact < 0.0 || near.distance <= pieces.contact;
                 return match near.primitives.filter(|_| is_sure) {
-                    Some(primitives) => PieceLook::Met(PiecesMet::of(
+                    Some(primitives) => PieceLook::Met(Box::new(PiecesMet::of(
                         nodes,
                         placed.each_ref(),
                         (primitives, near.distance, &near.hull),
                         self.earliest.limits.tolerance,
-                    )),
+                    ))),
                     None => PieceLook::Split,
                 };
             }

@@ -2,17 +2,16 @@
 //! as swept spheres. The paper (§4.1) tests each primitive against each; here a best-first search over two trees of
 //! bounding spheres visits the few that can come first.
 
-use super::met::Met;
+use super::met::{FacesMet, Met};
 use super::outline::ActivePrimitives;
 use super::pair_list::PairList;
-use super::patch::{EXTREMES, FaceCorner, Patch};
+use super::patch::Patch;
 use super::piece_contact::PiecesMet;
 use super::primitive_tree::PrimitiveTree;
 use super::search::{FirstContactSearch, LOOK};
 use crate::elementary::first_contact::{motion_is_finite, rounded_down, to_toi};
 use crate::elementary::{Paths, Toi, ToiOptions};
 use crate::math::counters::counters;
-use crate::math::lane::Vec3;
 use crate::math::motion::RigidMotion;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
@@ -89,7 +88,7 @@ pub fn first_contact_counted(
 }
 
 /// Everything that a query found.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ToiResult {
     /// First contact, with the guarantee of [`first_contact()`].
     pub toi: Toi,
@@ -99,8 +98,6 @@ pub struct ToiResult {
     pub deepest: f64,
     /// The primitives or faces that met ([`Query::met`]).
     pub met: Option<Met>,
-    /// How far faces lie on each other ([`Query::corners`]).
-    pub corners: Option<[FaceCorner; EXTREMES]>,
 }
 
 impl ToiResult {
@@ -111,7 +108,6 @@ impl ToiResult {
             counts,
             deepest,
             met: None,
-            corners: None,
         }
     }
 }
@@ -191,10 +187,8 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
     /// Continues the search to the end.
     pub fn settle(mut self) -> ToiResult {
         self.search(1.0);
-        let toi = self.toi();
         ToiResult {
-            corners: self.corners(&toi),
-            toi,
+            toi: self.toi(),
             counts: self.counts(),
             deepest: self.deepest(),
             met: self.met(),
@@ -277,21 +271,6 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         first.start.translation + second.linvel * (toi.lower * self.seconds)
     }
 
-    /// Corners, in the world frame, of all faces that lie on each other in a contact of convex pieces, once the query is
-    /// settled: those farthest in eight directions, some more than once. An impact acts in their hull, which may be off
-    /// both bodies, as between the legs of a table. `None` where no faces lie on each other.
-    pub fn corners(&self, toi: &Toi) -> Option<[FaceCorner; EXTREMES]> {
-        let search = self.search.as_ref()?;
-        let met = search.met.as_ref()?;
-        let joined = search.joined.or(met.patch)?;
-        let origin = self.origin(toi);
-        let normal = met.normal.to_vector();
-        let corner = |[p, q]: [Vec3<f64>; 2]| {
-            FaceCorner::of(origin + p.to_vector(), origin + q.to_vector(), normal)
-        };
-        Some(joined.extremes().map(corner))
-    }
-
     /// The primitives or faces that met, or the primitives that shield those, once the query is settled and has found a
     /// contact.
     pub fn met(&self) -> Option<Met> {
@@ -305,13 +284,16 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> Query<'a, A, B> {
         }
         if let Some(met) = &search.met
             && let Some(patch) = search.joined.or(met.patch)
-            && self.options.paths == Paths::Exact
         {
             let frames = [0, 1].map(|k| search.motions[k].frame(found.lower));
             let corners =
                 [0, 1].map(|k| (patch.extremes()).map(|pair| frames[k].local(pair[k]).to_vector()));
             let normal = frames[met.of].local_direction(met.normal);
-            return Some(Met::faces(corners, normal, met.of));
+            return Some(Met::faces(FacesMet {
+                corners,
+                normal,
+                of: met.of,
+            }));
         }
         let whole = [a.primitive(primitives[0]), b.primitive(primitives[1])];
         let counted = |side: usize| {

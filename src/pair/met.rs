@@ -10,20 +10,30 @@ use crate::math::lane::Vec3;
 use crate::math::nearest::Nearest;
 use crate::math::{Pose, Real, Vector};
 use crate::medial::MedialSphere;
+use std::sync::Arc;
 
 /// The primitives or faces that met first: two primitives, with the radii that counted, or faces of two convex pieces.
 /// The contact can be computed again at other poses.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Met(Features);
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Features {
     /// The spheres of each, in its body's frame, with the radii that counted ([`super::deepening`]), and how many there
     /// are.
     Primitives([[MedialSphere; 3]; 2], [usize; 2]),
-    /// Corners of where faces lie on each other ([`Patch`](super::patch::Patch)), in each body's frame, and the normal
-    /// from the first to the second in the frame of the body that it is of.
-    Faces([[Vector; EXTREMES]; 2], Vec3<f64>, usize),
+    Faces(Arc<FacesMet>),
+}
+
+/// Faces of two bodies that lie on each other.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FacesMet {
+    /// Their corners ([`Patch`](super::patch::Patch)) on both bodies, in the frames of these.
+    pub(super) corners: [[Vector; EXTREMES]; 2],
+    /// Unit normal from the first to the second, in the frame of the body that it is of.
+    pub(super) normal: Vec3<f64>,
+    /// That body, 0 or 1.
+    pub(super) of: usize,
 }
 
 /// The contact of what met ([`Met`]), computed again at other poses.
@@ -35,8 +45,8 @@ pub struct Touch {
     pub normal: Vector,
     /// Middle of the nearest points, world frame.
     pub point: Vector,
-    /// Corners of faces that lie on each other, as
-    /// [`ToiResult::corners`](super::first_contact::ToiResult::corners) has them.
+    /// Corners of faces that lie on each other, those farthest in eight directions, some more than once. An impact acts
+    /// in their hull, which may be off both bodies, as between the legs of a table.
     pub corners: Option<[FaceCorner; EXTREMES]>,
 }
 
@@ -46,18 +56,29 @@ impl Met {
         Self(Features::Primitives(spheres, counts))
     }
 
-    /// Faces that lie on each other: their corners on both bodies, in the frames of these, and the normal from the first
-    /// to the second, in the frame of the body `of`.
-    pub(super) fn faces(corners: [[Vector; EXTREMES]; 2], normal: Vec3<f64>, of: usize) -> Self {
-        Self(Features::Faces(corners, normal, of))
+    /// Faces that lie on each other.
+    pub(super) fn faces(faces: FacesMet) -> Self {
+        Self(Features::Faces(Arc::new(faces)))
+    }
+
+    /// Whether faces lie on each other.
+    pub fn is_of_faces(&self) -> bool {
+        matches!(self.0, Features::Faces(..))
     }
 
     /// The same contact with the second body as the first.
     pub fn flipped(&self) -> Self {
-        Self(match self.0 {
-            Features::Primitives([a, b], [m, n]) => Features::Primitives([b, a], [n, m]),
-            Features::Faces([p, q], normal, of) => Features::Faces([q, p], -normal, 1 - of),
-        })
+        match &self.0 {
+            Features::Primitives([a, b], [m, n]) => Self::primitives([*b, *a], [*n, *m]),
+            Features::Faces(faces) => {
+                let [first, second] = faces.corners;
+                Self::faces(FacesMet {
+                    corners: [second, first],
+                    normal: -faces.normal,
+                    of: 1 - faces.of,
+                })
+            }
+        }
     }
 
     /// Contact of the two at two poses; `None` where the nearest two spheres have one centre, which leaves no normal.
@@ -74,11 +95,12 @@ impl Met {
                     corners: None,
                 })
             }
-            Features::Faces([first, second], normal, of) => {
-                let normal = turn(match of {
-                    0 => *normal,
-                    _ => place.turned(*normal),
+            Features::Faces(faces) => {
+                let normal = turn(match faces.of {
+                    0 => faces.normal,
+                    _ => place.turned(faces.normal),
                 });
+                let [first, second] = &faces.corners;
                 let corner =
                     |k: usize| FaceCorner::of(poses[0] * first[k], poses[1] * second[k], normal);
                 let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(corner);

@@ -43,6 +43,20 @@ impl FaceCorner {
     }
 }
 
+/// Corners of faces that lie on each other, each once, with the speed of approach that is left to it where a step takes
+/// `dt` seconds: those above the lowest may come down to where it is.
+pub fn with_room(corners: &[FaceCorner], dt: Real) -> Vec<(FaceCorner, Real)> {
+    let mut once: Vec<FaceCorner> = Vec::new();
+    for corner in corners {
+        if !once.contains(corner) {
+            once.push(*corner);
+        }
+    }
+    let lowest = once.iter().map(|c| c.distance).fold(Real::MAX, Real::min);
+    let room = |c: FaceCorner| (c, (c.distance - lowest) / dt);
+    once.into_iter().map(room).collect()
+}
+
 /// Polygons, edges and corners that lie on each other, with their moments.
 #[derive(Clone, Copy)]
 pub(super) struct Patch {

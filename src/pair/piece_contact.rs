@@ -76,7 +76,7 @@ pub(super) enum PieceLook {
     /// The pieces do not meet before this time.
     FreeUntil(f64),
     /// The pieces meet.
-    Met(PiecesMet),
+    Met(Box<PiecesMet>),
     /// The nodes hold no pieces, or their primitives have to decide.
     Split,
 }

@@ -322,7 +322,7 @@ impl<'a, A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'a, A, B> {
         match self.look_at_pieces([i, j], free) {
             PieceLook::Free => return true,
             PieceLook::FreeUntil(free) => return self.wait([i, j], free),
-            PieceLook::Met(met) => return self.take_pieces(met, free),
+            PieceLook::Met(met) => return self.take_pieces(*met, free),
             PieceLook::Split => {}
         }
         let [parts_of_a, parts_of_b] = split(&mut self.sides, [i, j]);

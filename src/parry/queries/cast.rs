@@ -285,7 +285,7 @@ impl Cast<'_> {
             found.toi = axisymmetric_toi::earlier(found.toi, other.toi);
             // The spheres that met a cylinder or a cone do not tell the contact.
             if found.toi.lower == other.toi.lower {
-                (found.met, found.corners) = (None, None);
+                found.met = None;
             }
             found.deepest = found.deepest.min(other.deepest);
         }
@@ -293,7 +293,7 @@ impl Cast<'_> {
             && let Some(inside) = self.starts_inside(motion1, motion2, options)
         {
             found.toi = inside;
-            (found.met, found.corners) = (None, None);
+            found.met = None;
         }
         Ok(found)
     }

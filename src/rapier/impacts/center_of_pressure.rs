@@ -22,22 +22,16 @@ const LEFT: f64 = 1.0e-3;
 /// Most corners that join those at which impulses act, one after the other, some of them more than once.
 const MOST_CHANGES: usize = 3 * EXTREMES;
 
-/// The point at which an impulse acts on two bodies that a hit stops in a step of `dt` seconds, world frame. `system`
-/// resists it. Corners that are above the others may come down in a step.
+/// The point at which an impulse acts on two bodies of which flat faces met, world frame: `corners`, with the speed of
+/// approach that is left to each. `system` resists it. `None` where no impulses stop all corners.
 pub fn center_of_pressure(
     view: &StepView,
     both: [usize; 2],
-    (hit, dt): (&Hit, Real),
+    hit: &Hit,
+    corners: &[(FaceCorner, Real)],
     system: &System,
-) -> Vector {
-    let corners = hit.corners_with_room(dt);
-    let at = |(corner, _): &(FaceCorner, Real)| {
-        let hit = Hit {
-            point: corner.point,
-            ..*hit
-        };
-        ContactPoint::new(view, both, &hit)
-    };
+) -> Option<Vector> {
+    let at = |(corner, _): &(FaceCorner, Real)| ContactPoint::new(view, both, hit, corner.point);
     let points: Vec<ContactPoint> = corners.iter().map(at).collect();
     let opening = |p: &ContactPoint, twists: [Twist; 2]| {
         (p.velocity(twists[1], 1) - p.velocity(twists[0], 0)).dot(hit.normal)
@@ -46,14 +40,12 @@ pub fn center_of_pressure(
     let of_velocities = |p: &ContactPoint| -opening(p, velocities);
     let of_motions = |p: &ContactPoint| -p.relative_motion().dot(hit.normal);
     let approaching = |speed: &dyn Fn(&ContactPoint) -> Real| -> Option<Vec<f64>> {
-        let speeds = points.iter().zip(&corners);
+        let speeds = points.iter().zip(corners);
         let speeds = speeds.map(|(p, (_, room))| f64::from(speed(p) - room));
         let speeds: Vec<f64> = speeds.collect();
         speeds.iter().any(|speed| *speed > 0.0).then_some(speeds)
     };
-    let Some(approach) = approaching(&of_velocities).or_else(|| approaching(&of_motions)) else {
-        return hit.point;
-    };
+    let approach = approaching(&of_velocities).or_else(|| approaching(&of_motions))?;
     let response = |p: &ContactPoint| -> Vec<f64> {
         let change = system.change(&p.wrenches(hit.normal));
         let twists = [change[0], change[1]];
@@ -63,12 +55,10 @@ pub fn center_of_pressure(
             .collect()
     };
     let response: Vec<Vec<f64>> = points.iter().map(response).collect();
-    let Some(impulses) = strongest(&response, &approach) else {
-        return hit.point;
-    };
+    let impulses = strongest(&response, &approach)?;
     let sum: f64 = impulses.iter().map(|(_, impulse)| impulse).sum();
     let share = |(k, impulse): &(usize, f64)| corners[*k].0.point * (impulse / sum) as Real;
-    impulses.iter().map(share).fold(Vector::ZERO, |a, b| a + b)
+    Some(impulses.iter().map(share).fold(Vector::ZERO, |a, b| a + b))
 }
 
 /// The impulses at corners that stop what approaches there, none of which pulls, each with the number of its corner:

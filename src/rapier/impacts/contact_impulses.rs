@@ -4,10 +4,12 @@
 //! impulses for the next step, and keeps its motion. What joints tie to the two bodies takes part.
 
 use crate::math::{Real, Vector};
+use crate::pair::patch::with_room;
 use crate::rapier::host::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::center_of_pressure::center_of_pressure;
 use crate::rapier::impacts::contact_point::ContactPoint;
 use crate::rapier::impacts::hit::Hit;
+use crate::rapier::impacts::impact_history::touch;
 use crate::rapier::impacts::impulse::Material;
 use crate::rapier::impacts::lost_gains::lose_gains;
 use crate::rapier::impacts::response::{Response, bodies};
@@ -21,8 +23,8 @@ use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 
-/// Least ratio of the speed that an impulse gives two bodies in their joints to the speed that it would give them
-/// without joints. Below it the joints and locked axes hold the contact, as between neighbours in a chain or where a
+/// Least ratio of the speed that an impulse gives two bodies in their joints to the speed that it would give the heavier
+/// of them without joints. Below it the joints and locked axes hold the contact, as between neighbours in a chain or where a
 /// body is driven along a locked axis, and no impulse is given: it would have no bound.
 const HELD_RATIO: Real = 0.02;
 
@@ -44,7 +46,7 @@ impl Response {
         for b in joints.tied_to(view, &both) {
             self.advance(view, b, hit.time);
         }
-        let (system, moving, point) = self.at_contact(view, policy, &joints, both, hit);
+        let (system, moving, point) = self.at_contact(view, policy, &joints, pair, hit);
         let [c1, c2] = pair.map(|k| &rules.colliders[view.colliders[k].handle]);
         let [v1, v2] = [0, 1].map(|k| point.velocity(view.bodies[both[k]].velocity, k));
         let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, Material::of(c1, c2));
@@ -110,9 +112,10 @@ impl Response {
         view: &mut StepView,
         policy: &CcdPolicy,
         joints: &'j Joints,
-        both: [usize; 2],
+        pair: [usize; 2],
         hit: &Hit,
     ) -> (System<'j>, Option<System<'j>>, ContactPoint) {
+        let both = bodies(view, pair);
         let resists = |view: &StepView, b: usize| inertia(view, both, b);
         let mut system = joints.system(view, &both, hit.time, |b| resists(view, b));
         let free = system.bodies.iter().all(|b| !self.body_states[*b].frozen);
@@ -131,11 +134,15 @@ impl Response {
             end.hold(&mut twists);
             twists
         });
-        let hit = Hit {
-            point: center_of_pressure(view, both, (hit, policy.dt), &system),
-            ..*hit
-        };
-        let point = ContactPoint::new(view, both, &hit);
+        let corners = hit
+            .met
+            .as_ref()
+            .and_then(|met| touch(view, pair, met, hit.time)?.corners);
+        let pressed = corners.and_then(|corners| {
+            let corners = with_room(&corners, policy.dt);
+            center_of_pressure(view, both, hit, &corners, &system)
+        });
+        let point = ContactPoint::new(view, both, hit, pressed.unwrap_or(hit.point));
         // A joint at its limit resists as the stop does.
         for system in [Some(&mut system), moving.as_mut()].into_iter().flatten() {
             let of = |b: &usize| view.bodies[*b].velocity;
@@ -197,11 +204,13 @@ fn unlocked(view: &StepView, both: [usize; 2], body: usize) -> Inertia {
     }
 }
 
-/// Relative speed along the normal that a unit impulse along it would give two bodies of these inertias without joints.
+/// Speed along the normal that a unit impulse along it would give the heavier of two bodies of these inertias without
+/// joints: of those that move at all. A heavy body is not held where a light one is.
 fn resistance_alone(inertias: [Inertia; 2], point: &ContactPoint, normal: Vector) -> Real {
-    let alone = |k: usize| {
+    let alone = [0, 1].map(|k| {
         let change = inertias[k].apply(point.wrench(k, normal));
         point.velocity(change, k).dot(normal)
-    };
-    alone(0) + alone(1)
+    });
+    let moved = alone.into_iter().filter(|speed| *speed > 0.0);
+    moved.reduce(Real::min).unwrap_or(0.0)
 }

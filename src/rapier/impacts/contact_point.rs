@@ -21,15 +21,15 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
-    /// The point of a hit of two bodies.
-    pub fn new(view: &StepView, bodies: [usize; 2], hit: &Hit) -> Self {
+    /// A point of a hit of two bodies.
+    pub fn new(view: &StepView, bodies: [usize; 2], hit: &Hit, position: Vector) -> Self {
         let now = bodies.map(|b| view.bodies[b].motion_from(hit.time));
         let centers = [0, 1].map(|k| now[k].start * view.bodies[bodies[k]].mass.local_com);
         let mut point = Self {
             bodies,
-            position: hit.point,
+            position,
             normal: hit.normal,
-            arms: centers.map(|c| hit.point - c),
+            arms: centers.map(|c| position - c),
             motions: [Vector::ZERO; 2],
         };
         // A carried body turns about its carrier's centre, not its own.

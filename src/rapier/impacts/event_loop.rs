@@ -190,7 +190,7 @@ impl Loop<'_> {
             }
             let (pair, first, next) = self.queue.first()?;
             let inquiry = match first {
-                Pending::Hit(hit) => return Some(Next::Impact(pair, *hit)),
+                Pending::Hit(hit) => return Some(Next::Impact(pair, hit.clone())),
                 Pending::Answer(inquiry) => inquiry,
             };
             let until = next
@@ -295,8 +295,9 @@ impl Loop<'_> {
         if hit.depth > policy.tuning.guarded() * thickness {
             self.deep.entry(pair).or_default();
         }
+        let time = hit.time;
         let bodies = self.response.impact(self.view, &policy, &rules, pair, hit);
-        self.ask_again(&bodies, hit.time, work);
+        self.ask_again(&bodies, time, work);
     }
 
     fn begin_piece(&mut self, time: Real, work: &mut Work) {

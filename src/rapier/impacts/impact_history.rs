@@ -4,6 +4,7 @@
 use crate::math::fast_hash::FastMap;
 use crate::math::{Real, Vector};
 use crate::pair::met::{Met, Touch};
+use crate::pair::patch::with_room;
 use crate::rapier::impacts::hit::Hit;
 use crate::rapier::impacts::toi_query::CcdPolicy;
 use crate::rapier::view::motion::Mobility;
@@ -25,7 +26,7 @@ struct Meetings {
 }
 
 /// A place where a pair met.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct PastContact {
     hit: Hit,
     /// Signed distance of the spheres that met, a length. Their radii may be reduced, so it is not the hit's depth.
@@ -78,9 +79,9 @@ impl ImpactHistory {
         if places.len() == PLACES {
             places.remove(0);
         }
-        let touch = hit.met.and_then(|met| touch(view, pair, met, hit.time));
+        let touch = (hit.met.as_ref()).and_then(|met| touch(view, pair, met, hit.time));
         places.push(PastContact {
-            hit: *hit,
+            hit: hit.clone(),
             distance: touch.map(|touch| touch.distance),
         });
     }
@@ -112,19 +113,11 @@ impl ImpactHistory {
         view: &StepView,
         (pair, place): (Pair, usize),
         time: Real,
-    ) -> Option<(Hit, Real)> {
+    ) -> Option<(&Hit, Touch, Real)> {
         let PastContact { hit, distance } = self.of_pair.get(&pair)?.places.get(place)?;
-        let touch = touch(view, pair, hit.met?, time)?;
+        let touch = touch(view, pair, hit.met.as_ref()?, time)?;
         let opened = touch.distance - (*distance)?;
-        let hit = Hit {
-            time,
-            normal: touch.normal,
-            point: touch.point,
-            corners: touch.corners,
-            depth: hit.depth - opened,
-            ..*hit
-        };
-        Some((hit, opened))
+        Some((hit, touch, opened))
     }
 
     /// The contact that a pair has left at one of its places, if it is still there and closes so fast that it would be
@@ -142,7 +135,8 @@ impl ImpactHistory {
         if bodies.into_iter().any(driven) || bodies.into_iter().all(frozen) {
             return None;
         }
-        let (hit, opened) = self.contact(view, (pair, place), time)?;
+        let (hit, touch, opened) = self.contact(view, (pair, place), time)?;
+        let depth = hit.depth - opened;
         let thickness = view.thickness_at(pair, hit.primitives);
         let gap = policy.gap(thickness);
         if opened > gap {
@@ -152,23 +146,31 @@ impl ImpactHistory {
         let speed = |point: Vector| {
             let [v1, v2] = (motions.each_ref())
                 .map(|m| m.linvel + m.angvel.cross(point - m.start * m.local_center));
-            (v1 - v2).dot(hit.normal)
+            (v1 - v2).dot(touch.normal)
         };
-        let corners = hit.corners_with_room(policy.dt).into_iter();
-        let speeds = corners.map(|(corner, may)| speed(corner.point) - may);
-        let approach = speeds.fold(speed(hit.point), Real::max) * (policy.dt - time);
+        let corners = touch.corners.map(|corners| with_room(&corners, policy.dt));
+        let corners = corners.into_iter().flatten();
+        let speeds = corners.map(|(corner, room)| speed(corner.point) - room);
+        let approach = speeds.fold(speed(touch.point), Real::max) * (policy.dt - time);
         // A pair that touches may sink in by this before it meets again: by more above the floor than below.
         let tuning = &policy.tuning;
-        let above = tuning.floor * thickness - hit.depth;
+        let above = tuning.floor * thickness - depth;
         let sinks = above
             .min(tuning.sink * thickness)
             .max(tuning.min_sink * gap);
-        (approach > opened.max(0.0) + sinks).then_some(hit)
+        let closes = approach > opened.max(0.0) + sinks;
+        closes.then(|| Hit {
+            time,
+            normal: touch.normal,
+            point: touch.point,
+            depth,
+            ..hit.clone()
+        })
     }
 }
 
 /// The contact of what met, where the colliders are at `time` seconds into the step.
-fn touch(view: &StepView, pair: Pair, met: Met, time: Real) -> Option<Touch> {
+pub fn touch(view: &StepView, pair: Pair, met: &Met, time: Real) -> Option<Touch> {
     let [first, second] = pair.map(|k| view.motion(k, time).start);
     met.touch([&first, &second])
 }

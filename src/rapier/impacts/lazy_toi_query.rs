@@ -105,8 +105,7 @@ impl<'m> LazyToiQuery<'m> {
                 Some(share) => QueryProgress::FreeUntil(from + share * seconds),
                 None => {
                     let toi = query.toi();
-                    let what = (query.met(), query.corners(&toi));
-                    Hit::of(&toi, what, from, seconds).into()
+                    Hit::of(&toi, query.met(), from, seconds).into()
                 }
             }
         };

@@ -7,8 +7,9 @@
 //! - Which pairs are searched at all: `fast_parts.rs`, `deep_pairs.rs`, `initial_overlaps.rs`, `pinched.rs`; what
 //!   spares a search: `swept_boxes.rs`, `path_boxes.rs`, `pair_culling.rs`, `near_lists.rs`.
 //! - What an impact does: `impulse.rs` is the law (Newton's restitution, Coulomb's friction), `contact_impulses.rs`
-//!   gives the two impulses of one contact (`contact_point.rs`, `center_of_pressure.rs`), `response.rs` passes them on to what touches already,
-//!   as far as `impact_history.rs` knows; `bounces.rs`, `way_out.rs` and `lost_gains.rs` say with which speeds.
+//!   gives the two impulses of one contact (where it acts: `contact_point.rs`, `center_of_pressure.rs`), `response.rs`
+//!   passes them on to what touches already, as far as `impact_history.rs` knows; `bounces.rs`, `way_out.rs` and
+//!   `lost_gains.rs` say with which speeds.
 //! - Bodies with too many impacts: `body_state.rs`; steps whose budget is spent: `spent_budget.rs`.
 
 pub(crate) mod body_state;

@@ -301,11 +301,11 @@ impl CcdPolicy<'_> {
             let found = known.or_else(asked)?;
             work.begin(&motions, options);
             work.counts += found.counts;
-            let hit = Hit::of(&found.toi, (found.met, found.corners), time, seconds);
+            let hit = Hit::of(&found.toi, found.met, time, seconds);
             Some((hit, found.deepest))
         };
         let (hit, deepest) = query(&query_options.first, known)?;
-        let meets_later = hit.is_none_or(|h| h.time > time);
+        let meets_later = hit.as_ref().is_none_or(|h| h.time > time);
         let deep = meets_later && deepest <= self.floor_depth();
         let floor = query_options.floor.as_ref().filter(|_| deep);
         match (hit, floor.and_then(|options| query(options, None)?.0)) {
