@@ -103,7 +103,7 @@ impl Met {
                 let [first, second] = &faces.corners;
                 let corner =
                     |k: usize| FaceCorner::of(poses[0] * first[k], poses[1] * second[k], normal);
-                let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(corner);
+                let corners = std::array::from_fn::<_, EXTREMES, _>(corner);
                 let lowest = corners
                     .iter()
                     .min_by(|a, b| a.distance.total_cmp(&b.distance))?;
