@@ -23,9 +23,9 @@ use crate::rapier::view::inertia::Inertia;
 use crate::rapier::view::motion::Mobility;
 use crate::rapier::view::step_view::StepView;
 
-/// Least ratio of the speed that an impulse gives two bodies in their joints to the speed that it would give the heavier
-/// of them without joints. Below it the joints and locked axes hold the contact, as between neighbours in a chain or
-/// where a body is driven along a locked axis, and no impulse is given: it would have no bound.
+/// Least ratio of the speed that an impulse gives two bodies in their joints to the speed that it would give the
+/// heavier of them without joints. Below it joints and locked axes hold the contact, as between neighbours in a chain
+/// or where a body is driven along a locked axis, and no impulse is given: it would have no bound.
 const HELD_RATIO: Real = 0.02;
 
 impl Response {
