@@ -83,7 +83,7 @@ fn hanging_steps(mass_ratio: Real, speed: Real, aside: Real, axes: Option<Locked
 }
 
 /// Symptom: heavy bodies that fell on light ones with locked axes or joints hung in the air for ever, with all of their
-/// velocity, as if the locked axes held them too. Cause: the contact counted as held where an impulse moves the two much
+/// velocity, as if the locked axes held them too. Cause: a contact counted as held where an impulse moves the two much
 /// less than it would move the light one alone, and so it is with any heavy body.
 #[test]
 fn heavy_bodies_do_not_hang_above_light_ones_that_are_held() {

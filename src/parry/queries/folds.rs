@@ -127,8 +127,8 @@ pub fn correct_normal(
         let by = (turned - toi.normal) * toi.spheres[0].radius;
         toi.normal = turned;
         toi.points = toi.points.map(|p| p + by);
-        // The spheres that met tell of another normal. Where that of a face stays as it is they are kept, if a solid has
-        // it or the body lies on it: heaps hand impulses on through them.
+        // The spheres that met tell of another normal. Where that of a face stays as it is they are kept, if a solid
+        // has it or the body lies on it: heaps hand impulses on through them.
         let is_same = n.dot(met.normal) >= SAME_NORMAL;
         let is_kept = |met: &Met| is_same && (sliding.is_over_solids || met.is_of_faces());
         found.met = found.met.take().filter(is_kept);
