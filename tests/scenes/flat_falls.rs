@@ -62,6 +62,8 @@ fn after_fall(
         ];
         most = [0, 1].map(|k| most[k].max(now[k]));
     }
+    let height = world.bodies[handle].translation().y;
+    assert!(height > 0.0, "its centre is {height} m above the ground");
     most
 }
 

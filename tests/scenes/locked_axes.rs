@@ -79,7 +79,12 @@ fn hanging_steps(mass_ratio: Real, speed: Real, aside: Real, axes: Option<Locked
         let way = (body.translation() - before).length();
         way < 0.1 * body.linvel().length() / 60.0 && body.linvel().length() > 0.1 * speed
     };
-    (0..60).filter(hangs).count()
+    let hanging = (0..60).filter(hangs).count();
+    if axes.is_some_and(|axes| axes.contains(LockedAxes::ROTATION_LOCKED)) {
+        let above = world.bodies[body].translation().y - half.y - cube;
+        assert!(above > -0.01, "{above} m above a plate that nothing moves");
+    }
+    hanging
 }
 
 /// Symptom: heavy bodies that fell on light ones with locked axes or joints hung in the air for ever, with all of their

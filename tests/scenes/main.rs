@@ -20,6 +20,8 @@ mod creature_walks;
 mod crowds;
 mod determinism;
 mod dolls;
+#[path = "../common/dominoes.rs"]
+mod dominoes;
 #[cfg(feature = "debug-render")]
 mod drawing;
 mod driven;
