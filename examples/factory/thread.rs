@@ -26,7 +26,7 @@ pub struct Thread {
     /// Height of the nut and distance of its flats, metres.
     pub nut: [f64; 2],
     /// Straight pieces in a turn of the bolt. The more there are, the closer it is to the true thread, and the more
-    /// contacts with slightly different normals rapier's solver gets, in which a nut without friction slows down.
+    /// contacts there are to solve.
     pub pieces: usize,
 }
 

@@ -145,6 +145,46 @@ fn a_hammered_nut_stays_on_its_thread() {
     assert!(off < 1.2 * play, "off by {off} m of {play}");
 }
 
+/// Turns that a nut goes down its bolt by its weight in some seconds, against so much friction.
+fn turned(thread: &Thread, friction: Real, hertz: Real, seconds: f64) -> f64 {
+    let mesh = |part, heights| thread.medial(part, heights).expect("a thread");
+    let bolt = [-3.0 * thread.pitch - thread.nut[0], thread.nut[0]];
+    let bolt = ColliderBuilder::medial_mesh(mesh(Part::Bolt, bolt)).friction(friction);
+    let nut = ColliderBuilder::medial_mesh(mesh(Part::Nut, thread.nuts_heights()));
+    let mut world = PhysicsWorld::new();
+    world.integration_parameters = IntegrationParameters::for_detail(0.001).expect("a size");
+    world.integration_parameters.dt = hertz.recip();
+    world.insert(RigidBodyBuilder::fixed(), bolt);
+    // On the flanks below.
+    let start = Vector::Y * (-0.9 * thread.axial_play()) as Real;
+    let body = RigidBodyBuilder::dynamic().translation(start);
+    let (nut, _) = world.insert(body, nut.friction(friction).density(7850.0));
+    let mut pipeline = MedialPipeline::default();
+    let mut turns = 0.0;
+    for _ in 0..(seconds * f64::from(hertz)).round() as usize {
+        let last = *world.bodies[nut].rotation();
+        pipeline.step(&mut world);
+        let turn = *world.bodies[nut].rotation() * last.inverse();
+        turns -= f64::from(2.0 * turn.y.atan2(turn.w)) / TAU;
+    }
+    turns
+}
+
+/// Without friction nuts go down by their weight at about one share of the speed that theory gives, be the thread tight
+/// or loose and the steps long or short. What slows them is that both threads have corners.
+#[test]
+fn nuts_without_friction_go_down_alike() {
+    for (k, hertz) in [(2, 240.0), (2, 480.0), (3, 240.0), (4, 240.0)] {
+        let thread = &THREADS[k];
+        // One turn.
+        let seconds = (2.0 * thread.pitch / thread.acceleration()).sqrt();
+        let turns = turned(thread, 0.0, hertz, seconds);
+        let name = thread.name;
+        println!("{name} at {hertz} steps a second: {turns:.3} turns of 1");
+        assert!((0.6..0.8).contains(&turns), "{name}: {turns}");
+    }
+}
+
 /// Metres that a round peg of 8 mm got into a hole with 0.05 mm of play in a tenth of a second.
 fn peg(parameters: IntegrationParameters) -> Real {
     const WALLS: u32 = 64;

@@ -11,7 +11,8 @@ pub trait MedialIntegrationParameters: Sized {
     /// each other. `detail` becomes rapier's length unit, which scales the distance from which contacts press (0.02 of
     /// it), the overlap that the solver tolerates (0.005), and the gaps at which this crate counts bodies as in
     /// contact. rapier's limit on speed stays at 400 of your units per second; if you set the length unit alone, it is
-    /// 400 times `detail` per second.
+    /// 400 times `detail` per second. `contact_clustering` is off: rapier would solve contacts whose normals are up to
+    /// 5° apart under one of these normals, and a thread rises by less than that. Heaps take more time for it.
     ///
     /// # Errors
     /// [`MeshError::Parameter`] unless `detail` is positive and finite.
@@ -44,6 +45,7 @@ impl MedialIntegrationParameters for IntegrationParameters {
         Ok(Self {
             length_unit: detail,
             normalized_max_linear_velocity,
+            contact_clustering: false,
             ..default
         })
     }
