@@ -236,37 +236,6 @@ fn weightless_blocks_pressed_through_others_rattle() {
     assert!(ours > 0.05, "they move by {ours} only");
 }
 
-/// A ball of which the vertical axis is locked, and which moves down, touches the ground below its centre, where
-/// nothing can give way. Of rapier's ball the lever is 0, of a medial one it is what rounding leaves, and rapier's
-/// solver divides by its square. (rapier's own capsules and compounds get thousands of rad/s.) In the event loop such
-/// contacts give no impulse.
-#[test]
-fn ball_driven_along_a_locked_axis_spins_in_rapiers_solver() {
-    let spin = |collider: ColliderBuilder| {
-        let mut world = PhysicsWorld::new();
-        let ground = ColliderBuilder::cuboid(30.0, 0.5, 30.0).translation(Vector::Y * -0.5);
-        world.insert_collider(ground, None);
-        let body = RigidBodyBuilder::dynamic()
-            .pose(Pose::new(Vector::Y * 0.4, Vector::Z * 0.1))
-            .linvel(Vector::new(1.0, -0.5, 0.0))
-            .locked_axes(LockedAxes::TRANSLATION_LOCKED_Y);
-        let (body, _) = world.insert(body, collider.density(300.0));
-        let mut pipeline = MedialPipeline::default();
-        let spins = (0..120).map(|_| {
-            pipeline.step(&mut world);
-            world.bodies[body].angvel().length()
-        });
-        spins.fold(0.0, Real::max)
-    };
-    let ours = spin(ColliderBuilder::medial_mesh(
-        MedialMesh::ball(0.15).expect("a ball"),
-    ));
-    let rapiers = spin(ColliderBuilder::ball(0.15));
-    println!("{ours} rad/s, rapier's own ball {rapiers}");
-    assert!(rapiers < 1.0, "rapier's ball turns by {rapiers} rad/s");
-    assert!(ours > 1.0e3, "only {ours} rad/s now");
-}
-
 /// Needles that lie across each other press deeper into each other in rapier's solver than the floor
 /// (`docs/effects.md`), so impacts hold them up in every step, and they never sleep. rapier's cuboids do.
 #[test]

@@ -318,6 +318,10 @@ where
         let depth = written.map_or(Real::MAX, |()| depth);
         self.exchange
             .note(|tally| tally.depth = tally.depth.max(depth));
+        if let Some(bodies) = &self.exchange.plan().locked_bodies {
+            let side = usize::from(medial(g1).is_none());
+            bodies.take_from_solver([g1, g2], side, pos12, manifolds);
+        }
         written
     }
 

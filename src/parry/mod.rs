@@ -2,7 +2,7 @@
 //! casts, against medial meshes and all of parry's shapes. Each folder (a room) uses only those listed before it.
 //!
 //! # Files
-//! - `partners/`: the other shapes.
+//! - Which shape it is: `shape_id.rs`. `partners/`: the other shapes.
 //! - `queries/`: distances and casts.
 //! - `contacts/`: contact manifolds, and `corrections/`: those of parry that are wrong.
 //! - The shape: `shape.rs`, of convex parts (`medial_part.rs`). Rays: `rays.rs`.
@@ -14,7 +14,7 @@
 mod by_parry;
 mod contact_manifolds;
 pub mod contacts;
-mod corrections;
+pub(crate) mod corrections;
 pub(crate) mod dispatcher;
 pub(crate) mod medial_part;
 pub(crate) mod narrow_phase_plan;
@@ -22,6 +22,7 @@ mod partners;
 pub mod queries;
 pub(crate) mod rays;
 pub(crate) mod shape;
+pub(crate) mod shape_id;
 
 pub use dispatcher::MedialDispatcher;
 pub use queries::swept_sphere_parts::Unsweepable;

@@ -10,6 +10,8 @@ use crate::math::{Pose, Real};
 use crate::medial::MedialMesh;
 use crate::pair::first_contact::Counts;
 use crate::parry::contacts::contact_reduction::Turn;
+use crate::parry::corrections::locked_axes::LockedBodies;
+use crate::parry::shape_id::ShapeId;
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::shape::Shape;
 use std::collections::{HashMap, HashSet};
@@ -18,27 +20,9 @@ use std::sync::{Arc, Mutex, PoisonError, RwLock};
 /// A key for two shapes, at exactly one relative pose or at any. It is valid as long as both shapes exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PairKey {
-    shapes: [Id; 2],
+    shapes: [ShapeId; 2],
     /// Bits of the relative pose; `None` for all poses.
     pose: Option<[u32; 7]>,
-}
-
-/// Which shape it is, among those alive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Id {
-    /// Instance id of a medial mesh: one collider's.
-    Medial(u64),
-    /// Address of another shape: clones of a `SharedShape`, which are the same shape, have the same.
-    Other(usize),
-}
-
-impl Id {
-    fn new(shape: &dyn Shape) -> Self {
-        match shape.as_shape::<MedialMesh>() {
-            Some(mesh) => Self::Medial(mesh.instance_id()),
-            None => Self::Other(std::ptr::from_ref(shape).addr()),
-        }
-    }
 }
 
 impl PairKey {
@@ -54,7 +38,7 @@ impl PairKey {
     /// The key of two shapes at any pose: for shapes that no other collider has.
     pub fn anywhere(shape1: &dyn Shape, shape2: &dyn Shape) -> Self {
         Self {
-            shapes: [shape1, shape2].map(Id::new),
+            shapes: [shape1, shape2].map(ShapeId::new),
             pose: None,
         }
     }
@@ -102,6 +86,8 @@ pub struct NarrowPhasePlan {
     pub muted: HashSet<PairKey>,
     /// Pairs that get only their deepest contact.
     pub single_point_pairs: SinglePointPairs,
+    /// The bodies, if some have locked axes.
+    pub locked_bodies: Option<LockedBodies>,
     /// Answer to rapier's own sweeps of medial bodies.
     pub sweeps: Sweeps,
 }

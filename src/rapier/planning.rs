@@ -3,6 +3,7 @@
 
 use crate::parry::narrow_phase_plan::{NarrowPhasePlan, Sweeps};
 use crate::rapier::contacts::candidates::{self, Candidates};
+use crate::rapier::contacts::locked_bodies;
 use crate::rapier::contacts::muting::{self, Muted};
 use crate::rapier::contacts::outnumbered::{are_outnumbered, keeps_nothing};
 use crate::rapier::contacts::predicted_contacts::predicted;
@@ -107,6 +108,8 @@ impl PipelineState {
         let known = keys.zip(results);
         let known = known.map(|((key, prediction), result)| (key, (prediction, result)));
         let known = known.collect();
+        let sets = world.sets(args.parameters, participants);
+        let locked_bodies = locked_bodies::find(&sets, &found.colliders);
         let colliders = Arc::new(found.colliders);
         let (turning, dt) = (Arc::clone(&colliders), args.parameters.dt);
         let others = self.bystanders(world, args.parameters, participants);
@@ -116,6 +119,7 @@ impl PipelineState {
                 predicted(&colliders, others.as_deref(), job)
             })),
             turns: Some(Box::new(move |mesh| turning.of(mesh)?.turn(dt))),
+            locked_bodies,
             single_point_pairs: self.settings.effects.single_point_pairs(world.colliders),
             ..NarrowPhasePlan::default()
         }

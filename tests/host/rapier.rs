@@ -271,3 +271,25 @@ fn contacts_between_neighbours_in_multibodies_lose_all_numbers() {
     let energies = [false, true].map(|touching| energy_of_struck_rope(22, touching, 1.0));
     assert!(energies[0] < 1.1 && energies[1] > 100.0, "{energies:?}");
 }
+
+#[test]
+fn boxes_in_a_plane_are_thrown_off_the_wall_behind_them() {
+    let mut world = PhysicsWorld::new();
+    let wall = ColliderBuilder::cuboid(9.0, 9.0, 0.5).translation(Vector::Z * -0.5);
+    world.insert_collider(wall, None);
+    let ground = ColliderBuilder::cuboid(9.0, 0.5, 9.0).translation(Vector::Y * -0.5);
+    world.insert_collider(ground, None);
+    let body = RigidBodyBuilder::dynamic()
+        .translation(Vector::new(0.0, 0.5, 0.1995))
+        .rotation(Vector::Z * 0.7)
+        .enabled_translations(true, true, false)
+        .enabled_rotations(false, false, true);
+    let rounded = ColliderBuilder::round_cuboid(0.15, 0.15, 0.15, 0.05);
+    let (body, _) = world.insert(body, rounded);
+    let mut fastest: Real = 0.0;
+    for _ in 0..180 {
+        world.step();
+        fastest = fastest.max(world.bodies[body].linvel().length());
+    }
+    assert!(fastest > 8.0, "rapier no longer throws it: {fastest} m/s");
+}

@@ -44,6 +44,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
     (
         "parry",
         &[
+            "shape_id",
             "partners",
             "queries",
             "contacts",

@@ -58,6 +58,7 @@ mod limits;
 mod linking;
 mod local_thickness;
 mod locked_axes;
+mod locked_in_contact;
 mod medial_floors;
 mod modified;
 mod multibodies;

@@ -6,11 +6,15 @@
 //!   all contacts of a collider are computed anew if one in which it hangs has moved.
 //! - Bodies that are thin beside the distance by which a pair may move before its contacts are computed anew: they
 //!   would be through a wall by then.
+//! - Bodies whose axes the user has locked since: contacts that can move nothing any more throw them
+//!   ([`crate::rapier::contacts::locked_bodies`]).
 //! - Bodies that have come to rest. Contacts that could close while they moved no longer can, and the solver would
 //!   pay for them as long as the bodies lie there.
 
 use crate::math::Real;
-use crate::rapier::contacts::reach::reach;
+use crate::parry::corrections::locked_axes::UNSOLVED;
+use crate::rapier::contacts::locked_bodies::{any_locked, has_held};
+use crate::rapier::contacts::reach::{is_thin, reach};
 use crate::rapier::host::contact_depth::deepest;
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
 use crate::rapier::view::participants::contact_pairs;
@@ -34,18 +38,13 @@ const PULL_COSINE: Real = 0.7;
 /// that move a little are computed in every step.
 const REST_GAP_RATIO: Real = 1.25;
 
-/// Thickness (a radius) below which contacts of a body are computed anew in each step, in units of the distance by
-/// which a pair may move before. At 1 twice as many boxes of a centimetre tremble on a hull in a world of metres (21 of
-/// 24).
-const THIN_RATIO: Real = 0.25;
-
 /// Finds the medial colliders whose contacts are to be computed anew (one flag each), and the depth of
 /// the deepest contact of a medial collider that takes part, a length. Known from the world alone, so that a world that
 /// was saved and loaded goes on as it would have.
 pub fn find(sets: &Sets, medial: &MedialColliders) -> (Vec<bool>, Real) {
-    let thin = THIN_RATIO * medial.parameters.contact_recycle_distance();
-    let is_thin = |c: &MedialCollider| c.moving.is_some() && c.mesh.thickness() < thin;
-    let mut anew: Vec<bool> = medial.all.iter().map(is_thin).collect();
+    let thin = |c| is_thin(c, &medial.parameters);
+    let mut anew: Vec<bool> = medial.all.iter().map(thin).collect();
+    let any_locked = any_locked(sets);
     let mut depth_of_all: Real = 0.0;
     let touching = contact_pairs(sets.narrow_phase, sets.participants);
     for pair in touching.filter(|pair| !pair.manifolds().is_empty()) {
@@ -54,6 +53,9 @@ pub fn find(sets: &Sets, medial: &MedialColliders) -> (Vec<bool>, Real) {
             continue;
         }
         depth_of_all = depth_of_all.max(depth(pair, sets.colliders));
+        if any_locked && has_held(sets, pair) {
+            places.iter().flatten().for_each(|i| anew[*i] = true);
+        }
         let [Some(i), Some(j)] = places else {
             continue;
         };
@@ -153,7 +155,8 @@ fn at_rest(
     parameters: &IntegrationParameters,
 ) -> bool {
     let points = pair.manifolds().iter().flat_map(|m| &m.points);
-    let widest = points.map(|p| p.dist).fold(Real::MIN, Real::max) - skins;
+    let gaps = points.map(|p| p.dist).filter(|gap| *gap < UNSOLVED);
+    let widest = gaps.fold(Real::MIN, Real::max) - skins;
     // A pair may close a gap of the recycle distance before it is computed again.
     widest > REST_GAP_RATIO * parameters.contact_recycle_distance()
         && widest > REST_GAP_RATIO * reach(sides, parameters)

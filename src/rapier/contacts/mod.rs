@@ -5,11 +5,13 @@
 //!   `muting.rs` (none for rapier).
 //! - How far to look: `reach.rs`, with `neighbor_speeds.rs`.
 //! - At which poses: `predicted_contacts.rs`.
+//! - Which contacts cannot move a body with locked axes: `locked_bodies.rs`.
 //!
 //! The contacts themselves are computed by [`crate::batch`]; [`crate::parry`] makes manifolds of them.
 
 pub(crate) mod candidates;
 pub(crate) mod hanging;
+pub(crate) mod locked_bodies;
 pub(crate) mod muting;
 pub(crate) mod neighbor_speeds;
 pub(crate) mod outnumbered;

@@ -1,0 +1,88 @@
+//! The bodies of a world with locked axes, for contacts that cannot move them
+//! ([`crate::parry::corrections::locked_axes`]), and which of these rapier has kept from the time before axes were
+//! locked.
+
+use crate::math::{Pose, Vector};
+use crate::medial::MedialMesh;
+use crate::parry::contacts::manifold_points::places;
+use crate::parry::corrections::locked_axes::{LockedBodies, Moved, Response, UNSOLVED};
+use crate::parry::shape_id::ShapeId;
+use crate::rapier::view::medial_colliders::{MedialColliders, Sets};
+use crate::rapier::view::participants::enabled;
+use rapier3d::dynamics::{LockedAxes, RigidBody, RigidBodyHandle};
+use rapier3d::geometry::{Collider, ContactPair};
+
+/// All bodies that impulses move, if one of them has some axes locked, but not all.
+pub fn find(sets: &Sets, medial: &MedialColliders) -> Option<LockedBodies> {
+    if !any_locked(sets) {
+        return None;
+    }
+    let response = |body| response(sets, body);
+    let mut bodies = LockedBodies::default();
+    let mut place = |shape: ShapeId, collider: (Pose, Option<Response>)| {
+        bodies.placed.entry(shape).or_default().push(collider);
+    };
+    for collider in &medial.all {
+        let shape = ShapeId::new(&collider.mesh);
+        place(shape, (*collider.pose(), response(collider.body)));
+    }
+    let is_other = |c: &Collider| c.shape().as_shape::<MedialMesh>().is_none();
+    let others = enabled(sets.bodies, sets.colliders, sets.participants);
+    for (_, collider) in others.filter(|(_, c)| is_other(c)) {
+        if let Some(moved) = response(collider.parent()) {
+            let shape = ShapeId::new(collider.shape());
+            place(shape, (*collider.position(), Some(moved)));
+        }
+    }
+    Some(bodies)
+}
+
+/// Whether rapier solves a contact of a pair that cannot move either body, because axes are locked.
+pub fn has_held(sets: &Sets, pair: &ContactPair) -> bool {
+    let colliders = [pair.collider1, pair.collider2].map(|h| sets.colliders.get(h));
+    let [Some(first), Some(second)] = colliders else {
+        return false;
+    };
+    let bodies = [first, second].map(|c| response(sets, c.parent()));
+    let Some(moved) = Moved::of(&bodies) else {
+        return false;
+    };
+    pair.manifolds().iter().any(|m| {
+        let at = |i| first.position() * places(m, i)[0];
+        let mut solved = (0..m.points.len()).filter(|i| m.points[*i].dist < UNSOLVED);
+        solved.any(|i| moved.is_held(at(i), m.data.normal))
+    })
+}
+
+/// Whether impulses move a body of which some axes are locked, but not all.
+pub fn any_locked(sets: &Sets) -> bool {
+    let mut all = sets.bodies.iter();
+    all.any(|(_, body)| body.is_dynamic() && is_partly_locked(body))
+}
+
+fn is_partly_locked(body: &RigidBody) -> bool {
+    let locked = body.locked_axes();
+    !locked.is_empty() && locked != LockedAxes::all()
+}
+
+/// How a body responds to impulses; `None` if they do not move it. A link of a multibody moves as its joints let it,
+/// which is not looked at.
+fn response(sets: &Sets, handle: Option<RigidBodyHandle>) -> Option<Response> {
+    let handle = handle?;
+    let body = sets.bodies.get(handle)?;
+    let is_link = sets.multibody_joints.rigid_body_link(handle).is_some();
+    let mass = body.mass_properties();
+    let unlocked = mass.local_mprops.inv_mass;
+    (body.is_dynamic() && unlocked > 0.0).then(|| Response {
+        center: mass.world_com,
+        inverse_mass: if is_link {
+            Vector::splat(unlocked)
+        } else {
+            mass.effective_inv_mass
+        },
+        inverse_inertia: mass.effective_world_inv_inertia,
+        unlocked,
+        is_partly_locked: is_partly_locked(body) && !is_link,
+        dominance: body.dominance_group(),
+    })
+}
