@@ -103,6 +103,14 @@ fn a_curve_lists_errors_by_count() {
     let error = |k: usize| curve["points"][k]["error"].as_f64().unwrap();
     assert!(error(0) > 0.01 && error(1) < 1e-5, "{curve}");
 
+    // In another unit all errors are in that unit; they are told as parts of the longest side, which is told too.
+    let scaled = [
+        "info", "cube.obj", "--curve", "--counts", "3", "-q", "fast", "--scale", "0.001", "--json",
+    ];
+    let scaled: Value = serde_json::from_slice(&medial(&directory, &scaled).stdout).unwrap();
+    let side = scaled["longest_side"].as_f64().unwrap();
+    assert!((0.0009..0.0021).contains(&side), "{scaled}");
+
     MedialMesh::ball(1.0)
         .unwrap()
         .save_ma(directory.join("ball.ma"))

@@ -65,6 +65,25 @@ fn several_meshes_do_not_go_into_a_file() {
     assert_eq!(fs::read(directory.join("notes")).unwrap(), b"kept");
 }
 
+/// The ending of the output says whether it is baked, in large letters too; where something else asks for a baked file,
+/// another ending is refused.
+#[test]
+fn the_ending_says_whether_a_file_is_baked() {
+    let directory = scratch("endings");
+    fs::write(directory.join("corner.obj"), CORNER).unwrap();
+    let built = medial(&directory, &["build", "corner.obj", "-o", "corner.MEDIAL"]);
+    assert!(built.status.success(), "{}", text(&built.stderr));
+    MedialMesh::load_asset(directory.join("corner.MEDIAL")).expect("a baked mesh");
+    let refused: [&[&str]; 2] = [
+        &["build", "corner.obj", "--bake", "-o", "corner.ma"],
+        &["bake", "corner.MEDIAL", "-o", "corner.ma"],
+    ];
+    for arguments in refused {
+        assert_fails(&medial(&directory, arguments), "ends in .medial");
+        assert!(!directory.join("corner.ma").exists());
+    }
+}
+
 /// JSON cannot hold a path that is not UTF-8: its bytes are replaced there, and the file has its own name.
 #[cfg(target_os = "linux")]
 #[test]

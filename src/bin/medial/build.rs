@@ -2,7 +2,7 @@
 
 use crate::describe::{Description, Errors, describe, relative};
 use crate::failure::{Failed, Failure};
-use crate::jobs::{Job, plan};
+use crate::jobs::{self, Job, plan};
 use crate::lengths::{Length, Unit, UnitUnknown, longest_side};
 use crate::output::{print, say};
 use crate::placing::PlacingArguments;
@@ -42,7 +42,7 @@ pub struct BuildArguments {
     #[arg(long, value_name = "LENGTH", conflicts_with = "max_error")]
     tolerance: Option<Length>,
     /// The unit of the file (um, mm, cm, m, km, in, ft); glTF is in metres.
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, value_name = "UNIT", requires = "tolerance")]
     unit: Option<Unit>,
     /// How much work to spend on making the error small.
     #[arg(short, long, value_enum, default_value_t)]
@@ -247,7 +247,7 @@ fn build_one(
             }
         },
     )?;
-    if job.output.extension().is_some_and(|e| e == "medial") {
+    if jobs::is_baked(&job.output) {
         mesh.save_asset(&job.output)?;
     } else {
         mesh.save_ma(&job.output)?;

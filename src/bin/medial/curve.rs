@@ -36,7 +36,8 @@ pub fn curve(arguments: &InfoArguments) -> Result<(), Failure> {
     if path.is_file() && MeshFormat::of(path).is_none() {
         return Err(Failure::NoTriangleMesh(path.clone()));
     }
-    let source = mesh_file::read(path).map_err(|e| Failure::from(e).of(path))?;
+    let mut source = mesh_file::read(path).map_err(|e| Failure::from(e).of(path))?;
+    arguments.placing.place(&mut source);
     let options = BuildOptions {
         quality: arguments.quality.into(),
         enclose: !arguments.no_enclose,

@@ -4,7 +4,7 @@ use crate::build::QualityArgument;
 use crate::curve::curve;
 use crate::describe::{Description, Errors, describe, relative};
 use crate::failure::Failure;
-use crate::jobs;
+use crate::jobs::{self, PlanError};
 use crate::lengths::longest_side;
 use crate::output::print;
 use crate::placing::PlacingArguments;
@@ -39,7 +39,7 @@ pub struct InfoArguments {
     #[arg(long, value_name = "IN")]
     against: Option<PathBuf>,
     #[command(flatten)]
-    placing: PlacingArguments,
+    pub placing: PlacingArguments,
     /// Show the error of a triangle mesh at several numbers of primitives.
     #[arg(long, conflicts_with = "against")]
     curve: bool,
@@ -85,6 +85,9 @@ pub fn load(path: &Path) -> Result<MedialMesh, Failure> {
 /// Writes a medial mesh baked.
 pub fn bake(arguments: &BakeArguments) -> Result<(), Failure> {
     jobs::check_output(&arguments.input, &arguments.output)?;
+    if !jobs::is_baked(&arguments.output) {
+        return Err(PlanError::BakedOutput(arguments.output.clone()).into());
+    }
     Ok(load(&arguments.input)?.save_asset(&arguments.output)?)
 }
 
@@ -94,7 +97,7 @@ pub fn info(arguments: &InfoArguments) -> Result<(), Failure> {
         return curve(arguments);
     }
     if arguments.placing.is_given() && arguments.against.is_none() {
-        refuse("--scale and --up are for the triangle mesh of --against IN");
+        refuse("--scale and --up are for a triangle mesh: that of --against IN, or with --curve");
     }
     let mesh = load(&arguments.mesh)?;
     let errors = match &arguments.against {

@@ -22,6 +22,8 @@ pub enum PlanError {
     OverInput(PathBuf),
     #[error("{0}: the output is a medial mesh; name a file that ends in .ma or .medial")]
     MeshOutput(PathBuf),
+    #[error("{0}: the output is a baked mesh; name a file that ends in .medial")]
+    BakedOutput(PathBuf),
     #[error("{0}: the output is a picture; name a file that ends in .png")]
     PictureOutput(PathBuf),
     #[error(
@@ -46,7 +48,7 @@ pub enum PlanError {
 /// `output`, which is made if it is not there and does not have the name of a mesh; a single one goes to the file, or
 /// into the folder.
 ///
-/// Files that go into a folder are baked if `bake` says so.
+/// Files that go into a folder are baked if `bake` says so; a single file has to have the ending for it.
 pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, PlanError> {
     let mut meshes = Vec::new();
     for input in inputs {
@@ -58,6 +60,9 @@ pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, P
     }
     let single = matches!(inputs, [only] if !only.is_dir());
     let into_folder = !single || output.is_dir();
+    if bake && !into_folder && !is_baked(output) {
+        return Err(PlanError::BakedOutput(output.to_owned()));
+    }
     if into_folder && !output.is_dir() {
         let is_mesh = ends_in(output, &["ma", "medial"]) || MeshFormat::of(output).is_some();
         if is_mesh || output.is_file() {
@@ -123,6 +128,11 @@ pub fn check_output(input: &Path, output: &Path) -> Result<(), PlanError> {
         true => Ok(()),
         false => Err(PlanError::MeshOutput(output.to_owned())),
     }
+}
+
+/// Whether a medial mesh goes to a file baked, by its ending.
+pub fn is_baked(output: &Path) -> bool {
+    ends_in(output, &["medial"])
 }
 
 /// Refuses, before any work, a picture that cannot be or must not be written.

@@ -6,9 +6,9 @@
 //!
 //! `r = Σ n·(W n) + (a × n)·(I⁻¹ (a × n))`,
 //!
-//! the sum over both bodies of inverse mass `W` and inverse inertia `I⁻¹`, both 0 along locked axes, with the arm `a` of
-//! the contact. rapier's solver divides by `r` (Catto, Iterative Dynamics with Temporal Coherence, 2005). Where `n` is
-//! a locked axis but for rounding, `r` is the square of that rounding, and the body is thrown along what is left of
+//! the sum over both bodies of inverse mass `W` and inverse inertia `I⁻¹`, both 0 along locked axes, with the arm `a`
+//! of the contact. rapier's solver divides by `r` (Catto, Iterative Dynamics with Temporal Coherence, 2005). Where `n`
+//! is a locked axis but for rounding, `r` is the square of that rounding, and the body is thrown along what is left of
 //! `n`: a box that may move in a plane only, and touches a wall behind it, got 24 m/s.
 
 use crate::math::fast_hash::FastMap;
