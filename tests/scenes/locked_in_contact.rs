@@ -18,8 +18,8 @@ fn sharp_box() -> MedialMesh {
     MedialMesh::cuboid(Vector::splat(HALF)).expect("a box")
 }
 
-/// The highest speed and the longest way in a step, metres, of a body that can move in a plane only, falls on the ground
-/// and leans against a wall behind it, up to a millimetre deep.
+/// The highest speed and the longest way in a step, metres, of a body that can move in a plane only, falls on the
+/// ground and leans against a wall behind it, up to a millimetre deep.
 fn in_a_plane(body: ColliderBuilder, wall: &ColliderBuilder, deep: Real, turn: Real) -> [Real; 2] {
     let mut world = world_with_ground();
     let mut pipeline = attached(&mut world);
