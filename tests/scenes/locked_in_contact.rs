@@ -130,7 +130,8 @@ fn bricks_do_not_explode_when_axes_of_one_are_locked() {
 }
 
 /// Symptom: a ball of which the vertical axis is locked, and which moves down slowly, got thousands of rad/s as it
-/// touched the ground below its centre; rapier's own ball does not turn, and passes through. Cause: a lever of rounding.
+/// touched the ground below its centre; rapier's own ball does not turn, and passes through. Cause: a lever that is
+/// rounding.
 #[test]
 fn a_ball_driven_down_along_a_locked_axis_is_held_and_does_not_spin() {
     let mut world = world_with_ground();
