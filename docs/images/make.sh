@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the README's pictures again: bash docs/images/make.sh
+# Makes the pictures of README, guide and hard-scenes.md again, and those of three more examples:
+# bash docs/images/make.sh
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 cargo run --release --example falling_rings -- --out docs/images --animate
