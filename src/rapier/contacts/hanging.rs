@@ -6,14 +6,14 @@
 //!   all contacts of a collider are computed anew if one in which it hangs has moved.
 //! - Bodies that are thin beside the distance by which a pair may move before its contacts are computed anew: they
 //!   would be through a wall by then.
-//! - Bodies whose axes the user has locked since: contacts that can move nothing any more throw them
+//! - Bodies whose axes the user has locked or let go since: contacts that can move nothing any more throw them
 //!   ([`crate::rapier::contacts::locked_bodies`]).
 //! - Bodies that have come to rest. Contacts that could close while they moved no longer can, and the solver would
 //!   pay for them as long as the bodies lie there.
 
 use crate::math::Real;
 use crate::parry::corrections::locked_axes::UNSOLVED;
-use crate::rapier::contacts::locked_bodies::{any_locked, has_held};
+use crate::rapier::contacts::locked_bodies::{any_locked, is_stale};
 use crate::rapier::contacts::reach::{is_thin, reach};
 use crate::rapier::host::contact_depth::deepest;
 use crate::rapier::view::medial_colliders::{MedialCollider, MedialColliders, Sets};
@@ -53,7 +53,7 @@ pub fn find(sets: &Sets, medial: &MedialColliders) -> (Vec<bool>, Real) {
             continue;
         }
         depth_of_all = depth_of_all.max(depth(pair, sets.colliders));
-        if any_locked && has_held(sets, pair) {
+        if is_stale(sets, pair, any_locked) {
             places.iter().flatten().for_each(|i| anew[*i] = true);
         }
         let [Some(i), Some(j)] = places else {

@@ -1,6 +1,6 @@
 //! The bodies of a world with locked axes, for contacts that cannot move them
-//! ([`crate::parry::corrections::locked_axes`]), and which of these rapier has kept from the time before axes were
-//! locked.
+//! ([`crate::parry::corrections::locked_axes`]), and pairs whose contacts rapier has kept from the time before axes were
+//! locked or let go.
 
 use crate::math::{Pose, Vector};
 use crate::medial::MedialMesh;
@@ -37,20 +37,26 @@ pub fn find(sets: &Sets, medial: &MedialColliders) -> Option<LockedBodies> {
     Some(bodies)
 }
 
-/// Whether rapier solves a contact of a pair that cannot move either body, because axes are locked.
-pub fn has_held(sets: &Sets, pair: &ContactPair) -> bool {
+/// Whether axes were locked or let go since rapier computed the contacts of a pair: it solves one that cannot move
+/// anything, or does not solve one that can. `any_locked`: what [`any_locked`] says of the world.
+pub fn is_stale(sets: &Sets, pair: &ContactPair, any_locked: bool) -> bool {
     let colliders = [pair.collider1, pair.collider2].map(|h| sets.colliders.get(h));
     let [Some(first), Some(second)] = colliders else {
         return false;
     };
-    let bodies = [first, second].map(|c| response(sets, c.parent()));
-    let Some(moved) = Moved::of(&bodies) else {
-        return false;
+    let bodies = match any_locked {
+        true => [first, second].map(|c| response(sets, c.parent())),
+        false => [None, None],
     };
+    let moved = Moved::of(&bodies);
     pair.manifolds().iter().any(|m| {
-        let at = |i| first.position() * places(m, i)[0];
-        let mut solved = (0..m.points.len()).filter(|i| m.points[*i].dist < UNSOLVED);
-        solved.any(|i| moved.is_held(at(i), m.data.normal))
+        let is_held = |i: usize| {
+            let moved = moved.as_ref();
+            moved.is_some_and(|moved| {
+                moved.is_held(first.position() * places(m, i)[0], m.data.normal)
+            })
+        };
+        (0..m.points.len()).any(|i| is_held(i) == (m.points[i].dist < UNSOLVED))
     })
 }
 
