@@ -1,6 +1,6 @@
 //! The bodies of a world with locked axes, for contacts that cannot move them
-//! ([`crate::parry::corrections::locked_axes`]), and pairs whose contacts rapier has kept from the time before axes were
-//! locked or let go.
+//! ([`crate::parry::corrections::locked_axes`]), and pairs whose contacts rapier has kept from the time before axes
+//! were locked or let go.
 
 use crate::math::{Pose, Vector};
 use crate::medial::MedialMesh;
