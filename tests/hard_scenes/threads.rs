@@ -145,11 +145,11 @@ fn a_hammered_nut_stays_on_its_thread() {
     assert!(off < 1.2 * play, "off by {off} m of {play}");
 }
 
-/// Turns that a nut goes down its bolt by its weight in some seconds, against so much friction.
-fn turned(thread: &Thread, friction: Real, hertz: Real, seconds: f64) -> f64 {
+/// Turns that a nut without friction goes down its bolt by its weight in some seconds.
+fn turned(thread: &Thread, hertz: Real, seconds: f64) -> f64 {
     let mesh = |part, heights| thread.medial(part, heights).expect("a thread");
     let bolt = [-3.0 * thread.pitch - thread.nut[0], thread.nut[0]];
-    let bolt = ColliderBuilder::medial_mesh(mesh(Part::Bolt, bolt)).friction(friction);
+    let bolt = ColliderBuilder::medial_mesh(mesh(Part::Bolt, bolt)).friction(0.0);
     let nut = ColliderBuilder::medial_mesh(mesh(Part::Nut, thread.nuts_heights()));
     let mut world = PhysicsWorld::new();
     world.integration_parameters = IntegrationParameters::for_detail(0.001).expect("a size");
@@ -158,7 +158,7 @@ fn turned(thread: &Thread, friction: Real, hertz: Real, seconds: f64) -> f64 {
     // On the flanks below.
     let start = Vector::Y * (-0.9 * thread.axial_play()) as Real;
     let body = RigidBodyBuilder::dynamic().translation(start);
-    let (nut, _) = world.insert(body, nut.friction(friction).density(7850.0));
+    let (nut, _) = world.insert(body, nut.friction(0.0).density(7850.0));
     let mut pipeline = MedialPipeline::default();
     let mut turns = 0.0;
     for _ in 0..(seconds * f64::from(hertz)).round() as usize {
@@ -178,7 +178,7 @@ fn nuts_without_friction_go_down_alike() {
         let thread = &THREADS[k];
         // One turn.
         let seconds = (2.0 * thread.pitch / thread.acceleration()).sqrt();
-        let turns = turned(thread, 0.0, hertz, seconds);
+        let turns = turned(thread, hertz, seconds);
         let name = thread.name;
         println!("{name} at {hertz} steps a second: {turns:.3} turns of 1");
         assert!((0.6..0.8).contains(&turns), "{name}: {turns}");

@@ -19,10 +19,10 @@ use parry3d::math::AngularInertia;
 use parry3d::query::ContactManifold;
 use parry3d::shape::Shape;
 
-/// Part of what `r` would be without locked axes and arms below which a contact counts as unable to move anything: the
-/// square of the sine of the angle, 0.01 rad, between its normal and the locked axis. With 1e-5 a heap threw a brick
-/// off at 295 m/s.
-const HELD: Real = 1.0e-4;
+/// Part of a body's inverse mass without locked axes below which its part of `r` counts as rounding: the square of the
+/// sine of the angle, 0.001 rad, between the normal and the locked axis. With 1e-4 a box on a rail passes through a
+/// wedge of half a degree.
+const HELD: Real = 1.0e-6;
 
 /// Distance of a contact that is not solved.
 pub const UNSOLVED: Real = Real::MAX;
@@ -65,11 +65,10 @@ impl<'a> Moved<'a> {
         is_any_locked.then_some(Self(moved))
     }
 
-    /// Whether a contact at a point under a normal, both in the world, cannot move any of them.
+    /// Whether a contact at a point under a normal, both in the world, cannot move any of them but for rounding.
     pub fn is_held(&self, point: Vector, n: Vector) -> bool {
-        let r: Real = self.0.iter().map(|body| body.along(point, n)).sum();
-        let unlocked: Real = self.0.iter().map(|body| body.unlocked).sum();
-        r < HELD * unlocked
+        let mut moved = self.0.iter();
+        moved.all(|body| body.along(point, n) < HELD * body.unlocked)
     }
 }
 
