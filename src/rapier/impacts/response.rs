@@ -9,6 +9,7 @@
 //! of them would not end, and their friction would hold what they press out. No contact is taken for granted
 //! afterwards: all pairs of the bodies that changed are searched again.
 
+use crate::math::fast_hash::FastSet;
 use crate::math::{Real, Vector};
 use crate::rapier::host::reported_impulse::ReportedImpulse;
 use crate::rapier::impacts::body_state::BodyImpactState;
@@ -244,8 +245,13 @@ impl Response {
         }
         // Joints take from some bodies what they give to others: the velocities of all bodies of a system are written
         // back, or of none.
+        let mut seen = FastSet::default();
         for &body in from {
+            if seen.contains(&body) {
+                continue;
+            }
             let tied = joints.tied_to(view, &[body]);
+            seen.extend(tied.iter().copied());
             if tied.iter().any(|b| self.body_states[*b].struck) {
                 for b in tied {
                     self.body_states[b].struck |= view.bodies[b].mobility == Mobility::Free;

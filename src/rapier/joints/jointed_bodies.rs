@@ -7,7 +7,7 @@
 //! Motors act in rapier's next step, and joints that the user made soft are left to it.
 
 use crate::math::Real;
-use crate::math::fast_hash::FastMap;
+use crate::math::fast_hash::{FastMap, FastSet};
 use crate::rapier::joints::limits::Limit;
 use crate::rapier::joints::rows::{Joint, Twist};
 use crate::rapier::joints::tied_system::System;
@@ -101,6 +101,8 @@ impl Joints {
     /// The free bodies that joints tie to some bodies, these first, and the joints between them.
     fn tied(&self, view: &StepView, from: &[usize]) -> (Vec<usize>, Vec<&Joint>) {
         let (mut bodies, mut joints) = (from.to_vec(), Vec::new());
+        let mut found: FastSet<usize> = from.iter().copied().collect();
+        let mut used = FastSet::default();
         let mut next = 0;
         while next < bodies.len() {
             let body = bodies[next];
@@ -109,14 +111,14 @@ impl Joints {
                 continue;
             }
             for &j in self.of_body.get(&body).into_iter().flatten() {
-                if joints.len() < MOST_JOINTS && !joints.contains(&j) {
-                    joints.push(j);
+                if joints.len() < MOST_JOINTS && used.insert(j) {
+                    joints.push(&self.all[j]);
                     let far = self.all[j].bodies.into_iter().find(|b| *b != body);
-                    bodies.extend(far.filter(|b| !bodies.contains(b)));
+                    bodies.extend(far.filter(|b| found.insert(*b)));
                 }
             }
         }
-        (bodies, joints.into_iter().map(|j| &self.all[j]).collect())
+        (bodies, joints)
     }
 
     /// The system that moves when some bodies are struck at `time`, with the inertia of each.
@@ -266,12 +268,14 @@ pub fn settle(
     let bodies = || system.bodies.iter().map(|b| &view.bodies[*b]);
     let mut tangents: Vec<Twist> = bodies().map(|b| b.twist(time)).collect();
     let mut velocities: Vec<Twist> = bodies().map(|b| b.velocity).collect();
-    if bodies().any(|b| b.is_rapiers) {
+    let as_rapier_left_it =
+        |k: usize| view.bodies[system.bodies[k]].is_rapiers && !system.is_infinite(k);
+    if (0..system.bodies.len()).any(as_rapier_left_it) {
         let mut held = tangents.clone();
         system.hold(&mut held);
         for (k, end) in last(view).into_iter().enumerate() {
             let body = &view.bodies[system.bodies[k]];
-            if body.is_rapiers {
+            if as_rapier_left_it(k) {
                 let back = body.motion.start.rotation * body.end.rotation.inverse();
                 velocities[k][0] += held[k][0] - end[0];
                 velocities[k][1] += held[k][1] - back * end[1];

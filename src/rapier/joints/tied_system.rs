@@ -8,6 +8,7 @@
 //! which keeps `G v` (Featherstone, Rigid Body Dynamics Algorithms, 2008, 3.2). The motion in time follows the RATTLE
 //! scheme (Andersen 1983), which keeps energy while joints turn velocities.
 
+use crate::math::fast_hash::FastMap;
 use crate::math::tolerance::ROUNDING_ULPS;
 use crate::math::{Pose, Real, Rotation, Vector};
 use crate::rapier::joints::limits::Limit;
@@ -78,7 +79,8 @@ impl<'a> System<'a> {
         let relative = |pose: Pose| Pose::from_parts(pose.translation - origin, pose.rotation);
         let center = |b: &usize| view.bodies[*b].mass.local_com;
         let start: Vec<Pose> = bodies.iter().map(|b| relative(pose(b))).collect();
-        let place = |body: usize| bodies.iter().position(|o| *o == body);
+        let places: FastMap<usize, usize> = bodies.iter().copied().zip(0..).collect();
+        let place = |body: usize| places.get(&body).copied();
         let placed = |j: &'a Joint| Some((j, [place(j.bodies[0])?, place(j.bodies[1])?]));
         let joints: Vec<_> = joints.into_iter().filter_map(placed).collect();
         let mut system = Self {
