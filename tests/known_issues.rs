@@ -8,8 +8,6 @@ mod scenes {
     pub mod changed_shapes;
     #[path = "../common/combs.rs"]
     pub mod combs;
-    #[path = "../common/dominoes.rs"]
-    pub mod dominoes;
     pub mod let_go;
     #[path = "../common/linking.rs"]
     pub mod linking;

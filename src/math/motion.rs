@@ -220,6 +220,16 @@ impl<S: Scalar> RigidMotion<S> {
         }
     }
 
+    /// Whether it keeps the shape of a body, as all do that are not [`Self::straightened`].
+    pub fn is_rigid(&self) -> bool {
+        self.drift.iter().all(|d| d.taxicab() <= S::zero())
+    }
+
+    /// Place and velocity of the centre of rotation at `t`.
+    pub fn center_at(&self, t: S) -> [Vec3<S>; 2] {
+        [self.center + self.displacement * t, self.displacement]
+    }
+
     /// Length of the acceleration of a point, given its [`Frame::arm`] at any time, per step squared.
     pub fn acceleration(&self, arm: Vec3<S>) -> S {
         self.angle * self.angle * self.axis.cross(arm).length()

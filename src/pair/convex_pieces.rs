@@ -15,7 +15,7 @@
 use super::apart::{end_along, ends_hold};
 use super::deepening::given;
 use super::hull_gap::{HullGap, PlacedHull, hull_gap};
-use super::path_ends::{held_on_paths, path_ends};
+use super::path_ends::{held_on_paths, held_turning, moving_spheres};
 use super::piece_contact::{PieceGap, PieceLook, PiecePair, PiecesMet, is_blunt, patch, placed};
 use super::primitive_tree::{PrimitiveTree, thickness};
 use super::search::FirstContactSearch;
@@ -255,15 +255,23 @@ impl<A: PrimitiveTree, B: PrimitiveTree> FirstContactSearch<'_, A, B> {
         let far: Vec<_> = a.iter().map(|s| end_along(s, n, 1.0)).collect();
         let near: Vec<_> = b.iter().map(|s| end_along(s, n, -1.0)).collect();
         let on_chords = self.in_piece(time, |span| ends_hold([&far, &near], span, least, least))?;
-        if !self.gains_too_little(on_chords, time) {
-            return Some(on_chords);
-        }
         let [first, second] = &self.motions;
-        let far = path_ends(self.sides.0.body, first, nodes[0], (n, 1.0), time);
-        let near = path_ends(self.sides.1.body, second, nodes[1], (n, -1.0), time);
-        let end = self.earliest.upper.min(self.times[1]);
-        let on_paths = held_on_paths([&far, &near], least, end - time)?;
-        Some(on_chords.max((time + on_paths).next_down().max(time)))
+        let a = moving_spheres(self.sides.0.body, first, nodes[0], time);
+        let b = moving_spheres(self.sides.1.body, second, nodes[1], time);
+        let asked = self.earliest.upper.min(self.times[1]) - time;
+        let turning = [(first, &a, &b, 1.0), (second, &b, &a, -1.0)];
+        let turning = turning
+            .into_iter()
+            .filter(|(carrier, ..)| carrier.is_rigid());
+        let turning = turning.map(|(carrier, own, others, side)| {
+            held_turning((carrier, own), others, (n, side), [time, asked], least)
+        });
+        let still = std::iter::once_with(|| held_on_paths([&a, &b], n, least, asked));
+        let mut held = 0.0;
+        for some in turning.chain(still) {
+            held = f64::max(held, some?);
+        }
+        Some(on_chords.max((time + held).next_down().max(time)))
     }
 
     /// Two nodes' pieces at a time.

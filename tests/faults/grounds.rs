@@ -1,6 +1,5 @@
 //! What is known to be wrong of bodies on the ground.
 
-use crate::scenes::dominoes::dominoes;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
@@ -37,18 +36,4 @@ fn boxes_of_a_centimetre_in_metres_sink() {
     assert_eq!([count(&own, 1.0), count(&medial, 0.01)], [0, 0]);
     let medial = count(&medial, 1.0);
     assert!(medial > 2, "{medial} of 24: mended?");
-}
-
-/// Dominoes half a metre apart take a fifth more work than the bound that `brickwork` has for rows that are closer.
-/// Their edges are struck evenly and strike again in a later step.
-#[test]
-fn dominoes_half_a_metre_apart_take_more_work() {
-    let half = Vector::new(0.05, 0.5, 0.25);
-    let (vertices, indices) = Cuboid::new(half).to_trimesh();
-    let built = MedialMesh::from_trimesh(&vertices, &indices, &BuildOptions::default());
-    let domino = ColliderBuilder::medial_mesh(built.expect("a domino").0);
-    let (fallen, [_, spent]) = dominoes(&domino, 0.5, true);
-    println!("fallen at step {fallen:?}, {spent} spent");
-    assert!(fallen.is_some(), "they stand");
-    assert!(spent >= 75_000, "{spent} spent: mended?");
 }

@@ -95,3 +95,32 @@ fn pairs_still_apart_at_the_first_contact_are_not_tested() {
         assert!(counts.tests <= 8, "{tilt}: {counts:?}");
     }
 }
+
+/// A die on the floor of a cup that swings round a pivot, as bodies in a drum or a bucket do: it goes along the chord
+/// of the arc on which the floor goes, and turns with it. A direction that turns with the floor keeps them apart.
+#[test]
+fn what_turns_with_a_face_is_looked_at_a_few_times() {
+    let [floor, die] = [[0.15, 0.006, 0.15], [0.02; 3]]
+        .map(|half| MedialMesh::cuboid(Vector::from_array(half)).expect("a box"));
+    let seconds = 1.0 / 60.0;
+    for (spin, gap) in [
+        (2.0, 1.0e-4),
+        (5.0, 1.0e-4),
+        (9.0, 1.0e-4),
+        (9.0, 1.0e-3),
+        (20.0, 1.0e-3),
+    ] {
+        let pivot = Vector::Y * 0.8;
+        let omega = Vector::Z * spin;
+        let swing = NonlinearRigidMotion::new(Pose::IDENTITY, pivot, Vector::ZERO, omega);
+        let place = Pose::from_translation(Vector::new(0.05, 0.026 + gap, 0.03));
+        let along = swing.position_at_time(seconds) * place;
+        let speed = (along.translation - place.translation) / seconds;
+        let carried = NonlinearRigidMotion::new(place, Vector::ZERO, speed, omega);
+        let options = ToiOptions::default();
+        let query = first_contact_counted(&floor, &swing, &die, &carried, seconds, &options);
+        let (toi, counts) = query;
+        assert_eq!(toi.status, ToiStatus::Separated, "{spin} rad/s: {toi:?}");
+        assert!(counts.looks <= 6, "{spin} rad/s: {counts:?}");
+    }
+}
