@@ -206,6 +206,50 @@ fn heavy_loads_lie_on_light_plates_that_are_held() {
     }
 }
 
+/// How far a flywheel with arms of a metre turns in two seconds, radians, that turns at 1 rad/s towards a stop `lever`
+/// metres beside its axle, 0.3 rad away; `medial`: the flywheel, and the stop.
+fn flywheel_turned(medial: [bool; 2], inertia: Real, lever: Real) -> Real {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let mut pipeline = attached(&mut world);
+    let shape = |medial: bool, half: Vector| match medial {
+        true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a box")),
+        false => ColliderBuilder::cuboid(half.x, half.y, half.z),
+    };
+    let heavy = MassProperties::new(Vector::ZERO, 1.0, Vector::splat(inertia));
+    let builder = RigidBodyBuilder::dynamic()
+        .enabled_translations(false, false, false)
+        .enabled_rotations(false, true, false)
+        .additional_mass_properties(heavy)
+        .angvel(Vector::NEG_Y)
+        .can_sleep(false);
+    let (wheel, _) = world.insert(builder, shape(medial[0], Vector::new(1.0, 0.1, 0.05)));
+    let at = Rotation::from_rotation_y(-0.3);
+    let pose = Pose::from_parts(at * Vector::new(lever, 0.0, 0.1), at);
+    let stop = shape(medial[1], Vector::new(0.0005, 0.3, 0.05));
+    world.insert(RigidBodyBuilder::fixed().pose(pose), stop);
+    let mut turned = 0.0;
+    for _ in 0..120 {
+        pipeline.step(&mut world);
+        turned -= world.bodies[wheel].angvel().y / 60.0;
+    }
+    turned
+}
+
+/// Symptom: flywheels, which have much inertia for their mass, turned through what was to stop them. Cause: what a lever
+/// gives was compared with what the mass gives.
+#[test]
+fn flywheels_stop_at_what_they_touch() {
+    for (inertia, lever) in [(1.0e4, 0.01), (1.0e6, 0.1), (1.0e6, 0.9)] {
+        let own = flywheel_turned([false, false], inertia, lever);
+        for medial in [[true, false], [false, true], [true, true]] {
+            let turned = flywheel_turned(medial, inertia, lever);
+            println!("{inertia} kg m² at {lever} m, {medial:?}: {turned}, own {own} rad");
+            assert!((turned - own).abs() < 0.05, "{turned}, own {own} rad");
+        }
+    }
+}
+
 /// Symptom: a ball of which the vertical axis is locked, and which moves down slowly, got thousands of rad/s as it
 /// touched the ground below its centre; rapier's own ball does not turn, and passes through. Cause: a lever that is
 /// rounding.

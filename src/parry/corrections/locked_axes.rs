@@ -11,7 +11,7 @@
 //! is a locked axis but for rounding, `r` is the square of that rounding, and the body is thrown along what is left of
 //! `n`: a box that may move in a plane only, and touches a wall behind it, got 24 m/s.
 
-use crate::math::fast_hash::FastMap;
+use crate::math::fast_hash::{FastMap, FastSet};
 use crate::math::{Pose, Real, Vector};
 use crate::parry::contacts::manifold_points::{normals, places};
 use crate::parry::shape_id::ShapeId;
@@ -19,9 +19,9 @@ use parry3d::math::AngularInertia;
 use parry3d::query::ContactManifold;
 use parry3d::shape::Shape;
 
-/// Part of a body's inverse mass without locked axes below which its part of `r` counts as rounding: the square of the
-/// sine of the angle, 0.001 rad, between the normal and the locked axis. With 1e-4 a box on a rail passes through a
-/// wedge of half a degree.
+/// Square of the sine of an angle, 0.001 rad, below which what is left of a direction is rounding: of a normal along
+/// the axes that are not locked, and of an arm from the centre of mass to a contact across the normal, about those axes.
+/// With 1e-4 a box on a rail passes through a wedge of half a degree.
 const HELD: Real = 1.0e-6;
 
 /// Distance of a contact that is not solved.
@@ -45,10 +45,14 @@ pub struct Response {
 }
 
 impl Response {
-    /// Speed along `n` at a point of the world, both in the world, by an impulse of 1 along `n`.
-    fn along(&self, point: Vector, n: Vector) -> Real {
-        let turn = (point - self.center).cross(n);
-        n.dot(self.inverse_mass * n) + turn.dot(self.inverse_inertia * turn)
+    /// Whether an impulse along `n` at a point of the world, both in the world, moves it by rounding alone. Its slide and
+    /// its turn count each for itself: a body that has much inertia for its mass turns slowly, but truly.
+    fn is_held(&self, point: Vector, n: Vector) -> bool {
+        let arm = point - self.center;
+        let turn = arm.cross(n);
+        let lever = turn.dot((self.inverse_inertia * turn).normalize_or_zero());
+        let slides = n.dot(self.inverse_mass * n);
+        slides <= HELD * self.unlocked && lever * lever <= HELD * arm.length_squared()
     }
 }
 
@@ -67,8 +71,7 @@ impl<'a> Moved<'a> {
 
     /// Whether a contact at a point under a normal, both in the world, cannot move any of them but for rounding.
     pub fn is_held(&self, point: Vector, n: Vector) -> bool {
-        let mut moved = self.0.iter();
-        moved.all(|body| body.along(point, n) < HELD * body.unlocked)
+        self.0.iter().all(|body| body.is_held(point, n))
     }
 }
 
@@ -77,10 +80,20 @@ impl<'a> Moved<'a> {
 pub struct LockedBodies {
     /// Pose of each medial collider and of each other one on a body that impulses move, by its shape, which several may
     /// share; and how that body responds, if they move it.
-    pub placed: FastMap<ShapeId, Vec<(Pose, Option<Response>)>>,
+    placed: FastMap<ShapeId, Vec<(Pose, Option<Response>)>>,
+    /// Shapes of those on bodies of which some axes are locked.
+    locked: FastSet<ShapeId>,
 }
 
 impl LockedBodies {
+    /// Adds a collider.
+    pub fn add(&mut self, shape: ShapeId, pose: Pose, response: Option<Response>) {
+        if response.is_some_and(|body| body.is_partly_locked) {
+            self.locked.insert(shape);
+        }
+        self.placed.entry(shape).or_default().push((pose, response));
+    }
+
     /// Keeps from the solver the contacts of two shapes at relative pose `pos12` that cannot move either. Shape `side`
     /// is medial.
     pub fn take_from_solver<M, C>(
@@ -90,6 +103,12 @@ impl LockedBodies {
         pos12: &Pose,
         manifolds: &mut [ContactManifold<M, C>],
     ) {
+        if !shapes
+            .iter()
+            .any(|s| self.locked.contains(&ShapeId::new(*s)))
+        {
+            return;
+        }
         let Some((pose, bodies)) = self.pair(shapes, side, pos12) else {
             return;
         };

@@ -2,7 +2,7 @@
 //! ([`crate::parry::corrections::locked_axes`]), and pairs whose contacts rapier has kept from the time before axes
 //! were locked or let go.
 
-use crate::math::{Pose, Vector};
+use crate::math::Vector;
 use crate::medial::MedialMesh;
 use crate::parry::contacts::manifold_points::places;
 use crate::parry::corrections::locked_axes::{LockedBodies, Moved, Response, UNSOLVED};
@@ -19,19 +19,16 @@ pub fn find(sets: &Sets, medial: &MedialColliders) -> Option<LockedBodies> {
     }
     let response = |body| response(sets, body);
     let mut bodies = LockedBodies::default();
-    let mut place = |shape: ShapeId, collider: (Pose, Option<Response>)| {
-        bodies.placed.entry(shape).or_default().push(collider);
-    };
     for collider in &medial.all {
         let shape = ShapeId::new(&collider.mesh);
-        place(shape, (*collider.pose(), response(collider.body)));
+        bodies.add(shape, *collider.pose(), response(collider.body));
     }
     let is_other = |c: &Collider| c.shape().as_shape::<MedialMesh>().is_none();
     let others = enabled(sets.bodies, sets.colliders, sets.participants);
     for (_, collider) in others.filter(|(_, c)| is_other(c)) {
         if let Some(moved) = response(collider.parent()) {
             let shape = ShapeId::new(collider.shape());
-            place(shape, (*collider.position(), Some(moved)));
+            bodies.add(shape, *collider.position(), Some(moved));
         }
     }
     Some(bodies)
