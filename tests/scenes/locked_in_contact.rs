@@ -236,8 +236,8 @@ fn flywheel_turned(medial: [bool; 2], inertia: Real, lever: Real) -> Real {
     turned
 }
 
-/// Symptom: flywheels, which have much inertia for their mass, turned through what was to stop them. Cause: what a lever
-/// gives was compared with what the mass gives.
+/// Symptom: flywheels, which have much inertia for their mass, turned through what was to stop them. Cause: what a
+/// lever gives was compared with what the mass gives.
 #[test]
 fn flywheels_stop_at_what_they_touch() {
     for (inertia, lever) in [(1.0e4, 0.01), (1.0e6, 0.1), (1.0e6, 0.9)] {

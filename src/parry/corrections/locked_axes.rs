@@ -20,8 +20,8 @@ use parry3d::query::ContactManifold;
 use parry3d::shape::Shape;
 
 /// Square of the sine of an angle, 0.001 rad, below which what is left of a direction is rounding: of a normal along
-/// the axes that are not locked, and of an arm from the centre of mass to a contact across the normal, about those axes.
-/// With 1e-4 a box on a rail passes through a wedge of half a degree.
+/// the axes that are not locked, and of an arm from the centre of mass to a contact across the normal, about those
+/// axes. With 1e-4 a box on a rail passes through a wedge of half a degree.
 const HELD: Real = 1.0e-6;
 
 /// Distance of a contact that is not solved.
@@ -45,8 +45,8 @@ pub struct Response {
 }
 
 impl Response {
-    /// Whether an impulse along `n` at a point of the world, both in the world, moves it by rounding alone. Its slide and
-    /// its turn count each for itself: a body that has much inertia for its mass turns slowly, but truly.
+    /// Whether an impulse along `n` at a point of the world, both in the world, moves it by rounding alone. Its slide
+    /// and its turn count each for itself: a body that has much inertia for its mass turns slowly, but truly.
     fn is_held(&self, point: Vector, n: Vector) -> bool {
         let arm = point - self.center;
         let turn = arm.cross(n);
