@@ -20,8 +20,8 @@ use crate::meshing::surface::flat_faces::{
 use crate::meshing::watch::Watch;
 use std::borrow::Cow;
 
-/// Pieces are used if the medial mesh is off by less than so many times how far corners of a flat face are off their
-/// plane, or by rounding. More, and bodies whose faces are not quite flat count as exact.
+/// Pieces are used if the medial mesh is off by less than so many times that. More, and bodies whose faces are not
+/// quite flat count as exact.
 const EXACT_FACTOR: f64 = 20.0;
 
 /// An error up to this (longest side 1) is rounding.
@@ -47,8 +47,7 @@ impl Source {
                 let most = best
                     .as_ref()
                     .map_or(most, |best| best.draft.faces.len() - 1);
-                let close = (EXACT_FACTOR * flat).max(ROUNDED);
-                let next = self.of_parts(&parts, beside, close, most, watch)?;
+                let next = self.of_parts(&parts, beside, EXACT_FACTOR * flat, most, watch)?;
                 best = next.or(best);
             }
             if best.is_some() {
