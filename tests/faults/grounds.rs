@@ -37,3 +37,35 @@ fn boxes_of_a_centimetre_in_metres_sink() {
     let medial = count(&medial, 1.0);
     assert!(medial > 2, "{medial} of 24: mended?");
 }
+
+/// A box that can move along x only passes through a gentle ramp that was inserted after it, if both are medial: of two
+/// faces that are nearly parallel the contact has the normal of the first, which is a locked axis. rapier's own stop.
+#[test]
+fn a_box_on_a_rail_passes_a_gentle_ramp_that_is_newer() {
+    let reached = |is_medial: bool| {
+        let collider = |half: Vector| match is_medial {
+            true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a box")),
+            false => ColliderBuilder::cuboid(half.x, half.y, half.z),
+        };
+        let mut world = PhysicsWorld::new();
+        let builder = RigidBodyBuilder::dynamic()
+            .linvel(Vector::X)
+            .gravity_scale(0.0)
+            .enabled_translations(true, false, false)
+            .lock_rotations();
+        let (body, _) = world.insert(builder, collider(Vector::splat(0.2)).friction(0.0));
+        let turn = Rotation::from_rotation_z(0.01);
+        let at = Vector::new(0.3, -0.2, 0.0) - turn * (Vector::Y * 0.5);
+        let ramp = collider(Vector::new(9.0, 0.5, 9.0));
+        world.insert_collider(ramp.position(Pose::from_parts(at, turn)), None);
+        let mut pipeline = MedialPipeline::default();
+        for _ in 0..60 {
+            pipeline.step(&mut world);
+        }
+        world.bodies[body].translation().x
+    };
+    let [medial, own] = [true, false].map(reached);
+    println!("medial {medial} m, own {own} m");
+    assert!((own - 0.1).abs() < 0.01, "own {own}");
+    assert!(medial > 0.9, "{medial} m: mended?");
+}
