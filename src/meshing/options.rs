@@ -207,7 +207,7 @@ pub struct BuildReport {
     /// Number of primitives of the result.
     pub primitives: usize,
     /// Number of primitives with which the result would be exact. `None` if it is exact already, or
-    /// if that takes more primitives than you allow and than the default of
+    /// if that takes more primitives than you allow and than twice the default of
     /// [`BuildOptions::primitives`]. Bodies with flat faces are often exact with few.
     pub exact_with: Option<usize>,
     /// Whether sharp edges were kept.
@@ -292,11 +292,11 @@ impl BuildLimits {
         })
     }
 
-    /// Primitives up to which an exact result is looked for, be it only to tell of it: as many as are allowed, or the
-    /// default if that is more.
+    /// Primitives up to which an exact result is looked for, be it only to tell of it: as many as are allowed, or twice
+    /// the default if that is more.
     pub fn exact_up_to(&self) -> usize {
         let default = BuildOptions::default().primitives.unwrap_or(0);
-        self.primitives.map_or(usize::MAX, |n| n.max(default))
+        self.primitives.map_or(usize::MAX, |n| n.max(2 * default))
     }
 
     /// Number of samples of the surface that the medial mesh starts from: two for each primitive wanted, or

@@ -10,6 +10,7 @@ mod corpus;
 mod creases;
 mod delaunay;
 mod distance;
+mod drums;
 mod enclosure;
 mod fitting;
 mod hidden;

@@ -27,8 +27,33 @@ const EXACT_FACTOR: f64 = 20.0;
 /// An error up to this (longest side 1) is rounding.
 const ROUNDED: f64 = 2e-5;
 
+/// Where pieces are off by too much, corners are taken to be off their planes by less, in units of what failed. All
+/// pieces grow by some times that, to enclose the body, and a wedge of air of angle `a` between two of them loses
+/// `1 / sin(a / 2)` times as much of its tip: 8 times at 15°, between the end of a lifter and the wall of a drum.
+const FINER: f64 = 0.2;
+
 /// A surface that holds a convex piece, and the piece's faces.
 type PieceSurface<'a> = (Cow<'a, Surface>, FlatFaces);
+
+/// What comes of convex pieces.
+enum Pieces {
+    Exact(Box<Candidate>),
+    /// Their medial axes are off by too much.
+    TooFar,
+    /// There are none, or too many.
+    None,
+}
+
+impl Pieces {
+    /// The later one, if it is exact, which has fewer primitives then; else the one that says more.
+    fn or(self, later: Self) -> Self {
+        match (self, later) {
+            (_, Self::Exact(later)) => Self::Exact(later),
+            (Self::None, later) => later,
+            (earlier, _) => earlier,
+        }
+    }
+}
 
 impl Source {
     /// The medial axes of convex pieces of the body, if these have at most `most` primitives: of the convex parts that
@@ -40,21 +65,38 @@ impl Source {
         }
         for flatness in FLATNESS {
             let flat = flatness * rounding(&self.surface);
-            let own = self.own_parts(flat, most, watch)?;
-            let made = self.parts_by_faces(flat, watch)?;
-            let mut best: Option<Candidate> = None;
-            for (parts, beside) in [own, made].into_iter().flatten() {
-                let most = best
-                    .as_ref()
-                    .map_or(most, |best| best.draft.faces.len() - 1);
-                let next = self.of_parts(&parts, beside, EXACT_FACTOR * flat, most, watch)?;
-                best = next.or(best);
-            }
-            if best.is_some() {
-                return Ok(best);
+            let close = EXACT_FACTOR * flat;
+            for flat in [flat, FINER * flat] {
+                match self.pieces_at(flat, close, most, watch)? {
+                    Pieces::Exact(candidate) => return Ok(Some(*candidate)),
+                    Pieces::TooFar => {}
+                    Pieces::None => break,
+                }
             }
         }
         Ok(None)
+    }
+
+    /// The same for corners that are off their planes by at most `flat`, where errors up to `close` count as none.
+    fn pieces_at(
+        &self,
+        flat: f64,
+        close: f64,
+        most: usize,
+        watch: &mut Watch,
+    ) -> Result<Pieces, BuildError> {
+        let own = self.own_parts(flat, most, watch)?;
+        let made = self.parts_by_faces(flat, watch)?;
+        let mut best = Pieces::None;
+        for (parts, beside) in [own, made].into_iter().flatten() {
+            let most = match &best {
+                Pieces::Exact(best) => best.draft.faces.len() - 1,
+                _ => most,
+            };
+            let next = self.of_parts(&parts, beside, close, most, watch)?;
+            best = best.or(next);
+        }
+        Ok(best)
     }
 
     /// The parts of a source of convex parts that overlap and are not hidden, and how far its corners may be beside
@@ -122,13 +164,13 @@ impl Source {
         close: f64,
         most: usize,
         watch: &mut Watch,
-    ) -> Result<Option<Candidate>, BuildError> {
+    ) -> Result<Pieces, BuildError> {
         let Some(angle) = self.limits.creases.angle_of_flat() else {
-            return Ok(None);
+            return Ok(Pieces::None);
         };
         // Matter that is thinner than corners may be off a plane is in no piece.
         if parts.is_empty() {
-            return Ok(None);
+            return Ok(Pieces::None);
         }
         let mut draft = Draft::default();
         let (mut growth, mut bulge): (f64, f64) = (0.0, 0.0);
@@ -138,13 +180,13 @@ impl Source {
             let tree = TriangleTree::new(faces.face_of.len(), corners, watch)?;
             let limits = (angle.cos(), close);
             let Some(axis) = axis(surface, &tree, faces, limits, left, watch)? else {
-                return Ok(None);
+                return Ok(Pieces::None);
             };
             // Where not every edge is of two triangles, some of a face may be missing.
             let areas = (0..faces.face_of.len()).map(|i| 0.5 * cross(corners(i)).length());
             let area: f64 = areas.sum();
             if (axis.area - area).abs() > SAME_AREA * area {
-                return Ok(None);
+                return Ok(Pieces::None);
             }
             growth = growth.max(axis.growth);
             bulge = bulge.max(axis.bulge);
@@ -161,7 +203,7 @@ impl Source {
         let uncovered = f64::from(enclosed.hausdorff.uncovered);
         let is_short = self.limits.enclose && uncovered > self.limits.allow_uncovered;
         if is_short || enclosed.error() > close {
-            return Ok(None);
+            return Ok(Pieces::TooFar);
         }
         // Between the points measured too: each piece is, and together they are the body.
         enclosed.hausdorff.sampling = enclosed.hausdorff.sampling.min(close as Real);
@@ -180,7 +222,7 @@ impl Source {
             "{} convex pieces that overlap: their medial axes have {count} primitives, and are exact{off}",
             parts.len()
         ));
-        Ok(Some(candidate))
+        Ok(Pieces::Exact(Box::new(candidate)))
     }
 
     /// The surface of a piece, with the source's own vertices where its corners are at these.
