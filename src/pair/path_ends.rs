@@ -76,12 +76,9 @@ pub(super) fn held_on_paths(
             if room <= 0.0 {
                 return Some(0.0);
             }
-            let closing = rate - others;
-            if (closing + 0.5 * acceleration * held) * held <= room {
-                continue;
+            if let Some(met) = first_root(room, others - rate, -acceleration) {
+                held = held.min(met);
             }
-            let root = (closing * closing + 2.0 * acceleration * room).sqrt();
-            held = 2.0 * room / (closing + root);
         }
     }
     (held < asked).then_some(held * (1.0 - ROOT_ROUNDING))
@@ -133,19 +130,29 @@ fn stays_above([room, rate, bend, jerk]: [f64; 4], asked: f64) -> f64 {
         return 0.0;
     }
     let on_span = |span: f64| {
-        let bend = bend - jerk * span / 3.0;
-        let square = rate * rate - 2.0 * bend * room;
-        let sum = square.max(0.0).sqrt() - rate;
-        match square >= 0.0 && sum > 0.0 {
-            true => span.min(2.0 * room / sum),
-            false => span,
-        }
+        let root = first_root(room, rate, bend - jerk * span / 3.0);
+        root.map_or(span, |root| root.min(span))
     };
     let mut held = on_span(asked);
     for _ in 0..CUBIC_STEPS {
         held = held.max(on_span(asked.min(2.0 * held)));
     }
     held
+}
+
+/// The time at which `room + rate s + bend s²/2`, above 0 at first, comes to 0; `None` if never. Of the two forms of
+/// the root, the one that adds numbers of one sign is used: the other loses a small room beside a large rate.
+fn first_root(room: f64, rate: f64, bend: f64) -> Option<f64> {
+    let square = rate * rate - 2.0 * bend * room;
+    if square < 0.0 {
+        return None;
+    }
+    let sum = square.sqrt() + rate.abs();
+    let root = match rate > 0.0 {
+        true => sum / -bend,
+        false => 2.0 * room / sum,
+    };
+    (root >= 0.0 && root.is_finite()).then_some(root)
 }
 
 #[cfg(test)]
@@ -224,6 +231,26 @@ mod tests {
             }
         }
         assert!((200..1000).contains(&met), "{met} meet");
+    }
+
+    /// What first moves away and then comes back, from as near as you like.
+    #[test]
+    fn roots_are_right_however_little_room_there_is() {
+        for room in [1.0e-4, 1.0e-9, 1.0e-12, 1.0e-15, 1.0e-17, 1.0e-300] {
+            // 1 s - 2 s², from `room` on.
+            let root = first_root(room, 1.0, -4.0).expect("a root");
+            assert!((root - 0.5).abs() <= 1.1 * room + 1.0e-16, "{room}: {root}");
+            // -1 s + s²/2, which comes to -1/2 at 1.
+            let root = first_root(room, -1.0, 1.0).expect("a root");
+            assert!(
+                (root / room - 1.0).abs() <= room + 1.0e-15,
+                "{room}: {root}"
+            );
+        }
+        assert_eq!(first_root(1.0, -1.0, 1.0), None);
+        assert_eq!(first_root(1.0, 1.0, 0.0), None);
+        assert_eq!(first_root(1.0, 0.0, 0.0), None);
+        assert_eq!(first_root(1.0, -2.0, 0.0), Some(0.5));
     }
 
     /// A vector turned by `axis`, a scaled axis per unit of time.

@@ -38,8 +38,6 @@ pub struct Dropped {
     pub fastest: Real,
     /// Least height, in metres.
     pub lowest: Real,
-    /// Speed after eight seconds, in metres per second.
-    pub speed: Real,
     pub asleep: bool,
 }
 
@@ -70,7 +68,6 @@ impl Dropped {
         Self {
             fastest,
             lowest,
-            speed: end.linvel().length(),
             asleep: end.is_sleeping(),
         }
     }

@@ -250,6 +250,100 @@ fn flywheels_stop_at_what_they_touch() {
     }
 }
 
+/// Where a key, at a lever of 8 mm and so far along the axle from the centre of mass of what turns at 1 rad/s, has
+/// turned to after two seconds, rad: a stop is in its way.
+fn key_turned(medial: bool, far: Real) -> Real {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let mut pipeline = attached(&mut world);
+    let shape = |half: Vector| match medial {
+        true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a box")),
+        false => ColliderBuilder::cuboid(half.x, half.y, half.z),
+    };
+    let inertia = MassProperties::new(Vector::ZERO, 1.0, Vector::splat(0.1));
+    let builder = RigidBodyBuilder::dynamic()
+        .enabled_translations(false, false, false)
+        .enabled_rotations(false, true, false)
+        .additional_mass_properties(inertia)
+        .angvel(Vector::NEG_Y)
+        .can_sleep(false);
+    let body = world.insert_body(builder);
+    let key = shape(Vector::new(0.01, 0.05, 0.001)).translation(Vector::Y * far);
+    world.insert_collider(key.density(0.0), Some(body));
+    let at = Rotation::from_rotation_y(-0.3);
+    let place = at * Vector::new(0.008, far, 0.006);
+    let stop = shape(Vector::new(0.0005, 0.04, 0.005));
+    let pose = Pose::from_parts(place, at);
+    world.insert(RigidBodyBuilder::fixed().pose(pose), stop);
+    let mut turned = 0.0;
+    for _ in 0..120 {
+        pipeline.step(&mut world);
+        turned -= world.bodies[body].angvel().y / 60.0;
+    }
+    turned
+}
+
+/// Symptom: a key far along its axle turned through its stop. Cause: its lever was compared with the whole arm, of
+/// which the part along the axle adds nothing to it.
+#[test]
+fn keys_far_along_their_axle_stop_at_what_they_touch() {
+    for far in [0.0, 5.0, 20.0] {
+        let [ours, own] = [true, false].map(|medial| key_turned(medial, far));
+        println!("{far} m along the axle: {ours}, own {own} rad");
+        assert!((ours - own).abs() < 0.06, "{far} m: {ours}, own {own} rad");
+    }
+}
+
+/// The least speed of a box on a rail that runs into a stop tilted by so many rad, m/s.
+fn least_speed_on_a_rail(medial: [bool; 2], tilt: Real, speed: Real, friction: Real) -> Real {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::ZERO;
+    let mut pipeline = attached(&mut world);
+    let shape = |medial: bool, half: Vector| match medial {
+        true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a box")),
+        false => ColliderBuilder::cuboid(half.x, half.y, half.z),
+    };
+    let builder = RigidBodyBuilder::dynamic()
+        .enabled_translations(true, false, false)
+        .lock_rotations()
+        .linvel(Vector::X * speed)
+        .can_sleep(false);
+    let slider = shape(medial[0], Vector::splat(0.2)).friction(friction);
+    let (body, _) = world.insert(builder, slider);
+    let pose = Pose::new(Vector::X * (0.55 + 0.3 * tilt.sin()), Vector::Z * tilt);
+    let stop = shape(medial[1], Vector::new(0.05, 1.0, 1.0)).friction(friction);
+    world.insert(RigidBodyBuilder::fixed().pose(pose), stop);
+    let mut least = speed;
+    for _ in 0..60 {
+        pipeline.step(&mut world);
+        least = least.min(world.bodies[body].linvel().x);
+    }
+    assert!(
+        world.bodies[body].translation().x < 0.4,
+        "it passes its stop"
+    );
+    least
+}
+
+/// Symptom: what runs on a rail into a slanted stop, or turns into one that is off its middle, came back at up to
+/// friction times the tangent of the slant times its speed; rapier's own stop dead. Cause: friction pushed
+/// against the slide of before the impulse along the normal, which had stopped it.
+#[test]
+fn sliders_stop_dead_at_slanted_stops() {
+    for (tilt, speed, friction) in [
+        (0.3, 4.0, 0.5),
+        (0.3, 4.0, 1.0),
+        (0.3, 20.0, 0.5),
+        (0.6, 4.0, 0.5),
+    ] {
+        for medial in [[true, true], [true, false], [false, true]] {
+            let least = least_speed_on_a_rail(medial, tilt, speed, friction);
+            println!("{tilt} rad, {speed} m/s, friction {friction}, {medial:?}: {least} m/s");
+            assert!(least > -1.0e-3 * speed, "{least} m/s of {speed}");
+        }
+    }
+}
+
 /// Symptom: a ball of which the vertical axis is locked, and which moves down slowly, got thousands of rad/s as it
 /// touched the ground below its centre; rapier's own ball does not turn, and passes through. Cause: a lever that is
 /// rounding.

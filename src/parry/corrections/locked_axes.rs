@@ -20,9 +20,12 @@ use parry3d::query::ContactManifold;
 use parry3d::shape::Shape;
 
 /// Square of the sine of an angle, 0.001 rad, below which what is left of a direction is rounding: of a normal along
-/// the axes that are not locked, and of an arm from the centre of mass to a contact across the normal, about those
+/// the axes that are not locked, and of an arm from the axis of turning to a contact, across the normal, about those
 /// axes. With 1e-4 a box on a rail passes through a wedge of half a degree.
 const HELD: Real = 1.0e-6;
+
+/// Square of the share of an arm up to which its place is rounded.
+const PLACED: Real = 1.0e-10;
 
 /// Distance of a contact that is not solved.
 pub const UNSOLVED: Real = Real::MAX;
@@ -50,9 +53,13 @@ impl Response {
     fn is_held(&self, point: Vector, n: Vector) -> bool {
         let arm = point - self.center;
         let turn = arm.cross(n);
-        let lever = turn.dot((self.inverse_inertia * turn).normalize_or_zero());
+        let axis = (self.inverse_inertia * turn).normalize_or_zero();
+        let lever = turn.dot(axis);
         let slides = n.dot(self.inverse_mass * n);
-        slides <= HELD * self.unlocked && lever * lever <= HELD * arm.length_squared()
+        // How far along the axis it is adds nothing to its lever, but for the rounding of its place.
+        let across = arm.length_squared() - arm.dot(axis) * arm.dot(axis);
+        let rounding = (HELD * across).max(PLACED * arm.length_squared());
+        slides <= HELD * self.unlocked && lever * lever <= rounding
     }
 }
 

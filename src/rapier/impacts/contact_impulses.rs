@@ -50,8 +50,7 @@ impl Response {
         let [c1, c2] = pair.map(|k| &rules.colliders[view.colliders[k].handle]);
         let [v1, v2] = [0, 1].map(|k| point.velocity(view.bodies[both[k]].velocity, k));
         let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, Material::of(c1, c2));
-        let is_driven = both.iter().any(|b| joints.hangs_on_driven(view, *b));
-        let own = point.impact(&system, material, is_driven);
+        let own = point.impact(&system, material);
         let (mut moved, mut impact) = (system, own);
         let free = both.map(|b| unlocked(view, both, b));
         if own.resistance() >= HELD_RATIO * resistance_alone(free, &point, hit.normal) {
@@ -64,7 +63,7 @@ impl Response {
             }
             let mut is_stopped = false;
             if let Some(moving) = moving {
-                impact = point.impact(&moving, material, is_driven);
+                impact = point.impact(&moving, material);
                 moved = moving;
                 is_stopped = true;
             }

@@ -72,12 +72,11 @@ impl ContactPoint {
         [(0, -impulse), (1, impulse)].map(|(k, j)| (self.bodies[k], self.wrench(k, j)))
     }
 
-    /// The impact there of bodies that joints tie together; `is_driven`: as [`Impact`] says.
-    pub fn impact(&self, system: &System, material: Material, is_driven: bool) -> Impact {
+    /// The impact there of bodies that joints tie together.
+    pub fn impact(&self, system: &System, material: Material) -> Impact {
         Impact {
             normal: self.normal,
             material,
-            is_driven,
             response: Vector::AXES.map(|axis| {
                 let change = system.change(&self.wrenches(axis));
                 self.velocity(change[1], 1) - self.velocity(change[0], 0)
