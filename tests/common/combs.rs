@@ -38,6 +38,8 @@ pub struct Dropped {
     pub fastest: Real,
     /// Least height, in metres.
     pub lowest: Real,
+    /// Speed after eight seconds, in metres per second.
+    pub speed: Real,
     pub asleep: bool,
 }
 
@@ -68,6 +70,7 @@ impl Dropped {
         Self {
             fastest,
             lowest,
+            speed: end.linvel().length(),
             asleep: end.is_sleeping(),
         }
     }

@@ -3,8 +3,8 @@
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
-/// Some boxes of a centimetre in a world of metres sink by up to a tenth of their size: 2 of 24. rapier's own do not,
-/// nor do these with a length unit to scale.
+/// Boxes of a centimetre in a world of metres sink by up to a tenth of their size. rapier's own do not, nor do these
+/// with a length unit to scale.
 #[test]
 fn boxes_of_a_centimetre_in_metres_sink() {
     let half = Vector::new(0.005, 0.002, 0.003);
@@ -35,7 +35,7 @@ fn boxes_of_a_centimetre_in_metres_sink() {
     };
     assert_eq!([count(&own, 1.0), count(&medial, 0.01)], [0, 0]);
     let medial = count(&medial, 1.0);
-    assert!(medial > 0, "{medial} of 24: mended?");
+    assert!(medial > 2, "{medial} of 24: mended?");
 }
 
 /// A box that can move along x only passes through a gentle ramp that was inserted after it, if both are medial: of two

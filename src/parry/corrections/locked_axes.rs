@@ -24,7 +24,7 @@ use parry3d::shape::Shape;
 /// axes. With 1e-4 a box on a rail passes through a wedge of half a degree.
 const HELD: Real = 1.0e-6;
 
-/// Square of the share of an arm up to which its place is rounded.
+/// Square of the rounding of a contact's place, in units of its arm.
 const PLACED: Real = 1.0e-10;
 
 /// Distance of a contact that is not solved.

@@ -50,7 +50,11 @@ impl Response {
         let [c1, c2] = pair.map(|k| &rules.colliders[view.colliders[k].handle]);
         let [v1, v2] = [0, 1].map(|k| point.velocity(view.bodies[both[k]].velocity, k));
         let (approach, material) = policy.bounce(view, pair, hit, v2 - v1, Material::of(c1, c2));
-        let own = point.impact(&system, material);
+        let is_guided = both.iter().any(|b| {
+            is_movable(view, both, *b) && !view.bodies[*b].locked.is_empty()
+                || joints.hangs_on_driven(view, *b)
+        });
+        let own = point.impact(&system, material, is_guided);
         let (mut moved, mut impact) = (system, own);
         let free = both.map(|b| unlocked(view, both, b));
         if own.resistance() >= HELD_RATIO * resistance_alone(free, &point, hit.normal) {
@@ -63,7 +67,7 @@ impl Response {
             }
             let mut is_stopped = false;
             if let Some(moving) = moving {
-                impact = point.impact(&moving, material);
+                impact = point.impact(&moving, material, is_guided);
                 moved = moving;
                 is_stopped = true;
             }

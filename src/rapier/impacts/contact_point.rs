@@ -72,11 +72,12 @@ impl ContactPoint {
         [(0, -impulse), (1, impulse)].map(|(k, j)| (self.bodies[k], self.wrench(k, j)))
     }
 
-    /// The impact there of bodies that joints tie together.
-    pub fn impact(&self, system: &System, material: Material) -> Impact {
+    /// The impact there of bodies that joints tie together; `is_guided`: as [`Impact`] says.
+    pub fn impact(&self, system: &System, material: Material, is_guided: bool) -> Impact {
         Impact {
             normal: self.normal,
             material,
+            is_guided,
             response: Vector::AXES.map(|axis| {
                 let change = system.change(&self.wrenches(axis));
                 self.velocity(change[1], 1) - self.velocity(change[0], 0)

@@ -5,7 +5,7 @@
 //! `K u = (m1⁻¹ + m2⁻¹) u + (I1⁻¹ (r1 × u)) × r1 + (I2⁻¹ (r2 × u)) × r2`.
 //! With the effective inverse mass `k(u) = u · K u`, the normal impulse that takes `v·n` to `v'` is
 //! `j = (v' − v·n) / k(n)`. Friction takes the sliding velocity towards 0, with an impulse of at most `μ j`, and of no
-//! more than adds no energy to what the normal impulse leaves.
+//! more than leaves the impact without a gain of energy.
 
 use crate::math::{Real, Vector};
 use rapier3d::dynamics::CoefficientCombineRule;
@@ -52,6 +52,10 @@ pub struct Impact {
     pub response: [Vector; 3],
     /// Restitution and friction.
     pub material: Material,
+    /// Whether something takes part in the impact that nothing moves: locked axes of one of the bodies, or a driven
+    /// body on which one of them hangs by joints. It makes up for what the normal impulse takes, so that friction may
+    /// add nothing either.
+    pub is_guided: bool,
 }
 
 impl Impact {
@@ -91,14 +95,32 @@ impl Impact {
         x * impulse.x + y * impulse.y + z * impulse.z
     }
 
-    /// The largest share of the friction that adds no energy to what the normal impulse leaves. That impulse may have
-    /// stopped or turned round the slide, and friction would push along with it (Kane and Levinson, Dynamics, 1985): a
-    /// heap of elastic bodies would fly apart, and a body on a slanted rail be driven back from its stop.
+    /// The largest share of the friction with which the impact gains no energy. With restitution by
+    /// Newton's law and lever arms, friction can push against the velocity that the normal impulse has
+    /// just made (Kane and Levinson, Dynamics, 1985); a heap of elastic bodies then flies apart. Where one is guided,
+    /// friction would drive it back from a slanted stop that the normal impulse has stopped it at.
     ///
-    /// The work of a friction `f j`, where the relative velocity is `v`, is `f j·v + f² j·(K j) / 2`.
+    /// The work of an impulse `j` is `j·v + j·(K j) / 2`, so that of `normal + f friction` is a
+    /// quadratic in `f`.
     fn harmless_share(&self, v: Vector, normal: Vector, friction: Vector) -> Real {
-        let gained = friction.dot(v + self.effect(normal));
-        let spent = 0.5 * friction.dot(self.effect(friction));
-        (-gained / spent.max(Real::MIN_POSITIVE)).clamp(0.0, 1.0)
+        let after_normal = v + self.effect(normal);
+        let a = 0.5 * friction.dot(self.effect(friction));
+        let b = friction.dot(after_normal);
+        // A normal impulse that pushes bodies apart may add energy, friction none to it.
+        let c = match self.is_guided {
+            true => 0.0,
+            false => (0.5 * normal.dot(v + after_normal)).min(0.0),
+        };
+        if a + b + c <= 0.0 {
+            return 1.0;
+        }
+        let root = (b * b - 4.0 * a * c).max(0.0).sqrt();
+        // The positive root, without cancellation; a > 0 where b is not, by the test above.
+        let share = if b > 0.0 {
+            -2.0 * c / (b + root)
+        } else {
+            (root - b) / (2.0 * a)
+        };
+        share.clamp(0.0, 1.0)
     }
 }

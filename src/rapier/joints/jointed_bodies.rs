@@ -139,6 +139,12 @@ impl Joints {
         self.tied(view, from).0
     }
 
+    /// Whether a body hangs by joints on one that is driven.
+    pub fn hangs_on_driven(&self, view: &StepView, body: usize) -> bool {
+        let mut tied = self.tied(view, &[body]).0.into_iter().skip(1);
+        tied.any(|b| view.bodies[b].mobility == Mobility::Driven)
+    }
+
     /// Moves a body and all bodies that joints tie to it along paths on which the joints stay as closed as they are,
     /// from `time` (seconds into the step) on, and changes their velocities to match, without a gain of energy of all
     /// together. At the end of the step, `dt`, joints are to be as open as rapier's step left them. `frozen`: whether a
