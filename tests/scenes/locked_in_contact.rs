@@ -206,27 +206,38 @@ fn heavy_loads_lie_on_light_plates_that_are_held() {
     }
 }
 
+/// A box, medial or rapier's own.
+fn solid(medial: bool, half: Vector) -> ColliderBuilder {
+    match medial {
+        true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a box")),
+        false => ColliderBuilder::cuboid(half.x, half.y, half.z),
+    }
+}
+
+/// A body that can only turn about a vertical axle, and does so at 1 rad/s.
+fn turning(inertia: Real) -> RigidBodyBuilder {
+    let heavy = MassProperties::new(Vector::ZERO, 1.0, Vector::splat(inertia));
+    RigidBodyBuilder::dynamic()
+        .enabled_translations(false, false, false)
+        .enabled_rotations(false, true, false)
+        .additional_mass_properties(heavy)
+        .angvel(Vector::NEG_Y)
+        .can_sleep(false)
+}
+
 /// How far a flywheel with arms of a metre turns in two seconds, radians, that turns at 1 rad/s towards a stop `lever`
 /// metres beside its axle, 0.3 rad away; `medial`: the flywheel, and the stop.
 fn flywheel_turned(medial: [bool; 2], inertia: Real, lever: Real) -> Real {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;
     let mut pipeline = attached(&mut world);
-    let shape = |medial: bool, half: Vector| match medial {
-        true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a box")),
-        false => ColliderBuilder::cuboid(half.x, half.y, half.z),
-    };
-    let heavy = MassProperties::new(Vector::ZERO, 1.0, Vector::splat(inertia));
-    let builder = RigidBodyBuilder::dynamic()
-        .enabled_translations(false, false, false)
-        .enabled_rotations(false, true, false)
-        .additional_mass_properties(heavy)
-        .angvel(Vector::NEG_Y)
-        .can_sleep(false);
-    let (wheel, _) = world.insert(builder, shape(medial[0], Vector::new(1.0, 0.1, 0.05)));
+    let (wheel, _) = world.insert(
+        turning(inertia),
+        solid(medial[0], Vector::new(1.0, 0.1, 0.05)),
+    );
     let at = Rotation::from_rotation_y(-0.3);
     let pose = Pose::from_parts(at * Vector::new(lever, 0.0, 0.1), at);
-    let stop = shape(medial[1], Vector::new(0.0005, 0.3, 0.05));
+    let stop = solid(medial[1], Vector::new(0.0005, 0.3, 0.05));
     world.insert(RigidBodyBuilder::fixed().pose(pose), stop);
     let mut turned = 0.0;
     for _ in 0..120 {
@@ -256,23 +267,12 @@ fn key_turned(medial: bool, far: Real) -> Real {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;
     let mut pipeline = attached(&mut world);
-    let shape = |half: Vector| match medial {
-        true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a box")),
-        false => ColliderBuilder::cuboid(half.x, half.y, half.z),
-    };
-    let inertia = MassProperties::new(Vector::ZERO, 1.0, Vector::splat(0.1));
-    let builder = RigidBodyBuilder::dynamic()
-        .enabled_translations(false, false, false)
-        .enabled_rotations(false, true, false)
-        .additional_mass_properties(inertia)
-        .angvel(Vector::NEG_Y)
-        .can_sleep(false);
-    let body = world.insert_body(builder);
-    let key = shape(Vector::new(0.01, 0.05, 0.001)).translation(Vector::Y * far);
+    let body = world.insert_body(turning(0.1));
+    let key = solid(medial, Vector::new(0.01, 0.05, 0.001)).translation(Vector::Y * far);
     world.insert_collider(key.density(0.0), Some(body));
     let at = Rotation::from_rotation_y(-0.3);
     let place = at * Vector::new(0.008, far, 0.006);
-    let stop = shape(Vector::new(0.0005, 0.04, 0.005));
+    let stop = solid(medial, Vector::new(0.0005, 0.04, 0.005));
     let pose = Pose::from_parts(place, at);
     world.insert(RigidBodyBuilder::fixed().pose(pose), stop);
     let mut turned = 0.0;
@@ -299,29 +299,23 @@ fn least_speed_on_a_rail(medial: [bool; 2], tilt: Real, speed: Real, friction: R
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::ZERO;
     let mut pipeline = attached(&mut world);
-    let shape = |medial: bool, half: Vector| match medial {
-        true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a box")),
-        false => ColliderBuilder::cuboid(half.x, half.y, half.z),
-    };
     let builder = RigidBodyBuilder::dynamic()
         .enabled_translations(true, false, false)
         .lock_rotations()
         .linvel(Vector::X * speed)
         .can_sleep(false);
-    let slider = shape(medial[0], Vector::splat(0.2)).friction(friction);
+    let slider = solid(medial[0], Vector::splat(0.2)).friction(friction);
     let (body, _) = world.insert(builder, slider);
     let pose = Pose::new(Vector::X * (0.55 + 0.3 * tilt.sin()), Vector::Z * tilt);
-    let stop = shape(medial[1], Vector::new(0.05, 1.0, 1.0)).friction(friction);
+    let stop = solid(medial[1], Vector::new(0.05, 1.0, 1.0)).friction(friction);
     world.insert(RigidBodyBuilder::fixed().pose(pose), stop);
     let mut least = speed;
     for _ in 0..60 {
         pipeline.step(&mut world);
         least = least.min(world.bodies[body].linvel().x);
     }
-    assert!(
-        world.bodies[body].translation().x < 0.4,
-        "it passes its stop"
-    );
+    let x = world.bodies[body].translation().x;
+    assert!((0.25..0.4).contains(&x), "it stops at {x} m");
     least
 }
 
@@ -336,7 +330,7 @@ fn sliders_stop_dead_at_slanted_stops() {
         (0.3, 20.0, 0.5),
         (0.6, 4.0, 0.5),
     ] {
-        for medial in [[true, true], [true, false], [false, true]] {
+        for medial in [[false, false], [true, true], [true, false], [false, true]] {
             let least = least_speed_on_a_rail(medial, tilt, speed, friction);
             println!("{tilt} rad, {speed} m/s, friction {friction}, {medial:?}: {least} m/s");
             assert!(least > -1.0e-3 * speed, "{least} m/s of {speed}");
