@@ -69,3 +69,48 @@ fn a_box_on_a_rail_passes_a_gentle_ramp_that_is_newer() {
     assert!((own - 0.1).abs() < 0.01, "own {own}");
     assert!(medial > 0.9, "{medial} m: mended?");
 }
+
+/// The same the other way round: a box on a rail, turned by little, that touches a wall along the rail which was
+/// inserted after it stops at once, if both are medial. rapier's own slides on.
+#[test]
+fn a_turned_box_on_a_rail_stops_beside_a_wall_that_is_newer() {
+    let reached = |is_medial: bool, is_wall_newer: bool| {
+        let collider = |half: Vector| match is_medial {
+            true => ColliderBuilder::medial_mesh(MedialMesh::cuboid(half).expect("a box")),
+            false => ColliderBuilder::cuboid(half.x, half.y, half.z),
+        };
+        let mut world = PhysicsWorld::new();
+        let angle: Real = 0.003;
+        let turn = Rotation::from_rotation_y(angle);
+        let reach = 0.1 * angle.cos() + 0.3 * angle.sin();
+        let wall = collider(Vector::new(5.0, 0.2, 0.1)).friction(0.0);
+        let wall = wall.translation(Vector::Z * (reach + 0.1));
+        if !is_wall_newer {
+            world.insert_collider(wall.clone(), None);
+        }
+        let builder = RigidBodyBuilder::dynamic()
+            .pose(Pose::from_parts(Vector::ZERO, turn))
+            .linvel(Vector::X)
+            .gravity_scale(0.0)
+            .enabled_translations(true, false, false)
+            .lock_rotations();
+        let slider = collider(Vector::new(0.3, 0.1, 0.1)).friction(0.0);
+        let (body, _) = world.insert(builder, slider);
+        if is_wall_newer {
+            world.insert_collider(wall, None);
+        }
+        let mut pipeline = MedialPipeline::default();
+        for _ in 0..60 {
+            pipeline.step(&mut world);
+        }
+        world.bodies[body].translation().x
+    };
+    let [newer, older] = [true, false].map(|is_newer| reached(true, is_newer));
+    let own = reached(false, true);
+    println!("medial, wall newer {newer} m, older {older} m, own {own} m");
+    assert!(
+        own > 0.9 && older > 0.9,
+        "own {own} m, wall older {older} m"
+    );
+    assert!(newer < 0.5, "{newer} m: mended?");
+}
