@@ -190,6 +190,7 @@ fn row(
     let stages: Vec<String> = long.map(|(stage, s)| format!("{stage} {s:.1}")).collect();
     let (variant, edges) = match report.variant {
         Variant::Exact => ("exact", "all".into()),
+        Variant::Reduced => ("reduced", "–".into()),
         Variant::Creased { edges } => ("creased", edges.to_string()),
         _ => ("rounded", "–".to_owned()),
     };

@@ -181,6 +181,9 @@ pub enum Variant {
         /// Number of edges of the triangle mesh that could be kept.
         edges: usize,
     },
+    /// Edges of a medial mesh that would be exact, with [`BuildReport::exact_with`] primitives, were collapsed until it
+    /// had as few as you allow. Most of its faces and sharp edges are still exact.
+    Reduced,
     /// The medial mesh is exact: it consists of the medial axes of convex bodies with flat faces, or of overlapping
     /// convex pieces that together are the body. For such pieces [`Hausdorff::error`] is measured:
     /// some 1e-6 of the longest side. It is larger if vertices lie off the planes of their faces

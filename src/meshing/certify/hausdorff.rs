@@ -26,7 +26,7 @@
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use crate::medial::MedialMesh;
-use crate::meshing::certify::inside::{Cell, Solid};
+use crate::meshing::certify::inside::{Cell, MOST_WAY, Solid};
 use crate::meshing::certify::largest::{DividedSurface, Effort, LargestDistance, Look};
 use crate::meshing::draft::Draft;
 use crate::meshing::findings::Findings;
@@ -42,6 +42,9 @@ use std::ops::ControlFlow;
 
 /// Share of its length by which a way out of the solid may be overstated.
 const EXIT_OVERESTIMATE: f64 = 0.05;
+
+/// What a cell in a search for a way out costs, in pieces: measured on drums of many thin parts.
+const CELL: f64 = 0.25;
 
 /// Step off the surface that tells an enclosed part from the outside (longest side 1).
 const OFF_SURFACE: f64 = 1e-4;
@@ -121,6 +124,7 @@ pub(crate) fn measure(
         solid: &solid,
         uncovered: 0.0,
         hint: 0,
+        cells: 0,
     };
     let mut start = 0.0f64;
     for (i, sample) in vertex_samples(surface).into_iter().enumerate() {
@@ -143,7 +147,7 @@ pub(crate) fn measure(
     search.in_depth(triangles.chain(needles), |part| watch.at(0.5 * part))?;
     let (outward, slack) = (search.best, search.slack());
     // The other direction gets what this one did not need.
-    let left = 2.0 * budget - search.examined() as f64 / effort.share;
+    let left = 2.0 * budget - search.spent() / effort.share;
     let mut boundary = FromBoundary {
         tree,
         solid: &solid,
@@ -180,6 +184,8 @@ struct FromSource<'a> {
     solid: &'a Solid<'a>,
     uncovered: f64,
     hint: u32,
+    /// Cells that the last search for a way out looked at; 0 where there was none.
+    cells: u64,
 }
 
 impl FromSource<'_> {
@@ -217,26 +223,22 @@ impl FromSource<'_> {
         if allowed >= -signed && (leaves(allowed, normal) || leaves(allowed, outward)) {
             return Look::Settled;
         }
-        let exit = |towards: Point| self.solid.exit_distance(p, towards, self.hint);
-        let way = exit(normal).min(exit(outward));
+        let exit =
+            |towards: Point, most: f64| self.solid.exit_distance(p, towards, most, self.hint);
+        let way_up_to = |most: f64| exit(normal, most).min(exit(outward, most));
         // Where all ways are equally long, rounding alone must not start a search.
-        if way <= best * (1.0 + 1e-6) {
+        let way = way_up_to(best * (1.0 + 1e-6));
+        if way.is_finite() {
             return Look::Distance(way);
         }
         if self.is_enclosed(p, normal) {
             Look::Distance(0.0)
         } else {
-            // Shorter ways neither raise the result nor leave anything open that is not open anyway.
-            let enough = if allowed < 0.0 {
-                best
-            } else {
-                best.min(allowed)
-            };
-            Look::Distance(
-                self.solid
-                    .nearest_exit(p, [way, enough], EXIT_OVERESTIMATE)
-                    .distance,
-            )
+            let way = way_up_to(MOST_WAY);
+            // Shorter ways do not raise the result.
+            let exit = self.solid.nearest_exit(p, [way, best], EXIT_OVERESTIMATE);
+            self.cells = exit.cells;
+            Look::Distance(exit.distance)
         }
     }
 
@@ -297,6 +299,7 @@ impl DividedSurface for FromSource<'_> {
         let (corners, triangle) = piece;
         let [a, b, c] = *corners;
         let center = (a + b + c) * (1.0 / 3.0);
+        self.cells = 0;
         let Some(&normal) = self.surface.normals.get(*triangle as usize) else {
             return self.look_at_needle(corners, center, allowed + rho);
         };
@@ -304,6 +307,10 @@ impl DividedSurface for FromSource<'_> {
             return Look::Settled;
         }
         self.look_at(center, normal, allowed, best)
+    }
+
+    fn extra_work(&self) -> f64 {
+        CELL * self.cells as f64
     }
 
     fn cut(&self, (corners, triangle): Self::Piece, pieces: &mut Vec<Self::Piece>) {

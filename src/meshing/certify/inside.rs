@@ -23,6 +23,12 @@ const WAY_OUT_LENGTH: f64 = 1e-6;
 /// the first as large as the way out, thin steps and slits take ten times as long.
 const LARGER: f64 = 4.0;
 
+/// Length (longest side 1) that is beyond any solid.
+pub const MOST_WAY: f64 = 2.0;
+
+/// Room of a rough search for an exit, as a share of the distance that is enough.
+const ROUGH: f64 = 0.25;
+
 /// A cube of space.
 #[derive(Clone, Copy)]
 pub struct Cell {
@@ -174,18 +180,18 @@ impl<'a> Solid<'a> {
         self.is_on_boundary(moved, near).then_some(moved)
     }
 
-    /// Length of the way from `p`, inside, along a unit vector to the boundary; infinite where it
-    /// only grazes it.
-    pub fn exit_distance(&self, p: Point, towards: Point, hint: u32) -> f64 {
+    /// Length of the way from `p`, inside, along a unit vector to the boundary; infinite where it only grazes it, or is
+    /// longer than `most`.
+    pub fn exit_distance(&self, p: Point, towards: Point, most: f64, hint: u32) -> f64 {
         let mut way = 0.0;
-        // 64 steps end all but grazing ways, and 2 is beyond any solid.
+        // 64 steps end all but grazing ways.
         for _ in 0..64 {
             let depth = -self.nearest(p + towards * way, hint).signed.distance;
             if depth <= ON_BOUNDARY {
                 return way;
             }
             way += depth;
-            if way > 2.0 {
+            if way > most {
                 break;
             }
         }
@@ -194,11 +200,26 @@ impl<'a> Solid<'a> {
 
     /// The nearest exit from `p`, inside, with a distance that is overstated by at most a `share` of it or
     /// [`WAY_OUT_LENGTH`]; none beyond `way`, or beyond 2. Any exit found within `enough` ends the search. Cubes around
-    /// `p` are searched, each [`LARGER`] than the one before, until one holds an exit and the ball up to it.
+    /// `p` are searched, each [`LARGER`] than the one before, until one holds an exit and the ball up to it. Before, the
+    /// one of size `enough` is searched roughly: in a wedge of air that ends in the body all cells at its tip come first.
     pub fn nearest_exit(&self, p: Point, [way, enough]: [f64; 2], share: f64) -> Exit {
-        let most = way.min(2.0);
+        let most = way.min(MOST_WAY);
         let near = self.nearest(p, 0);
-        let mut cells = 0;
+        let room = |way: f64| (share * way).max(WAY_OUT_LENGTH);
+        let rough = Cell {
+            center: p,
+            half_side: enough.min(most),
+        };
+        let exit = self.exit_within(
+            rough,
+            [most, enough],
+            &|way| room(way).max(ROUGH * enough),
+            near.primitive,
+        );
+        if exit.distance <= enough {
+            return exit;
+        }
+        let mut cells = exit.cells;
         // No exit is nearer than the depth.
         let mut half_side = LARGER * near.signed.distance.abs().max(ON_BOUNDARY);
         loop {
@@ -207,7 +228,7 @@ impl<'a> Solid<'a> {
                 center: p,
                 half_side: half_side.min(most),
             };
-            let exit = self.exit_within(cell, [most, enough], share, near.primitive);
+            let exit = self.exit_within(cell, [most, enough], &room, near.primitive);
             cells += exit.cells;
             if last || exit.distance <= half_side {
                 return Exit { cells, ..exit };
@@ -217,8 +238,14 @@ impl<'a> Solid<'a> {
     }
 
     /// The nearest exit in a cube around a point as [`Self::nearest_exit`]. Cells that the boundary may cross are
-    /// searched, nearest first.
-    fn exit_within(&self, cube: Cell, [way, enough]: [f64; 2], share: f64, mut hint: u32) -> Exit {
+    /// searched, nearest first, down to half of the `room` that a way may be overstated by.
+    fn exit_within(
+        &self,
+        cube: Cell,
+        [way, enough]: [f64; 2],
+        room: &dyn Fn(f64) -> f64,
+        mut hint: u32,
+    ) -> Exit {
         let p = cube.center;
         let mut best = Exit {
             distance: way,
@@ -230,7 +257,7 @@ impl<'a> Solid<'a> {
             cell: cube,
         }]);
         while let Some(PendingCell { bound, cell }) = waiting.pop() {
-            let room = (share * best.distance).max(WAY_OUT_LENGTH);
+            let room = room(best.distance);
             if best.distance <= enough || bound >= best.distance - room {
                 break;
             }

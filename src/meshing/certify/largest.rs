@@ -65,6 +65,10 @@ pub trait DividedSurface {
     /// Examines the centre of a piece of radius `rho`: `best` is the largest distance so far, and a
     /// distance up to `allowed` at the centre settles the piece.
     fn look(&mut self, piece: &Self::Piece, rho: f64, best: f64, allowed: f64) -> Look;
+    /// What the last look cost beyond the usual, in usual looks.
+    fn extra_work(&self) -> f64 {
+        0.0
+    }
     /// Cuts a piece into smaller ones.
     fn cut(&self, piece: Self::Piece, pieces: &mut Vec<Self::Piece>);
 }
@@ -120,9 +124,10 @@ pub struct LargestDistance<'a, S: DividedSurface> {
     leaders: Vec<(f64, S::Piece)>,
     /// Bound of the distances in the pieces that were too small to cut.
     given_up: f64,
-    /// Pieces to examine, those examined, and the share of the surface that is done.
+    /// Pieces to examine, those examined, what that cost in usual pieces, and the share of the surface that is done.
     budget: f64,
     examined: usize,
+    spent: f64,
     done: f64,
     /// Largest slack with which a piece was dropped.
     widest: f64,
@@ -141,6 +146,7 @@ impl<'a, S: DividedSurface> LargestDistance<'a, S> {
             given_up: 0.0,
             budget: budget * effort.share,
             examined: 0,
+            spent: 0.0,
             done: 0.0,
             widest: 0.0,
         }
@@ -151,9 +157,9 @@ impl<'a, S: DividedSurface> LargestDistance<'a, S> {
         self.widest.max(self.given_up - self.high())
     }
 
-    /// Pieces looked at so far.
-    pub fn examined(&self) -> usize {
-        self.examined
+    /// What was spent of the budget so far.
+    pub fn spent(&self) -> f64 {
+        self.spent
     }
 
     /// Distance that must be exceeded to matter.
@@ -162,7 +168,7 @@ impl<'a, S: DividedSurface> LargestDistance<'a, S> {
     }
 
     fn slack_now(&self) -> f64 {
-        let ahead = self.examined as f64 / self.budget - self.done - AHEAD;
+        let ahead = self.spent / self.budget - self.done - AHEAD;
         let slack = self.effort.slack * self.high().max(SMALL);
         match (ahead / STEP).ceil() {
             doubled if doubled > 0.0 => slack * doubled.min(32.0).exp2(),
@@ -239,7 +245,9 @@ impl<'a, S: DividedSurface> LargestDistance<'a, S> {
         self.widest = self.widest.max(slack);
         let rho = self.side.radius(&piece);
         let allowed = self.high() + slack - rho;
-        let (sample, bound) = match self.side.look(&piece, rho, self.best, allowed) {
+        let look = self.side.look(&piece, rho, self.best, allowed);
+        self.spent += 1.0 + self.side.extra_work();
+        let (sample, bound) = match look {
             Look::Settled => return,
             Look::Hidden(bound) => (0.0, bound),
             Look::Distance(d) => (d, d),

@@ -17,6 +17,7 @@ use crate::meshing::surface::checked_surface::{Surface, cross};
 use crate::meshing::surface::flat_faces::{
     FLATNESS, FlatFaces, ON, convex_faces, flat_faces, rounding,
 };
+use crate::meshing::surface::touching::bodies;
 use crate::meshing::watch::Watch;
 use std::borrow::Cow;
 
@@ -114,14 +115,14 @@ impl Source {
         for &patch in &self.bounds().0.patch_of {
             is_seen[patch as usize] = true;
         }
-        let mut bodies = vec![Vec::new(); is_seen.len()];
-        for (t, &patch) in self.surface.patch_of.iter().enumerate() {
-            bodies[patch as usize].push(t);
-        }
-        let seen = bodies.into_iter().zip(is_seen).filter(|(_, seen)| *seen);
+        let bodies = bodies(&self.surface, watch)?;
+        let seen = bodies.into_iter().filter(|body| {
+            let mut patches = body.iter().map(|&t| self.surface.patch_of[t]);
+            patches.any(|patch| is_seen[patch as usize])
+        });
         let most = faces_of(most);
         let mut parts = Vec::new();
-        for (body, _) in seen {
+        for body in seen {
             let Some(faces) = convex_faces(&self.surface, body, flat, most, watch)? else {
                 return Ok(None);
             };

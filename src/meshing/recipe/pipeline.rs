@@ -32,16 +32,21 @@ impl Source {
         let exact = exact.filter(|exact| exact.keeps(self.limits.max_error));
         let count = exact.as_ref().map(|exact| exact.draft.primitives().len());
         let asked = self.limits.primitives.unwrap_or(usize::MAX);
-        let exact = exact.filter(|_| count <= Some(asked));
-        let mut candidate = self.best_beside(exact, watch)?;
+        let (exact, larger) = match count <= Some(asked) {
+            true => (exact, None),
+            false => (None, exact),
+        };
+        let mut candidate = self.best_beside(exact, larger, watch)?;
         candidate.exact_with = count.filter(|_| candidate.variant != Variant::Exact);
         Ok(candidate)
     }
 
-    /// The best candidate, where `exact` is one that is exact, if there is any.
+    /// The best candidate, where `exact` is one that is exact, and `larger` one that would be, but has more primitives
+    /// than are allowed, if there are any.
     fn best_beside(
         &mut self,
         exact: Option<Candidate>,
+        larger: Option<Candidate>,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
         if self.limits.max_error.is_none()
@@ -58,10 +63,21 @@ impl Source {
             Some(prism) if prism.error() <= NEAR => return Ok(prism),
             other => other,
         };
+        let reduced = match (larger, self.limits.primitives) {
+            (Some(larger), Some(most)) => self.reduced(&larger, most, watch)?,
+            _ => None,
+        };
+        let reduced = match (reduced, self.limits.max_error) {
+            (Some(reduced), None) if reduced.error() <= NEAR => return Ok(reduced),
+            (other, _) => other,
+        };
         let start = self.start(exact.is_some(), watch)?;
         match self.limits.max_error {
-            None => self.rounded_or_creased(start, prism, watch),
-            Some(limit) => self.within(limit, start, exact.or(prism), watch),
+            None => {
+                let fitted = self.rounded_or_creased(start, watch)?;
+                Ok(nearer(nearer(fitted, prism), reduced))
+            }
+            Some(limit) => self.within(limit, start, exact.or(prism), reduced, watch),
         }
     }
 
@@ -121,12 +137,7 @@ impl Source {
 
     /// The better, within the limit on the count, of a medial mesh whose ends are rounded, and one that keeps
     /// creases, if there are any.
-    fn rounded_or_creased(
-        &self,
-        start: Start,
-        prism: Option<Candidate>,
-        watch: &mut Watch,
-    ) -> Result<Candidate, BuildError> {
+    fn rounded_or_creased(&self, start: Start, watch: &mut Watch) -> Result<Candidate, BuildError> {
         watch.begin("simplify")?;
         let samples = start.samples;
         let rounded = SolidAndSheets::new(start, &self.tree, watch)?;
@@ -140,7 +151,7 @@ impl Source {
                 creases,
             }) => Some(self.collapses(SolidAndSheets::solid(simplifier), creases, most, watch)?),
         };
-        Ok(nearer(self.better(rounded, creased, watch)?, prism))
+        self.better(rounded, creased, watch)
     }
 
     /// A medial mesh that keeps creases, if any are wanted, and there are any.
@@ -188,14 +199,19 @@ impl Source {
     }
 
     /// The smallest medial mesh whose error is at most `limit`, or the best that there is; `exact` is one that keeps it
-    /// and may be larger than it takes.
+    /// and may be larger than it takes, and `reduced` one that may not.
     fn within(
         &self,
         limit: f64,
         start: Start,
         exact: Option<Candidate>,
+        reduced: Option<Candidate>,
         watch: &mut Watch,
     ) -> Result<Candidate, BuildError> {
+        let (exact, reduced) = match reduced {
+            Some(reduced) if exact.is_none() && reduced.keeps(Some(limit)) => (Some(reduced), None),
+            reduced => (exact, reduced),
+        };
         let (mut rounded, mut creased) = self.ladders(start, watch)?;
         let ladders = std::iter::once(&mut rounded)
             .chain(creased.as_mut())
@@ -216,7 +232,8 @@ impl Source {
             Some(creased) => Some(self.collapses(creased.finest, creased.creases, top, watch)?),
         };
         let prism = self.extruded(watch)?;
-        let mut candidate = nearer(self.better(rounded, creased, watch)?, prism);
+        let fitted = self.better(rounded, creased, watch)?;
+        let mut candidate = nearer(nearer(fitted, prism), reduced);
         let (count, error) = (candidate.draft.primitives().len(), candidate.error());
         candidate.notes.push(match asked.filter(|most| *most <= top) {
             Some(most) => format!(
@@ -232,10 +249,10 @@ impl Source {
     }
 }
 
-/// The nearer of a medial mesh and a prism, if there is one.
-fn nearer(fitted: Candidate, prism: Option<Candidate>) -> Candidate {
-    match prism {
-        Some(prism) if prism.error() < fitted.error() => prism,
-        _ => fitted,
+/// The nearer of a medial mesh and another, if there is one.
+fn nearer(first: Candidate, other: Option<Candidate>) -> Candidate {
+    match other {
+        Some(other) if other.error() < first.error() => other,
+        _ => first,
     }
 }

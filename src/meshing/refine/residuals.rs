@@ -12,7 +12,7 @@
 //! et al., "Sphere-Meshes" (2013), §5.
 
 use crate::error::BuildError;
-use crate::meshing::certify::inside::{Cell, Solid};
+use crate::meshing::certify::inside::{Cell, MOST_WAY, Solid};
 use crate::meshing::certify::primitive_tree::NearestPrimitive;
 use crate::meshing::draft::{Ball, Corners, Draft};
 use crate::meshing::geometry::bounds::{Point, direction};
@@ -292,7 +292,7 @@ pub fn way_out(
     work: &mut u64,
 ) -> Option<Point> {
     let p = sample.point;
-    let way = solid.exit_distance(p, sample.normal, hint);
+    let way = solid.exit_distance(p, sample.normal, MOST_WAY, hint);
     let straight = way.is_finite().then(|| p + sample.normal * way);
     let nearest = solid.nearest_exit(p, [way, beyond], EXIT_OVERESTIMATE);
     *work += NODES_OF_CELL * nearest.cells;

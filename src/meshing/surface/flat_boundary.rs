@@ -6,7 +6,7 @@ use crate::meshing::geometry::bounds::{Bounds, Point};
 use crate::meshing::geometry::convex::{Plane, cut_polygon};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::flat_faces::{FLATNESS, ON, flat_faces, rounding};
+use crate::meshing::surface::flat_faces::{FLATNESS, FlatFaces, ON, flat_faces, rounding};
 use crate::meshing::surface::folds::Folds;
 use crate::meshing::surface::hidden::Hidden;
 use crate::meshing::watch::Watch;
@@ -40,7 +40,10 @@ pub fn flat_pieces(
         let flat = flatness * rounding(surface);
         let body = (0..surface.triangles.len()).collect();
         on = ON * flat;
-        faces = flat_faces(surface, body, flat, MOST_FACES, watch)?;
+        faces = match flat_faces(surface, body, flat, MOST_FACES, watch)? {
+            None => faces_of_patches(surface, flat, watch)?,
+            faces => faces,
+        };
         if faces.is_some() {
             break;
         }
@@ -90,6 +93,34 @@ pub fn flat_pieces(
         }
     }
     Ok(Some(pieces))
+}
+
+/// The faces of each patch by themselves: faces of different ones may be so near to one plane that together they are on
+/// none.
+fn faces_of_patches(
+    surface: &Surface,
+    flat: f64,
+    watch: &mut Watch,
+) -> Result<Option<FlatFaces>, BuildError> {
+    let mut bodies = vec![Vec::new(); surface.whole.len()];
+    for (t, &patch) in surface.patch_of.iter().enumerate() {
+        bodies[patch as usize].push(t);
+    }
+    let mut all = FlatFaces {
+        planes: Vec::new(),
+        face_of: Vec::with_capacity(surface.triangles.len()),
+    };
+    for body in bodies {
+        let (before, left) = (all.planes.len(), MOST_FACES - all.planes.len());
+        let Some(faces) = flat_faces(surface, body, flat, left, watch)? else {
+            return Ok(None);
+        };
+        let face_of = faces.face_of.into_iter();
+        all.face_of
+            .extend(face_of.map(|(t, face)| (t, before as u32 + face)));
+        all.planes.extend(faces.planes);
+    }
+    Ok(Some(all))
 }
 
 /// A triangle cut along the planes of faces, where these come near it.

@@ -7,7 +7,7 @@
 //! - Where it overlaps itself: `boundary.rs` (triangles with matter on one side only), exactly for flat faces
 //!   `flat_boundary.rs`; `hidden.rs` (points with matter on both sides), `folds.rs` (parts turned inside out).
 //! - What later stages ask of it: `edges.rs` (edges and shells), `creases.rs` (sharp edges), `flat_faces.rs`,
-//!   `profile.rs` (prisms), `samples.rs` (points spread evenly).
+//!   `touching.rs` (bodies that share faces), `profile.rs` (prisms), `samples.rs` (points spread evenly).
 
 pub(crate) mod boundary;
 pub(crate) mod checked_surface;
@@ -26,4 +26,5 @@ pub(crate) mod samples;
 pub(crate) mod seams;
 pub(crate) mod sew;
 pub(crate) mod shared_faces;
+pub(crate) mod touching;
 pub(crate) mod weld;
