@@ -177,7 +177,7 @@ fn an_angle_below_zero_is_refused() {
     assert!(refused.is_err());
 }
 
-/// With fewer primitives than its axis has, a polyhedron is fitted as any body.
+/// A polyhedron has no more primitives than are allowed, though its axis has.
 #[test]
 fn a_polyhedron_keeps_the_count() {
     let mesh = cuboid(Vector::splat(1.0));

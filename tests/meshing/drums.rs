@@ -15,14 +15,14 @@ const WALL: f64 = 0.03;
 const HALF: f64 = 0.2;
 
 /// A convex polygon, counterclockwise, between two heights.
-struct Prism {
-    corners: Vec<[f64; 2]>,
-    heights: [f64; 2],
+pub struct Prism {
+    pub corners: Vec<[f64; 2]>,
+    pub heights: [f64; 2],
 }
 
 impl Prism {
     /// How far a point is outside the farthest of its planes; negative inside.
-    fn height_over(&self, p: Vector) -> f64 {
+    pub fn height_over(&self, p: Vector) -> f64 {
         let [x, y, z] = [p.x, p.y, p.z].map(f64::from);
         let n = self.corners.len();
         let sides = (0..n).map(|i| {
@@ -49,7 +49,7 @@ impl Prism {
 }
 
 /// A closed drum of so many sides, with so many lifters that stick into corners of its wall, turned by an angle.
-fn drum(sides: usize, lifters: usize, turned: f64) -> Vec<Prism> {
+pub fn drum(sides: usize, lifters: usize, turned: f64) -> Vec<Prism> {
     let at = |r: f64, k: usize| {
         let (sin, cos) = (turned + (k as f64 + 0.5) / sides as f64 * TAU).sin_cos();
         [r * cos, r * sin]
@@ -81,7 +81,7 @@ fn drum(sides: usize, lifters: usize, turned: f64) -> Vec<Prism> {
     wall.chain(ends).chain(lifters).collect()
 }
 
-fn build(parts: &[Prism], quality: Quality, primitives: usize) -> (MedialMesh, BuildReport) {
+pub fn build(parts: &[Prism], quality: Quality, primitives: usize) -> (MedialMesh, BuildReport) {
     let all = parts.iter().map(Prism::mesh).reduce(Mesh::and);
     let mesh = all.expect("parts");
     let options = BuildOptions {

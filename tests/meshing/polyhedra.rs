@@ -28,7 +28,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-fn hull(points: &[Vector]) -> Mesh {
+pub fn hull(points: &[Vector]) -> Mesh {
     let (vertices, indices) = convex_hull(points);
     Mesh { vertices, indices }
 }
@@ -83,7 +83,7 @@ fn beyond(planes: &[([f64; 3], f64)], sphere: &MedialSphere) -> f64 {
 
 /// How far the result's spheres stick out of the planes, and points of the faces out of the result, over the
 /// longest side.
-fn off(mesh: &Mesh, medial: &MedialMesh, seed: u64, samples: usize) -> (f64, f64) {
+pub fn off(mesh: &Mesh, medial: &MedialMesh, seed: u64, samples: usize) -> (f64, f64) {
     let side = f64::from(mesh.longest_side());
     let planes = planes(mesh);
     let spheres = medial.spheres().iter();
@@ -123,7 +123,7 @@ fn is_axis(report: &BuildReport) -> bool {
         .any(|n| n.starts_with("a convex polyhedron"))
 }
 
-fn points_in_ball(random: &mut Random, count: usize) -> Vec<Vector> {
+pub fn points_in_ball(random: &mut Random, count: usize) -> Vec<Vector> {
     let mut points = Vec::new();
     while points.len() < count {
         let p = random.vector(1.0);
