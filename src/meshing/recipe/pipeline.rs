@@ -68,15 +68,12 @@ impl Source {
             _ => None,
         };
         let reduced = match (reduced, self.limits.max_error) {
-            (Some(reduced), None) if reduced.error() <= NEAR => return Ok(reduced),
+            (Some(reduced), None) => return Ok(reduced),
             (other, _) => other,
         };
         let start = self.start(exact.is_some(), watch)?;
         match self.limits.max_error {
-            None => {
-                let fitted = self.rounded_or_creased(start, watch)?;
-                Ok(nearer(nearer(fitted, prism), reduced))
-            }
+            None => Ok(nearer(self.rounded_or_creased(start, watch)?, prism)),
             Some(limit) => self.within(limit, start, exact.or(prism), reduced, watch),
         }
     }

@@ -2,9 +2,10 @@
 //! Most of it stays exact, while a fit starts from samples of the surface.
 
 use crate::error::BuildError;
+use crate::meshing::certify::largest::Effort;
 use crate::meshing::draft::Draft;
 use crate::meshing::options::{Quality, Variant};
-use crate::meshing::recipe::candidate::{Candidate, Enclosed};
+use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::recipe::extruded::NEAR;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::refine::swaps::remove;
@@ -12,14 +13,15 @@ use crate::meshing::simplify::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::watch::Watch;
 
-/// Ratio of the primitives of an exact medial mesh to those that are allowed, up to which it is reduced. At twice as
-/// many, fits of hulls, frames and wheels were about as near.
+/// Ratio of the primitives of an exact medial mesh to those that are allowed, up to which it is reduced. None of the
+/// hulls, drums and frames that were measured was near at twice as many.
 const MOST_RATIO: usize = 2;
 
 impl Source {
-    /// The medial mesh `exact` with at most `most` primitives; `None` where it has far more. Edges are collapsed in the
-    /// order of their quadric error; where that is not near and more work is allowed, also in the order of their
-    /// measured error, and the nearer of the two is returned.
+    /// The medial mesh `exact` with at most `most` primitives, if it is still off by at most [`NEAR`]. Farther off it
+    /// is not worth its time in a simulation: of a chair it took three times that of a fit twice as far off. Edges are
+    /// collapsed in the order of their quadric error; if that gives none, and more work is allowed, in the order of
+    /// their measured error.
     pub fn reduced(
         &self,
         exact: &Candidate,
@@ -35,33 +37,37 @@ impl Source {
         let by_measure = Simplifier::new(exact, BOUNDARY_WEIGHT_SOLID, target.tree, watch)?;
         let mut by_quadrics = by_measure.clone();
         by_quadrics.reduce_to(most, watch)?;
-        let mut best = self.if_few(None, by_quadrics.draft(), most, watch)?;
-        let is_near = best.as_ref().is_some_and(|best| best.error() <= NEAR);
-        if !is_near && self.limits.quality > Quality::Fast {
-            watch.begin("simplify")?;
-            let draft = remove(by_measure, most, &target, watch)?;
-            best = self.if_few(best, draft, most, watch)?;
+        let near = self.near(by_quadrics.draft(), most, watch)?;
+        if near.is_some() || self.limits.quality == Quality::Fast {
+            return Ok(near);
         }
-        let Some(best) = best else {
-            return Ok(None);
-        };
-        let mut candidate = self.reported(best, watch)?;
-        candidate.variant = Variant::Reduced;
-        Ok(Some(candidate))
+        watch.begin("simplify")?;
+        let draft = remove(by_measure, most, &target, watch)?;
+        self.near(draft, most, watch)
     }
 
-    /// The better of `best` and a draft, where that has at most `most` primitives.
-    fn if_few(
+    /// A draft that covers the surface when asked to, if it has at most `most` primitives and is off by at most
+    /// [`NEAR`].
+    fn near(
         &self,
-        best: Option<Enclosed>,
         draft: Draft,
         most: usize,
         watch: &mut Watch,
-    ) -> Result<Option<Enclosed>, BuildError> {
-        match draft.primitives().len() <= most {
-            true => Ok(Some(self.or_better(best, draft, None, watch)?)),
-            false => Ok(best),
+    ) -> Result<Option<Candidate>, BuildError> {
+        if draft.primitives().len() > most {
+            return Ok(None);
         }
+        let effort = Effort {
+            enough: NEAR,
+            ..Effort::FINE
+        };
+        let enclosed = self.enclosed(draft, effort, watch)?;
+        if enclosed.error() > NEAR {
+            return Ok(None);
+        }
+        let mut candidate = self.reported(enclosed, watch)?;
+        candidate.variant = Variant::Reduced;
+        Ok(Some(candidate))
     }
 }
 
