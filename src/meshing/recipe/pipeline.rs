@@ -9,6 +9,7 @@ use crate::meshing::recipe::counts::{Collapses, LARGEST_GAIN};
 use crate::meshing::recipe::extruded::NEAR;
 use crate::meshing::recipe::ladder::Ladder;
 use crate::meshing::recipe::polyhedron::polyhedra;
+use crate::meshing::recipe::reduced::or_reduced;
 use crate::meshing::recipe::smallest::Smallest;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::simplify::creased::{Creased, creased};
@@ -68,12 +69,15 @@ impl Source {
             _ => None,
         };
         let reduced = match (reduced, self.limits.max_error) {
-            (Some(reduced), None) => return Ok(reduced),
+            (Some(reduced), None) if reduced.error() <= NEAR => return Ok(reduced),
             (other, _) => other,
         };
         let start = self.start(exact.is_some(), watch)?;
         match self.limits.max_error {
-            None => Ok(nearer(self.rounded_or_creased(start, watch)?, prism)),
+            None => {
+                let fitted = self.rounded_or_creased(start, watch)?;
+                Ok(or_reduced(nearer(fitted, prism), reduced))
+            }
             Some(limit) => self.within(limit, start, exact.or(prism), reduced, watch),
         }
     }
@@ -230,7 +234,7 @@ impl Source {
         };
         let prism = self.extruded(watch)?;
         let fitted = self.better(rounded, creased, watch)?;
-        let mut candidate = nearer(nearer(fitted, prism), reduced);
+        let mut candidate = or_reduced(nearer(fitted, prism), reduced);
         let (count, error) = (candidate.draft.primitives().len(), candidate.error());
         candidate.notes.push(match asked.filter(|most| *most <= top) {
             Some(most) => format!(
