@@ -5,7 +5,7 @@ use crate::oracle::Random;
 use crate::polyhedra::{hull, off, points_in_ball};
 use rapier3d_medial::{BuildOptions, MedialMesh, Quality, Variant};
 
-/// Hulls of random points, against their planes. Fitted in the same quality they are off by 2 to 4 %.
+/// Hulls of random points, against their planes.
 #[test]
 fn hulls_with_some_primitives_fewer_are_nearly_exact() {
     for seed in 1..=4 {
@@ -34,7 +34,7 @@ fn hulls_with_some_primitives_fewer_are_nearly_exact() {
     }
 }
 
-/// The pieces of a drum, which overlap, are reduced together. Fitted it is off by 4 % of its size.
+/// The pieces of a drum are reduced together.
 #[test]
 fn drums_with_some_primitives_fewer_are_nearly_exact() {
     let (_, report) = build(&drum(12, 4, 0.1), Quality::Fast, 450);

@@ -9,7 +9,6 @@ use crate::meshing::recipe::counts::{Collapses, LARGEST_GAIN};
 use crate::meshing::recipe::extruded::NEAR;
 use crate::meshing::recipe::ladder::Ladder;
 use crate::meshing::recipe::polyhedron::polyhedra;
-use crate::meshing::recipe::reduced::or_reduced;
 use crate::meshing::recipe::smallest::Smallest;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::simplify::creased::{Creased, creased};
@@ -68,16 +67,14 @@ impl Source {
             (Some(larger), Some(most)) => self.reduced(&larger, most, watch)?,
             _ => None,
         };
-        let reduced = match (reduced, self.limits.max_error) {
-            (Some(reduced), None) if reduced.error() <= NEAR => return Ok(reduced),
-            (other, _) => other,
-        };
+        if self.limits.max_error.is_none()
+            && let Some(reduced) = reduced
+        {
+            return Ok(reduced);
+        }
         let start = self.start(exact.is_some(), watch)?;
         match self.limits.max_error {
-            None => {
-                let fitted = self.rounded_or_creased(start, watch)?;
-                Ok(or_reduced(nearer(fitted, prism), reduced))
-            }
+            None => Ok(nearer(self.rounded_or_creased(start, watch)?, prism)),
             Some(limit) => self.within(limit, start, exact.or(prism), reduced, watch),
         }
     }
@@ -234,7 +231,7 @@ impl Source {
         };
         let prism = self.extruded(watch)?;
         let fitted = self.better(rounded, creased, watch)?;
-        let mut candidate = or_reduced(nearer(fitted, prism), reduced);
+        let mut candidate = nearer(nearer(fitted, prism), reduced);
         let (count, error) = (candidate.draft.primitives().len(), candidate.error());
         candidate.notes.push(match asked.filter(|most| *most <= top) {
             Some(most) => format!(

@@ -5,7 +5,7 @@ use crate::error::BuildError;
 use crate::meshing::certify::largest::Effort;
 use crate::meshing::draft::Draft;
 use crate::meshing::options::{Quality, Variant};
-use crate::meshing::recipe::candidate::{Candidate, Enclosed};
+use crate::meshing::recipe::candidate::Candidate;
 use crate::meshing::recipe::extruded::NEAR;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::refine::swaps::remove;
@@ -17,17 +17,11 @@ use crate::meshing::watch::Watch;
 /// hulls, drums and frames that were measured was near at twice as many.
 const MOST_RATIO: usize = 2;
 
-/// Error (longest side 1) above which one is given up.
-const MOST_ERROR: f64 = 4.0 * NEAR;
-
-/// How many times nearer one must be than a fit, where it is off by more than [`NEAR`]: in a simulation it costs more.
-/// Of a chair it took three times as long as a fit that was twice as far off.
-const GAIN: f64 = 3.0;
-
 impl Source {
-    /// The medial mesh `exact` with at most `most` primitives; `None` where it is far off then. Edges are collapsed in
-    /// the order of their quadric error; if that is not near, and more work is allowed, also in the order of their
-    /// measured error.
+    /// The medial mesh `exact` with at most `most` primitives, if it is still off by at most [`NEAR`]. Farther off it
+    /// is not worth what it costs in a simulation: of a chair three times as much as a fit twice as far off. Edges are
+    /// collapsed in the order of their quadric error; if that gives none, and more work is allowed, in the order of
+    /// their measured error.
     pub fn reduced(
         &self,
         exact: &Candidate,
@@ -43,46 +37,37 @@ impl Source {
         let by_measure = Simplifier::new(exact, BOUNDARY_WEIGHT_SOLID, target.tree, watch)?;
         let mut by_quadrics = by_measure.clone();
         by_quadrics.reduce_to(most, watch)?;
-        let mut best = self.if_near(by_quadrics.draft(), most, MOST_ERROR, watch)?;
-        let error = best.as_ref().map_or(MOST_ERROR, Enclosed::error);
-        if error > NEAR && self.limits.quality > Quality::Fast {
-            watch.begin("simplify")?;
-            let draft = remove(by_measure, most, &target, watch)?;
-            best = self.if_near(draft, most, error, watch)?.or(best);
+        let near = self.if_near(by_quadrics.draft(), most, watch)?;
+        if near.is_some() || self.limits.quality == Quality::Fast {
+            return Ok(near);
         }
-        let Some(best) = best else {
-            return Ok(None);
-        };
-        let mut candidate = self.reported(best, watch)?;
-        candidate.variant = Variant::Reduced;
-        Ok(Some(candidate))
+        watch.begin("simplify")?;
+        let draft = remove(by_measure, most, &target, watch)?;
+        self.if_near(draft, most, watch)
     }
 
-    /// A draft that covers the surface when asked to, if it has at most `most` primitives, and an error below `enough`.
+    /// A draft that covers the surface when asked to, if it has at most `most` primitives and is off by at most
+    /// [`NEAR`].
     fn if_near(
         &self,
         draft: Draft,
         most: usize,
-        enough: f64,
         watch: &mut Watch,
-    ) -> Result<Option<Enclosed>, BuildError> {
+    ) -> Result<Option<Candidate>, BuildError> {
         if draft.primitives().len() > most {
             return Ok(None);
         }
         let effort = Effort {
-            enough,
+            enough: NEAR,
             ..Effort::FINE
         };
         let enclosed = self.enclosed(draft, effort, watch)?;
-        Ok((enclosed.error() < enough).then_some(enclosed))
-    }
-}
-
-/// A fit, or a reduced medial mesh, if there is one and it is so much nearer that it is worth its cost.
-pub fn or_reduced(fitted: Candidate, reduced: Option<Candidate>) -> Candidate {
-    match reduced {
-        Some(reduced) if GAIN * reduced.error() < fitted.error() => reduced,
-        _ => fitted,
+        if enclosed.error() > NEAR {
+            return Ok(None);
+        }
+        let mut candidate = self.reported(enclosed, watch)?;
+        candidate.variant = Variant::Reduced;
+        Ok(Some(candidate))
     }
 }
 
@@ -91,9 +76,8 @@ fn without_growth(exact: &Draft) -> Draft {
     let mut draft = exact.clone();
     let radii = draft.balls.iter().map(|ball| ball.radius);
     let growth = radii.fold(f64::INFINITY, f64::min);
-    draft
-        .balls
-        .iter_mut()
-        .for_each(|ball| ball.radius -= growth);
+    for ball in &mut draft.balls {
+        ball.radius -= growth;
+    }
     draft
 }
