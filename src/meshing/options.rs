@@ -182,7 +182,7 @@ pub enum Variant {
         edges: usize,
     },
     /// Edges of a medial mesh that would be exact, with [`BuildReport::exact_with`] primitives, were collapsed until it
-    /// had as few as you allow. Most of its faces and sharp edges are still exact, and its error is at most 0.25 %
+    /// had as few as you allow. Most of its faces and sharp edges are still exact, and its error is at most 0.5 %
     /// of the longest side. In a simulation the exact one is several times as fast.
     Reduced,
     /// The medial mesh is exact: it consists of the medial axes of convex bodies with flat faces, or of overlapping

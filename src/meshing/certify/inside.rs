@@ -200,8 +200,8 @@ impl<'a> Solid<'a> {
 
     /// The nearest exit from `p`, inside, with a distance that is overstated by at most a `share` of it or
     /// [`WAY_OUT_LENGTH`]; none beyond `way`, or beyond 2. Any exit found within `enough` ends the search. Cubes around
-    /// `p` are searched, each [`LARGER`] than the one before, until one holds an exit and the ball up to it. Before, the
-    /// one of size `enough` is searched roughly: in a wedge of air that ends in the body all cells at its tip come first.
+    /// `p` are searched, each [`LARGER`] than the one before, until one holds an exit and the ball up to it. First the
+    /// one of size `enough` is searched roughly: where air ends in a wedge, all cells at its tip come first.
     pub fn nearest_exit(&self, p: Point, [way, enough]: [f64; 2], share: f64) -> Exit {
         let most = way.min(MOST_WAY);
         let near = self.nearest(p, 0);

@@ -6,7 +6,6 @@ use crate::meshing::certify::largest::Effort;
 use crate::meshing::draft::Draft;
 use crate::meshing::options::{Quality, Variant};
 use crate::meshing::recipe::candidate::Candidate;
-use crate::meshing::recipe::extruded::NEAR;
 use crate::meshing::recipe::source::Source;
 use crate::meshing::refine::swaps::remove;
 use crate::meshing::simplify::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
@@ -17,9 +16,13 @@ use crate::meshing::watch::Watch;
 /// hulls, drums and frames that were measured was near at twice as many.
 const MOST_RATIO: usize = 2;
 
+/// Error (longest side 1) up to which it is returned: fits of hulls are off by .005 to .012, of drums and wheels by .02
+/// to .04. Farther off it is not worth what it costs in a simulation: of a chair, at .009, three times as much as a fit
+/// that was twice as far off.
+const MOST_ERROR: f64 = 0.005;
+
 impl Source {
-    /// The medial mesh `exact` with at most `most` primitives, if it is still off by at most [`NEAR`]. Farther off it
-    /// is not worth what it costs in a simulation: of a chair three times as much as a fit twice as far off. Edges are
+    /// The medial mesh `exact` with at most `most` primitives, if it is still off by at most [`MOST_ERROR`]. Edges are
     /// collapsed in the order of their quadric error; if that gives none, and more work is allowed, in the order of
     /// their measured error.
     pub fn reduced(
@@ -47,7 +50,7 @@ impl Source {
     }
 
     /// A draft that covers the surface when asked to, if it has at most `most` primitives and is off by at most
-    /// [`NEAR`].
+    /// [`MOST_ERROR`].
     fn if_near(
         &self,
         draft: Draft,
@@ -58,11 +61,11 @@ impl Source {
             return Ok(None);
         }
         let effort = Effort {
-            enough: NEAR,
+            enough: MOST_ERROR,
             ..Effort::FINE
         };
         let enclosed = self.enclosed(draft, effort, watch)?;
-        if enclosed.error() > NEAR {
+        if enclosed.error() > MOST_ERROR {
             return Ok(None);
         }
         let mut candidate = self.reported(enclosed, watch)?;
