@@ -64,11 +64,15 @@ impl Source {
         if self.bounds().0.sheet.contains(&true) {
             return Ok(None);
         }
+        let bodies = match self.surface.simple {
+            true => Vec::new(),
+            false => bodies(&self.surface, watch)?,
+        };
         for flatness in FLATNESS {
             let flat = flatness * rounding(&self.surface);
             let close = EXACT_FACTOR * flat;
             for flat in [flat, FINER * flat] {
-                match self.pieces_at(flat, close, most, watch)? {
+                match self.pieces_at(&bodies, [flat, close], most, watch)? {
                     Pieces::Exact(candidate) => return Ok(Some(*candidate)),
                     Pieces::TooFar => {}
                     Pieces::None => break,
@@ -79,14 +83,15 @@ impl Source {
     }
 
     /// The same for corners that are off their planes by at most `flat`, where errors up to `close` count as none.
+    /// `bodies` are the triangles of each part of the source, if it has several.
     fn pieces_at(
         &self,
-        flat: f64,
-        close: f64,
+        bodies: &[Vec<usize>],
+        [flat, close]: [f64; 2],
         most: usize,
         watch: &mut Watch,
     ) -> Result<Pieces, BuildError> {
-        let own = self.own_parts(flat, most, watch)?;
+        let own = self.own_parts(bodies, flat, most, watch)?;
         let made = self.parts_by_faces(flat, watch)?;
         let mut best = Pieces::None;
         for (parts, beside) in [own, made].into_iter().flatten() {
@@ -104,26 +109,26 @@ impl Source {
     /// them; `None` where one of them is not convex.
     fn own_parts(
         &self,
+        bodies: &[Vec<usize>],
         flat: f64,
         most: usize,
         watch: &mut Watch,
     ) -> Result<Option<(Vec<PieceSurface<'_>>, f64)>, BuildError> {
-        if self.surface.simple {
+        if bodies.is_empty() {
             return Ok(None);
         }
         let mut is_seen = vec![false; self.surface.whole.len()];
         for &patch in &self.bounds().0.patch_of {
             is_seen[patch as usize] = true;
         }
-        let bodies = bodies(&self.surface, watch)?;
-        let seen = bodies.into_iter().filter(|body| {
+        let seen = bodies.iter().filter(|body| {
             let mut patches = body.iter().map(|&t| self.surface.patch_of[t]);
             patches.any(|patch| is_seen[patch as usize])
         });
         let most = faces_of(most);
         let mut parts = Vec::new();
         for body in seen {
-            let Some(faces) = convex_faces(&self.surface, body, flat, most, watch)? else {
+            let Some(faces) = convex_faces(&self.surface, body.clone(), flat, most, watch)? else {
                 return Ok(None);
             };
             parts.push((Cow::Borrowed(&self.surface), faces));

@@ -32,7 +32,8 @@ impl Source {
         watch: &mut Watch,
     ) -> Result<Option<Candidate>, BuildError> {
         let exact = without_growth(&exact.draft);
-        if exact.primitives().len() > MOST_RATIO.saturating_mul(most) {
+        let count = exact.primitives().len();
+        if count > MOST_RATIO.saturating_mul(most) {
             return Ok(None);
         }
         watch.begin("simplify")?;
@@ -40,13 +41,17 @@ impl Source {
         let by_measure = Simplifier::new(exact, BOUNDARY_WEIGHT_SOLID, target.tree, watch)?;
         let mut by_quadrics = by_measure.clone();
         by_quadrics.reduce_to(most, watch)?;
-        let near = self.if_near(by_quadrics.draft(), most, watch)?;
-        if near.is_some() || self.limits.quality == Quality::Fast {
-            return Ok(near);
+        let mut near = self.if_near(by_quadrics.draft(), most, watch)?;
+        if near.is_none() && self.limits.quality > Quality::Fast {
+            watch.begin("simplify")?;
+            let draft = remove(by_measure, most, &target, watch)?;
+            near = self.if_near(draft, most, watch)?;
         }
-        watch.begin("simplify")?;
-        let draft = remove(by_measure, most, &target, watch)?;
-        self.if_near(draft, most, watch)
+        if let Some(near) = &mut near {
+            let note = format!("reduced from an exact medial mesh of {count} primitives");
+            near.notes.push(note);
+        }
+        Ok(near)
     }
 
     /// A draft that covers the surface when asked to, if it has at most `most` primitives and is off by at most
