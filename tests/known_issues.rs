@@ -17,6 +17,8 @@ mod scenes {
     pub mod wheels;
 }
 
+#[path = "faults/builds.rs"]
+mod builds;
 #[path = "faults/grounds.rs"]
 mod grounds;
 #[path = "faults/queries.rs"]
