@@ -183,7 +183,7 @@ pub enum Variant {
     },
     /// Edges of a medial mesh that would be exact, with [`BuildReport::exact_with`] primitives, were collapsed until it
     /// had as few as you allow. Most of its faces and sharp edges are still exact, and its error is at most 0.5 %
-    /// of the longest side. In a simulation the exact one is several times as fast.
+    /// of the longest side. If the body is compact, the exact one is several times as fast in a simulation.
     Reduced,
     /// The medial mesh is exact: it consists of the medial axes of convex bodies with flat faces, or of overlapping
     /// convex pieces that together are the body. For such pieces [`Hausdorff::error`] is measured:

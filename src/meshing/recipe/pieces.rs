@@ -204,7 +204,11 @@ impl Source {
             false => 0.0,
         };
         draft.balls.iter_mut().for_each(|ball| ball.radius += grown);
-        let mut enclosed = self.measured(draft, None, Effort::CHECK, watch)?;
+        let effort = Effort {
+            enough: close,
+            ..Effort::CHECK
+        };
+        let mut enclosed = self.measured(draft, None, effort, watch)?;
         // Triangles without area may stick out of the pieces, which are of the others alone.
         let uncovered = f64::from(enclosed.hausdorff.uncovered);
         let is_short = self.limits.enclose && uncovered > self.limits.allow_uncovered;

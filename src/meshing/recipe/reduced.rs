@@ -12,8 +12,8 @@ use crate::meshing::simplify::ball_quadrics::BOUNDARY_WEIGHT_SOLID;
 use crate::meshing::simplify::collapse::Simplifier;
 use crate::meshing::watch::Watch;
 
-/// Ratio of the primitives of an exact medial mesh to those that are allowed, up to which it is reduced. None of the
-/// hulls, drums and frames that were measured was near at twice as many.
+/// Ratio of the primitives of an exact medial mesh to those that are allowed, up to which it is reduced. Of what was
+/// measured at half of its primitives, one hull was off by .003, another by .010, and a chair by .016.
 const MOST_RATIO: usize = 2;
 
 /// Error (longest side 1) up to which it is returned: fits of hulls are off by .005 to .012, of drums and wheels by .02

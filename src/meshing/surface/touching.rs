@@ -26,7 +26,9 @@ pub fn bodies(surface: &Surface, watch: &mut Watch) -> Result<Vec<Vec<usize>>, B
         let mut join = |a: &Use, b: &Use| groups.join(a.triangle() as u32, b.triangle() as u32);
         match uses {
             [a, b] => join(a, b),
-            _ => around_matter(surface, ends, uses).for_each(|(a, b)| join(a, b)),
+            _ => around_matter(surface, ends, uses)
+                .into_iter()
+                .for_each(|(a, b)| join(a, b)),
         }
     }
     let mut bodies: Vec<Vec<usize>> = vec![Vec::new(); count];
@@ -42,7 +44,7 @@ fn around_matter<'a>(
     surface: &Surface,
     [lo, hi]: [u32; 2],
     uses: &'a [Use],
-) -> impl Iterator<Item = (&'a Use, &'a Use)> {
+) -> Vec<(&'a Use, &'a Use)> {
     let at = |v: u32| surface.vertices[v as usize];
     let axis = direction(at(hi) - at(lo));
     let across = |used: &Use| {
@@ -53,15 +55,11 @@ fn around_matter<'a>(
     };
     let first = direction(uses.first().map_or(Point::zero(), across));
     let second = axis.cross(first);
-    let turns: Vec<(&Use, f64)> = uses
-        .iter()
-        .map(|used| {
-            (
-                used,
-                turn_of(across(used).dot(first), across(used).dot(second)),
-            )
-        })
-        .collect();
+    let turn = |used: &'a Use| {
+        let way = across(used);
+        (used, turn_of(way.dot(first), way.dot(second)))
+    };
+    let turns: Vec<(&Use, f64)> = uses.iter().map(turn).collect();
     // A triangle that runs from the lower vertex to the higher faces the way in which turns grow: matter ends there.
     let turn_to = |from: f64, to: f64| match (to - from).rem_euclid(FULL) {
         turn if !(SAME..=FULL - SAME).contains(&turn) => FULL,
@@ -74,12 +72,8 @@ fn around_matter<'a>(
         let is_alone = turns.iter().all(|other| !between(other.1));
         (turn_to(from, end.1) < FULL && is_alone).then_some((begins, end.0))
     };
-    let pairs: Vec<_> = turns
-        .iter()
-        .filter(|t| !t.0.forward())
-        .filter_map(pair)
-        .collect();
-    pairs.into_iter()
+    let begin = turns.iter().filter(|turn| !turn.0.forward());
+    begin.filter_map(pair).collect()
 }
 
 /// Turn from the first axis to a way given by its parts along both: it grows with the angle, from 0 to [`FULL`].
