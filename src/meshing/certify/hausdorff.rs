@@ -33,9 +33,11 @@ use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Point, direction};
 use crate::meshing::geometry::subdivide;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
+use crate::meshing::geometry::winding::INSIDE;
 use crate::meshing::options::{Hausdorff, Progress};
 use crate::meshing::surface::boundary::solid_boundary;
 use crate::meshing::surface::checked_surface::Surface;
+use crate::meshing::surface::hidden::is_before_matter;
 use crate::meshing::surface::samples::vertex_samples;
 use crate::meshing::watch::Watch;
 use std::ops::ControlFlow;
@@ -282,9 +284,10 @@ impl FromSource<'_> {
                 && gets_out(SECOND_EXIT_LENGTH, 1.0)
     }
 
-    /// Whether the surface point `p` lies inside matter that the source bounds.
+    /// Whether the surface point `p` lies inside matter that the source bounds, or at the bottom of a crack in it.
     fn is_enclosed(&self, p: Point, normal: Point) -> bool {
-        self.winding.winding(p + normal * OFF_SURFACE) > 0.5
+        let is_inside = |p: Point| self.winding.winding(p) > INSIDE;
+        is_before_matter(self.winding, p, normal * OFF_SURFACE, is_inside)
     }
 }
 
