@@ -70,6 +70,71 @@ fn cells_side_by_side_are_one_solid() {
     }
 }
 
+/// One triangle split at the middle of its longest edge, whose neighbour there is not.
+fn with_seam(mut mesh: Mesh, triangle: usize) -> Mesh {
+    let corners = mesh.indices[triangle];
+    let at = |k: usize| mesh.vertices[corners[k % 3] as usize];
+    let length = |k: &usize| (at(k + 1) - at(*k)).length();
+    let longest = (0..3)
+        .max_by(|j, k| length(j).total_cmp(&length(k)))
+        .unwrap_or(0);
+    let middle = (at(longest) + at(longest + 1)) * 0.5;
+    let [a, b, c] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
+    let m = mesh.vertices.len() as u32;
+    mesh.vertices.push(middle);
+    mesh.indices[triangle] = [a, m, c];
+    mesh.indices.push([m, b, c]);
+    mesh
+}
+
+/// One triangle without the part next to its first corner, a share of its sides.
+fn with_hole(mut mesh: Mesh, triangle: usize, share: f32) -> Mesh {
+    let [a, b, c] = mesh.indices[triangle];
+    let at = |v: u32| mesh.vertices[v as usize];
+    let cut = [b, c].map(|v| at(a).lerp(at(v), share));
+    let [p, q] = [0, 1].map(|k| mesh.vertices.len() as u32 + k);
+    mesh.vertices.extend(cut);
+    mesh.indices[triangle] = [p, b, c];
+    mesh.indices.push([p, c, q]);
+    mesh
+}
+
+/// What is open far from where parts touch, and parts given twice, leave the faces between parts within the solid.
+#[test]
+fn damaged_parts_that_touch_are_one_solid() {
+    let tower = || cells(&grid([1, 4, 1]));
+    let all = grid([3, 3, 3]);
+    let shell: Vec<_> = all
+        .iter()
+        .copied()
+        .filter(|place| *place != [1; 3])
+        .collect();
+    let core = || cells(&[[1; 3]]);
+    let mut kits = vec![(
+        "a core given twice",
+        cells(&shell).and(core()).and(core()),
+        27,
+    )];
+    for triangle in [0, 16, 24, 45] {
+        kits.push(("a seam", with_seam(tower(), triangle), 4));
+        kits.push(("a small hole", with_hole(tower(), triangle, 0.03), 4));
+    }
+    for (name, mesh, count) in kits {
+        let (medial, report) = build(&mesh);
+        let (error, mass) = (report.hausdorff.error(), medial.mass_properties(1.0).mass());
+        let volume = 96.0 * UNIT.powi(3) * count as f32;
+        println!(
+            "{name}: error {error}, mass {mass} of {volume}, {:?}",
+            report.variant
+        );
+        assert!(error < 1.0e-4, "{name}: error {error}");
+        assert!(
+            (mass / volume - 1.0).abs() < 2.0e-3,
+            "{name}: {mass} of {volume}"
+        );
+    }
+}
+
 /// A ray from above hits something at a height of at least `least`.
 fn is_hit(mesh: &Mesh, [x, z]: [f32; 2], least: f32) -> bool {
     let ray = Ray::new(Vector::new(x, 5.0, z), Vector::NEG_Y);

@@ -23,6 +23,9 @@ const MOST_PIECES: usize = 200_000;
 /// inside.
 const OFF: f64 = 2.0;
 
+/// Distance up to which a face may hide part of a triangle, in units of how far before it hidden points are looked for.
+const NEAR: f64 = 2.0;
+
 /// A piece of a triangle, and the triangle.
 pub type TrianglePiece = ([Point; 3], usize);
 
@@ -57,17 +60,18 @@ pub fn flat_pieces(
         *around = around.union(Bounds::of(surface.corners(t)));
     }
     let planes: Vec<(Plane, Bounds)> = faces.planes.into_iter().zip(boxes).collect();
+    let off = OFF * on;
     let mut hidden = Hidden {
         tree,
         folds,
-        off: OFF * on,
+        off,
         work: 0,
     };
     let mut pieces = Vec::new();
     let mut cut = 0;
     for (t, corners) in surface.all_corners().enumerate() {
         let (normal, patch) = (surface.normals[t], surface.patch_of[t]);
-        let polygons = along(corners, &planes, on);
+        let polygons = along(corners, &planes, [on, NEAR * off]);
         cut += polygons.len();
         if cut > MOST_PIECES {
             return Ok(None);
@@ -123,13 +127,17 @@ fn faces_of_patches(
     Ok(Some(all))
 }
 
-/// A triangle cut along the planes of faces, where these come near it.
-fn along(triangle: [Point; 3], planes: &[(Plane, Bounds)], on: f64) -> Vec<Vec<Point>> {
+/// A triangle cut along the planes of faces that come as near to it as `near`. Points within `on` of a plane are on it.
+fn along(
+    triangle: [Point; 3],
+    planes: &[(Plane, Bounds)],
+    [on, near]: [f64; 2],
+) -> Vec<Vec<Point>> {
     let whole = vec![triangle.to_vec()];
     planes.iter().fold(whole, |polygons, (plane, face)| {
         let cut = |polygon: Vec<Point>| {
             let own = Bounds::of(polygon.iter().copied());
-            match face.is_near(&own, on) {
+            match face.is_near(&own, near) {
                 true => cut_polygon(&polygon, plane, on),
                 false => [Some(polygon), None],
             }

@@ -16,7 +16,10 @@ use crate::meshing::watch::Watch;
 /// Openings whose lid lies farther from the surface than this (longest side 1) are meant to be
 /// open; narrower ones are taken for damage and closed, which costs up to this much error. A
 /// spout, an eye socket or a lost triangle is below it; a cup, a pipe or a cabin is not.
-const WIDE: f64 = 0.03;
+pub const WIDE: f64 = 0.03;
+
+/// Openings of a surface that bounds matter by itself, as a share of its area.
+pub const OPEN: f64 = 0.1;
 
 /// How far from ½ the winding number may be on a lid that bounds the solid.
 const UNDECIDED: f64 = 0.3;

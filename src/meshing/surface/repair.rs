@@ -8,7 +8,7 @@ use crate::meshing::findings::Findings;
 use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::{BuilderFrame, Surface, corners, cross};
-use crate::meshing::surface::openings::{lids, openings};
+use crate::meshing::surface::openings::{OPEN, lids, openings};
 use crate::meshing::surface::orient::{Patches, orient};
 use crate::meshing::surface::patches::{PatchKind, classify};
 use crate::meshing::surface::seams::seam_slivers;
@@ -19,9 +19,6 @@ use crate::meshing::watch::Watch;
 /// A triangle lower than this over its longest edge has no usable normal and no area that matters
 /// (longest side 1). It still closes the surface: it counts as a neighbour, not as a triangle.
 const NEEDLE: f64 = 1e-7;
-
-/// Openings of a patch that bounds matter by itself, as a share of its area.
-const OPEN: f64 = 0.1;
 
 impl Surface {
     /// Checks and cleans a triangle mesh given in the user's unit, and finds out what bounds matter

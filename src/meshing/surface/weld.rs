@@ -21,7 +21,7 @@ pub struct Welded {
     pub vertices: Vec<Point>,
     /// Triangles of three different vertices, each set of vertices once.
     pub triangles: Vec<[u32; 3]>,
-    /// Places of the triangles that were given equally often with either orientation.
+    /// Places of the triangles that were given with either orientation.
     pub both_ways: Vec<usize>,
     /// Triangles that welding left with two vertices or one, unless another triangle has these too: segments and
     /// points.
@@ -55,8 +55,8 @@ pub fn weld(
     findings.vertices_unused = index_of.iter().filter(|&&i| i == u32::MAX).count();
     let used = vertices.len() - findings.vertices_unused;
     findings.vertices_welded = used - places.points.len();
-    // Place of each triangle, and how many more of its repeats name its vertices in even order than in odd.
-    let mut seen: FastMap<[u32; 3], (usize, i32)> = FastMap::default();
+    // Place of each triangle, and whether it was given with its vertices in even order, and in odd.
+    let mut seen: FastMap<[u32; 3], (usize, [bool; 2])> = FastMap::default();
     let mut triangles = Vec::with_capacity(indices.len());
     let mut collapsed = Vec::new();
     for (i, triangle) in indices.iter().enumerate() {
@@ -69,14 +69,14 @@ pub fn weld(
             collapsed.push([key[0], key[2], key[2]]);
             continue;
         }
-        let (place, even) = seen.entry(key).or_insert((triangles.len(), 0));
-        *even += if is_even(t) { 1 } else { -1 };
+        let (place, given) = seen.entry(key).or_insert((triangles.len(), [false; 2]));
+        given[usize::from(is_even(t))] = true;
         match *place == triangles.len() {
             true => triangles.push(t),
             false => findings.triangles_repeated += 1,
         }
     }
-    let both_ways = seen.into_values().filter(|(_, even)| *even == 0);
+    let both_ways = seen.into_values().filter(|(_, given)| *given == [true; 2]);
     let mut both_ways: Vec<usize> = both_ways.map(|(place, _)| place).collect();
     both_ways.sort_unstable();
     leave_out_covered(&mut collapsed, &triangles, watch)?;
