@@ -5,11 +5,11 @@ use super::scenes::random::Random;
 use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
-/// A shelf of boards that touch, with vertices that are off by up to a hundred-thousandth, as a file of few decimals
-/// leaves them. Between boards there are cracks that an exact medial mesh closes, since it covers the source: at their
-/// bottom, which is a centimetre deep, it is off by that, and a fit is returned.
+/// A shelf of boards that touch, with vertices that are off by up to a ten-thousandth, as a file of few decimals leaves
+/// them: its faces are less flat than those of exact bodies may be. It is fitted, and the cracks between its boards,
+/// which a fit closes, count in the error with their depth.
 #[test]
-fn a_shelf_with_rounded_vertices_is_not_exact() {
+fn a_shelf_with_coarse_vertices_is_not_exact() {
     let shelf = |off: Real| {
         let sides = [-0.3, 0.3].map(|x| (Vector::X * x, Vector::new(0.01, 0.15, 0.5)));
         let boards = [-0.45, 0.0, 0.45].map(|z| (Vector::Z * z, Vector::new(0.29, 0.15, 0.01)));
@@ -27,6 +27,6 @@ fn a_shelf_with_rounded_vertices_is_not_exact() {
         let (_, report) = MedialMesh::from_trimesh(&vertices, &indices, &options).expect("builds");
         report.variant
     };
-    assert_eq!(shelf(0.0), Variant::Exact);
-    assert_ne!(shelf(1.0e-5), Variant::Exact);
+    assert_eq!(shelf(4.0e-5), Variant::Exact);
+    assert_ne!(shelf(1.0e-4), Variant::Exact);
 }

@@ -4,7 +4,7 @@ use crate::meshes::Mesh;
 use parry3d::math::{Pose, Vector};
 use parry3d::query::{Ray, RayCast};
 use parry3d::shape::Cuboid;
-use rapier3d_medial::{BuildOptions, BuildReport, MedialMesh};
+use rapier3d_medial::{BuildOptions, BuildReport, MedialMesh, Quality};
 
 /// A fourth of a cell's width.
 const UNIT: f32 = 0.1;
@@ -138,9 +138,13 @@ fn damaged_parts_that_touch_are_one_solid() {
 /// A ray from above hits something at a height of at least `least`.
 fn is_hit(mesh: &Mesh, [x, z]: [f32; 2], least: f32) -> bool {
     let ray = Ray::new(Vector::new(x, 5.0, z), Vector::NEG_Y);
-    build(mesh)
-        .0
-        .intersects_ray(&Pose::IDENTITY, &ray, 5.0 - least)
+    let options = BuildOptions {
+        quality: Quality::Fast,
+        ..Default::default()
+    };
+    let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
+    let (medial, _) = built.expect("a medial mesh");
+    medial.intersects_ray(&Pose::IDENTITY, &ray, 5.0 - least)
 }
 
 /// A rectangle of triangles on both sides.

@@ -12,8 +12,8 @@ pub const FLAT: f64 = 5e-7;
 
 /// Tolerances of flat faces that are tried in order, in units of the body's [`rounding`]. With the second, vertices may
 /// be off by a millionth of the size; with the third by a hundred-thousandth, as in a part of 5 cm that is written in
-/// metres with six decimals.
-pub const FLATNESS: [f64; 3] = [1.0, 4.0, 40.0];
+/// metres with six decimals; with the last by a 20,000th, as in a shelf of a metre that is written with four.
+pub const FLATNESS: [f64; 4] = [1.0, 4.0, 40.0, 200.0];
 
 /// Distance from a plane up to which a point is on it, in units of the distance that corners of a flat face may have.
 pub const ON: f64 = 2.0;
