@@ -75,45 +75,76 @@ impl Simplifier<'_> {
 
     /// Cost of merging two balls, and the ball that they become.
     pub(crate) fn merge(&self, a: u32, b: u32) -> (f64, Ball) {
+        let (quadric, balls) = self.candidates(a, b);
+        self.cheapest_of(a, b, &quadric, balls)
+    }
+
+    /// Lower bound of the cost of merging two balls, which leaves out the faces that turn over. They are most of the
+    /// work where a ball has many neighbours.
+    pub(crate) fn least_cost(&self, a: u32, b: u32) -> f64 {
+        let (quadric, balls) = self.candidates(a, b);
+        let errors = balls.iter().flatten().map(|ball| quadric.error(ball));
+        self.scaled(a, b, errors.fold(f64::INFINITY, f64::min))
+    }
+
+    /// Whether [`Self::least_cost`] is the cost itself.
+    pub(crate) fn knows_cost(&self) -> bool {
+        !self.creased
+    }
+
+    /// Quadric of two balls, and those that they may become, of which there is at least one.
+    fn candidates(&self, a: u32, b: u32) -> (Quadric, [Option<Ball>; 3]) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
         let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
         let middle = middle(&ball_a, &ball_b);
         let length = (ball_b.center - ball_a.center).length();
         let near = |m: &Ball| (m.center - middle.center).length() <= MINIMISER_REACH * length;
         let minimiser = quadric.minimiser(&middle).filter(near);
-        if self.is_on_crease(a, b) {
+        let balls = if self.is_on_crease(a, b) {
             let snapped = minimiser
                 .filter(|m| m.radius > BEHIND_CREASE)
                 .map(|m| Ball {
                     radius: if m.radius < ON_CREASE { 0.0 } else { m.radius },
                     ..m
                 });
-            return self.cheapest_of(a, b, [Some(ball_a), Some(ball_b), snapped]);
-        }
-        match minimiser.filter(|m| m.radius > 0.0) {
-            Some(ball) if self.creased => {
-                self.cheapest_of(a, b, [Some(ball_a), Some(ball_b), Some(ball)])
+            [Some(ball_a), Some(ball_b), snapped]
+        } else {
+            match minimiser.filter(|m| m.radius > 0.0) {
+                Some(ball) if self.creased => [Some(ball_a), Some(ball_b), Some(ball)],
+                Some(ball) => [Some(ball), None, None],
+                None => [Some(ball_a), Some(ball_b), Some(middle)],
             }
-            Some(ball) => (self.cost(a, b, &quadric, &ball), ball),
-            None => self.cheapest_of(a, b, [Some(ball_a), Some(ball_b), Some(middle)]),
-        }
+        };
+        (quadric, balls)
     }
 
     /// The cheapest of two balls and their middle to merge the two into.
     pub(crate) fn cheapest(&self, a: u32, b: u32) -> (f64, Ball) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
         let middle = middle(&ball_a, &ball_b);
-        self.cheapest_of(a, b, [ball_a, ball_b, middle].map(Some))
+        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
+        self.cheapest_of(a, b, &quadric, [ball_a, ball_b, middle].map(Some))
     }
 
     /// The cheapest of balls to merge two into, and its cost.
-    fn cheapest_of(&self, a: u32, b: u32, balls: [Option<Ball>; 3]) -> (f64, Ball) {
-        let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let tried = balls.into_iter().flatten();
-        let tried = tried.map(|ball| (quadric.error(&ball) + self.folds(a, b, &ball), ball));
-        let best = tried.min_by(|x, y| x.0.total_cmp(&y.0));
-        let ball = best.map_or(self.complex.balls[a as usize], |(_, ball)| ball);
-        (self.cost(a, b, &quadric, &ball), ball)
+    fn cheapest_of(
+        &self,
+        a: u32,
+        b: u32,
+        quadric: &Quadric,
+        balls: [Option<Ball>; 3],
+    ) -> (f64, Ball) {
+        let mut best = (f64::INFINITY, f64::INFINITY, self.complex.balls[a as usize]);
+        for ball in balls.into_iter().flatten() {
+            let error = quadric.error(&ball);
+            if error < best.0 {
+                let folds = self.folds(a, b, &ball);
+                if error + folds < best.0 {
+                    best = (error + folds, self.scaled(a, b, error) + folds, ball);
+                }
+            }
+        }
+        (best.1, best.2)
     }
 
     fn folds(&self, a: u32, b: u32, ball: &Ball) -> f64 {
@@ -123,12 +154,11 @@ impl Simplifier<'_> {
         }
     }
 
-    /// Cost of merging two balls into `ball`.
-    fn cost(&self, a: u32, b: u32, quadric: &Quadric, ball: &Ball) -> f64 {
+    /// Cost of a merge of two balls with this error, if no face turns over.
+    fn scaled(&self, a: u32, b: u32, error: f64) -> f64 {
         let [ball_a, ball_b] = [a, b].map(|v| &self.complex.balls[v as usize]);
         let stability = stability(ball_a, ball_b).max(STABILITY_FLOOR);
-        let error = quadric.error(ball) + self.flat_cost();
-        error * stability * stability + self.folds(a, b, ball)
+        (error + self.flat_cost()) * stability * stability
     }
 }
 

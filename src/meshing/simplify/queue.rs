@@ -19,8 +19,10 @@ const REFILL_WHOLE: usize = 512;
 /// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).
 #[derive(Clone, Copy)]
 pub struct QueuedCollapse {
-    /// Cost of the merge.
+    /// Cost of the merge, or less.
     pub cost: f64,
+    /// Whether the cost is known, and not only a lower bound of it.
+    pub known: bool,
     /// First end of the edge.
     pub a: u32,
     /// Second end of the edge.
@@ -29,7 +31,8 @@ pub struct QueuedCollapse {
     pub versions: [u32; 2],
 }
 
-least_first!(QueuedCollapse, cost, a, b);
+// Of equal costs bounds come first, so that all that may be cheaper is known when one is taken.
+least_first!(QueuedCollapse, cost, known, a, b);
 
 /// Candidates, the cheapest first.
 #[derive(Clone)]
