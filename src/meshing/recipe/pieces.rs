@@ -15,7 +15,7 @@ use crate::meshing::recipe::polyhedron::{MAX_PRIMITIVES, SAME_AREA, axis, faces_
 use crate::meshing::recipe::source::Source;
 use crate::meshing::surface::checked_surface::{Surface, cross};
 use crate::meshing::surface::flat_faces::{
-    FLATNESS, FlatFaces, ON, convex_faces, flat_faces, rounding,
+    FLATNESS, FLATNESS_OF_PARTS, FlatFaces, ON, convex_faces, flat_faces, rounding,
 };
 use crate::meshing::surface::touching::bodies;
 use crate::meshing::watch::Watch;
@@ -68,7 +68,8 @@ impl Source {
             true => Vec::new(),
             false => bodies(&self.surface, watch)?,
         };
-        for flatness in FLATNESS {
+        let coarsest = (!bodies.is_empty()).then_some(FLATNESS_OF_PARTS);
+        for flatness in FLATNESS.into_iter().chain(coarsest) {
             let flat = flatness * rounding(&self.surface);
             let close = EXACT_FACTOR * flat;
             for flat in [flat, FINER * flat] {

@@ -6,7 +6,9 @@ use crate::meshing::geometry::bounds::{Bounds, Point};
 use crate::meshing::geometry::convex::{Plane, cut_polygon};
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::flat_faces::{FLATNESS, FlatFaces, ON, flat_faces, rounding};
+use crate::meshing::surface::flat_faces::{
+    FLATNESS, FLATNESS_OF_PARTS, FlatFaces, ON, flat_faces, rounding,
+};
 use crate::meshing::surface::folds::Folds;
 use crate::meshing::surface::hidden::Hidden;
 use crate::meshing::watch::Watch;
@@ -39,7 +41,7 @@ pub fn flat_pieces(
 ) -> Result<Option<Vec<TrianglePiece>>, BuildError> {
     let mut faces = None;
     let mut on = 0.0;
-    for flatness in FLATNESS {
+    for flatness in FLATNESS.into_iter().chain([FLATNESS_OF_PARTS]) {
         let flat = flatness * rounding(surface);
         let body = (0..surface.triangles.len()).collect();
         on = ON * flat;
