@@ -246,12 +246,13 @@ pub enum BuildError {
     },
     /// The ending of the file's name is that of no known format.
     #[error(
-        "{path}: unknown mesh format {extension:?} (known: obj, stl, ply, off; glb and gltf with feature `gltf`)"
+        "{path}: {} (known: obj, stl, ply, off; glb and gltf with feature `gltf`)",
+        unknown_format(extension)
     )]
     UnknownFormat {
         /// The file.
         path: PathBuf,
-        /// Ending of the file's name.
+        /// Ending of the file's name; empty if it has none.
         extension: String,
     },
     /// A file ends early or breaks the rules of its format.
@@ -332,6 +333,14 @@ pub enum GpuError {
         /// Message of the driver.
         message: String,
     },
+}
+
+/// What is said of a file's name whose ending is that of no known format.
+fn unknown_format(extension: &str) -> String {
+    match extension {
+        "" => "the name has no ending, which would tell the mesh format".into(),
+        _ => format!("unknown mesh format {extension:?}"),
+    }
 }
 
 /// Why a saved calibration of the GPU ([`Calibration`](crate::batch)) cannot be read.

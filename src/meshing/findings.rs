@@ -83,53 +83,84 @@ pub enum MassSource {
     MedialMesh,
 }
 
+/// One triangle, and several.
+const TRIANGLES: [&str; 2] = ["triangle", "triangles"];
+
+/// A number of things, named by the words for one and for several.
+pub(crate) fn counted(count: usize, [one, several]: [&str; 2]) -> String {
+    match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {several}"),
+    }
+}
+
 impl Findings {
     /// Sentences that a user should know.
     pub(crate) fn notes(&self) -> Vec<String> {
         let counts = [
-            (self.vertices_unused, "vertices are used by no triangle"),
+            (
+                self.vertices_unused,
+                ["vertex is", "vertices are"],
+                "used by no triangle",
+            ),
             (
                 self.vertices_welded,
-                "vertices welded to another at the same place",
+                ["vertex", "vertices"],
+                "welded to another at the same place",
             ),
             (
                 self.triangles_collapsed,
-                "triangles of fewer than three points: kept as segments only",
+                TRIANGLES,
+                "of fewer than three points: kept as segments only",
             ),
-            (self.triangles_repeated, "repeated triangles dropped"),
+            (
+                self.triangles_repeated,
+                ["repeated triangle", "repeated triangles"],
+                "dropped",
+            ),
             (
                 self.triangles_shared,
-                "triangles between touching parts dropped: the solid is on both sides of them",
+                TRIANGLES,
+                "between touching parts dropped: the solid is on both sides of them",
             ),
             (
                 self.triangles_without_area,
-                "triangles without area: kept as seams only",
+                TRIANGLES,
+                "without area: kept as seams only",
             ),
             (
                 self.slivers,
-                "slivers added along seams where one edge meets several",
+                ["sliver", "slivers"],
+                "added along seams where one edge meets several",
             ),
-            (self.edges_open, "open edges (edges of one triangle)"),
+            (
+                self.edges_open,
+                ["open edge", "open edges"],
+                "(edges of one triangle)",
+            ),
             (
                 self.edges_crowded,
-                "non-manifold edges (edges of more than two triangles)",
+                ["non-manifold edge", "non-manifold edges"],
+                "(edges of more than two triangles)",
             ),
             (
                 self.edges_twisted,
-                "edges whose triangles cannot be made to face the same way",
+                ["edge", "edges"],
+                "whose triangles cannot be made to face the same way",
             ),
-            (self.triangles_turned, "triangles turned to face outward"),
+            (self.triangles_turned, TRIANGLES, "turned to face outward"),
         ];
-        let say = |&(count, what): &(usize, &str)| format!("{count} {what}");
-        let mut notes: Vec<String> = counts.iter().filter(|c| c.0 > 0).map(say).collect();
+        let found = counts.into_iter().filter(|(count, ..)| *count > 0);
+        let say = |(count, names, what)| format!("{} {what}", counted(count, names));
+        let mut notes: Vec<String> = found.map(say).collect();
         let sheets = self.patches_sheet > 0;
         if sheets || self.patches_mended > 0 || self.patches > 1 {
             notes.push(self.patches_in_words());
         }
         if self.triangles_thin > 0 {
-            let count = self.triangles_thin;
             notes.push(format!(
-                "{count} triangles where the solid is too thin for spheres: built as sheets"
+                "{} where the solid is too thin for spheres: built as sheets",
+                counted(self.triangles_thin, TRIANGLES)
             ));
         }
         if self.triangles_buried > 0 {
@@ -172,22 +203,23 @@ impl Findings {
     /// Sentence on what is hidden inside matter, `share` of the area.
     pub(crate) fn hidden_in_words(&self, share: f64) -> String {
         let mut text = format!(
-            "{:.1} % of the mesh's area lies inside solid matter and does not count in the error: {} triangles and parts \
-             of others",
+            "{:.1} % of the mesh's area lies inside solid matter and does not count in the error: {} and parts of others",
             100.0 * share,
-            self.triangles_hidden
+            counted(self.triangles_hidden, TRIANGLES)
         );
         if self.patches_hidden > 0 {
             // Writing to a string does not fail.
-            let _ = write!(text, "; {} pieces are hidden entirely", self.patches_hidden);
+            let pieces = counted(self.patches_hidden, ["piece is", "pieces are"]);
+            let _ = write!(text, "; {pieces} hidden entirely");
         }
         text
     }
 
     fn patches_in_words(&self) -> String {
         let mut text = format!(
-            "{} connected pieces of surface: {} solid",
-            self.patches, self.patches_solid
+            "{} of surface: {} solid",
+            counted(self.patches, ["connected piece", "connected pieces"]),
+            self.patches_solid
         );
         // Writing to a string does not fail.
         if self.patches_mended > 0 {
@@ -198,7 +230,8 @@ impl Findings {
             );
         }
         if self.patches_cavity > 0 {
-            let _ = write!(text, " ({} cavities)", self.patches_cavity);
+            let cavities = counted(self.patches_cavity, ["cavity", "cavities"]);
+            let _ = write!(text, " ({cavities})");
         }
         if self.patches_sheet > 0 {
             let _ = write!(text, ", {} built as sheets", self.patches_sheet);

@@ -65,6 +65,21 @@ fn several_meshes_do_not_go_into_a_file() {
     assert_eq!(fs::read(directory.join("notes")).unwrap(), b"kept");
 }
 
+/// What cannot be written is told before any work: before the input is read, and before a folder is made.
+#[test]
+fn outputs_that_cannot_be_written_are_refused_first() {
+    let directory = scratch("refused");
+    let long = format!("{}.medial", "a".repeat(300));
+    fs::create_dir_all(directory.join("out/corner.ma")).unwrap();
+    for [output, named] in [[long.as_str(); 2], ["out", "corner.ma"]] {
+        let run = medial(&directory, &["build", "corner.obj", "-o", output]);
+        assert_fails(&run, named);
+    }
+    let run = ["build", "a/same.obj", "b/same.obj", "-o", "new"];
+    assert_fails(&medial(&directory, &run), "would go there");
+    assert!(!directory.join("new").exists());
+}
+
 /// The ending of the output says whether it is baked, in large letters too; where something else asks for a baked file,
 /// another ending is refused.
 #[test]

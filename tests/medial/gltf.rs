@@ -145,6 +145,19 @@ fn buffers_beside_the_file_are_read() {
     let path = folder.join("box.gltf");
     std::fs::write(&path, json).unwrap();
     let mesh = read(&path).unwrap();
+    std::fs::remove_file(folder.join("a box.bin")).unwrap();
+    let lost = read(&path).unwrap_err().to_string();
     std::fs::remove_dir_all(&folder).unwrap();
     assert_eq!(volume(&mesh), 6.0);
+    assert!(lost.contains("a%20box.bin"), "{lost}");
+}
+
+#[test]
+fn corners_of_no_whole_triangle_are_refused() {
+    let mut file = glb_with(r#"{"mesh":0}"#);
+    let count = br#""count":36"#;
+    let place = file.windows(count.len()).position(|bytes| bytes == count);
+    file[place.unwrap() + count.len() - 1] = b'5';
+    let error = load(&file, MeshFormat::Gltf).unwrap_err().to_string();
+    assert!(error.contains("35 corners"), "{error}");
 }

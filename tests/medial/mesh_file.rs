@@ -234,9 +234,8 @@ fn endings_name_the_format() {
     assert!(matches!(missing, BuildError::File { .. }), "{missing}");
     let unknown = read("/nowhere/mesh.fbx").unwrap_err();
     assert!(unknown.to_string().contains("\"fbx\""), "{unknown}");
-    assert!(matches!(
-        read("mesh").unwrap_err(),
-        BuildError::UnknownFormat { .. }
-    ));
+    let unnamed = read("mesh").unwrap_err();
+    assert!(matches!(unnamed, BuildError::UnknownFormat { .. }));
+    assert!(unnamed.to_string().contains("no ending"), "{unnamed}");
     assert_eq!(MeshFormat::of(Path::new("A.STL")), Some(MeshFormat::Stl));
 }

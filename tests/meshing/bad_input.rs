@@ -150,12 +150,12 @@ fn repeated_and_collapsed_triangles() {
     let mut mesh = unit_box();
     mesh.indices.push(mesh.indices[0]);
     mesh.indices.push([2, 2, 5]);
-    let report = handled(&mesh, "1 repeated triangles dropped");
+    let report = handled(&mesh, "1 repeated triangle dropped");
     assert!(
         report
             .notes
             .iter()
-            .any(|n| n.contains("1 triangles of fewer")),
+            .any(|n| n.contains("1 triangle of fewer")),
         "{report:?}"
     );
     // The rest is the whole box: closed, with its own mass.
@@ -175,7 +175,7 @@ fn needles_close_the_surface() {
     mesh.vertices.push(Vector::new(0.5, 0.0, 0.0));
     mesh.indices.swap_remove(at);
     mesh.indices.extend([[0, 8, 5], [8, 1, 5], [0, 1, 8]]);
-    let report = handled(&mesh, "1 triangles without area");
+    let report = handled(&mesh, "1 triangle without area");
     assert!(
         !report.notes.iter().any(|n| n.contains("open")),
         "{report:?}"

@@ -24,8 +24,12 @@ fn cells(places: &[[i32; 3]]) -> Mesh {
     all
 }
 
-fn build(mesh: &Mesh) -> (MedialMesh, BuildReport) {
-    let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &BuildOptions::default());
+fn build(mesh: &Mesh, quality: Quality) -> (MedialMesh, BuildReport) {
+    let options = BuildOptions {
+        quality,
+        ..Default::default()
+    };
+    let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
     built.expect("a medial mesh")
 }
 
@@ -54,7 +58,7 @@ fn cells_side_by_side_are_one_solid() {
             if inside_out {
                 mesh = mesh.inside_out();
             }
-            let (medial, report) = build(&mesh);
+            let (medial, report) = build(&mesh, Quality::Balanced);
             let error = report.hausdorff.error();
             let volume = 96.0 * UNIT.powi(3) * places.len() as f32;
             let mass = medial.mass_properties(1.0).mass();
@@ -120,7 +124,7 @@ fn damaged_parts_that_touch_are_one_solid() {
         kits.push(("a small hole", with_hole(tower(), triangle, 0.03), 4));
     }
     for (name, mesh, count) in kits {
-        let (medial, report) = build(&mesh);
+        let (medial, report) = build(&mesh, Quality::Balanced);
         let (error, mass) = (report.hausdorff.error(), medial.mass_properties(1.0).mass());
         let volume = 96.0 * UNIT.powi(3) * count as f32;
         println!(
@@ -138,12 +142,7 @@ fn damaged_parts_that_touch_are_one_solid() {
 /// A ray from above hits something at a height of at least `least`.
 fn is_hit(mesh: &Mesh, [x, z]: [f32; 2], least: f32) -> bool {
     let ray = Ray::new(Vector::new(x, 5.0, z), Vector::NEG_Y);
-    let options = BuildOptions {
-        quality: Quality::Fast,
-        ..Default::default()
-    };
-    let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
-    let (medial, _) = built.expect("a medial mesh");
+    let (medial, _) = build(mesh, Quality::Fast);
     medial.intersects_ray(&Pose::IDENTITY, &ray, 5.0 - least)
 }
 
@@ -186,5 +185,40 @@ fn sheets_with_two_sides_stay_where_no_solid_is_around_them() {
             is_hit(&open.clone().and(shelf), [0.3, 0.2], y - 0.2),
             "a sheet at {y}"
         );
+    }
+}
+
+/// A floor and a roof of single triangles with low walls, which a narrow bridge joins: the rim of what is open between
+/// them goes around the body, and back. A sheet that hangs in it is no face that parts share.
+#[test]
+fn sheets_in_bodies_that_are_open_all_around_stay() {
+    for [gap, bridge, height] in [[0.12, 0.01, -0.2], [0.06, 0.02, -0.1], [0.2, 0.005, -0.15]] {
+        let outline = [
+            [-0.5, -0.5],
+            [-bridge, -0.5],
+            [bridge, -0.5],
+            [0.5, -0.5],
+            [0.5, 0.5],
+            [-0.5, 0.5],
+        ];
+        let levels = [-0.3, -0.5 * gap, 0.5 * gap, 0.3];
+        let level = |z: f32| outline.map(|[x, y]| Vector::new(x, y, z));
+        let mut indices = Vec::new();
+        for (level, corner) in (0..3).flat_map(|level| (0..6).map(move |corner| (level, corner))) {
+            if level != 1 || corner == 1 {
+                let [a, b] = [corner, (corner + 1) % 6].map(|k| 6 * level + k);
+                indices.extend([[a, b, b + 6], [a, b + 6, a + 6]]);
+            }
+        }
+        for [a, b, c] in [[0, 1, 5], [1, 2, 5], [2, 4, 5], [2, 3, 4]] {
+            indices.extend([[a, c, b], [18 + a, 18 + b, 18 + c]]);
+        }
+        let lantern = Mesh {
+            vertices: levels.into_iter().flat_map(level).collect(),
+            indices,
+        };
+        let sheet = sheet(height, [-0.2, 0.2]).map(|v| Vector::new(v.x, -v.z, v.y));
+        let (_, report) = build(&lantern.and(sheet), Quality::Fast);
+        assert_eq!(report.findings.triangles_shared, 0, "a gap of {gap}");
     }
 }

@@ -3,6 +3,7 @@
 
 use rapier3d_medial::meshing::mesh_file::MeshFormat;
 use std::collections::HashMap;
+use std::fs::OpenOptions;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -41,7 +42,7 @@ pub enum PlanError {
         second: PathBuf,
     },
     #[error("{path}: {source}")]
-    Folder { path: PathBuf, source: io::Error },
+    Path { path: PathBuf, source: io::Error },
 }
 
 /// One job per mesh; a folder stands for all meshes in it. Several meshes go into the folder
@@ -63,16 +64,13 @@ pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, P
     if bake && !into_folder && !is_baked(output) {
         return Err(PlanError::BakedOutput(output.to_owned()));
     }
-    if into_folder && !output.is_dir() {
+    let is_new = into_folder && !output.is_dir();
+    if is_new {
         let is_mesh = ends_in(output, &["ma", "medial"]) || MeshFormat::of(output).is_some();
         if is_mesh || output.is_file() {
             return Err(PlanError::FileForSeveral(output.to_owned()));
         }
         check_parent(output)?;
-        std::fs::create_dir(output).map_err(|source| PlanError::Folder {
-            path: output.to_owned(),
-            source,
-        })?;
     }
     let mut taken: HashMap<PathBuf, PathBuf> = HashMap::new();
     let mut jobs = Vec::new();
@@ -85,7 +83,6 @@ pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, P
         } else {
             output.to_owned()
         };
-        check_output(&input, &output)?;
         if let Some(first) = taken.insert(output.clone(), input.clone()) {
             return Err(PlanError::SameOutput {
                 output,
@@ -95,12 +92,21 @@ pub fn plan(inputs: &[PathBuf], output: &Path, bake: bool) -> Result<Vec<Job>, P
         }
         jobs.push(Job { input, output });
     }
+    if is_new {
+        std::fs::create_dir(output).map_err(|source| PlanError::Path {
+            path: output.to_owned(),
+            source,
+        })?;
+    }
+    for job in &jobs {
+        check_output(&job.input, &job.output)?;
+    }
     Ok(jobs)
 }
 
 /// The triangle meshes in a folder, by name.
 fn meshes_in(folder: &Path) -> Result<Vec<PathBuf>, PlanError> {
-    let failed = |source| PlanError::Folder {
+    let failed = |source| PlanError::Path {
         path: folder.to_owned(),
         source,
     };
@@ -125,9 +131,30 @@ pub fn check_output(input: &Path, output: &Path) -> Result<(), PlanError> {
         return Err(PlanError::OverInput(output.to_owned()));
     }
     match ends_in(output, &["ma", "medial"]) {
-        true => Ok(()),
+        true => check_writable(output),
         false => Err(PlanError::MeshOutput(output.to_owned())),
     }
+}
+
+/// Refuses a file that cannot be written. One that is there stays as it is, and links and pipes are not looked into.
+fn check_writable(output: &Path) -> Result<(), PlanError> {
+    let there = std::fs::symlink_metadata(output);
+    if there
+        .as_ref()
+        .is_ok_and(|there| !there.is_file() && !there.is_dir())
+    {
+        return Ok(());
+    }
+    let is_new = there.is_err();
+    let opened = OpenOptions::new().append(true).create(true).open(output);
+    let closed = opened.and_then(|_| match is_new {
+        true => std::fs::remove_file(output),
+        false => Ok(()),
+    });
+    closed.map_err(|source| PlanError::Path {
+        path: output.to_owned(),
+        source,
+    })
 }
 
 /// Whether a medial mesh goes to a file baked, by its ending.
@@ -142,7 +169,7 @@ pub fn check_picture(input: Option<&Path>, output: &Path) -> Result<(), PlanErro
         return Err(PlanError::OverInput(output.to_owned()));
     }
     match ends_in(output, &["png"]) && !output.is_dir() {
-        true => Ok(()),
+        true => check_writable(output),
         false => Err(PlanError::PictureOutput(output.to_owned())),
     }
 }

@@ -6,10 +6,12 @@ use super::{Polygons, Source};
 use crate::error::BuildError;
 use crate::math::{Real, Vector};
 use gltf::accessor::{DataType, Dimensions};
+use gltf::buffer::Source as BufferSource;
 use gltf::json::Root;
 use gltf::mesh::Mode;
 use gltf::{Accessor, Document, Node, Primitive, Semantic};
 use nalgebra::{Matrix4, Point3};
+use std::io::ErrorKind;
 
 /// Largest number of vertices, and of triangles, of a scene. The size of the file is no bound, since one mesh may hang
 /// on many nodes.
@@ -33,7 +35,13 @@ pub fn read(source: &Source) -> Result<Polygons, BuildError> {
         return Err(in_file(source, format!("accessor {lost} is not there")));
     }
     let document = Document::from_json(root).map_err(refused)?;
-    let buffers = gltf::import_buffers(&document, source.name.parent(), blob).map_err(refused)?;
+    let buffers = gltf::import_buffers(&document, source.name.parent(), blob);
+    let buffers = buffers.map_err(|error| match (&error, lost_buffer(source, &document)) {
+        (gltf::Error::Io(io), Some(name)) if io.kind() == ErrorKind::NotFound => {
+            in_file(source, format!("the buffer {name:?} is not there"))
+        }
+        _ => refused(error),
+    })?;
     let mut polygons = Polygons::default();
     let mut seen = vec![false; document.nodes().len()];
     let mut left: Vec<(Node, Matrix4<f64>)> = roots(&document)
@@ -78,6 +86,18 @@ fn chunks<'a>(source: &Source<'a>) -> Result<(&'a [u8], Option<Vec<u8>>), BuildE
         false => None,
     };
     Ok((json, blob.map(<[u8]>::to_vec)))
+}
+
+/// The name of the first buffer in a file of its own that does not exist.
+fn lost_buffer(source: &Source, document: &Document) -> Option<String> {
+    let mut buffers = document.buffers();
+    buffers.find_map(|buffer| match buffer.source() {
+        BufferSource::Uri(uri) if !uri.starts_with("data:") => {
+            let folder = source.name.parent()?;
+            (!folder.join(uri).exists()).then(|| uri.into())
+        }
+        _ => None,
+    })
 }
 
 /// The nodes that hang on no other, of one scene.
@@ -166,6 +186,12 @@ fn add(
             .windows(2)
             .skip(1)
             .for_each(|t| close([corners[0], t[0], t[1]], false)),
+        _ if corners.len() % 3 != 0 => {
+            return Err(format!(
+                "{} corners are not those of whole triangles",
+                corners.len()
+            ));
+        }
         _ => corners
             .chunks_exact(3)
             .for_each(|t| close(triple(t), false)),

@@ -229,10 +229,12 @@ impl Source {
             off if off > ROUNDED => format!(" but for {off:.6}, by which faces are not flat"),
             _ => String::new(),
         };
-        candidate.notes.push(format!(
-            "{} convex pieces that overlap: their medial axes have {count} primitives, and are exact{off}",
-            parts.len()
-        ));
+        candidate.notes.push(match parts.len() {
+            1 => format!("one convex piece: its medial axis has {count} primitives, and is exact{off}"),
+            several => format!(
+                "{several} convex pieces that overlap: their medial axes have {count} primitives, and are exact{off}"
+            ),
+        });
         Ok(Pieces::Exact(Box::new(candidate)))
     }
 

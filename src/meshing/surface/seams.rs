@@ -12,7 +12,7 @@ use crate::meshing::surface::edges::Edges;
 use crate::meshing::watch::Watch;
 
 /// Distance (longest side 1) by which vertices of a chain may be off the edge: modellers round to four digits.
-const OFF: f64 = 1e-4;
+pub const OFF: f64 = 1e-4;
 
 /// Vertices of two chains along each other, at most.
 const MOST_IN_LOOP: usize = 64;

@@ -4,13 +4,11 @@
 //! Such a pair adds nothing to the winding number, so that of the other triangles tells what is around it. It counts
 //! those parts alone whose surface is closed but for small openings, where it is about a whole number. What is not
 //! inside these is a sheet with two sides, of which one stays.
-//!
-//! What is open of a part is told by the vectors of the areas that its rims go around, in which edges along each other
-//! that are cut at different vertices (T-junctions) cancel out.
 
 use crate::error::BuildError;
+use crate::medial::simplex::sorted;
 use crate::meshing::findings::Findings;
-use crate::meshing::geometry::bounds::Point;
+use crate::meshing::geometry::bounds::{Bounds, Point, direction};
 use crate::meshing::geometry::triangle::points_inside;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::geometry::union_find::Groups;
@@ -18,12 +16,16 @@ use crate::meshing::geometry::winding::INSIDE;
 use crate::meshing::surface::checked_surface::{corners, cross};
 use crate::meshing::surface::edges::Edges;
 use crate::meshing::surface::openings::{OPEN, WIDE};
+use crate::meshing::surface::seams::OFF;
 use crate::meshing::surface::weld::Welded;
 use crate::meshing::watch::Watch;
-use std::f64::consts::PI;
+use std::collections::BTreeMap;
 
 /// How far points near a triangle's border are from it, as a share of the way to the middle.
 const INWARD: f64 = 1e-3;
+
+/// Corners of open edges that are connected, at most, where these are cut: each edge is compared with all of them.
+const MOST_CORNERS: usize = 1_000;
 
 /// Leaves out of a welded mesh those of the triangles given in both orientations that have matter on both sides.
 pub fn leave_out_shared(
@@ -85,43 +87,94 @@ fn closed_parts(
         left[parts.find(triangles[*t][0]) as usize] += OPEN * area;
     }
     let others: Vec<[u32; 3]> = closed.iter().map(|&t| triangles[t]).collect();
-    for (rim, area) in rims(vertices, &others, watch)? {
-        let is_wide = area > PI * WIDE * WIDE;
-        left[parts.find(rim) as usize] -= if is_wide { f64::INFINITY } else { area };
+    let open = open_edges(vertices, &others, watch)?;
+    for (rim, width) in rims(vertices, &open) {
+        let is_wide = width > 2.0 * WIDE;
+        left[parts.find(rim) as usize] -= if is_wide {
+            f64::INFINITY
+        } else {
+            width * width
+        };
     }
     closed.retain(|&t| left[parts.find(triangles[t][0]) as usize] >= 0.0);
     Ok(closed)
 }
 
-/// The rims of what triangles leave open: connected edges that are not used as often one way as the other. Each has a
-/// vertex, and the length of the vector of the area that it goes around.
-fn rims(
+/// Edges that triangles do not use as often one way as the other, where all are cut at the vertices of others that lie
+/// on them: seams (`seams.rs`) are none.
+fn open_edges(
     vertices: &[Point],
     triangles: &[[u32; 3]],
     watch: &mut Watch,
-) -> Result<Vec<(u32, f64)>, BuildError> {
-    let edges = Edges::new(vertices.len(), triangles, watch)?;
-    let mut rims = Groups::new(vertices.len());
-    let mut open = Vec::new();
-    for (i, ([a, b], uses)) in edges.iter().enumerate() {
+) -> Result<Vec<[u32; 2]>, BuildError> {
+    let mut uneven: Vec<([u32; 2], i64)> = Vec::new();
+    for (i, (ends, uses)) in Edges::new(vertices.len(), triangles, watch)?
+        .iter()
+        .enumerate()
+    {
         watch.every(i)?;
         let forward = uses.iter().filter(|u| u.forward()).count();
         if 2 * forward != uses.len() {
-            rims.join(a, b);
-            open.push(([a, b], 2.0 * forward as f64 - uses.len() as f64));
+            uneven.push((ends, 2 * forward as i64 - uses.len() as i64));
         }
     }
-    let mut vectors = vec![Point::zero(); vertices.len()];
-    for &([a, b], times) in &open {
-        let [p, q] = [a, b].map(|v| vertices[v as usize]);
-        let vector = &mut vectors[rims.find(a) as usize];
-        *vector = *vector + p.cross(q) * (0.5 * times);
+    let mut groups = Groups::new(vertices.len());
+    uneven.iter().for_each(|&([a, b], _)| groups.join(a, b));
+    uneven.sort_by_key(|&([a, _], _)| groups.find(a));
+    let mut open = Vec::new();
+    for group in uneven.chunk_by(|x, y| groups.find(x.0[0]) == groups.find(y.0[0])) {
+        let mut corners: Vec<u32> = group.iter().flat_map(|edge| edge.0).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        if corners.len() > MOST_CORNERS {
+            open.extend(group.iter().map(|edge| edge.0));
+            continue;
+        }
+        let mut times: BTreeMap<[u32; 2], i64> = BTreeMap::new();
+        for &(ends, uses) in group {
+            watch.again()?;
+            for link in cut(vertices, ends, &corners).windows(2) {
+                let way = if link[0] < link[1] { 1 } else { -1 };
+                *times.entry(sorted([link[0], link[1]])).or_default() += way * uses;
+            }
+        }
+        open.extend(
+            times
+                .iter()
+                .filter(|(_, uses)| **uses != 0)
+                .map(|(ends, _)| *ends),
+        );
     }
-    let around = open.into_iter().filter(|&([a, _], _)| rims.find(a) == a);
-    let mut around: Vec<u32> = around.map(|([a, _], _)| a).collect();
-    around.dedup();
-    Ok(around
-        .into_iter()
-        .map(|v| (v, vectors[v as usize].length()))
-        .collect())
+    Ok(open)
+}
+
+/// The ends of an edge, and in between those vertices that lie on it.
+fn cut(vertices: &[Point], [a, b]: [u32; 2], others: &[u32]) -> Vec<u32> {
+    let at = |v: u32| vertices[v as usize] - vertices[a as usize];
+    let (way, length) = (direction(at(b)), at(b).length());
+    let along = |v: u32| at(v).dot(way);
+    let is_on = |v: &u32| {
+        let there = along(*v);
+        *v != a
+            && *v != b
+            && there > 0.0
+            && there < length
+            && (at(*v) - way * there).length() <= OFF
+    };
+    let mut inner: Vec<u32> = others.iter().copied().filter(is_on).collect();
+    inner.sort_by(|u, v| along(*u).total_cmp(&along(*v)));
+    [vec![a], inner, vec![b]].concat()
+}
+
+/// The rims that open edges form, each by a vertex and the longest side of its box.
+fn rims(vertices: &[Point], open: &[[u32; 2]]) -> Vec<(u32, f64)> {
+    let mut groups = Groups::new(vertices.len());
+    open.iter().for_each(|&[a, b]| groups.join(a, b));
+    let mut boxes: BTreeMap<u32, Bounds> = BTreeMap::new();
+    for edge in open {
+        let around = boxes.entry(groups.find(edge[0])).or_insert(Bounds::EMPTY);
+        *around = around.union(Bounds::of(edge.map(|v| vertices[v as usize])));
+    }
+    let width = |(rim, around): (u32, Bounds)| (rim, around.longest_side());
+    boxes.into_iter().map(width).collect()
 }
