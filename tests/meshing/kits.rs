@@ -80,11 +80,11 @@ fn block([x0, y0, z0]: [f64; 3], [x1, y1, z1]: [f64; 3]) -> Part {
     }
 }
 
-/// Two sides, three boards between them and a back.
-fn shelf() -> Vec<Part> {
+/// Two sides, three boards between them and a back, which reaches from one depth to another.
+fn shelf(back: [f64; 2]) -> Vec<Part> {
     let side = |x: f64| block([x, -0.15, -0.5], [x + 0.02, 0.15, 0.5]);
     let board = |z: f64| block([-0.29, -0.15, z], [0.29, 0.15, z + 0.02]);
-    let back = block([-0.31, 0.15, -0.5], [0.31, 0.16, 0.5]);
+    let back = block([-0.31, back[0], -0.5], [0.31, back[1], 0.5]);
     let boards = [-0.46, -0.01, 0.44].map(board);
     [-0.31, 0.29]
         .map(side)
@@ -170,8 +170,51 @@ fn rings_of_blocks_with_cracks_are_exact() {
 fn kits_rounded_by_their_file_are_exact() {
     for off in [1.0e-5, 4.0e-5] {
         let ring = ring(8, true, 0.0, &mut Random(1));
-        for (name, parts) in [("a shelf", shelf()), ("steps", steps()), ("a ring", ring)] {
+        for (name, parts) in [
+            ("a shelf", shelf([0.15, 0.16])),
+            ("steps", steps()),
+            ("a ring", ring),
+        ] {
             assert_exact(name, &parts, off, &mut Random(5));
         }
+    }
+}
+
+/// Samples are one and a half to three thicknesses of these backs apart: hardly a ball between their faces has a
+/// neighbour. Faces are too uneven for pieces.
+#[test]
+fn thin_backs_of_kits_are_kept() {
+    for thickness in [0.008, 0.01, 0.012] {
+        let parts = shelf([0.17, 0.17 + thickness]);
+        let mut random = Random(5);
+        let all = parts.iter().map(Part::mesh).reduce(Mesh::and);
+        let mut mesh = all.expect("parts");
+        for p in &mut mesh.vertices {
+            *p += random.vector(1.0e-3);
+        }
+        let options = BuildOptions {
+            quality: Quality::Fast,
+            ..Default::default()
+        };
+        let built = MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options);
+        let (medial, report) = built.expect("a shelf");
+        println!("{thickness}: error {}", report.hausdorff.error());
+        assert_ne!(report.variant, Variant::Exact);
+        let (mut solid, mut air) = (0, 0);
+        for _ in 0..40_000 {
+            let p = [0.35, 0.2, 0.55].map(|half| random.within(-half, half) as f32);
+            let p = Vector::from(p);
+            let over = parts.iter().map(|part| part.prism.height_over(p));
+            let over = over.fold(f64::INFINITY, f64::min);
+            let distance = solid_distance(&medial, p);
+            if over < -2.5e-3 {
+                solid += 1;
+                assert!(distance < 0.0, "{thickness}: {p} is left out");
+            } else if over > 0.1 {
+                air += 1;
+                assert!(distance > 0.0, "{thickness}: {p} is inside");
+            }
+        }
+        assert!(solid > 500 && air > 1_000, "{solid} {air}");
     }
 }

@@ -50,7 +50,8 @@ pub fn tetrahedra(samples: &[Sample], watch: &mut Watch) -> Result<Delaunay, Bui
 
 /// The initial medial mesh, and whether each sample is touched by one of its balls. Without
 /// `votes` the winding number decides everywhere: where patches overlap, or two layers lie nearer
-/// to each other than samples do, a ball touches samples of either, and normals mislead.
+/// to each other than samples do, a ball touches samples of either, and normals mislead. Balls that
+/// are corners of no face count as none then: walls thinner than samples are apart hold such, scattered.
 pub fn inner_balls(
     samples: &[Sample],
     delaunay: &Delaunay,
@@ -78,7 +79,6 @@ pub fn inner_balls(
         if bounds.distance_sq(ball.center) == 0.0 && inside() {
             ball_of[t] = draft.balls.len() as u32;
             draft.balls.push(ball);
-            corners.iter().for_each(|&v| touched[v as usize] = true);
         }
     }
     for (t, neighbors) in delaunay.neighbors.iter().enumerate() {
@@ -104,6 +104,15 @@ pub fn inner_balls(
                 }
                 fan(&ring, &mut draft);
             }
+        }
+    }
+    let mut counts = vec![votes; draft.balls.len()];
+    for &ball in draft.faces.iter().flatten() {
+        counts[ball as usize] = true;
+    }
+    for (corners, &ball) in delaunay.tetrahedra.iter().zip(&ball_of) {
+        if ball != NONE && counts[ball as usize] {
+            corners.iter().for_each(|&v| touched[v as usize] = true);
         }
     }
     Ok((draft, touched))

@@ -7,13 +7,13 @@
 use crate::error::BuildError;
 use crate::meshing::axis::inner_balls::{inner_balls, tetrahedra};
 use crate::meshing::axis::sheets::{open_sheets, thin_sheets};
-use crate::meshing::axis::wall_samples::samples_for_walls;
+use crate::meshing::axis::wall_samples::times_for_walls;
 use crate::meshing::draft::Draft;
 use crate::meshing::findings::Findings;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::folds::Folds;
-use crate::meshing::surface::samples::{Sample, blue_noise};
+use crate::meshing::surface::samples::{Sample, blue_noise, spacing};
 use crate::meshing::watch::Watch;
 use std::borrow::Cow;
 
@@ -41,24 +41,23 @@ pub struct Start {
 }
 
 /// The initial medial mesh from about `count` samples of the solid patches, or up to four times as many where they are
-/// of thin walls; `findings` is told what turned out too thin and what is buried.
+/// of thin walls, as the boundary of the solid tells; `findings` is told what turned out too thin and what is buried.
 pub fn start(
-    surface: &Surface,
-    tree: &TriangleTree,
+    (surface, tree): (&Surface, &TriangleTree),
+    boundary: (&Surface, &TriangleTree),
     count: usize,
     findings: &mut Findings,
     watch: &mut Watch,
 ) -> Result<Start, BuildError> {
-    let part = match surface.sheet.contains(&true) {
-        false => Cow::Borrowed(surface),
-        true => Cow::Owned(surface.part(|t| !surface.sheet[t])),
-    };
+    let part = without_sheets(surface);
     watch.begin("samples")?;
     let mut solid = Draft::default();
     let mut thin = vec![false; surface.triangles.len()];
-    let count = match part.triangles.is_empty() || findings.overlapping {
+    let distance = spacing(&part, count);
+    let walls = without_sheets(boundary.0);
+    let count = match walls.triangles.is_empty() {
         true => count,
-        false => samples_for_walls(&part, tree, count, watch)?,
+        false => count * times_for_walls(&walls, boundary.1, distance, watch)?,
     };
     let spacing = (part.area / count as f64).sqrt();
     if !part.triangles.is_empty() {
@@ -101,6 +100,14 @@ pub fn start(
         share,
         sheet_patches: findings.patches_sheet,
     })
+}
+
+/// The triangles of a surface that are no sheet's.
+fn without_sheets(surface: &Surface) -> Cow<'_, Surface> {
+    match surface.sheet.contains(&true) {
+        false => Cow::Borrowed(surface),
+        true => Cow::Owned(surface.part(|t| !surface.sheet[t])),
+    }
 }
 
 /// Which triangles lie where matter is too thin for balls: those around whose corners too few

@@ -7,7 +7,7 @@ use crate::meshing::axis::shrinking_ball::{SMALLEST_BALL, shrink_from};
 use crate::meshing::geometry::random::Random;
 use crate::meshing::geometry::triangle_tree::TriangleTree;
 use crate::meshing::surface::checked_surface::Surface;
-use crate::meshing::surface::samples::{even_samples, spacing};
+use crate::meshing::surface::samples::even_samples;
 use crate::meshing::watch::Watch;
 
 /// Points at which the thickness is looked at, each for as much of the surface.
@@ -22,15 +22,14 @@ const TIMES: [usize; 3] = [1, 2, 4];
 /// Share of the surface that may be neither.
 const MAX_UNDECIDED: f64 = 0.25;
 
-/// The number of samples, `count` or up to four times as many: the fewest with which little of the surface is of walls
-/// in between; `count` if there is no such number.
-pub fn samples_for_walls(
+/// How many times as many samples walls need as there are a distance apart, one to four: the fewest with which little
+/// of the surface is of walls in between; 1 if there is no such number.
+pub fn times_for_walls(
     surface: &Surface,
     tree: &TriangleTree,
-    count: usize,
+    distance: f64,
     watch: &mut Watch,
 ) -> Result<usize, BuildError> {
-    let distance = spacing(surface, count);
     let probes = even_samples(surface, PROBES, &mut Random::new(1));
     let mut thicknesses = Vec::with_capacity(PROBES);
     for (i, probe) in probes.iter().enumerate() {
@@ -54,5 +53,5 @@ pub fn samples_for_walls(
     let times = TIMES
         .into_iter()
         .find(|times| neither(*times) <= MAX_UNDECIDED);
-    Ok(count * times.unwrap_or(1))
+    Ok(times.unwrap_or(1))
 }

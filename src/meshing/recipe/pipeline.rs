@@ -87,7 +87,8 @@ impl Source {
             false => self.limits.samples(self.surface.area),
         };
         let mut findings = std::mem::take(&mut self.surface.findings);
-        let start = start(&self.surface, &self.tree, count, &mut findings, watch)?;
+        let own = (&self.surface, &self.tree);
+        let start = start(own, self.bounds(), count, &mut findings, watch)?;
         self.surface.findings = findings;
         Ok(start)
     }
