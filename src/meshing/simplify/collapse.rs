@@ -165,12 +165,6 @@ impl<'a> Simplifier<'a> {
             let current =
                 |c: &QueuedCollapse| [c.a, c.b].map(|v| versions[v as usize]) == c.versions;
             match queue.pop(current) {
-                Some(QueuedCollapse {
-                    a, b, known: false, ..
-                }) => {
-                    let (cost, _) = self.merge(a, b);
-                    self.push(a, b, cost, true);
-                }
                 Some(candidate) => self.take(candidate),
                 None if self.retry() => {}
                 None => break,
@@ -279,23 +273,22 @@ impl<'a> Simplifier<'a> {
             let u = self.complex.neighbors(v)[i];
             if wanted(u) {
                 let (a, b) = (v.min(u), v.max(u));
-                self.push(a, b, self.least_cost(a, b), self.knows_cost());
+                let (cost, _) = self.merge(a, b);
+                self.push(a, b, cost);
             }
         }
         if self.complex.is_lone(v) {
             // Each plane that it touched is then off by up to its diameter.
             let diameter = 2.0 * self.complex.balls[v as usize].radius;
             let planes = self.quadrics[v as usize].weight().max(1.0);
-            let cost = planes * diameter * diameter + self.flat_cost();
-            self.push(v, v, cost, true);
+            self.push(v, v, planes * diameter * diameter + self.flat_cost());
         }
     }
 
-    fn push(&mut self, a: u32, b: u32, cost: f64, known: bool) {
+    fn push(&mut self, a: u32, b: u32, cost: f64) {
         let versions = [a, b].map(|v| self.versions[v as usize]);
         self.queue.push(QueuedCollapse {
             cost,
-            known,
             a,
             b,
             versions,

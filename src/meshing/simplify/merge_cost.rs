@@ -79,19 +79,6 @@ impl Simplifier<'_> {
         self.cheapest_of(a, b, &quadric, balls)
     }
 
-    /// Lower bound of the cost of merging two balls, which leaves out the faces that turn over. They are most of the
-    /// work where a ball has many neighbours.
-    pub(crate) fn least_cost(&self, a: u32, b: u32) -> f64 {
-        let (quadric, balls) = self.candidates(a, b);
-        let errors = balls.iter().flatten().map(|ball| quadric.error(ball));
-        self.scaled(a, b, errors.fold(f64::INFINITY, f64::min))
-    }
-
-    /// Whether [`Self::least_cost`] is the cost itself.
-    pub(crate) fn knows_cost(&self) -> bool {
-        !self.creased
-    }
-
     /// Quadric of two balls, and those that they may become, of which there is at least one.
     fn candidates(&self, a: u32, b: u32) -> (Quadric, [Option<Ball>; 3]) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
@@ -137,6 +124,7 @@ impl Simplifier<'_> {
         let mut best = (f64::INFINITY, f64::INFINITY, self.complex.balls[a as usize]);
         for ball in balls.into_iter().flatten() {
             let error = quadric.error(&ball);
+            // Faces that turn over are most of the work where a ball has many neighbours.
             if error < best.0 {
                 let folds = self.folds(a, b, &ball);
                 if error + folds < best.0 {

@@ -19,10 +19,8 @@ const REFILL_WHOLE: usize = 512;
 /// An edge to collapse (`a < b`), or a lone ball to drop (`a == b`).
 #[derive(Clone, Copy)]
 pub struct QueuedCollapse {
-    /// Cost of the merge, or less.
+    /// Cost of the merge.
     pub cost: f64,
-    /// Whether the cost is known, and not only a lower bound of it.
-    pub known: bool,
     /// First end of the edge.
     pub a: u32,
     /// Second end of the edge.
@@ -31,8 +29,7 @@ pub struct QueuedCollapse {
     pub versions: [u32; 2],
 }
 
-// Of equal costs bounds come first, so that all that may be cheaper is known when one is taken.
-least_first!(QueuedCollapse, cost, known, a, b);
+least_first!(QueuedCollapse, cost, a, b);
 
 /// Candidates, the cheapest first.
 #[derive(Clone)]
