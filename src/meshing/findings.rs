@@ -95,8 +95,8 @@ pub(crate) fn counted(count: usize, [one, several]: [&str; 2]) -> String {
 }
 
 impl Findings {
-    /// Sentences that a user should know.
-    pub(crate) fn notes(&self) -> Vec<String> {
+    /// Sentences on vertices, triangles and edges.
+    fn counts_in_words(&self) -> Vec<String> {
         let counts = [
             (
                 self.vertices_unused,
@@ -152,7 +152,12 @@ impl Findings {
         ];
         let found = counts.into_iter().filter(|(count, ..)| *count > 0);
         let say = |(count, names, what)| format!("{} {what}", counted(count, names));
-        let mut notes: Vec<String> = found.map(say).collect();
+        found.map(say).collect()
+    }
+
+    /// Sentences that a user should know.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        let mut notes = self.counts_in_words();
         let sheets = self.patches_sheet > 0;
         if sheets || self.patches_mended > 0 || self.patches > 1 {
             notes.push(self.patches_in_words());

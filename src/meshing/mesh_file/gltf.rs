@@ -165,38 +165,37 @@ fn add(
     }
     // A mirrored node turns its triangles inside out.
     let mirrored = place.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
-    let mut close = |[a, b, c]: [u64; 3], flip: bool| {
-        let corners = if flip != mirrored {
-            [a, c, b]
-        } else {
-            [a, b, c]
-        };
-        polygons
-            .corners
-            .extend(corners.map(|corner| first as u64 + corner));
+    for [a, b, c] in triangles(mode, &corners)? {
+        let corners = if mirrored { [a, c, b] } else { [a, b, c] };
+        let moved = corners.map(|corner| first as u64 + corner);
+        polygons.corners.extend(moved);
         polygons.close_polygon(None);
-    };
-    let triple = |t: &[u64]| [t[0], t[1], t[2]];
-    match mode {
-        Mode::TriangleStrip => corners
-            .windows(3)
-            .enumerate()
-            .for_each(|(k, t)| close(triple(t), k % 2 == 1)),
-        Mode::TriangleFan => corners
-            .windows(2)
-            .skip(1)
-            .for_each(|t| close([corners[0], t[0], t[1]], false)),
-        _ if corners.len() % 3 != 0 => {
-            return Err(format!(
-                "{} corners are not those of whole triangles",
-                corners.len()
-            ));
-        }
-        _ => corners
-            .chunks_exact(3)
-            .for_each(|t| close(triple(t), false)),
     }
     Ok(())
+}
+
+/// The triangles that corners make, all facing one way.
+fn triangles(mode: Mode, corners: &[u64]) -> Result<Vec<[u64; 3]>, String> {
+    let triple = |t: &[u64]| [t[0], t[1], t[2]];
+    match mode {
+        Mode::TriangleStrip => {
+            let strip = corners.windows(3).enumerate();
+            let turned = strip.map(|(k, t)| match k % 2 {
+                0 => triple(t),
+                _ => [t[0], t[2], t[1]],
+            });
+            Ok(turned.collect())
+        }
+        Mode::TriangleFan => {
+            let fan = corners.windows(2).skip(1);
+            Ok(fan.map(|t| [corners[0], t[0], t[1]]).collect())
+        }
+        _ if !corners.len().is_multiple_of(3) => Err(format!(
+            "{} corners are not those of whole triangles",
+            corners.len()
+        )),
+        _ => Ok(corners.chunks_exact(3).map(triple).collect()),
+    }
 }
 
 /// Refuses what the crate's reader takes on trust: its type, and a count that no buffer could fill.
