@@ -87,7 +87,7 @@ pub enum MassSource {
 const TRIANGLES: [&str; 2] = ["triangle", "triangles"];
 
 /// A number of things, named by the words for one and for several.
-pub(crate) fn counted(count: usize, [one, several]: [&str; 2]) -> String {
+fn counted(count: usize, [one, several]: [&str; 2]) -> String {
     match count {
         1 => format!("1 {one}"),
         _ => format!("{count} {several}"),

@@ -75,12 +75,6 @@ impl Simplifier<'_> {
 
     /// Cost of merging two balls, and the ball that they become.
     pub(crate) fn merge(&self, a: u32, b: u32) -> (f64, Ball) {
-        let (quadric, balls) = self.candidates(a, b);
-        self.cheapest_of(a, b, &quadric, balls)
-    }
-
-    /// Quadric of two balls, and those that they may become, of which there is at least one.
-    fn candidates(&self, a: u32, b: u32) -> (Quadric, [Option<Ball>; 3]) {
         let [ball_a, ball_b] = [a, b].map(|v| self.complex.balls[v as usize]);
         let quadric = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
         let middle = middle(&ball_a, &ball_b);
@@ -102,7 +96,7 @@ impl Simplifier<'_> {
                 None => [Some(ball_a), Some(ball_b), Some(middle)],
             }
         };
-        (quadric, balls)
+        self.cheapest_of(a, b, &quadric, balls)
     }
 
     /// The cheapest of two balls and their middle to merge the two into.

@@ -18,7 +18,7 @@ pub const FLATNESS: [f64; 3] = [1.0, 4.0, 40.0];
 /// The last tolerance of a body of several parts, with which vertices may be off by a 20,000th of the size, as in a
 /// shelf of a metre that is written in metres with four decimals. A body of one part is nearer when fitted: where a
 /// plate is that warped, five times as near; but of parts that touch a fit closes the cracks between them, and is
-/// hundreds of times farther off.
+/// a hundred times as far off and more.
 pub const FLATNESS_OF_PARTS: f64 = 200.0;
 
 /// Distance from a plane up to which a point is on it, in units of the distance that corners of a flat face may have.
