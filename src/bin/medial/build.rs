@@ -69,7 +69,8 @@ pub struct BuildArguments {
 /// [`Quality`], as an argument.
 #[derive(Clone, Copy, Default, ValueEnum)]
 pub enum QualityArgument {
-    /// A fifth of the time, an error one and a half to three times as large, of some creatures six times.
+    /// A fifth of the time, an error one and a half to three times as large, of some creatures six times, of
+    /// thin-walled bodies thirty times.
     Fast,
     /// For most meshes.
     #[default]

@@ -48,7 +48,7 @@ const EXIT_OVERESTIMATE: f64 = 0.05;
 /// What a cell in a search for a way out costs, in pieces: measured on drums of many thin parts.
 const CELL: f64 = 0.25;
 
-/// Step off the surface that tells an enclosed part from the outside (longest side 1).
+/// Least step off the surface that tells an enclosed part from the outside (longest side 1).
 const OFF_SURFACE: f64 = 1e-4;
 
 /// Directions along which a piece of the source is moved to get out of the solid. Faces that meet in a reflex edge
@@ -287,7 +287,8 @@ impl FromSource<'_> {
     /// Whether the surface point `p` lies inside matter that the source bounds, or at the bottom of a crack in it.
     fn is_enclosed(&self, p: Point, normal: Point) -> bool {
         let is_inside = |p: Point| self.winding.winding(p) > INSIDE;
-        is_before_matter(self.winding, p, normal * OFF_SURFACE, is_inside)
+        let off = OFF_SURFACE.max(self.surface.cracks);
+        is_before_matter(self.winding, p, normal * off, is_inside)
     }
 }
 

@@ -18,12 +18,17 @@ use crate::meshing::surface::flat_faces::{
     FLATNESS, FLATNESS_OF_PARTS, FlatFaces, ON, convex_faces, flat_faces, rounding,
 };
 use crate::meshing::surface::touching::bodies;
+use crate::meshing::surface::uneven_parts::Unevenness;
 use crate::meshing::watch::Watch;
 use std::borrow::Cow;
 
 /// Pieces are used if the medial mesh is off by less than so many times that. More, and bodies whose faces are not
 /// quite flat count as exact.
 const EXACT_FACTOR: f64 = 20.0;
+
+/// Error (longest side 1) up to which the parts of an uneven kit are used. Fits of such kits are off by .1 and more,
+/// since they close the cracks between parts and stick out beside them.
+const CLOSE_OF_UNEVEN: f64 = 0.01;
 
 /// An error up to this (longest side 1) is rounding.
 const ROUNDED: f64 = 2e-5;
@@ -80,7 +85,33 @@ impl Source {
                 }
             }
         }
-        Ok(None)
+        self.uneven_pieces(&bodies, most, watch)
+    }
+
+    /// The medial axes of the parts of a kit that is more uneven than other exact bodies may be.
+    fn uneven_pieces(
+        &self,
+        bodies: &[Vec<usize>],
+        most: usize,
+        watch: &mut Watch,
+    ) -> Result<Option<Candidate>, BuildError> {
+        let uneven = self.boundary.as_ref().and_then(|b| b.uneven);
+        let Some(Unevenness { flat, cracks }) = uneven else {
+            return Ok(None);
+        };
+        let Some((parts, beside)) = self.own_parts(bodies, flat, most, watch)? else {
+            return Ok(None);
+        };
+        match self.of_parts(&parts, beside, CLOSE_OF_UNEVEN, most, watch)? {
+            Pieces::Exact(mut candidate) => {
+                let note = format!(
+                    "cracks between parts up to {cracks:.4} of the size count as matter: vertices are that far off"
+                );
+                candidate.notes.push(note);
+                Ok(Some(*candidate))
+            }
+            _ => Ok(None),
+        }
     }
 
     /// The same for corners that are off their planes by at most `flat`, where errors up to `close` count as none.
@@ -288,6 +319,7 @@ impl Source {
             patch_of: vec![0; count],
             whole: vec![true],
             lids: Vec::new(),
+            cracks: 0.0,
             simple: true,
             findings: Default::default(),
         };

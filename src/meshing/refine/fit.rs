@@ -148,6 +148,10 @@ const ROUND_FROM: usize = 10;
 /// triangles (longest side 1): .0032 at 50, .0023 to .0029 from 200 to 5,000; of the bug .027 at 50, .0044 at 5,000.
 const FLAT: f64 = 1.5;
 
+/// Largest error of a round body's plain collapse (longest side 1). Farther off, the collapse is bad at all counts,
+/// which says nothing of the body.
+const ROUND_ERROR: f64 = 0.05;
+
 /// Place among the `smaller` counts of the least that a round body needs; `None` where it is not round.
 pub fn round_from(
     first: &Collapsed,
@@ -163,7 +167,8 @@ pub fn round_from(
         return Ok(None);
     };
     for k in (0..smaller.len()).rev().filter(|&k| few(&smaller[k])) {
-        let Some(own) = rough.largest_below(&smaller[k].plain, FLAT * most, watch)? else {
+        let enough = ROUND_ERROR.min(FLAT * most);
+        let Some(own) = rough.largest_below(&smaller[k].plain, enough, watch)? else {
             continue;
         };
         let mut flat = true;

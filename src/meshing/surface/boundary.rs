@@ -16,6 +16,7 @@ use crate::meshing::surface::checked_surface::Surface;
 use crate::meshing::surface::flat_boundary::{TrianglePiece, flat_pieces};
 use crate::meshing::surface::folds::Folds;
 use crate::meshing::surface::hidden::Hidden;
+use crate::meshing::surface::uneven_parts::{Unevenness, uneven_parts};
 use crate::meshing::watch::Watch;
 
 /// Distance before and behind the surface at which the winding number is asked for (longest side 1).
@@ -49,6 +50,10 @@ const COARSEST: f64 = 16.0;
 /// A length above that of all edges in the builder's frame (longest side 1): pieces of that size are whole triangles.
 const SPAN: f64 = 2.0;
 
+/// Longest edge of a piece (longest side 1) above which it is halved where it looks hidden: a strip along its side may
+/// be seen that no probe is in.
+const LARGE_HIDDEN: f64 = 0.02;
+
 /// Share of the area that is lost by rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -62,6 +67,17 @@ pub struct Boundary {
     pub hidden: f64,
     /// Longest edge of the smallest pieces, which are kept if they are partly hidden: what is finer is not known.
     pub finest: f64,
+    /// How uneven the parts are that it is of, if they are.
+    pub uneven: Option<Unevenness>,
+}
+
+/// What of a surface is not hidden.
+struct Sorted {
+    /// Pieces of triangles, in the order of these.
+    pieces: Vec<TrianglePiece>,
+    finest: f64,
+    cracks: f64,
+    uneven: Option<Unevenness>,
 }
 
 /// The boundary of the matter that a surface winds around, with the sheets outside it; `None` where nothing is
@@ -84,7 +100,17 @@ pub fn solid_boundary(
         true => sort_out(surface, tree, findings, watch)?,
         false => None,
     };
-    let (pieces, finest) = sorted.unwrap_or_else(|| (whole().collect(), FINEST));
+    let Sorted {
+        pieces,
+        finest,
+        cracks,
+        uneven,
+    } = sorted.unwrap_or_else(|| Sorted {
+        pieces: whole().collect(),
+        finest: FINEST,
+        cracks: 0.0,
+        uneven: None,
+    });
     let patches = surface.patch_of.iter().max().map_or(0, |&p| p as usize + 1);
     let mut is_seen = vec![false; patches];
     let mut triangles = surface.triangles.len();
@@ -92,7 +118,8 @@ pub fn solid_boundary(
         triangles -= 1;
         is_seen[surface.patch_of[same[0].1] as usize] = true;
     }
-    let boundary = surface.of_pieces(&pieces);
+    let mut boundary = surface.of_pieces(&pieces);
+    boundary.cracks = cracks;
     let added: f64 = surface.lids.iter().map(|lid| area(&lid.0)).sum();
     let hidden = surface.area + added - boundary.area;
     // Halves of a triangle add up to it but for rounding.
@@ -114,25 +141,33 @@ pub fn solid_boundary(
         tree,
         hidden,
         finest,
+        uneven,
     }))
 }
 
-/// The pieces of triangles that are not hidden, in the order of the triangles, and the longest edge of the smallest. A
-/// surface so tangled that most of its pieces are partly hidden is cut into larger ones; `None` if that takes too much
-/// work too.
+/// The pieces of triangles that are not hidden. A surface so tangled that most of its pieces are partly hidden is cut
+/// into larger ones; `None` if that takes too much work too.
 fn sort_out(
     surface: &Surface,
     tree: &TriangleTree,
     findings: &mut Findings,
     watch: &mut Watch,
-) -> Result<Option<(Vec<TrianglePiece>, f64)>, BuildError> {
+) -> Result<Option<Sorted>, BuildError> {
     let folds = Folds::new(surface, tree, watch)?;
-    if let Some(pieces) = flat_pieces(surface, tree, &folds, watch)? {
-        return Ok(Some((pieces, FINEST)));
+    let uneven = uneven_parts(surface, watch)?;
+    let cracks = uneven.map_or(0.0, |uneven| uneven.cracks);
+    if let Some((pieces, cracks)) = flat_pieces(surface, tree, &folds, cracks, watch)? {
+        return Ok(Some(Sorted {
+            pieces,
+            finest: FINEST,
+            cracks,
+            uneven,
+        }));
     }
     let mut coarser = 1.0;
     loop {
         let mut cut = Cut::new(tree, &folds, surface.triangles.len(), coarser);
+        cut.hidden.cracks = cracks.max(OFF);
         let mut area_done = 0.0;
         for (t, corners) in surface.all_corners().enumerate() {
             let normal = surface.normals[t];
@@ -143,7 +178,12 @@ fn sort_out(
         }
         if !cut.is_exhausted() {
             findings.boundary_coarse = coarser > 1.0;
-            return Ok(Some((cut.pieces, cut.finest)));
+            return Ok(Some(Sorted {
+                pieces: cut.pieces,
+                finest: cut.finest,
+                cracks,
+                uneven,
+            }));
         }
         if coarser * LARGE > SPAN {
             findings.boundary_coarse = true;
@@ -160,6 +200,7 @@ struct Cut<'a> {
     hidden: Hidden<'a>,
     finest: f64,
     large: f64,
+    large_hidden: f64,
     pieces: Vec<TrianglePiece>,
     waiting: Vec<[Point; 3]>,
     /// The most of both.
@@ -175,10 +216,12 @@ impl<'a> Cut<'a> {
                 tree,
                 folds,
                 off: OFF,
+                cracks: OFF,
                 work: 0,
             },
             finest: FINEST * coarser,
             large: LARGE * coarser,
+            large_hidden: LARGE_HIDDEN * coarser,
             pieces: Vec::new(),
             waiting: Vec::new(),
             most_pieces: most(MOST_PIECES),
@@ -219,10 +262,11 @@ impl<'a> Cut<'a> {
                     .skip(1)
                     .all(|p| self.hidden.is_enclosed(p, normal) == here),
             };
-            if is_alike && here {
+            let is_hidden = is_alike && here;
+            if is_hidden && longest_sq <= self.large_hidden * self.large_hidden {
                 continue;
             }
-            if !is_alike && !is_finest {
+            if is_hidden || !is_alike && !is_finest {
                 self.waiting.extend(halve(piece));
                 continue;
             }

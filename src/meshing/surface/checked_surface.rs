@@ -51,6 +51,8 @@ pub struct Surface {
     /// Triangles that close the small openings of patches that bound matter, and their normals: the boundary of the
     /// solid, where the source has none.
     pub lids: Vec<([Point; 3], Point)>,
+    /// Width up to which cracks in matter count as matter (longest side 1), if that is more than rounding.
+    pub cracks: f64,
     /// Whether the triangles that are no sheet's close a volume without overlaps.
     pub simple: bool,
     /// Faults found and what was done about them.
@@ -85,6 +87,7 @@ impl Surface {
             sheet: chosen.iter().map(|&i| self.sheet[i]).collect(),
             patch_of: chosen.iter().map(|&i| self.patch_of[i]).collect(),
             whole: self.whole.clone(),
+            cracks: self.cracks,
             simple: self.simple,
             findings: self.findings.clone(),
         }
@@ -131,6 +134,7 @@ impl Surface {
                 .collect(),
             whole: self.whole.clone(),
             lids: Vec::new(),
+            cracks: self.cracks,
             simple: self.simple,
             welded: self.welded,
             frame: self.frame,

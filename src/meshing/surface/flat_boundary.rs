@@ -31,14 +31,15 @@ const NEAR: f64 = 2.0;
 /// A piece of a triangle, and the triangle.
 pub type TrianglePiece = ([Point; 3], usize);
 
-/// The pieces of triangles that are not hidden, in the order of the triangles; `None` where faces are
-/// not flat, or too many.
+/// The pieces of triangles that are not hidden, in the order of the triangles, and the width up to which cracks count
+/// as matter, which is `cracks` at least; `None` where faces are not flat, or too many.
 pub fn flat_pieces(
     surface: &Surface,
     tree: &TriangleTree,
     folds: &Folds,
+    cracks: f64,
     watch: &mut Watch,
-) -> Result<Option<Vec<TrianglePiece>>, BuildError> {
+) -> Result<Option<(Vec<TrianglePiece>, f64)>, BuildError> {
     let mut faces = None;
     let mut on = 0.0;
     for flatness in FLATNESS.into_iter().chain([FLATNESS_OF_PARTS]) {
@@ -63,17 +64,19 @@ pub fn flat_pieces(
     }
     let planes: Vec<(Plane, Bounds)> = faces.planes.into_iter().zip(boxes).collect();
     let off = OFF * on;
+    let cracks = cracks.max(off);
     let mut hidden = Hidden {
         tree,
         folds,
         off,
+        cracks,
         work: 0,
     };
     let mut pieces = Vec::new();
     let mut cut = 0;
     for (t, corners) in surface.all_corners().enumerate() {
         let (normal, patch) = (surface.normals[t], surface.patch_of[t]);
-        let polygons = along(corners, &planes, [on, NEAR * off]);
+        let polygons = along(corners, &planes, [on, NEAR * cracks]);
         cut += polygons.len();
         if cut > MOST_PIECES {
             return Ok(None);
@@ -98,7 +101,7 @@ pub fn flat_pieces(
             pieces.extend(fan.map(|w| ([polygon[0], w[0], w[1]], t)));
         }
     }
-    Ok(Some(pieces))
+    Ok(Some((pieces, cracks)))
 }
 
 /// The faces of each patch by themselves: faces of different ones may be so near to one plane that together they are on

@@ -24,8 +24,10 @@ pub struct Hidden<'a> {
     /// Tree of the surface.
     pub tree: &'a TriangleTree,
     pub folds: &'a Folds<'a>,
-    /// Distance before and behind the surface at which the winding number is asked for (longest side 1).
+    /// Distance behind the surface at which the winding number is asked for (longest side 1).
     pub off: f64,
+    /// The same before it: the width up to which cracks count as matter.
+    pub cracks: f64,
     /// Points and triangles that winding numbers have looked at.
     pub work: usize,
 }
@@ -34,7 +36,7 @@ impl Hidden<'_> {
     /// Whether there is matter behind a point of the surface and before it.
     pub fn is_enclosed(&mut self, p: Point, normal: Point) -> bool {
         let mut is_inside = |p: Point| self.tree.winding_counted(p, &mut self.work) > INSIDE;
-        is_before_matter(self.tree, p, normal * self.off, &mut is_inside)
+        is_before_matter(self.tree, p, normal * self.cracks, &mut is_inside)
             && is_inside(p - normal * self.off)
     }
 
@@ -42,7 +44,7 @@ impl Hidden<'_> {
     /// looks like a void, counts as matter.
     pub fn is_in_fold(&mut self, p: Point, patch: u32, normal: Point) -> bool {
         let mut is_inside = |p: Point| self.folds.is_inside(p, patch, &mut self.work);
-        is_before_matter(self.tree, p, normal * self.off, &mut is_inside)
+        is_before_matter(self.tree, p, normal * self.cracks, &mut is_inside)
             && is_inside(p - normal * self.off)
     }
 }

@@ -82,6 +82,7 @@ impl Surface {
             lids: Vec::new(),
             patch_of: Vec::new(),
             whole: Vec::new(),
+            cracks: 0.0,
             simple: false,
             findings,
         };
