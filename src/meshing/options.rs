@@ -11,8 +11,8 @@ use crate::meshing::findings::Findings;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quality {
     /// A fifth of the time of [`Self::Balanced`], and one and a half to three times its error, of some creatures six
-    /// times, of vases and plates with walls of a hundredth of the size up to thirty times. Edges are collapsed in the order of an estimated error (the quadric error of Q-MAT); nothing else is
-    /// done.
+    /// times, of vases and plates with walls of a hundredth of the size up to thirty times. Edges are collapsed in the
+    /// order of an estimated error (the quadric error of Q-MAT); nothing else is done.
     Fast,
     /// The default. After the work of [`Self::Fast`], edges are collapsed by the measured error, primitives are
     /// inserted where the error is largest, and centres and radii are fitted by least squares.
