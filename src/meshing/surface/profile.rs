@@ -7,7 +7,7 @@ use crate::meshing::surface::checked_surface::{Surface, cross};
 use std::collections::BTreeMap;
 
 /// Normals of caps and walls are off the axis, or square to it, by less than this (rad).
-const SQUARE: f64 = 1e-3;
+const SQUARE: f64 = 1e-2;
 
 /// Normals of large triangles from which axes are tried: each, and what is square to two of them.
 const NORMALS: usize = 4;
@@ -17,7 +17,7 @@ const NORMALS: usize = 4;
 const NEITHER: f64 = 0.03;
 
 /// Corners of a cap are in one plane but for this (longest side 1).
-const LEVEL: f64 = 1e-5;
+const LEVEL: f64 = 3e-4;
 
 /// Lines that meet at a smaller angle than this (rad) meet where the outline leaves the one for the other.
 const BLUNT: f64 = 0.05;
