@@ -87,7 +87,7 @@ pub fn hausdorff(
     let (surface, tree) = Surface::new(vertices, indices, &mut watch)?;
     let draft = Draft::from_medial_mesh(mesh, &surface.frame);
     let mut findings = Findings::default();
-    let boundary = solid_boundary(&surface, &tree, &mut findings, &mut watch)?;
+    let boundary = solid_boundary(&surface, &tree, false, &mut findings, &mut watch)?;
     let (seen, seen_tree) = match &boundary {
         Some(boundary) => (&boundary.surface, &boundary.tree),
         None => (&surface, &tree),

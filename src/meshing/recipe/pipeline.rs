@@ -36,6 +36,14 @@ impl Source {
             true => (exact, None),
             false => (None, exact),
         };
+        let is_uneven = self.boundary.as_ref().is_some_and(|b| b.uneven.is_some());
+        if is_uneven {
+            if let Some(exact) = exact {
+                return Ok(exact);
+            }
+            // Nothing else keeps the parts: what fills their cracks is to tell how deep they are.
+            self.find_boundary(false, watch)?;
+        }
         let mut candidate = self.best_beside(exact, larger, watch)?;
         candidate.exact_with = count.filter(|_| candidate.variant != Variant::Exact);
         Ok(candidate)
@@ -108,6 +116,14 @@ impl Source {
         Ok((Ladder::new(rounded, Vec::new()), creased))
     }
 
+    /// Finds the boundary of the solid; `of_parts` as for [`solid_boundary`].
+    fn find_boundary(&mut self, of_parts: bool, watch: &mut Watch) -> Result<(), BuildError> {
+        let mut findings = std::mem::take(&mut self.surface.findings);
+        self.boundary = solid_boundary(&self.surface, &self.tree, of_parts, &mut findings, watch)?;
+        self.surface.findings = findings;
+        Ok(())
+    }
+
     /// The medial axes of convex polyhedra or of convex pieces, where the body consists of these. Before, it finds the
     /// boundary of the solid. They have at most `most` primitives.
     pub fn exact(
@@ -115,9 +131,7 @@ impl Source {
         most: usize,
         watch: &mut Watch,
     ) -> Result<Option<Candidate>, BuildError> {
-        let mut findings = std::mem::take(&mut self.surface.findings);
-        self.boundary = solid_boundary(&self.surface, &self.tree, &mut findings, watch)?;
-        self.surface.findings = findings;
+        self.find_boundary(true, watch)?;
         match self.polyhedra(most, watch)? {
             None => self.pieces(most, watch),
             convex => Ok(convex),

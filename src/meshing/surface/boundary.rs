@@ -50,10 +50,6 @@ const COARSEST: f64 = 16.0;
 /// A length above that of all edges in the builder's frame (longest side 1): pieces of that size are whole triangles.
 const SPAN: f64 = 2.0;
 
-/// Longest edge of a piece (longest side 1) above which it is halved where it looks hidden: a strip along its side may
-/// be seen that no probe is in.
-const LARGE_HIDDEN: f64 = 0.02;
-
 /// Share of the area that is lost by rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -81,10 +77,12 @@ struct Sorted {
 }
 
 /// The boundary of the matter that a surface winds around, with the sheets outside it; `None` where nothing is
-/// hidden, or all, and nothing is open. `findings` is told what is hidden.
+/// hidden, or all, and nothing is open. If `of_parts`, the cracks between uneven parts count as matter: for a medial
+/// mesh that keeps the parts. `findings` is told what is hidden.
 pub fn solid_boundary(
     surface: &Surface,
     tree: &TriangleTree,
+    of_parts: bool,
     findings: &mut Findings,
     watch: &mut Watch,
 ) -> Result<Option<Boundary>, BuildError> {
@@ -97,7 +95,7 @@ pub fn solid_boundary(
     }
     let whole = || surface.all_corners().enumerate().map(|(t, c)| (c, t));
     let sorted = match hides {
-        true => sort_out(surface, tree, findings, watch)?,
+        true => sort_out(surface, tree, of_parts, findings, watch)?,
         false => None,
     };
     let Sorted {
@@ -150,11 +148,15 @@ pub fn solid_boundary(
 fn sort_out(
     surface: &Surface,
     tree: &TriangleTree,
+    of_parts: bool,
     findings: &mut Findings,
     watch: &mut Watch,
 ) -> Result<Option<Sorted>, BuildError> {
     let folds = Folds::new(surface, tree, watch)?;
-    let uneven = uneven_parts(surface, watch)?;
+    let uneven = match of_parts {
+        true => uneven_parts(surface, watch)?,
+        false => None,
+    };
     let cracks = uneven.map_or(0.0, |uneven| uneven.cracks);
     if let Some((pieces, cracks)) = flat_pieces(surface, tree, &folds, cracks, watch)? {
         return Ok(Some(Sorted {
@@ -200,7 +202,6 @@ struct Cut<'a> {
     hidden: Hidden<'a>,
     finest: f64,
     large: f64,
-    large_hidden: f64,
     pieces: Vec<TrianglePiece>,
     waiting: Vec<[Point; 3]>,
     /// The most of both.
@@ -221,7 +222,6 @@ impl<'a> Cut<'a> {
             },
             finest: FINEST * coarser,
             large: LARGE * coarser,
-            large_hidden: LARGE_HIDDEN * coarser,
             pieces: Vec::new(),
             waiting: Vec::new(),
             most_pieces: most(MOST_PIECES),
@@ -262,11 +262,10 @@ impl<'a> Cut<'a> {
                     .skip(1)
                     .all(|p| self.hidden.is_enclosed(p, normal) == here),
             };
-            let is_hidden = is_alike && here;
-            if is_hidden && longest_sq <= self.large_hidden * self.large_hidden {
+            if is_alike && here {
                 continue;
             }
-            if is_hidden || !is_alike && !is_finest {
+            if !is_alike && !is_finest {
                 self.waiting.extend(halve(piece));
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Kits whose vertices are off: bodies of convex parts with sharp edges that touch, in files of three decimals. Their
+//! Kits whose vertices are off: bodies of convex parts with sharp edges that touch, in files of few decimals. Their
 //! parts' faces are flat to no fine tolerance, and leave cracks where the parts should touch.
 
 use crate::error::BuildError;
@@ -8,8 +8,8 @@ use crate::meshing::surface::flat_faces::{FLATNESS, convex_faces, rounding};
 use crate::meshing::surface::touching::bodies;
 use crate::meshing::watch::Watch;
 
-/// Tolerances of flat faces that are tried in order (longest side 1): with the last, vertices may be off by a thousandth
-/// of the size, as in a file of a metre with three decimals.
+/// Tolerances of flat faces that are tried in order (longest side 1): with the last, vertices may be off by a
+/// thousandth of the size.
 const UNEVEN: [f64; 3] = [1e-4, 5e-4, 1.5e-3];
 
 /// Width of the cracks that count as matter, in units of the tolerance: as wide as two faces leave whose vertices are
