@@ -6,8 +6,8 @@ use rapier3d::prelude::*;
 use rapier3d_medial::prelude::*;
 
 /// A shelf of boards that touch, with vertices that are off by up to a thousandth, as a file of three decimals leaves
-/// them: the sides of its boards, a fiftieth thick, are less flat than those of uneven kits may be. It is fitted, and the
-/// cracks between its boards, which a fit closes, count in the error with their depth.
+/// them: the sides of its boards, a fiftieth thick, are less flat than those of uneven kits may be. It is fitted, and
+/// the cracks between its boards, which a fit closes, count in the error with their depth.
 #[test]
 fn a_shelf_with_coarse_vertices_is_not_exact() {
     let shelf = |off: Real| {
