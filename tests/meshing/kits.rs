@@ -211,6 +211,41 @@ fn kits_with_uneven_corners_are_nearly_exact() {
     }
 }
 
+/// Two towers on a plate with a slit between them, too narrow for so few primitives. Its walls are as deep inside the
+/// result as the error says, or less: cracks that a fit fills count with their depth.
+#[test]
+fn slits_that_a_fit_fills_count_in_its_error() {
+    let slit = 0.0025;
+    let tower = |x: f64| block([x, -0.15, -0.3], [x + 0.2, 0.15, 0.4]);
+    let plate = block([-0.3, -0.2, -0.4], [0.3, 0.2, -0.29]);
+    let parts = [tower(-0.2 - 0.5 * slit), tower(0.5 * slit), plate];
+    let off = 6.0e-4;
+    let all = parts.iter().map(Part::mesh).reduce(Mesh::and);
+    let mut mesh = all.expect("parts");
+    let mut random = Random(5);
+    for p in &mut mesh.vertices {
+        *p += random.vector(off);
+    }
+    let options = BuildOptions {
+        quality: Quality::Fast,
+        primitives: Some(40),
+        ..Default::default()
+    };
+    let (medial, report) =
+        MedialMesh::from_trimesh(&mesh.vertices, &mesh.indices, &options).expect("towers");
+    assert_ne!(report.variant, Variant::Exact);
+    let error = report.hausdorff.error();
+    let mut deepest = 0.0f32;
+    for _ in 0..2_000 {
+        let p = [random.within(-0.15, 0.15), random.within(-0.28, 0.4)];
+        let p = Vector::new(0.5 * slit as f32, p[0] as f32, p[1] as f32);
+        deepest = deepest.max(-solid_distance(&medial, p) as f32);
+    }
+    println!("error {error}, {deepest} deep");
+    let rounding = 2.0 * off as f32;
+    assert!(deepest <= 1.05 * error + rounding, "{deepest} {error}");
+}
+
 /// The medial axis of thin boards with knobs and round legs fits badly when edges are collapsed in the order of their
 /// quadric error, with 20 primitives as with 200: it is not that more gain nothing, as for a ring.
 #[test]
