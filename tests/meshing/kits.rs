@@ -239,7 +239,7 @@ fn slits_that_a_fit_fills_count_in_its_error() {
     for _ in 0..2_000 {
         let p = [random.within(-0.15, 0.15), random.within(-0.28, 0.4)];
         let p = Vector::new(0.5 * slit as f32, p[0] as f32, p[1] as f32);
-        deepest = deepest.max(-solid_distance(&medial, p) as f32);
+        deepest = deepest.max(-solid_distance(&medial, p));
     }
     println!("error {error}, {deepest} deep");
     let rounding = 2.0 * off as f32;
