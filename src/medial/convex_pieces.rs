@@ -54,7 +54,12 @@ pub struct ConvexPiece {
 }
 
 impl ConvexPiece {
-    fn new(spheres: &[MedialSphere], primitives: &[Simplex], group: &[u32]) -> Self {
+    fn new(
+        spheres: &[MedialSphere],
+        primitives: &[Simplex],
+        thicknesses: &[Real],
+        group: &[u32],
+    ) -> Self {
         let of_group = || group.iter().map(|p| &primitives[*p as usize]);
         let mut vertices: Vec<u32> = of_group().flat_map(|p| p.vertices).collect();
         vertices.sort_unstable();
@@ -72,18 +77,12 @@ impl ConvexPiece {
             let own = p.vertices.map(|v| spheres[v as usize]);
             (own, usize::from(p.len).clamp(1, 3))
         };
-        let thickness = |p: &Simplex| {
-            let (spheres, count) = own(p);
-            thickness::of_primitive(&spheres[..count])
-        };
         let is_blunt = of_group().all(|p| {
             let (spheres, count) = own(p);
             thickness::is_blunt(&spheres[..count])
         });
-        let thicknesses = group
-            .iter()
-            .map(|p| (*p, thickness(&primitives[*p as usize])));
-        let thinnest = thicknesses.min_by(|p, q| p.1.total_cmp(&q.1));
+        let of_each = group.iter().map(|p| (*p, thicknesses[*p as usize]));
+        let thinnest = of_each.min_by(|p, q| p.1.total_cmp(&q.1));
         let (primitive, thickness) = thinnest.unwrap_or((group[0], 0.0));
         let spheres: Vec<_> = vertices.iter().map(|v| spheres[*v as usize]).collect();
         let mut faces: Vec<PieceFace> = Vec::new();
@@ -216,8 +215,14 @@ pub struct ConvexPieces {
 }
 
 impl ConvexPieces {
-    /// The connected parts of a mesh all of whose connected parts are convex.
-    pub(super) fn new(spheres: &[MedialSphere], primitives: &[Simplex], tree: &SphereTree) -> Self {
+    /// The connected parts of a mesh all of whose connected parts are convex, and whose primitives have these
+    /// thicknesses.
+    pub(super) fn new(
+        spheres: &[MedialSphere],
+        primitives: &[Simplex],
+        thicknesses: &[Real],
+        tree: &SphereTree,
+    ) -> Self {
         let groups = connected(spheres.len(), primitives);
         let mut group_of = vec![0; primitives.len()];
         for (g, group) in groups.iter().enumerate() {
@@ -245,9 +250,8 @@ impl ConvexPieces {
             };
             let group = &groups[group];
             if count == group.len() && count > 1 {
-                pieces
-                    .pieces
-                    .push(ConvexPiece::new(spheres, primitives, group));
+                let piece = ConvexPiece::new(spheres, primitives, thicknesses, group);
+                pieces.pieces.push(piece);
                 pieces.of_nodes[at] = pieces.pieces.len() as u32;
                 (group.iter()).for_each(|p| pieces.nodes[*p as usize] = Some(at as u32));
             }

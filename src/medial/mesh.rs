@@ -275,7 +275,8 @@ impl MedialMesh {
         let parts = &self.data.parts;
         self.data.convex_pieces.get_or_init(|| {
             if parts.is_of_convex_pieces {
-                ConvexPieces::new(&parts.spheres, &parts.primitives, &parts.tree)
+                let thicknesses = &self.thicknesses().primitives;
+                ConvexPieces::new(&parts.spheres, &parts.primitives, thicknesses, &parts.tree)
             } else {
                 ConvexPieces::default()
             }
@@ -305,7 +306,13 @@ impl MedialMesh {
             ..
         } = &self.data.parts;
         let thicknesses = &self.data.thicknesses;
-        thicknesses.get_or_init(|| Thicknesses::new(spheres, primitives, tree))
+        thicknesses.get_or_init(|| {
+            let groups = match self.data.parts.is_of_convex_pieces {
+                true => connected(spheres.len(), primitives),
+                false => Vec::new(),
+            };
+            Thicknesses::new(spheres, primitives, tree, &groups)
+        })
     }
 
     /// Mass, centre of mass and inertia at a density (mass per cubed unit of length), in the body's frame. If the

@@ -7,8 +7,8 @@
 //! - Trees for queries: `tree.rs` (bounding spheres), `rectangle.rs` and `proxy_hull.rs` (other bounds),
 //!   `leaf_order.rs` (below which child a primitive is), `convex_pieces.rs` (parts that fill their convex hull).
 //! - Mass: `mass.rs`, in closed form `cone_mass.rs` and `polyhedron_mass.rs`.
-//! - Geometry of primitives: `thickness.rs` (how thin a mesh is), `chord.rs` (where a line enters and leaves),
-//!   `exact.rs` (spheres and tangent planes in double precision).
+//! - Geometry of primitives: `thickness.rs` (how thin a mesh is; where pieces overlap: `hidden_tips.rs`), `chord.rs`
+//!   (where a line enters and leaves), `exact.rs` (spheres and tangent planes in double precision).
 //! - The surface as triangles: `envelope.rs`, of the sheets of `sheet.rs`, less what `cover.rs` finds hidden.
 //! - Files: `asset.rs` (the layout of a baked mesh), `saved.rs` (serde), `ma_file.rs` (the text format of Q-MAT);
 //!   reading text: `text.rs`, writing safely: `files.rs`.
@@ -25,6 +25,7 @@ mod cover;
 pub(crate) mod envelope;
 pub(crate) mod exact;
 mod files;
+mod hidden_tips;
 pub(crate) mod leaf_order;
 pub(crate) mod ma_file;
 pub(crate) mod mass;

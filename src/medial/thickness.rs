@@ -4,6 +4,7 @@
 //! thin, even if it stands on something thick. So each primitive has a thickness of its own, and each node of the
 //! tree has the smallest thickness below it.
 
+use super::hidden_tips;
 use super::simplex::Simplex;
 use super::sphere::MedialSphere;
 use super::tree::{NodeKind, SphereTree};
@@ -77,13 +78,19 @@ pub struct Thicknesses {
 }
 
 impl Thicknesses {
-    /// The thicknesses of a mesh with these parts.
-    pub(super) fn new(spheres: &[MedialSphere], simplices: &[Simplex], tree: &SphereTree) -> Self {
+    /// The thicknesses of a mesh with these parts. `groups`: its connected parts, if all of them are convex.
+    pub(super) fn new(
+        spheres: &[MedialSphere],
+        simplices: &[Simplex],
+        tree: &SphereTree,
+        groups: &[Vec<u32>],
+    ) -> Self {
         let primitive = |s: &Simplex| {
             let spheres = s.vertices.map(|v| spheres[v as usize]);
             of_primitive(&spheres[..usize::from(s.len).clamp(1, 3)])
         };
-        let primitives: Vec<Real> = simplices.iter().map(primitive).collect();
+        let mut primitives: Vec<Real> = simplices.iter().map(primitive).collect();
+        hidden_tips::raise(&mut primitives, spheres, simplices, groups);
         let mut nodes = vec![0.0; tree.nodes().len()];
         // Children come after their parents.
         for (k, node) in tree.nodes().iter().enumerate().rev() {

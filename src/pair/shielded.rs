@@ -11,7 +11,8 @@
 //!
 //! At the floor ([`crate::elementary::Cores`]), where a body has to stop, a contact may be deep for a thin primitive
 //! and not for a thick one beside it. There a part is shielded only by one that holds the place of the contact, and
-//! has a floor of its own.
+//! has a floor of its own; and only from a body that is one convex part. Walls of two cups that are in each other have
+//! shields that push to opposite sides: with these nothing would part the axes, and the cups would hang where they are.
 
 use super::contact_list::ContactList;
 use super::first_contact::{Counts, Query};
@@ -186,6 +187,7 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
         } else {
             search.touching.iter().map(|(nodes, _)| *nodes).collect()
         };
+        let are_whole = [is_one_part(bodies.0), is_one_part(bodies.1)];
         let contacts = near.into_iter().filter_map(|nodes| {
             let parts = parts_of(nodes)?;
             let side = match [
@@ -196,6 +198,9 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
                 [true, false] => 1,
                 _ => return None,
             };
+            if is_floor && !are_whole[1 - side] {
+                return None;
+            }
             let contact = match parts {
                 [
                     PieceOrPrimitive::Primitive(p),
@@ -229,6 +234,14 @@ impl<A: PrimitiveTree, B: PrimitiveTree> Query<'_, A, B> {
             ..toi
         }
     }
+}
+
+/// Whether a body is one convex part.
+fn is_one_part(body: &impl PrimitiveTree) -> bool {
+    let part = |node| PieceOrPrimitive::of_node(body, node);
+    let first = part(0);
+    let is_first = |node| part(node).zip(first).is_some_and(|(a, b)| a.is(body, b));
+    (0..body.roots()).all(is_first)
 }
 
 /// The nodes whose parts hold a point of the body's frame, rounding apart.

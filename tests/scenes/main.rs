@@ -18,6 +18,7 @@ mod characters;
 mod controls;
 mod creature_walks;
 mod crowds;
+mod cups;
 mod determinism;
 mod dolls;
 #[path = "../common/dominoes.rs"]
