@@ -299,19 +299,11 @@ impl MedialMesh {
 
     /// How thin it is in each place. Computed at the first call.
     pub(crate) fn thicknesses(&self) -> &Thicknesses {
-        let MeshData {
-            spheres,
-            primitives,
-            tree,
-            ..
-        } = &self.data.parts;
-        let thicknesses = &self.data.thicknesses;
-        thicknesses.get_or_init(|| {
-            let groups = match self.data.parts.is_of_convex_pieces {
-                true => connected(spheres.len(), primitives),
-                false => Vec::new(),
-            };
-            Thicknesses::new(spheres, primitives, tree, &groups)
+        let parts = &self.data.parts;
+        self.data.thicknesses.get_or_init(|| {
+            let groups = || connected(parts.spheres.len(), &parts.primitives);
+            let groups = parts.is_of_convex_pieces.then(groups).unwrap_or_default();
+            Thicknesses::new(&parts.spheres, &parts.primitives, &parts.tree, &groups)
         })
     }
 

@@ -75,8 +75,8 @@ fn cups_do_not_hang_in_each_other() {
     }
 }
 
-/// Symptom: 20 cups of sixteen sides that rolled and lay on the ground had 18 impacts in each step, at 25 ms. Cause: their
-/// walls reach into each other with edges of 22.5°, which counted as sheets: as fast at any speed.
+/// Symptom: 20 cups of sixteen sides that rolled and lay on the ground had 18 impacts in each step, at 25 ms. Cause:
+/// their walls reach into each other with edges of 22.5°, which counted as sheets: as fast at any speed.
 #[test]
 fn cups_of_many_sides_slide_slowly_without_impacts() {
     let mut world = PhysicsWorld::new();
