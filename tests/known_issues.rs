@@ -21,6 +21,8 @@ mod scenes {
 mod builds;
 #[path = "faults/grounds.rs"]
 mod grounds;
+#[path = "faults/heavy_loads.rs"]
+mod heavy_loads;
 #[path = "faults/queries.rs"]
 mod queries;
 
