@@ -93,3 +93,46 @@ fn cups_of_many_sides_slide_slowly_without_impacts() {
     assert!(way > 0.1, "{way} m");
     assert_eq!(impacts, 0);
 }
+
+/// A block with a blade of 20° that stands out of it, flat below.
+fn blade() -> ColliderBuilder {
+    let half = Vector::new(0.1, 0.05, 0.1);
+    let (mut corners, mut triangles) = Cuboid::new(half).to_trimesh();
+    let (back, tip) = (0.08, 0.1 + 0.08 / Real::tan(PI / 9.0));
+    let first = corners.len() as u32;
+    for z in [-0.1, 0.1] {
+        let outline = [[0.0, -0.05], [tip, -0.05], [0.0, back - 0.05]];
+        corners.extend(outline.map(|[x, y]| Vector::new(x, y, 0.8 * z)));
+    }
+    let wedge = [
+        [0, 2, 1],
+        [3, 4, 5],
+        [0, 1, 4],
+        [0, 4, 3],
+        [1, 2, 5],
+        [1, 5, 4],
+        [2, 0, 3],
+        [2, 3, 5],
+    ];
+    triangles.extend(wedge.map(|t| t.map(|k| first + k)));
+    let built = MedialMesh::from_trimesh(&corners, &triangles, &BuildOptions::default());
+    let (mesh, report) = built.expect("a blade");
+    assert!(report.hausdorff.error() < 1.0e-5, "{report:?}");
+    ColliderBuilder::medial_mesh(mesh)
+}
+
+/// A tip counts as thick only where another piece holds all of it: what slides on a blade is watched at any speed.
+#[test]
+fn blades_that_stand_out_of_a_block_are_thin() {
+    let mut world = PhysicsWorld::new();
+    let ground = ColliderBuilder::cuboid(20.0, 0.5, 20.0).translation(Vector::Y * -0.5);
+    world.insert_collider(ground.friction(0.0), None);
+    let body = RigidBodyBuilder::dynamic().translation(Vector::Y * 0.051);
+    world.insert(body.linvel(Vector::Z * 0.15), blade().friction(0.0));
+    let mut pipeline = MedialPipeline::default();
+    let queries: usize = (0..60)
+        .map(|_| pipeline.step(&mut world).continuous_queries as usize)
+        .sum();
+    println!("{queries} searches");
+    assert!(queries > 30, "{queries} searches");
+}
